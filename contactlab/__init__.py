@@ -1,0 +1,48 @@
+"""contactlab: oblique impact of elastic bodies, with contact laws as plug-ins.
+
+A scene meets three interchangeable laws, and the answer comes back with its error, its
+cost, its energy books and a list of what was left out.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from contactlab.bodies import HalfSpace, Material, Pair, Sphere
+from contactlab.hookspecs import hookimpl
+from contactlab.registry import REGISTRY, PluginError
+from contactlab.result import EnergyLedger, ImpactError, ImpactResult
+from contactlab.scene import Scene
+from contactlab.simulation import Simulation
+from contactlab.status import Status
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "EnergyLedger",
+    "HalfSpace",
+    "ImpactError",
+    "ImpactResult",
+    "Material",
+    "Pair",
+    "PluginError",
+    "Scene",
+    "Simulation",
+    "Sphere",
+    "Status",
+    "create",
+    "hookimpl",
+]
+
+
+def create(name: str, **options: Any) -> Any:
+    """Return a new law by name: ``create("tangential.annulus", annuli=50)``.
+
+    Raises
+    ------
+    ValueError
+        If no such law is installed (with the nearest match), or an option is refused.
+    PluginError
+        If the plug-in is broken, with its traceback.
+    """
+    return REGISTRY.create(name, **options)

@@ -1,0 +1,128 @@
+"""Checked numbers: every quantity a user gives goes through here.
+
+A refusal names the argument, the value, the rule and the remedy, so that a
+person can mend the input without reading any code.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeAlias
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+#: A number or an array of numbers: the code of the laws serves both.
+Real: TypeAlias = float | NDArray[np.float64]
+
+
+class Rule(NamedTuple):
+    """A condition on a number and the sentence that states it."""
+
+    holds: Callable[[Any], Any]
+    sentence: str
+
+
+FINITE = Rule(lambda value: value == value, "must be a finite real number")
+POSITIVE = Rule(lambda value: value > 0.0, "must be positive and finite")
+NON_NEGATIVE = Rule(lambda value: value >= 0.0, "must be zero or positive, and finite")
+POISSON = Rule(
+    lambda value: (value >= -1.0) & (value <= 0.5),
+    "must lie in [-1, 0.5], the range of a stable isotropic solid",
+)
+GYRATION = Rule(
+    lambda value: (value > 0.0) & (value <= 1.0),
+    "must lie in (0, 1]: radius of gyration over radius, 1 with all mass at the surface",
+)
+
+
+def refuse(argument: str, value: object, rule: str, remedy: str = "") -> ValueError:
+    """Return the error for a bad argument: name, value, rule and remedy in one sentence."""
+    shown = repr(value)
+    if len(shown) > 80:
+        shown = shown[:77] + "..."
+    return ValueError(f"{argument} = {shown}: {rule}" + (f"; {remedy}" if remedy else ""))
+
+
+def real(argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "") -> Real:
+    """Return ``value`` as a float or a float64 array, or refuse it.
+
+    Parameters
+    ----------
+    argument : str
+        Name used in the error.
+    value : object
+        A real number, or an array or list of them. Booleans, text, complex numbers
+        and NaN or infinite values are refused; integers and float32 are widened.
+    rule : Rule
+        What every element must satisfy besides being finite.
+    remedy : str
+        What to do about a refusal, such as the unit expected.
+
+    Raises
+    ------
+    ValueError
+        With argument, value, rule and remedy.
+    """
+    if type(value) is float:  # the common case, without a detour through numpy
+        if math.isfinite(value) and rule.holds(value):
+            return value
+        raise refuse(argument, value, rule.sentence, remedy)
+    if isinstance(value, str | bytes | bool) or value is None:
+        raise refuse(argument, value, "must be a real number", remedy)
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise refuse(argument, value, "must be a number or a regular array", remedy) from None
+    if array.dtype.kind not in "iuf":
+        raise refuse(argument, value, "must be a real number", remedy)
+    if array.size == 0:
+        raise refuse(argument, value, "must hold at least one number", remedy)
+    widened = array.astype(np.float64)
+    if not (np.isfinite(widened).all() and np.all(rule.holds(widened))):
+        raise refuse(argument, value, rule.sentence, remedy)
+    return float(widened) if widened.ndim == 0 else widened
+
+
+def whole(argument: str, value: object, *, least: int = 1, most: int = 10_000_000) -> int:
+    """Return ``value`` as an int between ``least`` and ``most``, or refuse it."""
+    rule = f"must be a whole number from {least} to {most}"
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        raise refuse(argument, value, rule)
+    if not least <= value <= most:
+        raise refuse(argument, value, rule)
+    return int(value)
+
+
+def _checked(value: object, _: object, field: attrs.Attribute[Any]) -> Real:
+    meta = field.metadata
+    return real(field.name, value, rule=meta["rule"], remedy=f"give it in {meta['unit']}")
+
+
+def _same(left: object, right: object) -> bool:
+    return bool(np.array_equal(np.asarray(left), np.asarray(right)))
+
+
+def quantity(unit: str, *, rule: Rule = FINITE, default: Any = attrs.NOTHING) -> Any:
+    """Return an attrs field for a checked real quantity with its unit in the metadata."""
+    return attrs.field(
+        default=default,
+        converter=attrs.Converter(_checked, takes_self=True, takes_field=True),
+        eq=attrs.cmp_using(_same),
+        metadata={"unit": unit, "rule": rule},
+    )
+
+
+def count(*, default: Any = attrs.NOTHING, least: int = 1, most: int = 10_000_000) -> Any:
+    """Return an attrs field for a checked whole number."""
+
+    def checked(value: object, field: attrs.Attribute[Any]) -> int:
+        return whole(field.name, value, least=least, most=most)
+
+    return attrs.field(
+        default=default,
+        converter=attrs.Converter(checked, takes_field=True),
+        metadata={"unit": "1"},
+    )

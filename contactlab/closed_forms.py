@@ -1,0 +1,53 @@
+"""The closed forms of the paper as small pure functions.
+
+Shortcuts for the plan, oracles for the tests. Arguments may be floats or arrays.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from contactlab.checks import Real
+
+#: 2.9432751843: duration of an elastic Hertz impact times v1/(C²R), eq. (7) unrounded.
+DURATION_CONSTANT = 4.0 * math.gamma(0.4) * math.sqrt(math.pi) / (5.0 * math.gamma(0.9))
+#: 3.6790939804: the constant of eqs (31) and (35), unrounded.
+FORCE_CONSTANT = 1.25 * DURATION_CONSTANT
+
+
+def size_ratio(
+    normal_mass: Real, effective_modulus: Real, radius: Real, normal_speed: Real
+) -> Real:
+    """C of eq. (9), general pair: C⁵ = 15 M v1² / (16 E* R³).
+
+    The speed is raised to 2/5 on its own, so that v1² cannot underflow.
+    """
+    stiffness = 15.0 * normal_mass / (16.0 * effective_modulus * radius**3)
+    return stiffness**0.2 * normal_speed**0.4
+
+
+def gross_slip_rebound(psi1: Real, chi: Real, restitution: Real = 1.0) -> Real:
+    """psi2 of an impact that slips throughout, eq. (45): psi1 - 2 chi (1+e) in psi1's sense."""
+    return psi1 - np.sign(psi1) * (2.0 * chi * (1.0 + restitution))
+
+
+def slips_throughout_elastic(psi1: Real, chi: Real) -> Real:
+    """Whether an elastic impact slips from start to end, eqs (44) and (46).
+
+    ``|psi1| >= max(1, 4 chi - 1)``. For chi < 1/2 eq. (46) alone is not enough:
+    below ``|psi1| = 1`` the contact sticks from the start (44).
+    """
+    return np.abs(psi1) >= np.maximum(1.0, 4.0 * chi - 1.0)
+
+
+def rigid_body_rebound(psi1: Real, chi: Real, restitution: Real = 1.0) -> Real:
+    """psi2 of the rigid-body theory (paper §4.3): slip until rolling, then rolling to the end."""
+    reduced = np.maximum(np.abs(psi1) - 2.0 * chi * (1.0 + restitution), 0.0)
+    return np.copysign(reduced, psi1)
+
+
+def initial_slip_end(psi1: Real, chi: Real) -> Real:
+    """V at which initial gross slip ends, (2 chi - psi1)/(2 chi - 1), for 1 < psi1 < 4 chi - 1."""
+    return (2.0 * chi - psi1) / (2.0 * chi - 1.0)

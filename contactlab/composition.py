@@ -1,0 +1,69 @@
+"""Which laws fit together, and how a name becomes a law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from contactlab.checks import refuse
+from contactlab.contracts.law import Law
+from contactlab.registry import REGISTRY, PluginError
+
+
+def named(kind: str) -> Callable[[object], Any]:
+    """Return a converter that makes a law from its name, and lets an object of the kind pass."""
+
+    def convert(value: object) -> Any:
+        if isinstance(value, str):
+            name = value if value.startswith(f"{kind}.") else f"{kind}.{value}"
+            return REGISTRY.create(name)
+        if not isinstance(value, Law) or value.kind != kind:
+            raise refuse(kind, value, f"must be a name or a {kind} law", _known(kind))
+        return value
+
+    return convert
+
+
+def check_fit(normal: Law, tangential: Law, integrator: Law) -> None:
+    """Refuse laws whose needs the other two do not offer, naming what would fit.
+
+    Raises
+    ------
+    ValueError
+        Naming both parties, the missing words and the installed laws that offer them.
+    """
+    parts = (normal, tangential, integrator)
+    for part in parts:
+        others = [other for other in parts if other is not part]
+        missing = part.needs.difference(*(other.offers for other in others))
+        if not missing:
+            continue
+        word = sorted(missing)[0]
+        fitting = [name for name in _offering(word) if name.partition(".")[0] != part.kind]
+        would = f"these would fit: {', '.join(fitting)}" if fitting else "no installed law does"
+        raise ValueError(
+            f"{part.kind} = {type(part).__name__}: needs {word!r}, which neither "
+            f"{type(others[0]).__name__} nor {type(others[1]).__name__} offers; {would}"
+        )
+
+
+def versions(*laws: Law) -> dict[str, str]:
+    """Return each law's kind with its name and version, for the record."""
+    return {law.kind: REGISTRY.describe(law) for law in laws}
+
+
+def _offering(word: str) -> list[str]:
+    """Names of installed laws that offer ``word``; broken plug-ins are passed over."""
+    found = []
+    for name in REGISTRY.names():
+        try:
+            law = REGISTRY.law_class(name)
+        except (PluginError, ValueError):
+            continue
+        if word in law.offers:
+            found.append(name)
+    return found
+
+
+def _known(kind: str) -> str:
+    return f"installed: {', '.join(REGISTRY.names(kind))}"

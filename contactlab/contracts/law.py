@@ -1,0 +1,40 @@
+"""What every plug-in object has in common: a kind, needs, offers, and an interface version."""
+
+from __future__ import annotations
+
+from abc import ABC
+from typing import ClassVar
+
+#: Version of the contracts in this package. A plug-in states the one it was written for.
+API_VERSION = 1
+
+
+class Law(ABC):  # noqa: B024 - the abstract methods are in the three contracts
+    """Base of normal laws, tangential laws and integrators.
+
+    Contract
+    --------
+    1. An object is immutable and holds parameters only (``attrs.frozen(kw_only=True)``):
+       the same object may serve any number of simulations at once, and it pickles.
+    2. ``api_version`` is set in the class itself to the version it was written for.
+    3. ``needs`` and ``offers`` are sets of words. A composition fits if each part's needs
+       are offered by the other two. Words in use:
+
+       ========================  ====================================================
+       ``radius``                the normal contact knows its contact radius
+       ``hertzian_pressure``     pressure is a hemisphere over that radius, eq. (3)
+       ``closed_form_motion``    the normal motion is known in closed form
+       ``advance``               the tangential law is a return mapping over a step
+       ``phases``                the tangential law is a sequence of smooth phases
+       ``steps``                 the integrator calls ``advance``
+       ``events``                the integrator runs phases and locates their ends
+       ========================  ====================================================
+
+    4. Words in the names of parameters; each is checked when the object is made and
+       refused with a ``ValueError`` that names it.
+    """
+
+    kind: ClassVar[str]
+    api_version: ClassVar[int]
+    needs: ClassVar[frozenset[str]] = frozenset()
+    offers: ClassVar[frozenset[str]] = frozenset()

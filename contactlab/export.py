@@ -1,0 +1,111 @@
+"""Results as files: JSON, CSV, npz. One table of columns serves all three."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from contactlab.result import ImpactResult, plain
+
+#: Column name, unit, and where it comes from. Tables and files read this one list.
+COLUMNS: tuple[tuple[str, str, Callable[[ImpactResult], Any]], ...] = (
+    ("psi1", "1", lambda result: result.psi1),
+    ("chi", "1", lambda result: result.scene.chi),
+    ("psi2", "1", lambda result: result.psi2),
+    ("normal_speed", "m/s", lambda result: result.scene.normal_speed),
+    ("tangential_velocity", "m/s", lambda result: result.scene.tangential_velocity),
+    ("spin", "rad/s", lambda result: result.scene.spin),
+    ("rebound_normal_velocity", "m/s", lambda result: result.rebound_normal_velocity),
+    ("rebound_tangential_velocity", "m/s", lambda result: result.rebound_tangential_velocity),
+    ("rebound_spin", "rad/s", lambda result: result.rebound_spin),
+    ("rebound_slip_velocity", "m/s", lambda result: result.rebound_slip_velocity),
+    ("normal_restitution", "1", lambda result: result.normal_restitution),
+    ("tangential_restitution", "1", lambda result: result.tangential_restitution),
+    ("slip_restitution", "1", lambda result: result.slip_restitution),
+    ("incidence_angle", "rad", lambda result: result.incidence_angle),
+    ("rebound_angle", "rad", lambda result: result.rebound_angle),
+    ("local_rebound_angle", "rad", lambda result: result.local_rebound_angle),
+    ("contact_time", "s", lambda result: result.motion.duration),
+    ("friction_work", "J", lambda result: result.energy.friction_work),
+    ("energy_imbalance", "J", lambda result: result.energy.imbalance),
+    ("status", "", lambda result: result.status),
+)  # fmt: skip
+
+
+def to_dict(result: ImpactResult) -> dict[str, Any]:
+    """Return everything but the history as plain numbers, lists and text."""
+    numbers = {name: plain(read(result)) for name, _, read in COLUMNS}
+    return numbers | {
+        "detail": result.motion.detail,
+        "run_time_s": result.run_time,
+        "energy": result.energy.to_dict(),
+        "counters": dict(result.counters),
+        "laws": dict(result.laws),
+        "plan": result.plan.to_dict(),
+    }
+
+
+def write_json(result: ImpactResult, path: str | Path) -> None:
+    """Write ``to_dict`` and the history, if there is one."""
+    content = to_dict(result)
+    if result.history is not None:
+        columns = result.history.columns() | result.history.fields
+        content["history"] = {name: plain(np.asarray(column)) for name, column in columns.items()}
+    Path(path).write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def write_csv(result: ImpactResult, path: str | Path) -> None:
+    """Write one row an impact, the unit in each heading."""
+    table = [_spread(read(result), result.scene.shape) for _, _, read in COLUMNS]
+    headings = [f"{name} ({unit})" if unit else name for name, unit, _ in COLUMNS]
+    _write_table(path, headings, list(zip(*table, strict=True)))
+
+
+def write_history_csv(result: ImpactResult, path: str | Path) -> None:
+    """Write one row an instant of a single impact's history.
+
+    Raises
+    ------
+    ValueError
+        If no history was asked for, or the result is a batch.
+    """
+    history = result.history
+    if history is None or result.scene.shape:
+        raise ValueError("result: has no history of a single impact; run(scene, history=True)")
+    columns = history.columns()
+    headings = [f"{name} ({history.unit(name)})" for name in columns]
+    _write_table(path, headings, list(zip(*columns.values(), strict=True)))
+
+
+def write_npz(result: ImpactResult, path: str | Path) -> None:
+    """Write every column, and the history's arrays with the prefix ``history_``."""
+    arrays = {
+        name: np.array(_spread(read(result), result.scene.shape)) for name, _, read in COLUMNS
+    }
+    if result.history is not None:
+        columns = result.history.columns() | result.history.fields
+        arrays |= {f"history_{name}": column for name, column in columns.items()}
+    np.savez_compressed(path, **arrays)  # type: ignore[arg-type]
+
+
+def _spread(value: Any, shape: tuple[int, ...]) -> list[Any]:
+    items = np.broadcast_to(np.asarray(value, dtype=object), shape).ravel().tolist()
+    return [math.nan if item is None else plain_text(item) for item in items]
+
+
+def plain_text(item: Any) -> Any:
+    """Return a status by its name, numbers as they are."""
+    return getattr(item, "name", item)
+
+
+def _write_table(path: str | Path, headings: list[str], rows: list[tuple[Any, ...]]) -> None:
+    with Path(path).open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(headings)
+        writer.writerows(rows)

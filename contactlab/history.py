@@ -1,0 +1,89 @@
+"""The course of an impact: recorded only when asked for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.contracts.integrator import Sample
+
+Array = NDArray[np.float64]
+
+
+def _column(unit: str) -> Any:
+    return attrs.field(metadata={"unit": unit})
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class History:
+    """Arrays over the instants of an impact, shape (K, ...): instants first, then the batch.
+
+    Signs: ``tangential_force`` is positive where it opposes positive slip velocity.
+    """
+
+    time: Array = _column("s")
+    approach: Array = _column("m")
+    normal_velocity: Array = _column("m/s")
+    normal_force: Array = _column("N")
+    contact_radius: Array = _column("m")
+    slip_velocity: Array = _column("m/s")
+    tangential_force: Array = _column("N")
+    fields: dict[str, NDArray[Any]] = attrs.field(factory=dict)
+
+    def columns(self) -> dict[str, Array]:
+        """Return the one-number-an-instant columns by name."""
+        names = [item.name for item in attrs.fields(History) if item.name != "fields"]
+        return {name: getattr(self, name) for name in names}
+
+    @staticmethod
+    def unit(name: str) -> str:
+        """Return the unit of a column."""
+        return str(getattr(attrs.fields(History), name).metadata["unit"])
+
+
+class Recorder:
+    """An observer that keeps what it is shown.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        Batch shape.
+    with_fields : bool
+        Whether the law's fields (traction, stuck, ...) are asked for at every instant.
+    """
+
+    def __init__(self, shape: tuple[int, ...], *, with_fields: bool) -> None:
+        self._shape = shape
+        self._with_fields = with_fields
+        self._rows: list[tuple[Any, ...]] = []
+        self._fields: list[dict[str, Any]] = []
+
+    def __call__(self, sample: Sample) -> None:
+        """Keep one instant."""
+        self._rows.append(
+            (
+                sample.time,
+                sample.approach,
+                sample.normal_velocity,
+                sample.contact.force,
+                sample.contact.radius,
+                sample.slip_velocity,
+                sample.tangential_force,
+            )
+        )
+        if self._with_fields:
+            self._fields.append(dict(sample.fields()))
+
+    def history(self) -> History:
+        """Return what was recorded; no instants at all give arrays of length 0."""
+        names = [item.name for item in attrs.fields(History) if item.name != "fields"]
+        columns = {}
+        for index, name in enumerate(names):
+            rows = [np.broadcast_to(np.asarray(row[index]), self._shape) for row in self._rows]
+            columns[name] = np.array(rows, dtype=np.float64).reshape(len(rows), *self._shape)
+        keys = self._fields[0] if self._fields else {}
+        fields = {key: np.array([entry[key] for entry in self._fields]) for key in keys}
+        return History(**columns, fields=fields)

@@ -1,0 +1,212 @@
+"""Finds laws by name among the installed distributions and makes them, one at a time."""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+import os
+from importlib import metadata
+from types import ModuleType
+from typing import Any
+
+import attrs
+import pluggy
+
+from contactlab import hookspecs
+from contactlab.checks import refuse
+from contactlab.contracts.law import API_VERSION, Law
+
+GROUP = "contactlab"
+BLOCK_VARIABLE = "CONTACTLAB_BLOCK_PLUGINS"
+KINDS = ("normal", "tangential", "integrator")
+
+
+class PluginError(RuntimeError):
+    """A plug-in is broken or at odds with another; names plug-in and distribution."""
+
+
+@attrs.frozen
+class PluginInfo:
+    """One installed law, as the listing shows it; nothing has been imported."""
+
+    name: str
+    distribution: str
+    version: str
+    module: str
+    blocked: bool
+
+    @property
+    def kind(self) -> str:
+        """The part of the name before the dot."""
+        return self.name.partition(".")[0]
+
+
+class Registry:
+    """The laws installed in this environment.
+
+    Entry points of the group ``contactlab`` are read when asked for; a module is
+    imported only when one of its laws is made, so that a broken plug-in is in
+    nobody's way but its own.
+    """
+
+    def __init__(self) -> None:
+        self._manager = pluggy.PluginManager(hookspecs.PROJECT)
+        self._manager.add_hookspecs(hookspecs)
+        self._loaded: dict[str, tuple[type[Law], PluginInfo]] = {}
+
+    def installed(self) -> list[PluginInfo]:
+        """Return every law found, sorted by kind and name, without importing any."""
+        infos = {
+            PluginInfo(
+                name=point.name,
+                distribution=point.dist.name if point.dist else "unknown",
+                version=point.dist.version if point.dist else "unknown",
+                module=point.value,
+                blocked=point.name in blocked_names(),
+            )
+            for point in metadata.entry_points(group=GROUP)
+        }
+        return sorted(infos, key=lambda info: (_rank(info.kind), info.name, info.distribution))
+
+    def names(self, kind: str | None = None) -> list[str]:
+        """Return the names of laws that may be made, of one kind or of all."""
+        return sorted(
+            {
+                info.name
+                for info in self.installed()
+                if not info.blocked and kind in (None, info.kind)
+            }
+        )
+
+    def info(self, name: str) -> PluginInfo:
+        """Return the one installed law called ``name``.
+
+        Raises
+        ------
+        ValueError
+            If there is none (with the nearest match) or it is blocked.
+        PluginError
+            If two distributions offer it.
+        """
+        found = [info for info in self.installed() if info.name == name]
+        if len(found) > 1:
+            both = " and ".join(f"{info.distribution} {info.version}" for info in found)
+            raise PluginError(
+                f"{name!r} is offered by {both}: uninstall one, or set {BLOCK_VARIABLE}"
+            )
+        if not found:
+            raise self._unknown(name)
+        if found[0].blocked:
+            raise refuse("name", name, f"is blocked by {BLOCK_VARIABLE}", "unset it to use the law")
+        return found[0]
+
+    def law_class(self, name: str) -> type[Law]:
+        """Import the plug-in that offers ``name`` and return the law's class."""
+        if name not in self._loaded or name in blocked_names():
+            info = self.info(name)
+            self._loaded[name] = (self._load(info), info)
+        return self._loaded[name][0]
+
+    def create(self, name: str, **options: Any) -> Any:
+        """Return a new law: ``create("tangential.annulus", annuli=50)``.
+
+        Raises
+        ------
+        ValueError
+            If the name is not installed, or an option is unknown or out of range.
+        PluginError
+            If the plug-in cannot be imported or breaks the contract, with its traceback.
+        """
+        law = self.law_class(name)
+        signature = inspect.signature(law)
+        unknown = [option for option in options if option not in signature.parameters]
+        if unknown:
+            known = ", ".join(signature.parameters) or "no options"
+            raise refuse(
+                unknown[0], options[unknown[0]], f"{name} does not know it", f"it has {known}"
+            )
+        try:
+            return law(**options)
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from error
+
+    def describe(self, law: Law) -> str:
+        """Return a law's name and version: of its distribution, or its class if unregistered."""
+        for name, (known, info) in self._loaded.items():
+            if type(law) is known:
+                return f"{name.partition('.')[2]} ({info.distribution} {info.version})"
+        return f"{type(law).__module__}.{type(law).__qualname__} (not registered)"
+
+    def _load(self, info: PluginInfo) -> type[Law]:
+        source = f"{info.name!r} of {info.distribution} {info.version}"
+        try:
+            module = metadata.EntryPoint(info.name, info.module, GROUP).load()
+        except (Exception, SystemExit) as error:
+            raise PluginError(f"{source} could not be imported: {_short(error)}") from error
+        self._register(module, info, source)
+        others = [plugin for plugin in self._manager.get_plugins() if plugin is not module]
+        ask = self._manager.subset_hook_caller("contactlab_law", others)
+        try:
+            law = ask(name=info.name)
+        except Exception as error:
+            raise PluginError(f"{source} raised when asked for its law: {_short(error)}") from error
+        return _checked(law, info, source)
+
+    def _register(self, module: ModuleType, info: PluginInfo, source: str) -> None:
+        if self._manager.is_registered(module):
+            return
+        try:
+            self._manager.register(module, name=info.module)
+            self._manager.check_pending()
+        except Exception as error:
+            # pluggy leaves a plug-in that failed validation registered.
+            if self._manager.is_registered(module):
+                self._manager.unregister(module)
+            raise PluginError(f"{source} does not fit the hooks: {_short(error)}") from error
+        if not self._manager.get_hookcallers(module):
+            self._manager.unregister(module)
+            raise PluginError(
+                f"{source} has no hook: define @contactlab.hookimpl def contactlab_law(name)"
+            )
+
+    def _unknown(self, name: str) -> ValueError:
+        names = self.names()
+        nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+        if not nearest and "." not in str(name):
+            nearest = [known for known in names if known.endswith(f".{name}")][:1]
+        hint = f"did you mean {nearest[0]!r}? " if nearest else ""
+        return refuse(
+            "name", name, "no such law is installed", f"{hint}installed: {', '.join(names)}"
+        )
+
+
+def blocked_names() -> set[str]:
+    """Return the names in ``CONTACTLAB_BLOCK_PLUGINS``, separated by commas or blanks."""
+    return set(os.environ.get(BLOCK_VARIABLE, "").replace(",", " ").split())
+
+
+def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
+    if not (isinstance(law, type) and issubclass(law, Law)):
+        raise PluginError(f"{source} returned {law!r}, which is not the class of a law")
+    if law.kind != info.kind:
+        raise PluginError(f"{source} returned {law.__name__}, a {law.kind} law")
+    if inspect.isabstract(law):
+        missing = ", ".join(sorted(law.__abstractmethods__))
+        raise PluginError(f"{source}: {law.__name__} does not define {missing}")
+    version = getattr(law, "api_version", None)
+    if version != API_VERSION:
+        raise PluginError(
+            f"{source}: {law.__name__}.api_version is {version!r}, this contactlab has {API_VERSION}"
+        )
+    return law
+
+
+def _rank(kind: str) -> int:
+    return KINDS.index(kind) if kind in KINDS else len(KINDS)
+
+
+def _short(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}"
+
+
+REGISTRY = Registry()

@@ -1,0 +1,285 @@
+"""The answer: velocities after the impact, its status, its energy books and its cost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.checks import Real
+from contactlab.contracts.integrator import Motion
+from contactlab.history import History
+from contactlab.plan import Plan
+from contactlab.scene import Scene
+from contactlab.status import Status
+
+
+class ImpactError(RuntimeError):
+    """Raised by ``ImpactResult.check()`` for a run that did not succeed."""
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class EnergyLedger:
+    """Kinetic energy of the relative motion at the contact, in J.
+
+    Attributes
+    ----------
+    start, end : float or array
+        ½ M_n v_z² + ½ M_t v_x² before and after.
+    friction_work : float or array
+        Added up by the law from traction and slip, step by step.
+    imbalance : float or array
+        start - end - friction_work: zero in an exact solution.
+    """
+
+    start: Real
+    end: Real
+    friction_work: Real
+    imbalance: Real
+
+    @property
+    def relative_imbalance(self) -> Real:
+        """Imbalance over the energy at the start."""
+        return self.imbalance / self.start
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the four entries and the relative imbalance as plain numbers or lists."""
+        entries = attrs.asdict(self) | {"relative_imbalance": self.relative_imbalance}
+        return {name: plain(value) for name, value in entries.items()}
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class ImpactResult:
+    """Outcome of one impact, or of a batch: every entry has the scene's shape.
+
+    A batch can be indexed and iterated; each item is the result of one impact.
+
+    Attributes
+    ----------
+    scene : Scene
+    plan : Plan
+    motion : Motion
+        What the integrator returned.
+    run_time : float
+        Wall-clock time of the whole run in s (of the whole batch).
+    laws : mapping of str to str
+        Names of the three laws with their versions.
+    history : History or None
+        Only if asked for.
+    """
+
+    scene: Scene
+    plan: Plan
+    motion: Motion = attrs.field(repr=False)
+    run_time: float = attrs.field(metadata={"unit": "s"})
+    laws: Mapping[str, str]
+    history: History | None = attrs.field(default=None, repr=False)
+
+    # -- how it went ---------------------------------------------------------
+
+    @property
+    def status(self) -> Any:
+        """A ``Status``, or an array of them."""
+        return self.motion.status
+
+    @property
+    def counters(self) -> Mapping[str, int]:
+        """Work done: steps, evaluations, solves, rejected steps."""
+        return self.motion.counters
+
+    def check(self) -> ImpactResult:
+        """Return this result if every impact succeeded.
+
+        Raises
+        ------
+        ImpactError
+            With the sentence of the first status that is not ``SUCCESS``.
+        """
+        for index, status in enumerate(np.ravel(np.asarray(self.status, dtype=object))):
+            if status is not Status.SUCCESS:
+                where = f"impact {index}: " if self.scene.shape else ""
+                raise ImpactError(f"{where}{status.value} {self.motion.detail}".strip())
+        return self
+
+    # -- non-dimensional -----------------------------------------------------
+
+    @property
+    def psi1(self) -> Real:
+        """Non-dimensional local angle of incidence (29)."""
+        return self.scene.psi1
+
+    @property
+    def psi_change(self) -> Real:
+        """psi2 - psi1, free of the rounding that a huge psi1 brings."""
+        return self.scene.psi(self.motion.slip_velocity_change)
+
+    @property
+    def psi2(self) -> Real:
+        """Non-dimensional local angle of reflexion."""
+        return self.scene.psi(self.rebound_slip_velocity)
+
+    # -- velocities, SI ------------------------------------------------------
+
+    @property
+    def rebound_slip_velocity(self) -> Real:
+        """Local tangential velocity at the contact after the impact, in m/s."""
+        return self.scene.slip_velocity + self.motion.slip_velocity_change
+
+    @property
+    def rebound_normal_velocity(self) -> Real:
+        """Velocity of the sphere along the normal, in m/s; negative: away from the target."""
+        speed, pair = self.scene.normal_speed, self.scene.pair
+        share = 1.0 if self.scene.sphere is None else pair.normal_mass / self.scene.sphere.mass
+        return speed - share * (speed - self.motion.normal_velocity)
+
+    @property
+    def rebound_tangential_velocity(self) -> Real | None:
+        """Tangential velocity of the sphere's centre in m/s; None for a non-dimensional scene."""
+        sphere = self.scene.sphere
+        if sphere is None:
+            return None
+        share = self.scene.pair.tangential_mass / sphere.mass
+        return self.scene.tangential_velocity + share * self.motion.slip_velocity_change
+
+    @property
+    def rebound_spin(self) -> Real | None:
+        """Spin of the sphere in rad/s; None for a non-dimensional scene."""
+        sphere = self.scene.sphere
+        if sphere is None:
+            return None
+        inertia = sphere.mass * sphere.gyration_ratio**2 * sphere.radius
+        share = self.scene.pair.tangential_mass / inertia
+        return self.scene.spin + share * self.motion.slip_velocity_change
+
+    # -- ratios and angles ---------------------------------------------------
+
+    @property
+    def normal_restitution(self) -> Real:
+        """Coefficient of normal restitution, e = -v_z after / v_z before."""
+        return -self.motion.normal_velocity / self.scene.normal_speed
+
+    @property
+    def tangential_restitution(self) -> Real | None:
+        """e_t = centre's tangential velocity after over before; NaN where that was zero."""
+        after = self.rebound_tangential_velocity
+        return None if after is None else _ratio(after, self.scene.tangential_velocity)
+
+    @property
+    def slip_restitution(self) -> Real:
+        """Local tangential velocity after over before (psi2/psi1); NaN where that was zero."""
+        return _ratio(self.rebound_slip_velocity, self.scene.slip_velocity)
+
+    @property
+    def incidence_angle(self) -> Real:
+        """Angle of the centre's path from the normal before the impact, in rad."""
+        return _angle(self.scene.tangential_velocity, self.scene.normal_speed)
+
+    @property
+    def rebound_angle(self) -> Real | None:
+        """Angle of the centre's path from the normal after the impact, in rad."""
+        after = self.rebound_tangential_velocity
+        return None if after is None else _angle(after, -self.rebound_normal_velocity)
+
+    @property
+    def local_rebound_angle(self) -> Real:
+        """Angle of reflexion of the contact point, in rad: of psi2 as (39) is of psi1."""
+        return _angle(self.rebound_slip_velocity, -self.motion.normal_velocity)
+
+    @property
+    def energy(self) -> EnergyLedger:
+        """Energy before and after, friction work, and what does not add up."""
+        pair, motion = self.scene.pair, self.motion
+        before, change = self.scene.slip_velocity, motion.slip_velocity_change
+        speed, after = self.scene.normal_speed, motion.normal_velocity
+        start = 0.5 * pair.normal_mass * speed**2 + 0.5 * pair.tangential_mass * before**2
+        # The loss is formed from the changes: with a huge v_x, start - end would cancel.
+        loss = 0.5 * pair.normal_mass * (speed - after) * (speed + after)
+        loss = loss - pair.tangential_mass * change * (before + 0.5 * change)
+        return EnergyLedger(
+            start=start,
+            end=start - loss,
+            friction_work=motion.friction_work,
+            imbalance=loss - motion.friction_work,
+        )
+
+    # -- batches -------------------------------------------------------------
+
+    def __len__(self) -> int:
+        """Return the number of impacts of a batch."""
+        if not self.scene.shape:
+            raise TypeError("the result of a single impact has no length")
+        return self.scene.shape[0]
+
+    def __getitem__(self, index: int) -> ImpactResult:
+        """Return the result of one impact of a batch."""
+        shape = self.scene.shape
+        if not shape:
+            raise TypeError("the result of a single impact cannot be indexed")
+        if not -shape[0] <= index < shape[0]:
+            raise IndexError(index)
+
+        def pick(value: Any) -> Any:
+            if isinstance(value, float | int | str | Status) or value is None:
+                return value
+            picked = np.broadcast_to(np.asarray(value), shape)[index]
+            return picked.item() if isinstance(picked, np.generic) else picked
+
+        motion = attrs.evolve(
+            self.motion,
+            **{name: pick(getattr(self.motion, name)) for name in _MOTION_NUMBERS},
+        )
+        history = self.history
+        if history is not None:
+            columns = {name: column[:, index] for name, column in history.columns().items()}
+            fields = {name: field[:, index] for name, field in history.fields.items()}
+            history = History(**columns, fields=fields)
+        return attrs.evolve(
+            self,
+            scene=_picked(self.scene, pick),
+            plan=attrs.evolve(
+                self.plan, marched=self.plan.marched[index], slipping=self.plan.slipping[index]
+            ),
+            motion=motion,
+            history=history,
+        )
+
+    def __iter__(self) -> Iterator[ImpactResult]:
+        """Iterate over the impacts of a batch."""
+        return (self[index] for index in range(len(self)))
+
+
+_MOTION_NUMBERS = (
+    "duration", "normal_velocity", "slip_velocity_change", "friction_work", "status",
+)  # fmt: skip
+
+
+def plain(value: Any) -> Any:
+    """Return ``value`` as JSON takes it: floats, lists, None for what is undefined."""
+    if isinstance(value, Status):
+        return value.name
+    if isinstance(value, np.ndarray):
+        return [plain(item) for item in value.tolist()]
+    if isinstance(value, float | np.floating):
+        return float(value) if np.isfinite(value) else None
+    return value
+
+
+def _ratio(after: Real, before: Real) -> Real:
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        ratio = np.where(np.asarray(before) == 0.0, np.nan, np.divide(after, before))
+    return float(ratio) if ratio.ndim == 0 else ratio
+
+
+def _angle(tangential: Real, normal: Real) -> Real:
+    angle = np.arctan2(tangential, normal)
+    return float(angle) if np.ndim(angle) == 0 else angle
+
+
+def _picked(tree: Any, pick: Any) -> Any:
+    """Apply ``pick`` to every number of an attrs tree."""
+    if tree is None or not attrs.has(type(tree)):
+        return pick(tree)
+    names = [field.name for field in attrs.fields(type(tree))]
+    return type(tree)(**{name: _picked(getattr(tree, name), pick) for name in names})

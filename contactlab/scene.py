@@ -1,0 +1,231 @@
+"""A scene: two bodies, the friction between them, and how they meet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.bodies import HalfSpace, Pair, Sphere
+from contactlab.checks import NON_NEGATIVE, POSITIVE, Real, quantity, real, refuse
+from contactlab.closed_forms import DURATION_CONSTANT, size_ratio
+
+
+def _is_sphere(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
+    if value is not None and not isinstance(value, Sphere):
+        raise refuse(attribute.name, value, "must be a Sphere", "make one: Sphere(...)")
+
+
+def _is_target(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
+    if value is not None and not isinstance(value, Sphere | HalfSpace):
+        raise refuse(attribute.name, value, "must be a HalfSpace or a Sphere")
+
+
+def _reduced(scene: Any) -> Pair:
+    if scene.sphere is None or scene.target is None:
+        raise refuse(
+            "sphere, target",
+            (scene.sphere, scene.target),
+            "both bodies must be given",
+            "or use Scene.nondimensional(psi1=, chi=)",
+        )
+    return Pair.of(scene.sphere, scene.target)
+
+
+@attrs.frozen
+class Scene:
+    """One oblique impact, or a batch of them, in SI units.
+
+    The sphere moves towards the target, which is at rest and does not spin. Every
+    number may be an array; the scene is then a batch of the broadcast ``shape``.
+
+    Parameters
+    ----------
+    sphere : Sphere
+    target : HalfSpace or Sphere
+    friction_coefficient : float or array
+        Coulomb's mu, at least 0.
+    normal_speed : float or array
+        v1, the speed of approach along the normal, in m/s, positive.
+    tangential_velocity : float or array
+        v, the tangential velocity of the sphere's centre, in m/s.
+    spin : float or array
+        omega, in rad/s, positive where it adds to the tangential velocity at the
+        contact: v_x = v + omega R, eq. (20).
+
+    Raises
+    ------
+    ValueError
+        With the argument's name, if a number is not finite or out of range.
+    """
+
+    sphere: Sphere | None = attrs.field(validator=_is_sphere)
+    target: Sphere | HalfSpace | None = attrs.field(validator=_is_target)
+    friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE)
+    normal_speed: Real = quantity("m/s", rule=POSITIVE)
+    tangential_velocity: Real = quantity("m/s", default=0.0)
+    spin: Real = quantity("rad/s", default=0.0)
+    pair: Pair = attrs.field(
+        default=attrs.Factory(_reduced, takes_self=True), kw_only=True, repr=False
+    )
+
+    def __attrs_post_init__(self) -> None:
+        numbers = [self.friction_coefficient, self.normal_speed]
+        numbers += [self.tangential_velocity, self.spin]
+        numbers += list(attrs.astuple(self.pair))
+        try:
+            np.broadcast_shapes(*(np.shape(number) for number in numbers))
+        except ValueError:
+            raise refuse(
+                "Scene",
+                [np.shape(number) for number in numbers],
+                "arrays must broadcast to one shape",
+                "give numbers, or arrays of equal length",
+            ) from None
+        real("tangential_velocity + spin * radius", self.slip_velocity)
+
+    @classmethod
+    def nondimensional(cls, *, psi1: Any, chi: Any) -> Scene:
+        """Return the scene of the paper's own two parameters, eqs (29) and (38).
+
+        Units are such that mu = kappa = v1 = R = C = M = 1: velocities come out as
+        the paper's V and psi. It has no sphere, so spin and the centre's velocity
+        are not defined.
+
+        Raises
+        ------
+        ValueError
+            If psi1 is not finite, or chi is not positive and finite.
+        """
+        incidence = real("psi1", psi1, remedy="give the non-dimensional angle of incidence (29)")
+        inertia = real("chi", chi, rule=POSITIVE, remedy="chi of eq. (38); 1.4412 for steel")
+        modulus = 15.0 / 16.0  # makes C = 1 in eq. (9)
+        pair = Pair(
+            radius=1.0,
+            effective_modulus=modulus,
+            effective_shear_modulus=modulus,
+            normal_mass=1.0,
+            tangential_mass=0.5 / inertia,
+        )
+        return cls(None, None, 1.0, 1.0, incidence, pair=pair)
+
+    @classmethod
+    def stack(cls, scenes: Sequence[Scene]) -> Scene:
+        """Return one batch scene of shape (len(scenes),) from scalar scenes."""
+        if not scenes:
+            raise refuse("scenes", scenes, "must hold at least one Scene")
+        for position, scene in enumerate(scenes):
+            if not isinstance(scene, cls):
+                raise refuse(f"scenes[{position}]", scene, "must be a Scene")
+            if scene.shape:
+                raise refuse(f"scenes[{position}]", scene.shape, "must be a single impact")
+        stacked = _stacked(scenes)
+        assert isinstance(stacked, cls)
+        full = np.ones(len(scenes)) * stacked.normal_speed
+        return attrs.evolve(stacked, normal_speed=full)
+
+    def take(self, part: Any) -> Scene:
+        """Return the batch scene of some of the impacts, by slice, mask or indices."""
+        shape = self.shape
+        taken = _taken(self, shape, part)
+        assert isinstance(taken, Scene)
+        speed = np.broadcast_to(np.asarray(self.normal_speed), shape)[part]
+        return attrs.evolve(taken, normal_speed=speed)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Batch shape: () for one impact."""
+        return np.shape(
+            self.slip_velocity
+            + self.friction_coefficient
+            + self.pair.inertia_ratio
+            + self.normal_speed
+            + self.pair.effective_modulus
+            + self.pair.radius
+        )
+
+    @property
+    def slip_velocity(self) -> Real:
+        """v_x = v + omega R, the local tangential velocity at the contact (20), in m/s."""
+        if self.sphere is None:
+            return self.tangential_velocity
+        return self.tangential_velocity + self.spin * self.sphere.radius
+
+    @property
+    def chi(self) -> Real:
+        """Inertia ratio, eq. (38)."""
+        return self.pair.inertia_ratio
+
+    @property
+    def psi_scale(self) -> Real:
+        """Psi per m/s of local tangential velocity, kappa/(mu v1), eq. (29); inf without friction."""
+        with np.errstate(divide="ignore", over="ignore"):
+            scale = np.divide(
+                self.pair.stiffness_ratio, self.friction_coefficient * self.normal_speed
+            )
+        return float(scale) if np.ndim(scale) == 0 else scale
+
+    def psi(self, velocity: Real) -> Real:
+        """Return the non-dimensional local tangential velocity of ``velocity`` (m/s), eq. (29)."""
+        with np.errstate(invalid="ignore", over="ignore"):
+            value = np.where(np.asarray(velocity) == 0.0, 0.0, velocity * self.psi_scale)
+        return float(value) if value.ndim == 0 else value
+
+    @property
+    def psi1(self) -> Real:
+        """Non-dimensional local angle of incidence, from the local velocity (20), (29)."""
+        return self.psi(self.slip_velocity)
+
+    @property
+    def size_ratio(self) -> Real:
+        """C, the ratio of the largest contact radius to R, eq. (9)."""
+        pair = self.pair
+        return size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, self.normal_speed)
+
+    @property
+    def maximum_radius(self) -> Real:
+        """a = C R, the largest contact radius of a Hertz impact (8), in m."""
+        return self.size_ratio * self.pair.radius
+
+    @property
+    def maximum_approach(self) -> Real:
+        """C² R, the largest approach of a Hertz impact, in m."""
+        return self.size_ratio**2 * self.pair.radius
+
+    @property
+    def duration(self) -> Real:
+        """t = 2.9432 C² R / v1, the duration of a Hertz impact (7), in s."""
+        return DURATION_CONSTANT * self.maximum_approach / self.normal_speed
+
+    @property
+    def time_scale(self) -> Real:
+        """C² R / v1, in s: the time in which the scaled time T advances by one (theory §1)."""
+        return self.maximum_approach / self.normal_speed
+
+
+def _stacked(items: Sequence[Any]) -> Any:
+    """Merge equal-typed attrs trees: leaves that differ become arrays."""
+    first = items[0]
+    if all(item is first for item in items):
+        return first
+    if any(type(item) is not type(first) for item in items):
+        return None  # bodies of different kinds: the reduced pair still serves
+    if attrs.has(type(first)):
+        names = [field.name for field in attrs.fields(type(first))]
+        merged = {name: _stacked([getattr(item, name) for item in items]) for name in names}
+        return type(first)(**merged)
+    if all(item == first for item in items):
+        return first
+    return np.array(items, dtype=np.float64)
+
+
+def _taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
+    """Index every array of an attrs tree; plain numbers stand for the whole batch."""
+    if isinstance(tree, np.ndarray):
+        return np.broadcast_to(tree, shape)[part]
+    if attrs.has(type(tree)):
+        names = [field.name for field in attrs.fields(type(tree))]
+        return type(tree)(**{name: _taken(getattr(tree, name), shape, part) for name in names})
+    return tree

@@ -1,0 +1,259 @@
+"""A simulation: three laws composed, ready to plan, run and sweep."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab import composition
+from contactlab.checks import Real, refuse, whole
+from contactlab.contracts.integrator import Integrator, Motion, Problem, Sample
+from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+from contactlab.contracts.tangential import TangentialLaw
+from contactlab.history import Recorder
+from contactlab.plan import Plan, make_plan
+from contactlab.result import ImpactResult
+from contactlab.scene import Scene
+from contactlab.status import Status
+
+#: Impacts advanced together: large enough to hide the cost of a call, small enough for caches.
+CHUNK = 1000
+#: Instants in the history of an impact that is done in closed form.
+CLOSED_FORM_INSTANTS = 201
+
+
+@attrs.frozen(kw_only=True)
+class Simulation:
+    """A normal law, a tangential law and an integrator, composed.
+
+    Parameters
+    ----------
+    normal, tangential, integrator : str or law
+        A name (``"hertz"``), or an object made by ``contactlab.create`` or by your own class.
+
+    Raises
+    ------
+    ValueError
+        If a name is not installed, or the laws do not fit together (naming what would).
+    """
+
+    normal: NormalLaw = attrs.field(default="hertz", converter=composition.named("normal"))
+    tangential: TangentialLaw = attrs.field(
+        default="annulus", converter=composition.named("tangential")
+    )
+    integrator: Integrator = attrs.field(default="paper", converter=composition.named("integrator"))
+
+    def __attrs_post_init__(self) -> None:
+        composition.check_fit(self.normal, self.tangential, self.integrator)
+
+    def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
+        """Say what ``run`` would compute for ``scene``, what it leaves out and why."""
+        return make_plan(
+            _scene(scene), self.normal, self.tangential, self.integrator, history=_asked(history)
+        )
+
+    def run(self, scene: Scene, *, history: bool | str = False) -> ImpactResult:
+        """Run one impact, or a batch scene at once.
+
+        Parameters
+        ----------
+        scene : Scene
+        history : bool or "fields"
+            Keep the course of the impact; ``"fields"`` keeps traction and stick/slip too.
+
+        Returns
+        -------
+        ImpactResult
+            A numerical failure is a status, with the history so far; ``.check()`` raises it.
+        """
+        started = time.perf_counter()
+        plan = self.plan(scene, history=history)
+        recorder = Recorder(scene.shape, with_fields=history == "fields") if history else None
+        if plan.marched.all():
+            motion = self._integrate(scene, recorder)
+        elif not plan.marched.any():
+            motion = self._closed_form(scene, plan, recorder)
+        else:
+            motion = self._mixed(scene, plan, recorder)
+        return ImpactResult(
+            scene=scene,
+            plan=plan,
+            motion=motion,
+            laws=composition.versions(self.normal, self.tangential, self.integrator),
+            history=recorder.history() if recorder else None,
+            run_time=time.perf_counter() - started,
+        )
+
+    def sweep(
+        self,
+        scenes: Scene | Sequence[Scene],
+        *,
+        progress: Callable[[int, int], object] | None = None,
+        chunk: int = CHUNK,
+    ) -> ImpactResult:
+        """Run many impacts, vectorised, a chunk at a time.
+
+        Parameters
+        ----------
+        scenes : sequence of Scene, or a batch scene
+        progress : callable, optional
+            Called as ``progress(done, total)`` after each chunk.
+        chunk : int
+            Impacts advanced together; bounds the memory.
+
+        Returns
+        -------
+        ImpactResult
+            A batch. Interrupting (Ctrl-C) keeps what is done; the rest has the status
+            ``INTERRUPTED``.
+        """
+        started = time.perf_counter()
+        batch = scenes if isinstance(scenes, Scene) else Scene.stack(list(scenes))
+        if len(batch.shape) != 1:
+            raise refuse("scenes", batch.shape, "must be a sequence, or a one-dimensional batch")
+        size, step = batch.shape[0], whole("chunk", chunk)
+        motions: list[Motion] = []
+        done = 0
+        try:
+            while done < size:
+                part = batch.take(slice(done, min(done + step, size)))
+                motions.append(self.run(part).motion)
+                done += part.shape[0]
+                if progress is not None:
+                    progress(done, size)
+        except KeyboardInterrupt:
+            done = sum(np.size(motion.duration) for motion in motions)
+            if done < size:
+                motions.append(_undone((size - done,), Status.INTERRUPTED))
+        return ImpactResult(
+            scene=batch,
+            plan=self.plan(batch),
+            motion=_joined(motions),
+            laws=composition.versions(self.normal, self.tangential, self.integrator),
+            run_time=time.perf_counter() - started,
+        )
+
+    def problem(self, scene: Scene) -> Problem:
+        """Return what the integrator will be given for ``scene``."""
+        return Problem(
+            normal=self.normal,
+            tangential=self.tangential,
+            pair=scene.pair,
+            friction_coefficient=scene.friction_coefficient,
+            normal_speed=scene.normal_speed,
+            slip_velocity=scene.slip_velocity,
+            maximum_radius=scene.maximum_radius,
+            duration=scene.duration,
+            shape=scene.shape,
+        )
+
+    def _integrate(self, scene: Scene, recorder: Recorder | None) -> Motion:
+        try:
+            return self.integrator.integrate(self.problem(scene), recorder)
+        except Exception as error:
+            where = traceback.extract_tb(error.__traceback__)[-1]
+            detail = f"{type(error).__name__}: {error} ({where.name}, line {where.lineno})"
+            return attrs.evolve(_undone(scene.shape, Status.LAW_RAISED), detail=detail)
+
+    def _closed_form(self, scene: Scene, plan: Plan, recorder: Recorder | None) -> Motion:
+        """Return the motion of impacts with no tangential march: none, or eq. (45)."""
+        assert isinstance(self.normal, ClosedFormNormalLaw)
+        pair, speed = scene.pair, scene.normal_speed
+        motion = self.normal.motion(pair, speed)
+        sense = np.sign(scene.slip_velocity) * plan.slipping
+        friction = scene.friction_coefficient * sense
+        impulse = 2.0 * pair.normal_mass * speed
+        change = -friction * impulse / pair.tangential_mass
+        work = friction * impulse * (scene.slip_velocity + 0.5 * change)
+        if recorder is not None:
+            phases = np.linspace(0.0, np.pi, CLOSED_FORM_INSTANTS)
+            for phase in phases.tolist():
+                instant, approach, rate, contact = motion.at(phase)
+                slowed = friction * pair.normal_mass * (speed - rate) / pair.tangential_mass
+                recorder(
+                    Sample(
+                        time=instant,
+                        approach=approach,
+                        normal_velocity=rate,
+                        contact=contact,
+                        slip_velocity=scene.slip_velocity - slowed,
+                        tangential_force=friction * contact.force,
+                        fields=dict,
+                    )
+                )
+        return Motion(
+            duration=_full(motion.duration, scene.shape),
+            normal_velocity=_full(-speed, scene.shape),
+            slip_velocity_change=_full(change, scene.shape),
+            friction_work=_full(work, scene.shape),
+            status=_statuses(scene.shape, Status.SUCCESS),
+        )
+
+    def _mixed(self, scene: Scene, plan: Plan, recorder: Recorder | None) -> Motion:
+        """March the impacts that need it, do the rest in closed form, and merge."""
+        if recorder is not None:  # one time axis for the whole batch
+            return self._integrate(scene, recorder)
+        if len(scene.shape) != 1:
+            return self._integrate(scene, None)
+        motion = self._closed_form(scene, plan, None)
+        marched = self._integrate(scene.take(plan.marched), None)
+        merged = {}
+        for name in MOTION_ENTRIES:
+            whole_column = np.array(getattr(motion, name))
+            whole_column[plan.marched] = getattr(marched, name)
+            merged[name] = whole_column
+        return Motion(**merged, detail=marched.detail, counters=marched.counters)
+
+
+MOTION_ENTRIES = (
+    "duration", "normal_velocity", "slip_velocity_change", "friction_work", "status",
+)  # fmt: skip
+
+
+def _scene(scene: object) -> Scene:
+    if not isinstance(scene, Scene):
+        raise refuse("scene", scene, "must be a Scene", "make one: Scene(...)")
+    return scene
+
+
+def _asked(history: object) -> bool | str:
+    if history in (True, False, "fields"):
+        return history  # type: ignore[return-value]
+    raise refuse("history", history, "must be True, False or 'fields'")
+
+
+def _full(value: Any, shape: tuple[int, ...]) -> Real:
+    return float(value) if not shape else np.array(np.broadcast_to(value, shape))
+
+
+def _statuses(shape: tuple[int, ...], status: Status) -> Any:
+    return np.full(shape, status, dtype=object) if shape else status
+
+
+def _undone(shape: tuple[int, ...], status: Status) -> Motion:
+    nothing = _full(np.nan, shape)
+    return Motion(
+        duration=nothing,
+        normal_velocity=nothing,
+        slip_velocity_change=nothing,
+        friction_work=nothing,
+        status=_statuses(shape, status),
+    )
+
+
+def _joined(motions: list[Motion]) -> Motion:
+    entries = {
+        name: np.concatenate([np.atleast_1d(getattr(motion, name)) for motion in motions])
+        for name in MOTION_ENTRIES
+    }
+    counters: dict[str, int] = {}
+    for motion in motions:
+        for key, number in motion.counters.items():
+            counters[key] = counters.get(key, 0) + number
+    detail = next((motion.detail for motion in motions if motion.detail), "")
+    return Motion(**entries, counters=counters, detail=detail)

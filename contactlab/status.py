@@ -1,0 +1,21 @@
+"""How a run ended: an enumeration whose values are sentences."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class Status(Enum):
+    """The outcome of an impact. ``SUCCESS`` is the only one with a usable answer."""
+
+    SUCCESS = "The impact was followed from first touch to separation."
+    NON_FINITE = "A law returned a value that is not a finite number."
+    TOO_FEW_STEPS = "The steps are too few for this inertia ratio: the scheme is unstable."
+    UNSETTLED = "The tangential law found no division into stick and slip that passes its tests."
+    NOT_SEPARATED = "The bodies were still in contact when the step limit was reached."
+    LAW_RAISED = "A law raised an error in the middle of the run."
+    INTERRUPTED = "The run was interrupted; this impact was not computed."
+
+    def __bool__(self) -> bool:
+        """True on success only, so that ``if result.status:`` reads right."""
+        return self is Status.SUCCESS

@@ -1,0 +1,86 @@
+"""Rigid-body friction: slip, then rolling with no force."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab.checks import Real
+from contactlab.contracts import (
+    Increment,
+    NormalContact,
+    Problem,
+    SteppedTangentialLaw,
+    TangentialResponse,
+)
+
+
+@attrs.frozen(kw_only=True)
+class Coulomb(SteppedTangentialLaw):
+    """Coulomb friction between bodies that do not deform tangentially.
+
+    While the contact slips the force is mu P; once slip has stopped the bodies roll and
+    the force is zero. The step in which slip stops takes exactly the force that stops it,
+    so there is no chatter, and the rebound is exact whatever the step.
+
+    References
+    ----------
+    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, the rigid body theory of §§1 and 4.3.
+    """
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
+    needs: ClassVar[frozenset[str]] = frozenset({"steps"})
+
+    def slips_throughout(self, psi1: Real, chi: Real) -> Real:
+        """Return True for |psi1| >= 4 chi: friction cannot stop the slip."""
+        return np.abs(psi1) >= 4.0 * np.asarray(chi)
+
+    def start(self, problem: Problem) -> Real:
+        """Return the friction coefficient: the law has no memory."""
+        return problem.friction_coefficient
+
+    def advance(
+        self,
+        state: Real,
+        increment: Increment,
+        before: NormalContact,  # noqa: ARG002
+        after: NormalContact,  # noqa: ARG002
+    ) -> tuple[TangentialResponse, Real]:
+        """Return the arresting force, as far as mu P allows it."""
+        limit = state * increment.normal_force
+        arresting = increment.arresting_force
+        if isinstance(limit, float) and isinstance(arresting, float):
+            force: Real = min(max(arresting, -limit), limit)
+        else:
+            force = np.clip(arresting, -limit, limit)
+        # Velocity falls in the step, to zero where friction arrests the sphere (force =
+        # arresting force): slip is its mean times the duration.
+        share = force / (arresting + (arresting == 0.0))
+        slip = increment.velocity * increment.duration * (1.0 - 0.5 * share)
+        return TangentialResponse(force, force * slip), state
+
+
+@attrs.frozen(kw_only=True)
+class Frictionless(SteppedTangentialLaw):
+    """No tangential force at all: the null object, and the yardstick for cost."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
+    inert: ClassVar[bool] = True
+
+    def start(self, problem: Problem) -> Real:
+        """Return a zero of the batch shape."""
+        return np.zeros(problem.shape) if problem.shape else 0.0
+
+    def advance(
+        self,
+        state: Real,
+        increment: Increment,  # noqa: ARG002
+        before: NormalContact,  # noqa: ARG002
+        after: NormalContact,  # noqa: ARG002
+    ) -> tuple[TangentialResponse, Real]:
+        """Return no force."""
+        return TangentialResponse(state, state), state

@@ -1,0 +1,46 @@
+"""Hertz's law of normal contact."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import attrs
+
+from contactlab.bodies import Pair
+from contactlab.checks import Real
+from contactlab.contracts import ClosedFormNormalLaw, NormalContact
+from contactlab_hertz.motion import HertzMotion
+
+
+@attrs.frozen(kw_only=True)
+class Hertz(ClosedFormNormalLaw):
+    """Elastic, frictionless normal contact of smooth bodies.
+
+    The state of a run is the pair itself: the law has no memory.
+
+    References
+    ----------
+    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-4,
+    eqs (2)-(6), for a general pair: P = (4/3) E* sqrt(R) u_z^1.5.
+    """
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset[str]] = frozenset(
+        {"radius", "hertzian_pressure", "closed_form_motion", "elastic_hertz"}
+    )
+
+    def start(self, pair: Pair) -> Pair:
+        """Return the pair; there is nothing to remember."""
+        return pair
+
+    def respond(self, state: Pair, approach: Real, rate: Real) -> tuple[NormalContact, Pair]:  # noqa: ARG002
+        """Return force (4) and radius (2) at ``approach``; both are 0 out of contact."""
+        # A product with the comparison keeps NaN a NaN, for floats and arrays alike.
+        compression = approach * (approach > 0.0)
+        radius = (state.radius * compression) ** 0.5
+        force = (4.0 / 3.0) * state.effective_modulus * radius * compression
+        return NormalContact(force, radius, approach), state
+
+    def motion(self, pair: Pair, speed: Real) -> HertzMotion:
+        """Return the motion of an impact at ``speed`` (m/s) in closed form."""
+        return HertzMotion.of(pair, speed)

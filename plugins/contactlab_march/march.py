@@ -1,0 +1,154 @@
+"""The march that every fixed-step scheme shares: drift, ask the law, kick."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from contactlab.checks import Real
+from contactlab.contracts import (
+    Increment,
+    Motion,
+    NormalContact,
+    Observer,
+    Problem,
+    Sample,
+    SteppedTangentialLaw,
+)
+from contactlab.status import Status
+
+
+class Step(NamedTuple):
+    """One step of the normal motion, as the tangential march needs it.
+
+    The schemes differ only in where they sample the contact and how long they drift and kick.
+
+    Attributes
+    ----------
+    contact : NormalContact
+        At the sample.
+    drift : float or array
+        Time from the last sample to this one, in s: slip velocity acts on displacement.
+    kick : float or array
+        Time in s for which the force found at the sample acts on velocity.
+    normal_force : float or array
+        Mean of P over the kick, in N.
+    time, approach, rate : float or array
+        At the sample, for the observer.
+    """
+
+    contact: NormalContact
+    drift: Real
+    kick: Real
+    normal_force: Real
+    time: Real
+    approach: Real
+    rate: Real
+
+
+class NormalEnd:
+    """How the normal motion ended; filled in by the scheme that produces the steps."""
+
+    duration: Real = math.nan
+    rate: Real = math.nan
+    separated: bool = True
+
+
+def largest_stable_steps(law: SteppedTangentialLaw, problem: Problem) -> int:
+    """Return the least number of steps an impact for which omega dt < 2: theory §4."""
+    frequency_squared = law.stiffness(problem) / problem.pair.tangential_mass
+    return int(np.max(0.5 * np.sqrt(frequency_squared) * problem.duration)) + 1
+
+
+def march(
+    problem: Problem,
+    law: SteppedTangentialLaw,
+    steps: Iterable[Step],
+    end: NormalEnd,
+    observer: Observer | None,
+) -> Motion:
+    """Follow the tangential motion along ``steps``.
+
+    The change of velocity is summed apart from the velocity, which may be so large
+    that it would swallow the change (theory §8).
+    """
+    single = not problem.shape
+    initial = problem.slip_velocity
+    mass = problem.pair.tangential_mass
+    change: Real = 0.0 if single else np.zeros(problem.shape)
+    work: Real = 0.0 if single else np.zeros(problem.shape)
+    nothing = 0.0 * change
+    before = NormalContact(nothing, nothing, nothing)
+    state = law.start(problem)
+    status, detail, count = Status.SUCCESS, "", 0
+    velocity: Real = initial
+    for step in steps:
+        arresting = mass * velocity / step.kick
+        increment = Increment(
+            velocity * step.drift, velocity, arresting, step.normal_force, step.kick
+        )
+        response, state = law.advance(state, increment, before, step.contact)
+        force = response.force
+        change = change - force * step.kick / mass
+        work = work + response.friction_work
+        before = step.contact
+        count += 1
+        if observer is not None:
+            middle = velocity - 0.5 * force * step.kick / mass
+            observer(_sample(step, middle, force, law, state))
+        velocity = initial + change
+        if not np.all(response.settled):
+            status = Status.UNSETTLED
+        elif not (math.isfinite(force) if single else np.isfinite(force).all()):  # type: ignore[arg-type]
+            status = Status.NON_FINITE
+        if status is not Status.SUCCESS:
+            detail = f"At step {count}, from {type(law).__name__}."
+            break
+    if status is Status.SUCCESS and not np.all(np.isfinite(end.rate)):
+        status, detail = Status.NON_FINITE, f"From {type(problem.normal).__name__}."
+    elif status is Status.SUCCESS and not end.separated:
+        status, detail = Status.NOT_SEPARATED, f"After {count} steps."
+    return Motion(
+        duration=_spread(end.duration, problem.shape),
+        normal_velocity=_spread(end.rate, problem.shape),
+        slip_velocity_change=_spread(change, problem.shape),
+        friction_work=_spread(work, problem.shape),
+        status=status if single else np.full(problem.shape, status, dtype=object),
+        detail=detail,
+        counters={"steps": count},
+    )
+
+
+def _sample(
+    step: Step, velocity: Real, force: Real, law: SteppedTangentialLaw, state: object
+) -> Sample:
+    return Sample(
+        time=step.time,
+        approach=step.approach,
+        normal_velocity=step.rate,
+        contact=step.contact,
+        slip_velocity=velocity,
+        tangential_force=force,
+        fields=lambda: law.fields(state),
+    )
+
+
+def _spread(value: Real, shape: tuple[int, ...]) -> Real:
+    return np.array(np.broadcast_to(value, shape)) if shape else float(value)
+
+
+def refused(problem: Problem, needed: int, steps: int) -> Motion:
+    """Return the motion of a run that was not begun: its steps are unstable."""
+    nothing = _spread(math.nan, problem.shape)
+    status = Status.TOO_FEW_STEPS
+    return Motion(
+        duration=nothing,
+        normal_velocity=nothing,
+        slip_velocity_change=nothing,
+        friction_work=nothing,
+        status=np.full(problem.shape, status, dtype=object) if problem.shape else status,
+        detail=f"steps = {steps}; this scene needs at least {needed}.",
+    )

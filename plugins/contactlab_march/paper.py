@@ -1,0 +1,74 @@
+"""The explicit steps of the paper."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab.checks import Real, count
+from contactlab.contracts import Integrator, Motion, Observer, Problem, SteppedTangentialLaw
+from contactlab_march.march import NormalEnd, Step, largest_stable_steps, march, refused
+
+#: A contact that lasts longer than this many Hertz durations is given up.
+LONGEST_CONTACT = 10
+
+
+@attrs.frozen(kw_only=True)
+class PaperSteps(Integrator):
+    """Equations (30)-(37), step by step, with the constants of (7) unrounded.
+
+    The paper prints the equations and not the order in which a step takes them. Here the
+    approach grows with the old velocity (32), the contact (30) and its tractions (33)-(37)
+    are found at the new approach, and the forces change both velocities (31), (35). Taking
+    every right-hand side from the start of the step instead gains energy, 1.1 % in e at
+    500 steps; taken in this order e - 1 is 1e-9.
+
+    Parameters
+    ----------
+    steps : int
+        Steps in one duration (7) of a Hertz impact: delta tau = 1/steps.
+
+    References
+    ----------
+    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, §3.1.
+    """
+
+    api_version: ClassVar[int] = 1
+    order: ClassVar[int | None] = 1
+    offers: ClassVar[frozenset[str]] = frozenset({"steps"})
+    needs: ClassVar[frozenset[str]] = frozenset({"advance"})
+
+    steps: int = count(default=500)
+
+    def integrate(self, problem: Problem, observer: Observer | None = None) -> Motion:
+        """Return the motion; refuse steps above the stability limit."""
+        law = problem.tangential
+        assert isinstance(law, SteppedTangentialLaw)
+        needed = largest_stable_steps(law, problem)
+        if self.steps < needed:
+            return refused(problem, needed, self.steps)
+        end = NormalEnd()
+        return march(problem, law, self._steps(problem, end), end, observer)
+
+    def _steps(self, problem: Problem, end: NormalEnd) -> Iterator[Step]:
+        """Yield the normal motion, (30)-(32), until every impact of the batch has ended."""
+        normal, mass = problem.normal, problem.pair.normal_mass
+        state = normal.start(problem.pair)
+        step = problem.duration / self.steps
+        rate, time = problem.normal_speed, 0.0 * problem.duration
+        approach: Real = 0.0 * step
+        touching: bool | np.ndarray = np.ones(problem.shape, dtype=bool) if problem.shape else True
+        for _ in range(LONGEST_CONTACT * self.steps):
+            approach = approach + rate * step
+            contact, state = normal.respond(state, approach, rate)
+            rate = rate - contact.force * step / mass
+            time = time + step * touching
+            yield Step(contact, step, step, contact.force, time, approach, rate)
+            touching = touching & (contact.overlap > 0.0)
+            if not (touching.any() if isinstance(touching, np.ndarray) else touching):
+                end.duration, end.rate = time, rate
+                return
+        end.duration, end.rate, end.separated = time, rate, False
