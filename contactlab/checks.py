@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 
 #: A number or an array of numbers: the code of the laws serves both.
 Real: TypeAlias = float | NDArray[np.float64]
+#: A yes or no, or an array of them.
+Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
 
 
 class Rule(NamedTuple):

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from contactlab.checks import Real
+from contactlab.checks import Mask, Real
 
 #: 2.9432751843: duration of an elastic Hertz impact times v1/(C²R), eq. (7) unrounded.
 DURATION_CONSTANT = 4.0 * math.gamma(0.4) * math.sqrt(math.pi) / (5.0 * math.gamma(0.9))
@@ -33,7 +33,7 @@ def gross_slip_rebound(psi1: Real, chi: Real, restitution: Real = 1.0) -> Real:
     return psi1 - np.sign(psi1) * (2.0 * chi * (1.0 + restitution))
 
 
-def slips_throughout_elastic(psi1: Real, chi: Real) -> Real:
+def slips_throughout_elastic(psi1: Real, chi: Real) -> Mask:
     """Whether an elastic impact slips from start to end, eqs (44) and (46).
 
     ``|psi1| >= max(1, 4 chi - 1)``. For chi < 1/2 eq. (46) alone is not enough:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from contactlab.checks import refuse
@@ -10,18 +9,14 @@ from contactlab.contracts.law import Law
 from contactlab.registry import REGISTRY, PluginError
 
 
-def named(kind: str) -> Callable[[object], Any]:
-    """Return a converter that makes a law from its name, and lets an object of the kind pass."""
-
-    def convert(value: object) -> Any:
-        if isinstance(value, str):
-            name = value if value.startswith(f"{kind}.") else f"{kind}.{value}"
-            return REGISTRY.create(name)
-        if not isinstance(value, Law) or value.kind != kind:
-            raise refuse(kind, value, f"must be a name or a {kind} law", _known(kind))
-        return value
-
-    return convert
+def law(kind: str, value: object) -> Any:
+    """Return the law of ``kind`` that ``value`` names or already is."""
+    if isinstance(value, str):
+        return REGISTRY.create(value if value.startswith(f"{kind}.") else f"{kind}.{value}")
+    if not isinstance(value, Law) or value.kind != kind:
+        known = ", ".join(REGISTRY.names(kind))
+        raise refuse(kind, value, f"must be a name or a {kind} law", f"installed: {known}")
+    return value
 
 
 def check_fit(normal: Law, tangential: Law, integrator: Law) -> None:
@@ -63,7 +58,3 @@ def _offering(word: str) -> list[str]:
         if word in law.offers:
             found.append(name)
     return found
-
-
-def _known(kind: str) -> str:
-    return f"installed: {', '.join(REGISTRY.names(kind))}"

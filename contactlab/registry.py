@@ -196,7 +196,7 @@ def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
     version = getattr(law, "api_version", None)
     if version != API_VERSION:
         raise PluginError(
-            f"{source}: {law.__name__}.api_version is {version!r}, this contactlab has {API_VERSION}"
+            f"{source}: {law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}"
         )
     return law
 

@@ -160,7 +160,7 @@ class Scene:
 
     @property
     def psi_scale(self) -> Real:
-        """Psi per m/s of local tangential velocity, kappa/(mu v1), eq. (29); inf without friction."""
+        """Psi per m/s of slip velocity, kappa/(mu v1), eq. (29); infinite without friction."""
         with np.errstate(divide="ignore", over="ignore"):
             scale = np.divide(
                 self.pair.stiffness_ratio, self.friction_coefficient * self.normal_speed
@@ -186,7 +186,7 @@ class Scene:
 
     @property
     def maximum_radius(self) -> Real:
-        """a = C R, the largest contact radius of a Hertz impact (8), in m."""
+        """Largest contact radius of a Hertz impact, a = C R (8), in m."""
         return self.size_ratio * self.pair.radius
 
     @property
@@ -196,7 +196,7 @@ class Scene:
 
     @property
     def duration(self) -> Real:
-        """t = 2.9432 C² R / v1, the duration of a Hertz impact (7), in s."""
+        """Duration of a Hertz impact t = 2.9432 C² R / v1 (7), in s."""
         return DURATION_CONSTANT * self.maximum_approach / self.normal_speed
 
     @property

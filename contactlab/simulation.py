@@ -27,7 +27,7 @@ CHUNK = 1000
 CLOSED_FORM_INSTANTS = 201
 
 
-@attrs.frozen(kw_only=True)
+@attrs.frozen(kw_only=True, init=False)
 class Simulation:
     """A normal law, a tangential law and an integrator, composed.
 
@@ -42,14 +42,24 @@ class Simulation:
         If a name is not installed, or the laws do not fit together (naming what would).
     """
 
-    normal: NormalLaw = attrs.field(default="hertz", converter=composition.named("normal"))
-    tangential: TangentialLaw = attrs.field(
-        default="annulus", converter=composition.named("tangential")
-    )
-    integrator: Integrator = attrs.field(default="paper", converter=composition.named("integrator"))
+    normal: NormalLaw
+    tangential: TangentialLaw
+    integrator: Integrator
 
-    def __attrs_post_init__(self) -> None:
-        composition.check_fit(self.normal, self.tangential, self.integrator)
+    def __init__(
+        self,
+        *,
+        normal: str | NormalLaw = "hertz",
+        tangential: str | TangentialLaw = "annulus",
+        integrator: str | Integrator = "paper",
+    ) -> None:
+        parts = {
+            "normal": composition.law("normal", normal),
+            "tangential": composition.law("tangential", tangential),
+            "integrator": composition.law("integrator", integrator),
+        }
+        composition.check_fit(**parts)
+        self.__attrs_init__(**parts)
 
     def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
         """Say what ``run`` would compute for ``scene``, what it leaves out and why."""
@@ -221,9 +231,9 @@ def _scene(scene: object) -> Scene:
     return scene
 
 
-def _asked(history: object) -> bool | str:
+def _asked(history: bool | str) -> bool | str:
     if history in (True, False, "fields"):
-        return history  # type: ignore[return-value]
+        return history
     raise refuse("history", history, "must be True, False or 'fields'")
 
 

@@ -17,5 +17,5 @@ class Status(Enum):
     INTERRUPTED = "The run was interrupted; this impact was not computed."
 
     def __bool__(self) -> bool:
-        """True on success only, so that ``if result.status:`` reads right."""
+        """Return True on success only, so that ``if result.status:`` reads right."""
         return self is Status.SUCCESS

@@ -9,7 +9,7 @@ from typing import ClassVar
 API_VERSION = 1
 
 
-class Law(ABC):  # noqa: B024 - the abstract methods are in the three contracts
+class Law(ABC):
     """Base of normal laws, tangential laws and integrators.
 
     Contract

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import Real
+from contactlab.checks import Mask, Real
 from contactlab.contracts.law import Law
 from contactlab.contracts.normal import NormalContact
 
@@ -59,7 +59,7 @@ class TangentialResponse(NamedTuple):
 
     force: Real
     friction_work: Real
-    settled: bool | NDArray[np.bool_] = True
+    settled: Mask = True
 
 
 class TangentialLaw(Law):
@@ -82,7 +82,7 @@ class TangentialLaw(Law):
     #: True for a law that never makes a force: the plan leaves the march out.
     inert: ClassVar[bool] = False
 
-    def slips_throughout(self, psi1: Real, chi: Real) -> Real:
+    def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
         """Return True where an elastic impact slips from start to end in one direction.
 
         Parameters

@@ -7,7 +7,7 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
-from contactlab.checks import Real
+from contactlab.checks import Mask, Real
 from contactlab.contracts import (
     Increment,
     NormalContact,
@@ -34,7 +34,7 @@ class Coulomb(SteppedTangentialLaw):
     offers: ClassVar[frozenset[str]] = frozenset({"advance"})
     needs: ClassVar[frozenset[str]] = frozenset({"steps"})
 
-    def slips_throughout(self, psi1: Real, chi: Real) -> Real:
+    def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
         """Return True for |psi1| >= 4 chi: friction cannot stop the slip."""
         return np.abs(psi1) >= 4.0 * np.asarray(chi)
 

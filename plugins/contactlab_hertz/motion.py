@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import functools
-import math
-
 import attrs
 import numpy as np
 
@@ -20,25 +17,18 @@ def velocity_factor(root: Real) -> Real:
     return ((1.0 + u * (1.0 + u * (1.0 + u * (1.0 + u)))) / (1.0 + u)) ** 0.5
 
 
-@functools.cache
-def _incomplete_beta() -> object:
-    """Fetch ``scipy.special.betainc`` when it is first needed."""
-    from scipy.special import betainc
-
-    return betainc
-
-
 def scaled_time(root: Real, rate: Real) -> Real:
     """T at sqrt(zeta) = ``root`` and V = ``rate``: theory §3, an incomplete beta function.
 
     T = 0.4 B(0.4, 0.5) I(sin² th), with sin² th = u⁵ and cos² th = V². Near the greatest
     compression the complement in V² is used, where u⁵ rounds to 1.
     """
-    betainc = _incomplete_beta()
+    from scipy.special import betainc  # not before a motion is asked for its time
+
     quarter = np.where(
         np.abs(rate) > 0.5,
-        betainc(0.4, 0.5, np.minimum(root**5, 1.0)),  # type: ignore[operator]
-        1.0 - betainc(0.5, 0.4, np.minimum(np.square(rate), 1.0)),  # type: ignore[operator]
+        betainc(0.4, 0.5, np.minimum(root**5, 1.0)),
+        1.0 - betainc(0.5, 0.4, np.minimum(np.square(rate), 1.0)),
     )
     half = 0.5 * DURATION_CONSTANT
     return np.where(np.asarray(rate) >= 0.0, half * quarter, half * (2.0 - quarter))
@@ -77,10 +67,7 @@ class HertzMotion(ClosedFormMotion):
 
     def at(self, phase: Real) -> tuple[Real, Real, Real, NormalContact]:
         """Return (time, approach, rate, contact) at ``phase`` in [0, pi]."""
-        if isinstance(phase, float):
-            u, cosine = max(math.sin(phase), 0.0), math.cos(phase)
-        else:
-            u, cosine = np.maximum(np.sin(phase), 0.0), np.cos(phase)
+        u, cosine = np.maximum(np.sin(phase), 0.0), np.cos(phase)
         rate = cosine * velocity_factor(u)
         instant = scaled_time(u, rate) * (self.approach_scale / self.speed)
         approach = u * u * self.approach_scale

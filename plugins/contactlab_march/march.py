@@ -102,7 +102,7 @@ def march(
         velocity = initial + change
         if not np.all(response.settled):
             status = Status.UNSETTLED
-        elif not (math.isfinite(force) if single else np.isfinite(force).all()):  # type: ignore[arg-type]
+        elif not (math.isfinite(force) if single else np.isfinite(force).all()):
             status = Status.NON_FINITE
         if status is not Status.SUCCESS:
             detail = f"At step {count}, from {type(law).__name__}."

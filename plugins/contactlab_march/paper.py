@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
@@ -60,7 +60,7 @@ class PaperSteps(Integrator):
         step = problem.duration / self.steps
         rate, time = problem.normal_speed, 0.0 * problem.duration
         approach: Real = 0.0 * step
-        touching: bool | np.ndarray = np.ones(problem.shape, dtype=bool) if problem.shape else True
+        touching: Any = np.ones(problem.shape, dtype=bool) if problem.shape else True
         for _ in range(LONGEST_CONTACT * self.steps):
             approach = approach + rate * step
             contact, state = normal.respond(state, approach, rate)
@@ -68,7 +68,7 @@ class PaperSteps(Integrator):
             time = time + step * touching
             yield Step(contact, step, step, contact.force, time, approach, rate)
             touching = touching & (contact.overlap > 0.0)
-            if not (touching.any() if isinstance(touching, np.ndarray) else touching):
+            if not (touching.any() if problem.shape else touching):
                 end.duration, end.rate = time, rate
                 return
         end.duration, end.rate, end.separated = time, rate, False

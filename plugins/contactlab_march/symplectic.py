@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
 
-from contactlab.checks import Real, count
+from contactlab.checks import count
 from contactlab.contracts import (
     ClosedFormNormalLaw,
     Integrator,
@@ -88,7 +88,7 @@ class Symplectic(Integrator):
         step = problem.duration / self.steps
         rate, drift = problem.normal_speed, 0.5 * step
         approach, time, before = 0.0 * step, 0.0 * step, 0.0 * step
-        touching: bool | np.ndarray = np.ones(problem.shape, dtype=bool) if problem.shape else True
+        touching: Any = np.ones(problem.shape, dtype=bool) if problem.shape else True
         for _ in range(LONGEST_CONTACT * self.steps):
             approach = approach + rate * drift
             contact, state = normal.respond(state, approach, rate)
@@ -106,14 +106,10 @@ class Symplectic(Integrator):
         end.duration, end.rate, end.separated = time, rate, False
 
 
-def _rows(columns: list[Real], count: int) -> Iterator[tuple[Real, ...]]:
-    """Iterate over the instants: plain floats for one impact (much faster), arrays for a batch."""
-    return zip(
-        *(
-            column.tolist()
-            if np.ndim(column) == 1
-            else np.broadcast_to(column, (count, *np.shape(column)[1:]))
-            for column in columns
-        ),
-        strict=True,
-    )
+def _rows(columns: list[Any], count: int) -> Iterator[tuple[Any, ...]]:
+    """Iterate over the instants: floats for one impact (much faster), arrays for a batch."""
+    lists = [
+        np.broadcast_to(column, (count, *np.shape(column)[1:]))
+        for column in map(np.asarray, columns)
+    ]
+    return zip(*(rows.tolist() if rows.ndim == 1 else rows for rows in lists), strict=True)
