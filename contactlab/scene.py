@@ -31,6 +31,9 @@ def _reduced(scene: Any) -> Pair:
             "both bodies must be given",
             "or use Scene.nondimensional(psi1=, chi=)",
         )
+    # The pair is formed before attrs runs the validators, so the kinds are looked at here.
+    _is_sphere(scene, attrs.fields(Scene).sphere, scene.sphere)
+    _is_target(scene, attrs.fields(Scene).target, scene.target)
     return Pair.of(scene.sphere, scene.target)
 
 

@@ -67,7 +67,7 @@ class TangentialLaw(Law):
 
     Contract
     --------
-    1. Friction is Coulomb's: \\|F\\| <= mu P (a discrete law may exceed this by its own
+    1. Friction is Coulomb's, abs(F) <= mu P (a discrete law may exceed this by its own
        stated discretisation error), and F = 0 out of contact.
     2. Odd: reversing every displacement reverses every force. A central impact (v_x = 0)
        makes no tangential force, whatever the normal motion.

@@ -1,0 +1,107 @@
+"""Materials, bodies and the reduction of a pair (theory §1)."""
+
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+from contactlab import HalfSpace, Material, Pair, Sphere
+
+STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+
+
+def test_moduli_are_two_views_of_one_material():
+    same = Material(shear_modulus=STEEL.shear_modulus, poisson_ratio=0.3, density=7850.0)
+    assert STEEL.shear_modulus == pytest.approx(208e9 / 2.6, rel=1e-15)
+    assert same.young_modulus == pytest.approx(208e9, rel=1e-15)
+
+
+def test_default_sphere_is_solid_and_homogeneous():
+    sphere = Sphere(0.01, STEEL)
+    assert sphere.mass == pytest.approx(4 / 3 * math.pi * 1e-6 * 7850.0)
+    assert sphere.gyration_ratio**2 == pytest.approx(0.4)
+
+
+def test_like_bodies_give_the_papers_kappa_and_chi():
+    """Eqs (29) and (38): kappa = 2(1-nu)/(2-nu), chi = (1-nu)(1+1/K²)/(2-nu)."""
+    pair = Pair.of(Sphere(0.01, STEEL), HalfSpace(STEEL))
+    assert pair.stiffness_ratio == pytest.approx(2 * 0.7 / 1.7, rel=1e-14)
+    assert pair.inertia_ratio == pytest.approx(0.7 * 3.5 / 1.7, rel=1e-14)
+    assert pair.inertia_ratio == pytest.approx(1.4411764706, abs=1e-10)
+
+
+def test_two_equal_spheres_halve_radius_and_mass_but_keep_chi():
+    sphere = Sphere(0.01, STEEL)
+    pair = Pair.of(sphere, sphere)
+    assert pair.radius == pytest.approx(0.005)
+    assert pair.normal_mass == pytest.approx(sphere.mass / 2)
+    assert pair.inertia_ratio == pytest.approx(1.4411764706, abs=1e-10)
+
+
+def test_unlike_bodies_add_their_compliances():
+    """Kharaz's pair, G* and E* worked out by hand from E and nu (Hertz-Mindlin)."""
+    ball = Material(young_modulus=380e9, poisson_ratio=0.23, density=4000.0)
+    glass = Material(young_modulus=70e9, poisson_ratio=0.25, density=2500.0)
+    pair = Pair.of(Sphere(2.5e-3, ball), HalfSpace(glass))
+    normal = (1 - 0.23**2) / 380e9 + (1 - 0.25**2) / 70e9
+    shear = (2 - 0.23) * 1.23 / (2 * 380e9) + (2 - 0.25) * 1.25 / (2 * 70e9)
+    assert pair.effective_modulus == pytest.approx(1 / normal, rel=1e-14)
+    assert pair.effective_shear_modulus == pytest.approx(1 / shear, rel=1e-14)
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, math.nan, math.inf, "1", None, True, 1j, [], [[1], [1, 2]]])
+def test_bad_radius_is_refused_by_name(bad):
+    with pytest.raises(ValueError, match="radius"):
+        Sphere(bad, STEEL)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        ({"young_modulus": 1e9}, "poisson_ratio"),
+        ({"young_modulus": 1e9, "poisson_ratio": 0.6}, "poisson_ratio"),
+        ({"young_modulus": 1e9, "poisson_ratio": -1.1}, "poisson_ratio"),
+        ({"young_modulus": 1e9, "poisson_ratio": -1.0}, "young_modulus"),
+        ({"young_modulus": -1e9, "poisson_ratio": 0.3}, "young_modulus"),
+        ({"shear_modulus": math.inf, "poisson_ratio": 0.3}, "shear_modulus"),
+        ({"shear_modulus": 1e9, "young_modulus": 1e9, "poisson_ratio": 0.3}, "exactly one"),
+        ({"poisson_ratio": 0.3}, "exactly one"),
+        ({"shear_modulus": 1e9, "poisson_ratio": 0.3, "density": 0.0}, "density"),
+    ],
+)
+def test_bad_material_is_refused_by_name(arguments, name):
+    with pytest.raises((ValueError, TypeError), match=name):
+        Material(**arguments)
+
+
+def test_auxetic_limit_is_allowed_by_shear_modulus():
+    assert Material(shear_modulus=1e9, poisson_ratio=-1.0).young_modulus == 0.0
+
+
+def test_sphere_needs_a_mass_from_somewhere():
+    weightless = Material(shear_modulus=1e9, poisson_ratio=0.3)
+    with pytest.raises(ValueError, match=r"mass.*density"):
+        Sphere(0.01, weightless)
+    assert Sphere(0.01, weightless, mass=0.2).mass == 0.2
+
+
+@pytest.mark.parametrize("bad", [0.0, 1.01, -0.4, math.nan])
+def test_bad_gyration_ratio(bad):
+    with pytest.raises(ValueError, match="gyration_ratio"):
+        Sphere(0.01, STEEL, gyration_ratio=bad)
+
+
+def test_material_argument_must_be_a_material():
+    with pytest.raises(ValueError, match="material"):
+        HalfSpace(0.3)
+    with pytest.raises(ValueError, match="material"):
+        Sphere(0.01, "steel", mass=1.0)
+
+
+def test_bodies_are_values():
+    sphere = Sphere(0.01, STEEL)
+    assert pickle.loads(pickle.dumps(sphere)) == sphere
+    assert Sphere(np.float32(0.5), STEEL) == Sphere(0.5, STEEL)
+    assert Sphere(1, STEEL).radius == 1.0
+    assert Sphere([0.01, 0.02], STEEL) != sphere

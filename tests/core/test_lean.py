@@ -1,0 +1,35 @@
+"""`import contactlab` loads no scipy, no matplotlib and no law."""
+
+import json
+import subprocess
+import sys
+
+PROBE = """
+import json, sys
+import contactlab
+heavy = [name for name in sys.modules if name.split(".")[0] in ("scipy", "matplotlib", "argparse")]
+laws = [name for name in sys.modules if name.startswith("contactlab_")]
+print(json.dumps([heavy, laws]))
+"""
+
+
+def loaded(code):
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def test_import_is_lean():
+    heavy, laws = loaded(PROBE)
+    assert heavy == []
+    assert laws == []
+
+
+def test_listing_the_laws_imports_none():
+    heavy, laws = loaded(PROBE.replace("import contactlab\n", "import contactlab\nassert contactlab.registry.REGISTRY.names()\n"))
+    assert heavy == []
+    assert laws == []
+
+
+def test_only_the_named_law_is_imported():
+    _, laws = loaded(PROBE.replace("import contactlab\n", "import contactlab\ncontactlab.create('tangential.coulomb')\n"))
+    assert {name.split(".")[0] for name in laws} == {"contactlab_coulomb"}

@@ -1,0 +1,123 @@
+"""Scenes: incidence, the paper's own parameters, batches."""
+
+import math
+
+import numpy as np
+import pytest
+
+from contactlab import HalfSpace, Material, Scene, Sphere
+
+STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+BALL = Sphere(0.01, STEEL)
+PLATE = HalfSpace(STEEL)
+
+
+def scene(**changes):
+    arguments = {"friction_coefficient": 0.2, "normal_speed": 1.5, "tangential_velocity": 0.5}
+    return Scene(BALL, PLATE, **(arguments | changes))
+
+
+def test_psi1_is_eq_29():
+    assert scene().psi1 == pytest.approx(2 * 0.7 * 0.5 / (0.2 * 1.7 * 1.5), rel=1e-14)
+
+
+def test_spin_counts_through_the_local_velocity():
+    """Eq. (20): v_x = v + omega R; spin alone, and spin that cancels the velocity."""
+    assert scene(tangential_velocity=0.0, spin=50.0).psi1 == pytest.approx(scene().psi1)
+    assert scene(spin=-50.0).psi1 == 0.0
+
+
+def test_size_duration_and_radius_are_eqs_7_to_9():
+    given = scene()
+    shear, mass = STEEL.shear_modulus, BALL.mass
+    size = (15 * mass * 1.5**2 * 0.7 / (16 * shear * 0.01**3)) ** 0.2
+    assert given.size_ratio == pytest.approx(size, rel=1e-14)
+    assert given.maximum_radius == pytest.approx(size * 0.01, rel=1e-14)
+    constant = 4 * math.gamma(0.4) * math.sqrt(math.pi) / (5 * math.gamma(0.9))
+    assert given.duration == pytest.approx(constant * size**2 * 0.01 / 1.5, rel=1e-14)
+    assert constant == pytest.approx(2.9432751843, abs=1e-10)
+
+
+def test_size_does_not_underflow_at_tiny_speeds():
+    """v1² underflows below 1e-162, C does not (theory §8)."""
+    assert scene(normal_speed=1e-200).size_ratio == pytest.approx(scene().size_ratio * (1e-200 / 1.5) ** 0.4)
+
+
+@pytest.mark.parametrize("psi1", [0.0, 1.2, -3.0, 1e-300, 1e16])
+@pytest.mark.parametrize("chi", [0.05, 1.4411764706, 1e4])
+def test_nondimensional_round_trip(psi1, chi):
+    given = Scene.nondimensional(psi1=psi1, chi=chi)
+    assert given.psi1 == psi1
+    assert given.chi == pytest.approx(chi, rel=1e-15)
+    assert given.size_ratio == pytest.approx(1.0, rel=1e-15)
+
+
+def test_no_friction_makes_psi_infinite_but_not_nan():
+    assert scene(friction_coefficient=0).psi1 == math.inf
+    assert scene(friction_coefficient=0, tangential_velocity=0).psi1 == 0.0
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -0.1, "0.1", None, 1j])
+@pytest.mark.parametrize("name", ["friction_coefficient", "normal_speed"])
+def test_bad_number_is_refused_by_name(name, bad):
+    with pytest.raises(ValueError, match=name):
+        scene(**{name: bad})
+
+
+def test_normal_speed_must_be_positive():
+    with pytest.raises(ValueError, match="normal_speed = 0.0: must be positive and finite"):
+        scene(normal_speed=0.0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        ({"psi1": math.nan, "chi": 1.0}, "psi1"),
+        ({"psi1": 1.0, "chi": 0.0}, "chi"),
+        ({"psi1": 1.0, "chi": -1.0}, "chi"),
+        ({"psi1": "a", "chi": 1.0}, "psi1"),
+    ],
+)
+def test_bad_nondimensional_scene(arguments, name):
+    with pytest.raises(ValueError, match=name):
+        Scene.nondimensional(**arguments)
+
+
+def test_bodies_are_checked():
+    with pytest.raises(ValueError, match="sphere"):
+        Scene(PLATE, PLATE, 0.1, 1.0)
+    with pytest.raises(ValueError, match="target"):
+        Scene(BALL, STEEL, 0.1, 1.0)
+    with pytest.raises(ValueError, match="both bodies"):
+        Scene(None, PLATE, 0.1, 1.0)
+
+
+def test_velocities_that_overflow_together_are_refused():
+    with pytest.raises(ValueError, match="tangential_velocity"):
+        scene(tangential_velocity=1.797e308, spin=1.7e308)
+
+
+def test_arrays_make_a_batch():
+    batch = scene(tangential_velocity=np.linspace(0.0, 1.0, 5))
+    assert batch.shape == (5,)
+    assert batch.psi1[2] == pytest.approx(scene().psi1)
+    with pytest.raises(ValueError, match="broadcast"):
+        scene(tangential_velocity=[1.0, 2.0], spin=[1.0, 2.0, 3.0])
+
+
+def test_stack_merges_what_differs():
+    heavy = Sphere(0.02, Material(young_modulus=70e9, poisson_ratio=0.25, density=2500.0))
+    one, two = scene(), Scene(heavy, BALL, 0.1, 2.0, spin=4.0)
+    batch = Scene.stack([one, two])
+    assert batch.shape == (2,)
+    for name in ("psi1", "chi", "size_ratio", "duration", "slip_velocity"):
+        expected = [getattr(one, name), getattr(two, name)]
+        assert getattr(batch, name) == pytest.approx(np.array(expected), rel=1e-15)
+    assert batch.take(slice(1, 2)).psi1 == pytest.approx(np.array([two.psi1]))
+
+
+def test_stack_refuses_what_is_no_scene():
+    with pytest.raises(ValueError, match=r"scenes\[1\]"):
+        Scene.stack([scene(), 3.0])
+    with pytest.raises(ValueError, match="at least one"):
+        Scene.stack([])

@@ -1,0 +1,120 @@
+"""Finding and making laws; what broken plug-ins do, and do not do to others."""
+
+import sys
+from importlib import metadata
+
+import pytest
+
+import contactlab
+from contactlab import PluginError
+
+MINE = "tangential.mine"
+
+
+def test_every_declared_entry_point_loads(registry):
+    points = [point for point in metadata.entry_points(group="contactlab") if point.dist.name == "contactlab"]
+    assert len(points) >= 6
+    for point in points:
+        law = registry.law_class(point.name)
+        assert law.kind == point.name.partition(".")[0]
+        assert registry.create(point.name) is not None
+
+
+def test_create_passes_options_and_checks_them():
+    assert contactlab.create("integrator.paper", steps=123).steps == 123
+    with pytest.raises(ValueError, match=r"integrator.paper: steps = 0: must be a whole number"):
+        contactlab.create("integrator.paper", steps=0)
+    with pytest.raises(ValueError, match=r"step = 3: integrator.paper does not know it; it has steps"):
+        contactlab.create("integrator.paper", step=3)
+
+
+def test_unknown_name_gives_the_nearest_and_the_list():
+    with pytest.raises(ValueError, match=r"did you mean 'tangential.coulomb'.*installed: .*normal.hertz"):
+        contactlab.create("tangential.columb")
+    with pytest.raises(ValueError, match=r"did you mean 'normal.hertz'"):
+        contactlab.create("hertz")
+
+
+def test_a_third_party_law_is_made_like_any_other(registry, install, law_source):
+    install("thirdparty", "thirdparty_law", law_source, MINE)
+    assert registry.info(MINE).distribution == "thirdparty"
+    assert registry.info(MINE).version == "1.5"
+    law = registry.create(MINE)
+    assert type(law).__name__ == "Mine"
+    assert registry.describe(law) == "mine (thirdparty 1.5)"
+
+
+def test_two_distributions_with_one_name_are_refused_naming_both(registry, install, law_source):
+    install("first", "first_law", law_source, MINE)
+    install("second", "second_law", law_source, MINE)
+    with pytest.raises(PluginError, match=r"first 1.5 and second 1.5"):
+        registry.create(MINE)
+    assert registry.create("tangential.coulomb") is not None
+
+
+def test_a_distribution_cannot_take_over_a_built_in_name(registry, install, law_source):
+    install("usurper", "usurper_law", law_source, "tangential.coulomb")
+    with pytest.raises(PluginError, match=r"contactlab .* and usurper 1.5"):
+        registry.create("tangential.coulomb")
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("import not_there_at_all", "could not be imported: ModuleNotFoundError"),
+        ("raise SystemExit(3)", "could not be imported: SystemExit"),
+        ("1/0", "could not be imported: ZeroDivisionError"),
+        ("", "has no hook"),
+        ("import contactlab\n@contactlab.hookimpl\ndef contactlab_lwa(name): pass", "does not fit the hooks"),
+        ("import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name, more): pass", "does not fit the hooks"),
+        ("import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return 5", "not the class of a law"),
+        ("import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return None", "not the class of a law"),
+        ("import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return int", "not the class of a law"),
+        ("import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): 1/0", "raised when asked"),
+    ],
+)
+def test_a_broken_plugin_says_so_and_harms_nobody(registry, install, source, message):
+    install("broken", "broken_law", source, MINE)
+    assert MINE in registry.names()
+    for _ in range(2):  # the second time is no different
+        with pytest.raises(PluginError, match=message) as caught:
+            registry.create(MINE)
+        assert "broken 1.5" in str(caught.value)
+        assert MINE in str(caught.value)
+    assert registry.create("tangential.coulomb") is not None
+
+
+def test_the_traceback_of_a_broken_plugin_is_kept(registry, install):
+    install("broken", "broken_law", "1/0", MINE)
+    with pytest.raises(PluginError) as caught:
+        registry.create(MINE)
+    assert isinstance(caught.value.__cause__, ZeroDivisionError)
+
+
+def test_wrong_interface_version_wrong_kind_and_abstract_laws(registry, install, law_source):
+    install("old", "old_law", law_source.replace("int] = 1", "int] = 99"), "tangential.old")
+    install("odd", "odd_law", law_source, "normal.odd")
+    start = "    def start(self, problem):\n        return 0.0\n"
+    install("half", "half_law", law_source.replace(start, ""), "tangential.half")
+    with pytest.raises(PluginError, match="api_version is 99"):
+        registry.create("tangential.old")
+    with pytest.raises(PluginError, match="a tangential law"):
+        registry.create("normal.odd")
+    with pytest.raises(PluginError, match="does not define start"):
+        registry.create("tangential.half")
+
+
+def test_blocked_names_are_refused_and_not_imported(registry, install, monkeypatch):
+    install("broken", "broken_law", "1/0", MINE)
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", f"{MINE}, normal.other")
+    assert MINE not in registry.names()
+    with pytest.raises(ValueError, match="CONTACTLAB_BLOCK_PLUGINS"):
+        registry.create(MINE)
+    assert "broken_law" not in sys.modules
+
+
+def test_a_law_loaded_before_is_blocked_too(registry, monkeypatch):
+    registry.create("tangential.coulomb")
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "tangential.coulomb")
+    with pytest.raises(ValueError, match="blocked"):
+        registry.create("tangential.coulomb")
