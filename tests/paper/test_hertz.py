@@ -1,0 +1,109 @@
+"""Section 2.1: the normal contact, eqs (2)-(9), against closed forms, quadrature and other codes."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import contactlab
+from contactlab import HalfSpace, Material, Pair, Scene, Simulation, Sphere
+
+STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+RIGID = Material(shear_modulus=1e30, poisson_ratio=0.3)
+UNIT = Scene.nondimensional(psi1=0.0, chi=1.0).pair
+
+
+def hertz():
+    return contactlab.create("normal.hertz")
+
+
+def respond(pair, approach):
+    law = hertz()
+    return law.respond(law.start(pair), approach, 0.0)[0]
+
+
+def test_radius_and_force_are_eqs_2_and_4():
+    pair = Pair.of(Sphere(0.01, STEEL), HalfSpace(STEEL))
+    contact = respond(pair, 1e-6)
+    radius = math.sqrt(0.01 * 1e-6)
+    shear = STEEL.shear_modulus
+    assert contact.radius == pytest.approx(radius, rel=1e-14)
+    assert contact.force == pytest.approx(4 * radius**3 * shear / (3 * 0.01 * 0.7), rel=1e-14)
+
+
+def test_out_of_contact_there_is_no_force():
+    contact = respond(UNIT, -1e-3)
+    assert (contact.force, contact.radius) == (0.0, 0.0)
+    assert contact.overlap < 0
+
+
+def test_nan_stays_nan_instead_of_no_contact():
+    """Theory §6: one NaN must not read as "no contact"."""
+    assert math.isnan(respond(UNIT, math.nan).force)
+    assert np.isnan(respond(UNIT, np.array([0.1, math.nan])).force).tolist() == [False, True]
+
+
+def test_batch_equals_one_by_one():
+    approaches = np.linspace(-1.0, 2.0, 7)
+    batch = respond(UNIT, approaches)
+    for index, approach in enumerate(approaches.tolist()):
+        assert [entry[index] for entry in batch] == pytest.approx(list(respond(UNIT, approach)), rel=1e-15)
+
+
+@pytest.mark.parametrize("phase", [0.0, 1e-6, 0.1, 1.0, math.pi / 2 - 1e-7, math.pi / 2, 2.0, 3.1, math.pi])
+def test_closed_form_motion_keeps_energy_and_time(phase):
+    """Theory §3: V² + zeta^2.5 = 1, and T against quadrature of dT/dx."""
+    motion = hertz().motion(UNIT, 1.0)
+    time, approach, rate, contact = motion.at(phase)
+    assert rate**2 + approach**2.5 == pytest.approx(1.0, abs=1e-14)
+    assert contact.force == pytest.approx(1.25 * approach**1.5, rel=1e-13)
+    exact, _ = quad(lambda x: motion.pace(x), 0.0, phase, epsabs=1e-13, epsrel=1e-13)
+    assert time == pytest.approx(exact, abs=1e-12)
+
+
+def test_motion_obeys_newton():
+    """dV/dT = -P/M and d(zeta)/dT = V by central differences in the phase."""
+    motion = hertz().motion(UNIT, 1.0)
+    step = 1e-5
+    for phase in (0.3, 1.0, 1.6, 2.5):
+        ahead, behind, here = motion.at(phase + step), motion.at(phase - step), motion.at(phase)
+        duration = ahead[0] - behind[0]
+        assert (ahead[1] - behind[1]) / duration == pytest.approx(here[2], rel=1e-6)
+        assert (ahead[2] - behind[2]) / duration == pytest.approx(-here[3].force, rel=1e-6)
+
+
+def test_duration_and_restitution_to_nine_digits_with_the_closed_form():
+    """Eq. (7) and e = 1 to 1e-9."""
+    scene = Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.2, 1.5, 0.4)
+    result = Simulation(tangential="coulomb", integrator="symplectic").run(scene)
+    assert result.motion.duration == pytest.approx(scene.duration, rel=1e-9)
+    assert result.normal_restitution == pytest.approx(1.0, abs=1e-9)
+
+
+def test_papers_steps_find_duration_and_restitution():
+    """Section 2.1: eq. (7) checks the integration of (2), (5), (6)."""
+    scene = Scene.nondimensional(psi1=1.0, chi=1.4411764706)
+    result = Simulation(tangential="coulomb", integrator="paper").run(scene)
+    assert result.motion.duration == pytest.approx(scene.duration, rel=2e-3)
+    assert result.normal_restitution == pytest.approx(1.0, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("modulus", "ratio", "density", "speed", "two", "radius", "force", "approach", "time"),
+    [
+        (48e9, 0.20, 2800.0, 20.0, True, 0.01, 10.70e3, 274.96e-6, 40.48e-6),
+        (20e9, 0.25, 2500.0, 20.0, True, 0.01, 7108.0, None, None),
+        (70e9, 0.30, 2699.0, 0.2, False, 0.1, 11.357e3, 49.85e-6, 727.5e-6),
+        (40e9, 0.35, 1800.0, 0.2, False, 0.1, 7233.0, None, None),
+    ],
+)
+def test_against_the_hertz_scalars_of_other_codes(modulus, ratio, density, speed, two, radius, force, approach, time):
+    """Chung & Ooi (2011), tests 1 and 2, digitised from plots in other codes: 0.5 %, times 1 %."""
+    sphere = Sphere(radius, Material(young_modulus=modulus, poisson_ratio=ratio, density=density))
+    scene = Scene(sphere, sphere if two else HalfSpace(RIGID), 0.1, speed)
+    peak = respond(scene.pair, scene.maximum_approach).force
+    assert peak == pytest.approx(force, rel=5e-3)
+    if approach is not None:
+        assert scene.maximum_approach == pytest.approx(approach, rel=5e-3)
+        assert scene.duration == pytest.approx(time, rel=1e-2)

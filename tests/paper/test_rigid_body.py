@@ -1,0 +1,49 @@
+"""Section 4.3: the rigid-body theory, exact whatever the step."""
+
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
+from contactlab.closed_forms import rigid_body_rebound
+
+STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+
+
+@pytest.mark.parametrize("steps", [1, 2, 7, 100])
+@pytest.mark.parametrize("psi1", [-7.0, -2.0, 1e-9, 0.3, 1.2, 4.0, 5.7, 5.77, 9.0])
+def test_slip_then_rolling_is_exact_whatever_the_step(steps, psi1):
+    """psi2 = 0 for |psi1| < 4 chi, else psi1 - 4 chi."""
+    chi = 1.4411764706
+    sim = Simulation(tangential="coulomb", integrator=contactlab.create("integrator.symplectic", steps=steps))
+    result = sim.run(Scene.nondimensional(psi1=psi1, chi=chi)).check()
+    assert result.psi2 == pytest.approx(rigid_body_rebound(psi1, chi), abs=1e-14)
+
+
+def test_no_chatter_once_the_sphere_rolls():
+    """After the change from slip to rolling the force is exactly zero at every instant."""
+    sim = Simulation(tangential="coulomb", integrator="symplectic")
+    history = sim.run(Scene.nondimensional(psi1=2.0, chi=1.4411764706), history=True).history
+    sliding = history.tangential_force != 0.0
+    last = int(np.flatnonzero(sliding)[-1])
+    assert 0 < last < len(sliding) - 50
+    assert sliding[: last + 1].all()
+    assert (np.diff(sliding.astype(int)) != 0).sum() == 1
+    assert history.slip_velocity[last + 1 :] == pytest.approx(0.0, abs=1e-15)
+
+
+def test_rolling_sphere_of_steel_keeps_five_sevenths():
+    """A solid sphere that reaches rolling keeps 5/7 of its tangential velocity (billiards)."""
+    scene = Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.2, 1.0, 0.5)
+    result = Simulation(tangential="coulomb", integrator="symplectic").run(scene)
+    assert result.tangential_restitution == pytest.approx(5 / 7, rel=1e-12)
+    assert result.rebound_spin * 0.01 == pytest.approx(-result.rebound_tangential_velocity, rel=1e-12)
+
+
+def test_friction_work_is_the_energy_lost():
+    for psi1 in (0.5, 2.0, 5.0, 7.0):
+        energy = Simulation(tangential="coulomb", integrator="symplectic").run(
+            Scene.nondimensional(psi1=psi1, chi=1.4411764706)
+        ).energy
+        assert energy.friction_work > 0
+        assert abs(energy.relative_imbalance) < 1e-12
