@@ -6,7 +6,8 @@ cost, its energy books and a list of what was left out.
 
 from __future__ import annotations
 
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from contactlab.bodies import HalfSpace, Material, Pair, Sphere
 from contactlab.hookspecs import hookimpl
@@ -15,6 +16,9 @@ from contactlab.result import EnergyLedger, ImpactError, ImpactResult
 from contactlab.scene import Scene
 from contactlab.simulation import Simulation
 from contactlab.status import Status
+
+if TYPE_CHECKING:
+    from contactlab.scene_file import SceneFile
 
 __version__ = "0.1.0"
 
@@ -32,6 +36,7 @@ __all__ = [
     "Status",
     "create",
     "hookimpl",
+    "read_scene",
 ]
 
 
@@ -46,3 +51,17 @@ def create(name: str, **options: Any) -> Any:
         If the plug-in is broken, with its traceback.
     """
     return REGISTRY.create(name, **options)
+
+
+def read_scene(path: str | Path) -> SceneFile:
+    """Read a scene or a sweep, its laws and its measured values from a TOML file.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, is not TOML, or says something unknown or not physical,
+        with the key, the value, the rule and the remedy.
+    """
+    from contactlab import scene_file  # only those who read files pay for the reader
+
+    return scene_file.read_scene(path)

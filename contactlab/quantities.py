@@ -1,0 +1,67 @@
+"""The quantities of a result by name, for tables, figures and measured values."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.checks import refuse
+from contactlab.export import COLUMNS
+from contactlab.result import ImpactResult
+
+
+class Quantity(NamedTuple):
+    """A named quantity of a result, its unit, and how it is read."""
+
+    name: str
+    unit: str
+    read: Callable[[ImpactResult], Any]
+
+    def of(self, result: ImpactResult) -> NDArray[np.float64]:
+        """Return it as an array of the scene's shape; NaN where it is not defined."""
+        value = self.read(result)
+        number = np.nan if value is None else value
+        return np.array(np.broadcast_to(np.asarray(number, dtype=np.float64), result.scene.shape))
+
+
+def _in_degrees(read: Callable[[ImpactResult], Any]) -> Callable[[ImpactResult], Any]:
+    def converted(result: ImpactResult) -> Any:
+        value = read(result)
+        return None if value is None else np.degrees(value)
+
+    return converted
+
+
+def _all() -> dict[str, Quantity]:
+    found = {}
+    for name, unit, read in COLUMNS:
+        if name == "status":
+            continue
+        found[name] = Quantity(name, unit, read)
+        if unit == "rad":
+            found[f"{name}_deg"] = Quantity(f"{name}_deg", "deg", _in_degrees(read))
+    return found
+
+
+QUANTITIES = _all()
+
+
+def quantity_named(name: str, *, where: str = "quantity") -> Quantity:
+    """Return a quantity by name: any column of the exports, angles also with ``_deg``.
+
+    Raises
+    ------
+    ValueError
+        If there is none, with the nearest match.
+    """
+    if name in QUANTITIES:
+        return QUANTITIES[name]
+    nearest = difflib.get_close_matches(name, QUANTITIES, n=1, cutoff=0.5)
+    hint = f"did you mean {nearest[0]!r}? " if nearest else ""
+    raise refuse(
+        where, name, "is not a quantity of a result", f"{hint}known: {', '.join(QUANTITIES)}"
+    )

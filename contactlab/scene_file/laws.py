@@ -1,0 +1,96 @@
+"""Which laws a scene is run with, by name, and their options."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import attrs
+
+from contactlab.registry import KINDS, REGISTRY
+from contactlab.scene_file.table import Table, nearest_of
+from contactlab.simulation import Simulation
+
+DEFAULTS = {"normal": "hertz", "tangential": "annulus", "integrator": "paper"}
+OPTION_REMEDY = "write tangential.annuli = 50, or tangential.annulus.annuli = 50 for one law only"
+
+
+@attrs.frozen(kw_only=True)
+class LawChoice:
+    """Names of the three laws, and options for them.
+
+    Attributes
+    ----------
+    normal, tangential, integrator : str
+        Names without their kind.
+    options : mapping of str to mapping
+        Options by kind, for the law chosen here (``{"tangential": {"annuli": 50}}``), or by
+        full name, for that law whenever it is chosen (``{"tangential.annulus": ...}``).
+    """
+
+    normal: str = DEFAULTS["normal"]
+    tangential: str = DEFAULTS["tangential"]
+    integrator: str = DEFAULTS["integrator"]
+    options: Mapping[str, Mapping[str, Any]] = attrs.field(factory=dict)
+
+    def choose(self, **names: str | None) -> LawChoice:
+        """Return the choice with other laws; None keeps a name.
+
+        Options given for a kind are the old law's: they go where its law goes.
+        """
+        chosen = {
+            kind: name.removeprefix(f"{kind}.") for kind, name in names.items() if name is not None
+        }
+        changed = [kind for kind, name in chosen.items() if name != getattr(self, kind)]
+        kept = {key: value for key, value in self.options.items() if key not in changed}
+        return attrs.evolve(self, **chosen, options=kept)
+
+    def set(self, settings: Mapping[str, Any]) -> LawChoice:
+        """Return the choice with more options, keyed by dotted path."""
+        options = {key: dict(value) for key, value in self.options.items()}
+        for path, value in settings.items():
+            owner, _, option = path.rpartition(".")
+            if owner.partition(".")[0] not in KINDS or not option:
+                hint = nearest_of(owner.partition(".")[0], KINDS)
+                raise ValueError(f"{path}: is not an option of a law; {OPTION_REMEDY}; {hint}")
+            options.setdefault(owner, {})[option] = value
+        return attrs.evolve(self, options=options)
+
+    def simulation(self) -> Simulation:
+        """Make the three laws with their options and compose them.
+
+        Raises
+        ------
+        ValueError
+            If a law is not installed, an option is unknown, or the laws do not fit.
+        """
+        return Simulation(**{kind: self._make(kind) for kind in KINDS})
+
+    def _make(self, kind: str) -> Any:
+        name = f"{kind}.{getattr(self, kind)}"
+        options = {**self.options.get(kind, {}), **self.options.get(name, {})}
+        return REGISTRY.create(name, **options)
+
+
+def read_laws(content: object) -> LawChoice:
+    """Return the laws of a file's ``[simulation]``."""
+    table = Table(content, "simulation", known=(*KINDS, "options"))
+    names = {kind: table.text(kind) for kind in KINDS if table.has(kind)}
+    choice = LawChoice().choose(**names)
+    if not table.has("options"):
+        return choice
+    raw = table.content["options"]
+    if not isinstance(raw, Mapping):
+        raise ValueError(f"simulation.options: must be a table; {OPTION_REMEDY}")
+    try:
+        return choice.set(_flat(raw))
+    except ValueError as error:
+        raise ValueError(f"simulation.options.{error}") from error
+
+
+def _flat(content: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for key, value in content.items():
+        inner = isinstance(value, Mapping)
+        flat |= _flat(value, f"{prefix}{key}.") if inner else {prefix + key: value}
+    return flat

@@ -1,0 +1,110 @@
+"""Measured values that a scene file carries, and what they are to be compared with."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.checks import refuse
+from contactlab.quantities import quantity_named
+from contactlab.scene_file.build import entry_path
+from contactlab.scene_file.table import Table
+
+KEYS = ("quantity", "against", "label", "source", "x", "values", "error", "readings")
+READING_KEYS = ("by", "point", "x", "values")
+Array = NDArray[np.float64]
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class Measured:
+    """A series of measured values of one quantity.
+
+    Attributes
+    ----------
+    quantity : str
+        Name of the quantity of a result, such as ``"tangential_restitution"``.
+    against : str
+        Name of the entry of the scene that was varied, such as ``"angle_deg"``.
+    x, values : array, shape (n,)
+        Where it was measured, and what was found, in the units of entry and quantity.
+    x_error, error : array, shape (n,)
+        Half-widths; zero where the file gives none. Where the file has several readings
+        of the same points, values are their means and errors half their range.
+    label, source : str
+    """
+
+    quantity: str
+    against: str
+    x: Array
+    values: Array
+    x_error: Array
+    error: Array
+    label: str
+    source: str
+
+
+def read_measured(content: object) -> tuple[Measured, ...]:
+    """Return the series of a file's ``[[measured]]`` tables."""
+    if not isinstance(content, list):
+        raise refuse("measured", content, "must be a list of tables", "write [[measured]]")
+    return tuple(_series(item, f"measured[{number}]") for number, item in enumerate(content))
+
+
+def _series(content: object, path: str) -> Measured:
+    table = Table(content, path, known=KEYS)
+    quantity = table.text("quantity", remedy="name a quantity of the result")
+    quantity_named(quantity, where=table.at("quantity"))
+    against = table.text("against", remedy="name the entry that was varied, such as angle_deg")
+    entry_path(against, where=table.at("against"))
+    if table.has("readings") == table.has("x", "values"):
+        raise ValueError(f"{path}: give either x and values, or several readings of them")
+    columns = _means(table) if table.has("readings") else _plain(table)
+    return Measured(
+        quantity=quantity,
+        against=against,
+        **columns,
+        label=table.text("label", default="measured"),
+        source=table.text("source", remedy="say where the numbers come from"),
+    )
+
+
+def _plain(table: Table) -> dict[str, Any]:
+    x = table.numbers("x", remedy="list where it was measured")
+    values = table.numbers("values", remedy="list what was measured")
+    error = table.numbers("error", default=np.zeros(np.size(values)), remedy="list half-widths")
+    _equal_lengths(table, x=x, values=values, error=error)
+    if np.any(np.asarray(error) < 0.0):
+        raise refuse(table.at("error"), error, "must be zero or positive", "give half-widths")
+    return {"x": x, "values": values, "x_error": np.zeros(np.size(x)), "error": error}
+
+
+def _means(table: Table) -> dict[str, Any]:
+    """Average readings of the same points; their spread is the error of reading."""
+    rows: dict[float, list[tuple[float, float]]] = {}
+    readings = table.content["readings"]
+    if not isinstance(readings, list) or not readings:
+        raise refuse(table.at("readings"), readings, "must be a list of tables")
+    for number, item in enumerate(readings):
+        reading = Table(item, table.at(f"readings[{number}]"), known=READING_KEYS)
+        reading.text("by", remedy="say who read the figure")
+        remedy = "list point numbers, x and values, of equal length"
+        columns = {key: reading.numbers(key, remedy=remedy) for key in READING_KEYS[1:]}
+        _equal_lengths(reading, **columns)
+        for point, x, value in zip(
+            *(np.asarray(c).tolist() for c in columns.values()), strict=True
+        ):
+            rows.setdefault(point, []).append((x, value))
+    groups = [np.array(rows[point]) for point in sorted(rows)]
+    middle = np.array([group.mean(axis=0) for group in groups])
+    half = np.array([0.5 * np.ptp(group, axis=0) for group in groups])
+    return {"x": middle[:, 0], "values": middle[:, 1], "x_error": half[:, 0], "error": half[:, 1]}
+
+
+def _equal_lengths(table: Table, **columns: Any) -> None:
+    lengths = {key: np.size(column) for key, column in columns.items()}
+    if len(set(lengths.values())) > 1:
+        listed = ", ".join(f"{key} {length}" for key, length in lengths.items())
+        raise ValueError(f"{table.path}: the lists must be of equal length; they have {listed}")

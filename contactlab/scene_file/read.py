@@ -1,0 +1,123 @@
+"""Reads a scene file, and refuses a bad one with file, key, value, rule and remedy."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from contactlab.checks import Real, real
+from contactlab.scene import Scene
+from contactlab.scene_file.build import build_scene, entry_path, replaced
+from contactlab.scene_file.laws import LawChoice, read_laws
+from contactlab.scene_file.measured import Measured, read_measured
+from contactlab.scene_file.sweep import read_sweep
+from contactlab.scene_file.table import Table
+
+SECTIONS = (
+    "about", "sphere", "target", "impact", "nondimensional", "sweep", "simulation", "measured",
+)  # fmt: skip
+ABOUT_KEYS = ("title", "citation", "notes")
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class SceneFile:
+    """What a scene file says.
+
+    Attributes
+    ----------
+    path : Path
+    title, citation, notes : str
+        From ``[about]``; empty where not given.
+    scene : Scene
+        One impact, or the batch of a ``[sweep]``.
+    varied : mapping of str to array
+        The entries that the sweep varies and their values, shape (n,); empty for one impact.
+    laws : LawChoice
+        From ``[simulation]``.
+    measured : tuple of Measured
+    """
+
+    path: Path
+    title: str
+    citation: str
+    notes: str
+    scene: Scene
+    varied: Mapping[str, Real]
+    laws: LawChoice
+    measured: tuple[Measured, ...]
+    tables: Mapping[str, Any] = attrs.field(repr=False)
+
+    def scene_at(self, **entries: Any) -> Scene:
+        """Return the file's scene without its sweep, some entries replaced.
+
+        ``scene_at(angle_deg=[5, 10])`` is a batch of two; entries of equal length go
+        together. A dotted entry is given as ``**{"sphere.radius": [...]}``.
+        """
+        return _scene_with(self.tables, entries)
+
+
+def read_scene(path: str | Path) -> SceneFile:
+    """Read a scene, its sweep, its laws and its measured values from a TOML file.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, is not TOML (with the line), has an unknown key (with the
+        nearest known one), or holds a value that is of the wrong type or not physical.
+    """
+    file = Path(path)
+    document = _document(file)
+    try:
+        root = Table(document, "", known=SECTIONS)
+        about = Table(document.get("about", {}), "about", known=ABOUT_KEYS)
+        varied = read_sweep(document.get("sweep", {}))
+        tables = {key: root.content[key] for key in SECTIONS[1:5] if root.has(key)}
+        return SceneFile(
+            path=file,
+            **{key: about.text(key, default="") for key in ABOUT_KEYS},
+            scene=_scene_with(tables, varied),
+            varied=varied,
+            laws=read_laws(document.get("simulation", {})),
+            measured=read_measured(document.get("measured", [])),
+            tables=tables,
+        )
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from error
+
+
+def _scene_with(tables: Mapping[str, Any], entries: Mapping[str, Any]) -> Scene:
+    for name, values in entries.items():
+        path = entry_path(name, where="entry")
+        tables = replaced(tables, path, real(path, values))
+    return build_scene(tables)
+
+
+def _document(file: Path) -> dict[str, Any]:
+    try:
+        text = file.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise ValueError(f"{file}: no such file; give the path of a scene in TOML") from None
+    except UnicodeDecodeError as error:
+        raise ValueError(
+            f"{file}: is not UTF-8 text ({error.reason} at byte {error.start})"
+        ) from None
+    except OSError as error:
+        raise ValueError(f"{file}: cannot be read: {error.strerror}") from None
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{file}, {_place(str(error), text)}") from None
+
+
+def _place(message: str, text: str) -> str:
+    """Return tomllib's message with the line first; "end of document" is the last line."""
+    found = re.search(r" \(at line (\d+), column (\d+)\)", message)
+    if found:
+        return f"line {found[1]}, column {found[2]}: not TOML: {message[: found.start()]}"
+    lines = max(len(text.splitlines()), 1)
+    return f"line {lines}: not TOML: {message.replace(' (at end of document)', '')}"

@@ -1,0 +1,114 @@
+"""A table of a TOML file that refuses what it does not know, by its dotted path."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, TypeVar
+
+import numpy as np
+
+from contactlab.checks import FINITE, Real, Rule, real, refuse
+
+Made = TypeVar("Made")
+
+
+class Table:
+    """One table, with its dotted path and the keys it may have.
+
+    Parameters
+    ----------
+    content : object
+        What the file holds at ``path``; anything but a table is refused.
+    path : str
+        Dotted path for messages, such as ``"sphere.material"``; empty for the whole file.
+    known : iterable of str
+        The keys that may stand here. Unknown ones are refused at once, with the nearest
+        known key, so that a misspelt key is never reported as a missing one.
+    """
+
+    def __init__(self, content: object, path: str, *, known: Iterable[str]) -> None:
+        self.path = path
+        self.known = tuple(known)
+        if not isinstance(content, Mapping):
+            raise refuse(path, content, "must be a table", f"write it under [{path}]")
+        self.content: Mapping[str, Any] = content
+        for key in content:
+            if key not in self.known:
+                raise self._unknown(key)
+
+    def at(self, key: str) -> str:
+        """Return the dotted path of ``key``."""
+        return f"{self.path}.{key}" if self.path else key
+
+    def has(self, *keys: str) -> bool:
+        """Return True if any of the keys is given."""
+        return any(key in self.content for key in keys)
+
+    def require(self, key: str, remedy: str) -> Any:
+        """Return the raw value of ``key``, or say that it is missing."""
+        if key not in self.content:
+            raise ValueError(f"{self.at(key)}: is missing; {remedy}")
+        return self.content[key]
+
+    def table(self, key: str, *, known: Iterable[str]) -> Table:
+        """Return a table inside this one; it must be there."""
+        remedy = f"add a table [{self.at(key)}] with {', '.join(known)}"
+        return Table(self.require(key, remedy), self.at(key), known=known)
+
+    def number(
+        self, key: str, *, default: float | None = None, rule: Rule = FINITE, remedy: str
+    ) -> Any:
+        """Return a number, or the array that a sweep has put in its place.
+
+        A list written in the file is refused: what varies belongs in ``[sweep]``.
+        """
+        if key not in self.content and default is not None:
+            return default
+        value = self.require(key, remedy)
+        if isinstance(value, list):
+            raise refuse(self.at(key), value, "must be one number", "put lists in [sweep]")
+        return real(self.at(key), value, rule=rule, remedy=remedy)
+
+    def text(self, key: str, *, default: str | None = None, remedy: str = "") -> str:
+        """Return a text."""
+        if key not in self.content and default is not None:
+            return default
+        value = self.require(key, remedy)
+        if not isinstance(value, str):
+            raise refuse(self.at(key), value, "must be text", "put it in quotes")
+        return value
+
+    def numbers(self, key: str, *, default: object = None, remedy: str) -> Real:
+        """Return a list of numbers as an array of shape (n,)."""
+        value = default if key not in self.content and default is not None else None
+        if value is None:
+            value = self.require(key, remedy)
+        return number_list(self.at(key), value, remedy=remedy)
+
+    def make(self, maker: Callable[..., Made], **arguments: Any) -> Made:
+        """Return ``maker(**arguments)``; its refusals are told with this table's path."""
+        try:
+            return maker(**arguments)
+        except ValueError as error:
+            raise ValueError(self.at(str(error))) from error
+
+    def _unknown(self, key: str) -> ValueError:
+        return ValueError(f"{self.at(key)}: is not a known key; {nearest_of(key, self.known)}")
+
+
+def nearest_of(name: str, known: Iterable[str]) -> str:
+    """Return a hint: the nearest known name, and all of them."""
+    names = list(known)
+    nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    return (f"did you mean {nearest[0]!r}? " if nearest else "") + f"known: {', '.join(names)}"
+
+
+def number_list(path: str, value: object, *, remedy: str) -> Real:
+    """Return ``value`` as an array of shape (n,), or refuse it."""
+    if not isinstance(value, list | np.ndarray) or any(isinstance(item, bool) for item in value):
+        raise refuse(path, value, "must be a list of numbers", remedy)
+    array = real(path, value, remedy=remedy)
+    if np.ndim(array) != 1:
+        raise refuse(path, value, "must be a plain list of numbers", "not a list of lists")
+    return array
