@@ -96,12 +96,7 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
 
 def _spread(value: Any, shape: tuple[int, ...]) -> list[Any]:
     items = np.broadcast_to(np.asarray(value, dtype=object), shape).ravel().tolist()
-    return [math.nan if item is None else plain_text(item) for item in items]
-
-
-def plain_text(item: Any) -> Any:
-    """Return a status by its name, numbers as they are."""
-    return getattr(item, "name", item)
+    return [math.nan if item is None else getattr(item, "name", item) for item in items]
 
 
 def _write_table(path: str | Path, headings: list[str], rows: list[tuple[Any, ...]]) -> None:

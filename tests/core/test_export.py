@@ -1,0 +1,61 @@
+"""Results as JSON, CSV and npz."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from contactlab import Scene, Simulation
+from contactlab.export import to_dict, write_csv, write_history_csv, write_json, write_npz
+
+SIM = Simulation(tangential="coulomb", integrator="symplectic")
+SINGLE = Scene.nondimensional(psi1=2.0, chi=1.4411764706)
+BATCH = Scene.nondimensional(psi1=np.array([0.0, 2.0, 7.0]), chi=1.4411764706)
+
+
+def table(path):
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def test_dict_has_the_keys_relied_on():
+    content = to_dict(SIM.run(SINGLE))
+    assert {"psi2", "status", "run_time_s", "energy", "plan", "laws", "counters"} <= set(content)
+    assert content["status"] == "SUCCESS"
+    assert content["energy"]["start"] > content["energy"]["end"]
+    assert content["laws"]["tangential"].startswith("coulomb (contactlab ")
+
+
+def test_json_round_trip(tmp_path):
+    result = SIM.run(SINGLE, history=True)
+    write_json(result, tmp_path / "a.json")
+    content = json.loads((tmp_path / "a.json").read_text())
+    assert content["psi2"] == result.psi2
+    assert content["history"]["time"] == result.history.time.tolist()
+    assert content["rebound_spin"] is None
+
+
+def test_batch_csv_has_a_row_an_impact(tmp_path):
+    result = SIM.run(BATCH)
+    write_csv(result, tmp_path / "a.csv")
+    rows = table(tmp_path / "a.csv")
+    assert [float(row["psi2 (1)"]) for row in rows] == result.psi2.tolist()
+    assert [row["status"] for row in rows] == ["SUCCESS"] * 3
+
+
+def test_history_csv(tmp_path):
+    result = SIM.run(SINGLE, history=True)
+    write_history_csv(result, tmp_path / "h.csv")
+    rows = table(tmp_path / "h.csv")
+    assert [float(row["tangential_force (N)"]) for row in rows] == result.history.tangential_force.tolist()
+    with pytest.raises(ValueError, match="history"):
+        write_history_csv(SIM.run(SINGLE), tmp_path / "no.csv")
+
+
+def test_npz_round_trip(tmp_path):
+    result = SIM.run(SINGLE, history=True)
+    write_npz(result, tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as content:
+        assert content["psi2"] == result.psi2
+        assert content["status"] == "SUCCESS"
+        assert content["history_time"].tolist() == result.history.time.tolist()

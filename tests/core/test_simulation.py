@@ -1,0 +1,231 @@
+"""Composition, plans, runs and sweeps."""
+
+import pickle
+from typing import ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import HalfSpace, ImpactError, Material, Scene, Simulation, Sphere, Status
+from contactlab.contracts import (
+    NormalContact,
+    NormalLaw,
+    SteppedTangentialLaw,
+    TangentialLaw,
+    TangentialResponse,
+)
+
+CHI = 1.4411764706
+STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+RIGID = {"tangential": "coulomb", "integrator": "symplectic"}
+
+
+@attrs.frozen(kw_only=True)
+class LinearSpring(NormalLaw):
+    """A normal law without radius or closed form: P = k u_z, duration pi sqrt(M/k)."""
+
+    api_version: ClassVar[int] = 1
+    stiffness: float = 1.0
+
+    def start(self, pair):
+        return None
+
+    def respond(self, state, approach, rate):
+        return NormalContact(self.stiffness * approach * (approach > 0), 0.0 * approach, approach), state
+
+
+@attrs.frozen(kw_only=True)
+class Misbehaving(SteppedTangentialLaw):
+    """Answers as told at one step."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"advance"})
+    answer: object = 0.0
+    at: int = 5
+
+    def start(self, problem):
+        return 0
+
+    def advance(self, state, increment, before, after):
+        if state + 1 == self.at:
+            if isinstance(self.answer, Exception):
+                raise self.answer
+            return TangentialResponse(self.answer, 0.0), state + 1
+        return TangentialResponse(0.0, 0.0), state + 1
+
+
+@attrs.frozen(kw_only=True)
+class NeedsRadius(TangentialLaw):
+    """Needs what nobody offers."""
+
+    api_version: ClassVar[int] = 1
+    needs: ClassVar[frozenset] = frozenset({"hertzian_pressure"})
+
+
+def scene(psi1=1.2):
+    return Scene.nondimensional(psi1=psi1, chi=CHI)
+
+
+def test_names_and_objects_compose_alike():
+    by_name = Simulation(normal="hertz", tangential="coulomb", integrator="paper")
+    by_object = Simulation(
+        normal=contactlab.create("normal.hertz"),
+        tangential=contactlab.create("tangential.coulomb"),
+        integrator=contactlab.create("integrator.paper"),
+    )
+    assert by_name == by_object
+    assert by_name.run(scene()).psi2 == by_object.run(scene()).psi2
+
+
+def test_wrong_kind_of_law_is_refused():
+    with pytest.raises(ValueError, match=r"normal = .*must be a name or a normal law"):
+        Simulation(normal=contactlab.create("tangential.coulomb"))
+    with pytest.raises(ValueError, match="tangential"):
+        Simulation(tangential=None)
+
+
+def test_laws_that_do_not_fit_are_refused_naming_both_and_what_would_fit():
+    with pytest.raises(ValueError, match=r"NeedsRadius.*hertzian_pressure.*LinearSpring.*normal.hertz"):
+        Simulation(normal=LinearSpring(), tangential=NeedsRadius(), integrator="symplectic")
+    with pytest.raises(ValueError, match=r"'advance'"):
+        Simulation(normal="hertz", tangential=NeedsRadius(), integrator="symplectic")
+
+
+def test_plan_says_what_is_left_out_and_why():
+    sim = Simulation(**RIGID)
+    assert "central impact" in str(sim.plan(scene(0.0)))
+    assert "slips from start to end" in str(sim.plan(scene(7.0)))
+    assert "history: not asked for" in str(sim.plan(scene()))
+    assert "history" not in str(sim.plan(scene(), history="fields"))
+    assert "makes no force" in str(Simulation(tangential="frictionless", integrator="paper").plan(scene()))
+
+
+def test_plan_warns_where_hertz_is_doubtful():
+    fast = Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.1, 1e4, 1.0)
+    assert "doubtful above 0.1" in str(Simulation(**RIGID).plan(fast))
+    slow = Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.1, 0.01, 1.0)
+    assert not Simulation(**RIGID).plan(slow).cautions
+
+
+def test_frictionless_leaves_the_tangential_velocity_alone():
+    result = Simulation(tangential="frictionless", integrator="paper").run(scene())
+    assert result.psi2 == 1.2
+    assert result.energy.friction_work == 0.0
+
+
+def test_zero_friction_coefficient_leaves_the_velocity_alone():
+    given = Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.0, 1.0, 0.3)
+    result = Simulation(**RIGID).run(given).check()
+    assert result.rebound_tangential_velocity == 0.3
+    assert result.rebound_normal_velocity == -1.0
+
+
+def test_a_normal_law_without_closed_form_is_integrated_to_second_order():
+    """P = k u: duration pi sqrt(M/k), e = 1; the end of contact is located, not overshot."""
+    errors = []
+    for steps in (50, 100, 200, 400):
+        sim = Simulation(
+            normal=LinearSpring(),
+            tangential="frictionless",
+            integrator=contactlab.create("integrator.symplectic", steps=steps),
+        )
+        errors.append(abs(sim.run(scene()).check().motion.duration - np.pi))
+    slope = np.polyfit(np.log([50, 100, 200, 400]), np.log(errors), 1)[0]
+    assert slope == pytest.approx(-2.0, abs=0.3)
+    assert errors[-1] < 1e-4
+
+
+@pytest.mark.parametrize("integrator", ["paper", "symplectic"])
+def test_contact_that_never_ends_is_a_status(integrator):
+    soft = LinearSpring(stiffness=1e-9)
+    sim = Simulation(normal=soft, tangential="coulomb", integrator=contactlab.create(f"integrator.{integrator}", steps=20))
+    result = sim.run(scene())
+    assert result.status is Status.NOT_SEPARATED
+    with pytest.raises(ImpactError, match="still in contact"):
+        result.check()
+
+
+@pytest.mark.parametrize("integrator", ["paper", "symplectic"])
+@pytest.mark.parametrize(
+    ("answer", "status"),
+    [(float("nan"), Status.NON_FINITE), (float("inf"), Status.NON_FINITE), (RuntimeError("oops"), Status.LAW_RAISED)],
+)
+def test_a_misbehaving_law_is_reported_never_an_answer(integrator, answer, status):
+    result = Simulation(tangential=Misbehaving(answer=answer), integrator=integrator).run(scene(), history=True)
+    assert result.status is status
+    assert not result.status
+    assert len(result.history.time) >= 4
+    with pytest.raises(ImpactError, match="Misbehaving|oops"):
+        result.check()
+
+
+def test_sweep_equals_one_by_one_and_keeps_order():
+    sim = Simulation(**RIGID)
+    psi1 = np.array([-9.0, 0.0, 0.5, 3.0, 5.9, 12.0])
+    sweep = sim.sweep([scene(float(value)) for value in psi1], chunk=2)
+    assert len(sweep) == 6
+    assert sweep.psi2 == pytest.approx([sim.run(scene(float(value))).psi2 for value in psi1], abs=1e-15)
+    assert [item.psi1 for item in sweep] == psi1.tolist()
+    assert all(status is Status.SUCCESS for status in sweep.status)
+    assert sweep[2].psi2 == sim.run(scene(0.5)).psi2
+    with pytest.raises(IndexError):
+        sweep[6]
+
+
+def test_sweep_reports_progress():
+    seen = []
+    Simulation(**RIGID).sweep(Scene.nondimensional(psi1=np.linspace(0, 9, 10), chi=CHI), chunk=4, progress=lambda *n: seen.append(n))
+    assert seen == [(4, 10), (8, 10), (10, 10)]
+
+
+def test_interrupting_a_sweep_keeps_what_is_done():
+    def stop(done, total):
+        if done == 4:
+            raise KeyboardInterrupt
+
+    sweep = Simulation(**RIGID).sweep(Scene.nondimensional(psi1=np.linspace(6, 9, 10), chi=CHI), chunk=2, progress=stop)
+    assert [status.name for status in sweep.status] == ["SUCCESS"] * 4 + ["INTERRUPTED"] * 6
+    assert np.isfinite(sweep.psi2[:4]).all()
+    assert np.isnan(sweep.psi2[4:]).all()
+    with pytest.raises(ImpactError, match="impact 4"):
+        sweep.check()
+
+
+def test_bad_arguments_of_run_and_sweep():
+    sim = Simulation(**RIGID)
+    for bad in (None, 3.0, "scene"):
+        with pytest.raises(ValueError, match="scene"):
+            sim.run(bad)
+    with pytest.raises(ValueError, match="history"):
+        sim.run(scene(), history="all")
+    with pytest.raises(ValueError, match="chunk"):
+        sim.sweep([scene()], chunk=0)
+    with pytest.raises(ValueError, match="scenes"):
+        sim.sweep(scene())
+    with pytest.raises(ValueError, match="scenes"):
+        sim.sweep([])
+
+
+def test_a_history_changes_nothing_and_spans_the_contact():
+    for psi1 in (0.0, 1.2, 7.0):
+        for integrator in ("paper", "symplectic"):
+            sim = Simulation(tangential="coulomb", integrator=integrator)
+            plain, kept = sim.run(scene(psi1)), sim.run(scene(psi1), history=True)
+            assert kept.psi2 == plain.psi2
+            assert plain.history is None
+            assert kept.history.time[-1] == pytest.approx(plain.motion.duration, rel=0.01)
+
+
+def test_simulations_pickle():
+    sim = pickle.loads(pickle.dumps(Simulation(**RIGID)))
+    assert sim.run(scene(3.0)).psi2 == Simulation(**RIGID).run(scene(3.0)).psi2
+
+
+def test_two_spheres_share_the_impulse():
+    """Equal spheres, head on: they exchange their normal velocities."""
+    ball = Sphere(0.01, STEEL)
+    result = Simulation(**RIGID).run(Scene(ball, ball, 0.1, 2.0, 0.1))
+    assert result.rebound_normal_velocity == pytest.approx(0.0, abs=1e-14)
+    assert result.normal_restitution == pytest.approx(1.0, rel=1e-14)
