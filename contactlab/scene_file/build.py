@@ -24,7 +24,7 @@ BODY_SECTIONS = ("sphere", "target", "impact")
 UNITS = {
     "shear_modulus": "Pa", "young_modulus": "Pa", "poisson_ratio": "1", "density": "kg/m³",
     "radius": "m", "mass": "kg", "gyration_ratio": "1", "friction_coefficient": "1",
-    "speed": "m/s", "angle_deg": "degrees from the normal", "normal_speed": "m/s",
+    "speed": "m/s", "angle_deg": "deg", "normal_speed": "m/s",
     "tangential_velocity": "m/s", "spin": "rad/s", "psi1": "1", "chi": "1",
 }  # fmt: skip
 
@@ -130,7 +130,7 @@ def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:
             "leave out one pair"
         )
     if table.has(*polar):
-        unit = f"give speed in m/s and angle_deg in {UNITS['angle_deg']}"
+        unit = "give speed in m/s and angle_deg in degrees from the normal"
         speed = table.number("speed", rule=POSITIVE_SPEED, remedy=unit)
         angle = np.radians(table.number("angle_deg", rule=OBLIQUE, remedy=unit))
         numbers["normal_speed"] = speed * np.cos(angle)

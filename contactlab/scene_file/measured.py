@@ -32,7 +32,8 @@ class Measured:
         Where it was measured, and what was found, in the units of entry and quantity.
     x_error, error : array, shape (n,)
         Half-widths; zero where the file gives none. Where the file has several readings
-        of the same points, values are their means and errors half their range.
+        of the same points, values are their means and errors half their range, NaN where
+        there is only one reading.
     label, source : str
     """
 
@@ -99,8 +100,13 @@ def _means(table: Table) -> dict[str, Any]:
             rows.setdefault(point, []).append((x, value))
     groups = [np.array(rows[point]) for point in sorted(rows)]
     middle = np.array([group.mean(axis=0) for group in groups])
-    half = np.array([0.5 * np.ptp(group, axis=0) for group in groups])
+    half = np.array([_half_range(group) for group in groups])
     return {"x": middle[:, 0], "values": middle[:, 1], "x_error": half[:, 0], "error": half[:, 1]}
+
+
+def _half_range(group: Array) -> Array:
+    """Return half the range of each column; NaN of a single reading, which has no spread."""
+    return 0.5 * np.ptp(group, axis=0) if len(group) > 1 else np.full(2, np.nan)
 
 
 def _equal_lengths(table: Table, **columns: Any) -> None:

@@ -1,0 +1,181 @@
+"""Several laws on one scene or sweep: differences, cost, and distance from measured values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.quantities import quantity_named
+from contactlab.result import ImpactResult
+from contactlab.scene import Scene
+from contactlab.scene_file import Measured, SceneFile
+from contactlab.simulation import Simulation
+
+Array = NDArray[np.float64]
+
+#: The time of a run is the least of so many, as long as they are short: the least is what
+#: the work takes, the rest is what else the machine was doing.
+REPEATS = 3
+#: A run longer than this, in s, is not repeated: little of its time is warming up.
+LONG_RUN = 2.0
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class LawRun:
+    """One law's answer to the scene or sweep.
+
+    Attributes
+    ----------
+    name : str
+    result : ImpactResult
+    run_time_per_impact : float
+        Least wall-clock time of a few repeats, over the number of impacts, in s.
+    """
+
+    name: str
+    result: ImpactResult
+    run_time_per_impact: float = attrs.field(metadata={"unit": "s"})
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class Agreement:
+    """One measured series, and what each law says at the very same points.
+
+    Attributes
+    ----------
+    measured : Measured
+    predicted : mapping of str to array
+        Law to values, shape (n,), in the quantity's unit.
+    """
+
+    measured: Measured
+    predicted: Mapping[str, Array]
+
+    def difference(self, law: str) -> Array:
+        """Return predicted - measured, shape (n,)."""
+        return self.predicted[law] - self.measured.values
+
+    def rms(self, law: str) -> float:
+        """Return the root mean square difference."""
+        return float(np.sqrt(np.mean(self.difference(law) ** 2)))
+
+    def largest(self, law: str) -> float:
+        """Return the largest absolute difference."""
+        return float(np.max(np.abs(self.difference(law))))
+
+    def where_largest(self, law: str) -> float:
+        """Return the x of the largest difference; NaN where a law gave no value."""
+        difference = np.abs(self.difference(law))
+        if np.isnan(difference).any():
+            return float("nan")
+        return float(self.measured.x[np.argmax(difference)])
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class Comparison:
+    """Laws side by side; the first is the one that the others are compared with."""
+
+    scene: Scene
+    varied: Mapping[str, Any]
+    runs: tuple[LawRun, ...]
+    agreements: tuple[Agreement, ...]
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the laws, the reference first."""
+        return [run.name for run in self.runs]
+
+    def values(self, quantity: str, law: str) -> Array:
+        """Return a quantity over the scene or sweep as one law has it."""
+        result = next(run.result for run in self.runs if run.name == law)
+        return quantity_named(quantity).of(result)
+
+    def difference(self, quantity: str, law: str) -> Array:
+        """Return a law's value less that of the first law."""
+        return self.values(quantity, law) - self.values(quantity, self.names[0])
+
+    def failures(self) -> list[str]:
+        """Return one sentence for each law that did not follow every impact."""
+        found = []
+        for run in self.runs:
+            statuses = np.ravel(np.array(run.result.status, dtype=object))
+            bad = [status for status in statuses if not status]
+            if bad:
+                share = f" ({len(bad)} of {run.result.scene.shape[0]})" if self.scene.shape else ""
+                found.append(f"{run.name}{share}: {bad[0].value} {run.result.motion.detail}")
+        return [sentence.strip() for sentence in found]
+
+
+def compare(
+    scene: Scene | SceneFile,
+    simulations: Mapping[str, Simulation],
+    *,
+    history: bool = False,
+    progress: Callable[[int, int], object] | None = None,
+) -> Comparison:
+    """Run each simulation on ``scene``, and at the measured points where a file has them.
+
+    Parameters
+    ----------
+    scene : Scene or SceneFile
+        One impact or a one-dimensional batch.
+    simulations : mapping of str to Simulation
+        By the names under which they are to appear.
+    history : bool
+        Keep the course of a single impact; a sweep has none.
+    progress : callable, optional
+        Called as ``progress(done, total)`` after each run.
+
+    Returns
+    -------
+    Comparison
+        Failed impacts are NaN in its numbers; ``failures()`` says why.
+    """
+    file = scene if isinstance(scene, SceneFile) else None
+    single = file.scene if file else scene
+    assert isinstance(single, Scene)
+    series = file.measured if file else ()
+    total, done = len(simulations) * (1 + len(series)), 0
+    runs: list[LawRun] = []
+    predicted: list[dict[str, Array]] = [{} for _ in series]
+    for name, simulation in simulations.items():
+        jobs: list[Measured | None] = [None, *series]
+        for number, job in enumerate(jobs):
+            if job is None:
+                runs.append(_timed(name, simulation, single, history=history and not single.shape))
+            else:
+                assert file is not None
+                result = _run(simulation, file.scene_at(**{job.against: job.x}))
+                predicted[number - 1][name] = quantity_named(job.quantity).of(result)
+            done += 1
+            if progress is not None:
+                progress(done, total)
+    agreements = tuple(
+        Agreement(measured=measured, predicted=values)
+        for measured, values in zip(series, predicted, strict=True)
+    )
+    return Comparison(
+        scene=single,
+        varied=file.varied if file else {},
+        runs=tuple(runs),
+        agreements=agreements,
+    )
+
+
+def _run(simulation: Simulation, scene: Scene) -> ImpactResult:
+    return simulation.sweep(scene) if scene.shape else simulation.run(scene)
+
+
+def _timed(name: str, simulation: Simulation, scene: Scene, *, history: bool) -> LawRun:
+    result = _run(simulation, scene)  # the first run also imports, compiles and fills caches
+    times = [result.run_time]
+    if result.run_time < LONG_RUN:
+        times = [_run(simulation, scene).run_time for _ in range(REPEATS)]
+    if history:  # after the timing: keeping the course costs time too
+        result = simulation.run(scene, history=True)
+    impacts = scene.shape[0] if scene.shape else 1
+    return LawRun(name=name, result=result, run_time_per_impact=min(times) / impacts)

@@ -1,0 +1,144 @@
+"""The numbers behind Figs 1-4 of the paper."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.closed_forms import rigid_body_rebound
+from contactlab.history import History
+from contactlab.scene import Scene
+from contactlab.simulation import Simulation
+
+Array = NDArray[np.float64]
+
+#: chi of a solid homogeneous sphere of Poisson's ratio 0.3, eq. (38): the paper's 1.4412.
+SOLID_CHI = 0.7 / 1.7 * 3.5
+#: The paper does not list the angles of its Fig. 1; these span sticking to nearly full slip.
+FIGURE_1_PSI1 = (0.4, 0.8, 1.2, 2.0, 3.0, 4.0)
+#: Radii of gyration over radius in Fig. 3: all mass at the surface, solid, and denser cores.
+FIGURE_3_GYRATION = (1.0, 0.4**0.5, 0.4, 0.25)
+#: psi1 of Figs 3 and 4.
+FIXED_PSI1 = 1.2
+#: Ranges of Figs 2 and 4, wide enough for the change of regime and every sign of psi2.
+FIGURE_2_PSI1 = np.linspace(0.0, 7.0, 141)
+FIGURE_4_CHI = np.geomspace(0.25, 16.0, 161)
+
+
+class Curve(NamedTuple):
+    """A named curve: ``parameter`` is what tells it from the others, NaN if nothing does."""
+
+    name: str
+    parameter: float
+    x: Array
+    y: Array
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class FigureData:
+    """What one figure shows.
+
+    Attributes
+    ----------
+    number : int
+        Of the paper's figure.
+    x, y, parameter : str
+        Headings of the quantities, for tables.
+    curves : tuple of Curve
+    """
+
+    number: int
+    x: str
+    y: str
+    parameter: str
+    curves: tuple[Curve, ...]
+
+    def rows(self) -> list[tuple[str, float, float, float]]:
+        """Return (curve, parameter, x, y) for every point."""
+        return [
+            (curve.name, curve.parameter, x, y)
+            for curve in self.curves
+            for x, y in zip(curve.x.tolist(), curve.y.tolist(), strict=True)
+        ]
+
+
+def figure_1(simulation: Simulation) -> FigureData:
+    """Return the forces over the contact for several psi1, chi = 1.4412."""
+    scenes = {psi1: Scene.nondimensional(psi1=psi1, chi=SOLID_CHI) for psi1 in FIGURE_1_PSI1}
+    return _forces(1, simulation, scenes, "psi1")
+
+
+def figure_2(simulation: Simulation) -> FigureData:
+    """Return psi2(psi1) for chi = 1.4412, elastic and rigid-body."""
+    psi1 = FIGURE_2_PSI1
+    result = simulation.sweep(Scene.nondimensional(psi1=psi1, chi=SOLID_CHI)).check()
+    rigid = np.asarray(rigid_body_rebound(psi1, SOLID_CHI))
+    return _reflexion(2, "psi1", psi1, np.asarray(result.psi2), rigid)
+
+
+def figure_3(simulation: Simulation) -> FigureData:
+    """Return the forces over the contact at psi1 = 1.2 for several radii of gyration."""
+    scenes = {
+        ratio: Scene.nondimensional(psi1=FIXED_PSI1, chi=chi_of_gyration(ratio))
+        for ratio in FIGURE_3_GYRATION
+    }
+    return _forces(3, simulation, scenes, "gyration_ratio")
+
+
+def figure_4(simulation: Simulation) -> FigureData:
+    """Return psi2(chi) at psi1 = 1.2, elastic and rigid-body."""
+    chi = FIGURE_4_CHI
+    result = simulation.sweep(Scene.nondimensional(psi1=FIXED_PSI1, chi=chi)).check()
+    rigid = np.asarray(rigid_body_rebound(FIXED_PSI1, chi))
+    return _reflexion(4, "chi", chi, np.asarray(result.psi2), rigid)
+
+
+FIGURES: Mapping[int, Callable[[Simulation], FigureData]] = {
+    1: figure_1, 2: figure_2, 3: figure_3, 4: figure_4,
+}  # fmt: skip
+
+
+def chi_of_gyration(gyration_ratio: float) -> float:
+    """Return chi (38) for Poisson's ratio 0.3."""
+    return 0.7 / 1.7 * (1.0 + gyration_ratio**-2)
+
+
+def peak_force(scene: Scene) -> float:
+    """Return P_max of a Hertz impact, eq. (4) at the largest approach, in N."""
+    pair = scene.pair
+    return float(4.0 / 3.0 * pair.effective_modulus * pair.radius**2 * scene.size_ratio**3)
+
+
+def scaled_forces(scene: Scene, history: History) -> tuple[Array, Array, Array]:
+    """Return (t/duration, F/(mu P_max), P/P_max), from first touch to separation."""
+    peak = peak_force(scene)
+    time = np.concatenate([[0.0], history.time / scene.duration])
+    tangential = history.tangential_force / (scene.friction_coefficient * peak)
+    normal = history.normal_force / peak
+    return time, np.concatenate([[0.0], tangential]), np.concatenate([[0.0], normal])
+
+
+def _forces(
+    number: int, simulation: Simulation, scenes: Mapping[float, Scene], parameter: str
+) -> FigureData:
+    curves: list[Curve] = []
+    for value, scene in scenes.items():
+        result = simulation.run(scene, history=True).check()
+        assert result.history is not None
+        time, tangential, normal = scaled_forces(scene, result.history)
+        if not curves:  # the normal force is the same for all
+            curves.append(Curve("P/P_max", np.nan, time, normal))
+        curves.append(Curve("F/(mu P_max)", value, time, tangential))
+    return FigureData(
+        number=number, x="t/duration", y="force", parameter=parameter, curves=tuple(curves)
+    )
+
+
+def _reflexion(number: int, x: str, values: Array, *answers: Array) -> FigureData:
+    names: Sequence[str] = ("elastic", "rigid body")
+    curves = [Curve(name, np.nan, values, y) for name, y in zip(names, answers, strict=True)]
+    return FigureData(number=number, x=x, y="psi2", parameter="", curves=tuple(curves))

@@ -1,0 +1,104 @@
+"""Arguments that several subcommands share, and what they mean."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from contactlab.registry import KINDS
+
+
+def finite(text: str) -> float:
+    """Return a finite number, or refuse the text."""
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a finite number")
+    return value
+
+
+def names(text: str) -> list[str]:
+    """Return the names in a list separated by commas."""
+    found = [name.strip() for name in text.split(",") if name.strip()]
+    if not found:
+        raise argparse.ArgumentTypeError("needs at least one name")
+    if len(set(found)) < len(found):
+        raise argparse.ArgumentTypeError(f"{text!r} names a law twice")
+    return found
+
+
+def setting(text: str) -> tuple[str, Any]:
+    """Return (path, value) of ``tangential.annuli=50``; the value is written as in TOML."""
+    path, equals, value = text.partition("=")
+    if not equals or not path.strip() or not value.strip():
+        raise argparse.ArgumentTypeError(f"{text!r}: write it as tangential.annuli=50")
+    try:
+        return path.strip(), tomllib.loads(f"value = {value.strip()}")["value"]
+    except tomllib.TOMLDecodeError:
+        return path.strip(), value.strip()  # a word needs no quotes on the command line
+
+
+def file_of(*suffixes: str) -> Callable[[str], Path]:
+    """Return a converter to a path that can be written and has one of the suffixes."""
+
+    def convert(text: str) -> Path:
+        path = Path(text)
+        if path.suffix.lower() not in suffixes:
+            raise argparse.ArgumentTypeError(f"{text!r}: must end in {' or '.join(suffixes)}")
+        if not path.parent.is_dir():
+            raise argparse.ArgumentTypeError(f"{text!r}: there is no folder {str(path.parent)!r}")
+        return path
+
+    return convert
+
+
+def add_laws(parser: argparse.ArgumentParser, *, many: bool = False) -> None:
+    """Add ``--normal``, ``--tangential``, ``--integrator`` and ``--set``."""
+    for kind in KINDS:
+        word = "integrator" if kind == "integrator" else f"{kind} law"
+        parser.add_argument(
+            f"--{kind}",
+            type=names if many else str,
+            metavar="A,B,..." if many else "NAME",
+            help=f"name of the {word}" + (", or several" if many else ""),
+        )
+    parser.add_argument(
+        "--set",
+        type=setting,
+        action="append",
+        default=[],
+        dest="settings",
+        metavar="KIND.OPTION=VALUE",
+        help="option of a law: tangential.annuli=50, integrator.steps=500; may be repeated",
+    )
+
+
+def add_progress(parser: argparse.ArgumentParser) -> None:
+    """Add ``--progress``."""
+    parser.add_argument(
+        "--progress",
+        action=argparse.BooleanOptionalAction,
+        default=None,
+        help="show progress on stderr (default: only on a terminal)",
+    )
+
+
+def progress(asked: bool | None, what: str) -> Callable[[int, int], object] | None:
+    """Return a function that shows progress on stderr, or None."""
+    if asked is None:
+        asked = sys.stderr.isatty()
+    if not asked:
+        return None
+
+    def show(done: int, total: int) -> None:
+        end = "\n" if done == total or not sys.stderr.isatty() else "\r"
+        print(f"{what}: {done}/{total}", end=end, file=sys.stderr, flush=True)
+
+    return show

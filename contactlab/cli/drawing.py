@@ -1,0 +1,32 @@
+"""What the command line draws; importing this loads matplotlib."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from contactlab.analysis.compare import Comparison
+from contactlab.figures.comparison import differences, forces_over_contact, laws_over_sweep
+from contactlab.figures.files import save
+
+
+def draw_comparison(path: Path, comparison: Comparison, quantities: Sequence[str]) -> None:
+    """Draw the laws over the sweep, or over one contact, and their differences."""
+    if not comparison.scene.shape:
+        save(path, lambda axes: forces_over_contact(axes, comparison))
+        return
+    panels: list[tuple[str, Any]] = []
+    for name in quantities:
+        found = [item for item in comparison.agreements if item.measured.quantity == name]
+        panels += [(name, item) for item in found] or [(name, None)]
+
+    def draw(axes: Any) -> None:
+        for column, (name, agreement) in enumerate(panels):
+            upper, lower = axes[0, column], axes[1, column]
+            laws_over_sweep(upper, comparison, name, agreement)
+            differences(lower, comparison, name, agreement)
+            upper.set_xlabel("")
+            upper.label_outer()
+
+    save(path, draw, rows=2, columns=len(panels), heights=(2.4, 1.0))

@@ -1,0 +1,73 @@
+"""Draw the paper's Figs 1-4 as PNG, with their numbers as CSV.
+
+Examples
+--------
+  contactlab figures --out figures
+  contactlab figures --out figures --only 2,4 --set tangential.annuli=100
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+from pathlib import Path
+
+from contactlab.analysis.paper_figures import FIGURES, FigureData
+from contactlab.cli import arguments as shared
+from contactlab.scene_file import LawChoice
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the folder, the figures and the laws."""
+    parser.add_argument(
+        "--out", required=True, type=Path, metavar="DIR", help="folder for the files; made if new"
+    )
+    parser.add_argument(
+        "--only",
+        type=_numbers,
+        default=list(FIGURES),
+        metavar="1,2,...",
+        help="some of the figures",
+    )
+    shared.add_laws(parser)
+    shared.add_progress(parser)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Write the figures and print their paths."""
+    choice = LawChoice().choose(
+        normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
+    )
+    simulation = choice.set(dict(arguments.settings)).simulation()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    from contactlab.figures.files import save  # matplotlib only when drawing
+    from contactlab.figures.paper import FIGURES as DRAWINGS
+
+    progress = shared.progress(arguments.progress, "figures")
+    for done, number in enumerate(arguments.only, start=1):
+        data = FIGURES[number](simulation)
+        numbers, picture = (arguments.out / f"figure-{number}{end}" for end in (".csv", ".png"))
+        _write_csv(numbers, data)
+        draw = DRAWINGS[number]
+        save(picture, lambda axes, draw=draw, data=data: draw(axes, data))  # type: ignore[misc]
+        print(picture, numbers, sep="\n")
+        if progress is not None:
+            progress(done, len(arguments.only))
+    return 0
+
+
+def _write_csv(path: Path, data: FigureData) -> None:
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["curve", data.parameter or "parameter", data.x, data.y])
+        for name, parameter, x, y in data.rows():
+            writer.writerow([name, "" if parameter != parameter else parameter, x, y])
+
+
+def _numbers(text: str) -> list[int]:
+    found = [word.strip() for word in text.split(",")]
+    unknown = [word for word in found if word not in map(str, FIGURES)]
+    if unknown:
+        known = ", ".join(map(str, FIGURES))
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r}: the paper's figures are {known}")
+    return [int(word) for word in dict.fromkeys(found)]

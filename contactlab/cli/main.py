@@ -1,0 +1,115 @@
+"""The command ``contactlab``: finds the subcommand, and turns errors into one line each."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import NoReturn
+
+import contactlab
+
+#: A new subcommand is a module of this package and its name here.
+COMMANDS = ("run", "compare", "figures", "plugins")
+
+OK, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
+
+EPILOG = """examples:
+  contactlab run --psi1 1.2 --chi 1.4412
+  contactlab run examples/steel_ball.toml
+  contactlab compare examples/kharaz2001.toml --figure kharaz.png
+  contactlab figures --out figures
+  contactlab plugins list
+
+exit status: 0 success, 1 a run failed, 2 bad input, 130 interrupted
+"""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that refuses in one line, and says where help is."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print the message and exit."""
+        self.exit(BAD_INPUT, f"{self.prog}: error: {message} (see {self.prog} --help)\n")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit status."""
+    words = sys.argv[1:] if arguments is None else list(arguments)
+    try:
+        parsed = _parser().parse_args(_join_negative_numbers(words))
+    except SystemExit as stop:  # argparse has printed help, version or the error
+        return stop.code if isinstance(stop.code, int) else BAD_INPUT
+    try:
+        status: int = parsed.execute(parsed)
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        print("contactlab: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:
+        # The reader has gone, as with "| head"; the flush at exit must not fail in its turn.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return BROKEN_PIPE
+    except (ValueError, contactlab.PluginError, contactlab.ImpactError, OSError) as error:
+        if parsed.traceback:
+            traceback.print_exc()
+        print(f"contactlab {parsed.command}: error: {_one_line(error)}", file=sys.stderr)
+        return BAD_INPUT if isinstance(error, ValueError) else FAILED
+    return status
+
+
+def _parser() -> argparse.ArgumentParser:
+    raw = argparse.RawDescriptionHelpFormatter
+    parser = Parser(
+        prog="contactlab",
+        description="Oblique impact of elastic bodies, with contact laws as plug-ins.",
+        epilog=EPILOG,
+        formatter_class=raw,
+    )
+    parser.add_argument("--version", action="version", version=contactlab.__version__)
+    parser.add_argument(
+        "--traceback", action="store_true", help="show where an error came from (before COMMAND)"
+    )
+    commands = parser.add_subparsers(
+        dest="command", metavar="COMMAND", required=True, parser_class=Parser
+    )
+    for name in COMMANDS:
+        module = importlib.import_module(f"contactlab.cli.{name}")
+        summary, _, examples = str(module.__doc__).partition("\n\n")
+        examples = examples.replace("Examples\n--------", "examples:")
+        command = commands.add_parser(
+            name, help=summary, description=summary, epilog=examples, formatter_class=raw
+        )
+        module.add_arguments(command)
+        command.set_defaults(execute=module.execute)
+    return parser
+
+
+def _join_negative_numbers(words: list[str]) -> list[str]:
+    """Join ``--psi1 -1e-3`` with "=": argparse would take such a number for an option."""
+    joined: list[str] = []
+    for word in words:
+        if joined and joined[-1].startswith("--") and "=" not in joined[-1] and _is_negative(word):
+            joined[-1] += f"={word}"
+        else:
+            joined.append(word)
+    return joined
+
+
+def _is_negative(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return word.startswith("-")
+
+
+def _one_line(error: BaseException) -> str:
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+if __name__ == "__main__":
+    sys.exit(main())

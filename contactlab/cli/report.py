@@ -1,0 +1,120 @@
+"""A result in words and tables, for reading."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from contactlab.cli.table import number, table, time
+from contactlab.quantities import QUANTITIES
+from contactlab.result import ImpactResult
+from contactlab.scene_file.build import entry_unit
+
+#: Columns of the table of a sweep; those that are undefined for every impact are left out.
+SWEEP_COLUMNS = (
+    "psi1", "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg",
+    "rebound_spin", "friction_work",
+)  # fmt: skip
+
+Row = list[Any]
+
+
+def describe(result: ImpactResult, *, title: str = "", varied: Mapping[str, Any]) -> str:
+    """Return the whole report of one impact, or of a sweep."""
+    if result.scene.shape:
+        body = _sweep(result, varied)
+    else:
+        body = [
+            _table(result, ["", "before", "after", "unit"], _velocities(result)),
+            _table(result, ["contact", "value", "unit"], _contact(result)),
+            _table(result, ["energy", "value", "unit"], _energy(result)),
+        ]
+    return "\n\n".join([title] * bool(title) + [*body, str(result.plan), _closing(result)])
+
+
+def _table(result: ImpactResult, headings: list[str], rows: list[Row]) -> str:
+    """Return a table without the rows that are undefined; the paper's scenes have no units."""
+    shown = []
+    for *cells, unit in rows:
+        if None not in cells:
+            unit = "1" if result.scene.sphere is None else unit
+            shown.append([c if isinstance(c, str) else float(c) for c in cells] + [unit])
+    return table(headings, shown)
+
+
+def _velocities(result: ImpactResult) -> list[Row]:
+    scene, bodies = result.scene, result.scene.sphere is not None
+    after = QUANTITIES["rebound_angle_deg"].read(result)
+    rows: list[Row] = [
+        ["local angle psi", scene.psi1, result.psi2, "1"],
+        ["local tangential velocity", scene.slip_velocity, result.rebound_slip_velocity, "m/s"],
+        ["normal velocity", scene.normal_speed, result.rebound_normal_velocity, "m/s"],
+        [
+            "tangential velocity",
+            scene.tangential_velocity,
+            result.rebound_tangential_velocity,
+            "m/s",
+        ],
+        ["spin", scene.spin, result.rebound_spin, "rad/s"],
+        ["angle of the path", np.degrees(result.incidence_angle), after, "deg"],
+    ]
+    return rows if bodies else rows[:3]
+
+
+def _contact(result: ImpactResult) -> list[Row]:
+    scene = result.scene
+    rows: list[Row] = [
+        ["chi", scene.chi, "1"],
+        ["normal restitution e", result.normal_restitution, "1"],
+        ["tangential restitution e_t", result.tangential_restitution, "1"],
+        ["contact time", result.motion.duration, "s"],
+        ["largest contact radius (8)", scene.maximum_radius, "m"],
+        ["size ratio C (9)", scene.size_ratio, "1"],
+    ]
+    return rows if scene.sphere is not None else rows[:4]
+
+
+def _energy(result: ImpactResult) -> list[Row]:
+    energy = result.energy
+    return [
+        ["start", energy.start, "J"],
+        ["end", energy.end, "J"],
+        ["friction work, added up", energy.friction_work, "J"],
+        ["imbalance", energy.imbalance, "J"],
+        ["imbalance / start", energy.relative_imbalance, "1"],
+    ]
+
+
+def _sweep(result: ImpactResult, varied: Mapping[str, Any]) -> list[str]:
+    columns = {_heading(name, entry_unit(name)): values for name, values in varied.items()}
+    for name in SWEEP_COLUMNS:
+        values = QUANTITIES[name].of(result)
+        if name not in varied and not np.isnan(values).all():
+            unit = "1" if result.scene.sphere is None else QUANTITIES[name].unit
+            columns[_heading(name, unit)] = values
+    statuses = np.array(result.status, dtype=object)
+    rows = [
+        [*(float(values[index]) for values in columns.values()), statuses[index].name]
+        for index in range(len(result))
+    ]
+    imbalance = float(np.max(np.abs(result.energy.relative_imbalance)))
+    note = f"largest energy imbalance / start: {number(imbalance, digits=3)}"
+    return [table([*columns, "status"], rows), note]
+
+
+def _heading(name: str, unit: str) -> str:
+    return name if unit == "1" else f"{name} ({unit})"
+
+
+def _closing(result: ImpactResult) -> str:
+    laws = [f"{name} [{kind}]" for kind, name in result.laws.items()]
+    counters = ", ".join(f"{count} {key}" for key, count in result.counters.items()) or "none"
+    impacts = f" for {len(result)} impacts" if result.scene.shape else ""
+    statuses = list(dict.fromkeys(np.ravel(np.array(result.status, dtype=object)).tolist()))
+    lines = [f"laws:     {', '.join(laws)}", f"counters: {counters}"]
+    lines += [f"run time: {time(result.run_time)}{impacts}"]
+    lines += [f"status:   {status.value}" for status in statuses]
+    lines += [f"detail:   {result.motion.detail}"] * bool(result.motion.detail)
+    return "\n".join(lines)

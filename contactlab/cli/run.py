@@ -1,0 +1,108 @@
+"""Run one impact or a sweep and print velocities, energy books, plan, status and cost.
+
+Examples
+--------
+  contactlab run --psi1 1.2 --chi 1.4412
+  contactlab run examples/steel_ball.toml --tangential coulomb
+  contactlab run examples/steel_ball.toml --set tangential.annuli=100 --history force.csv
+  contactlab run examples/sweep.toml --out sweep.csv
+  contactlab run --psi1 1.2 --chi 1.4412 --json
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from contactlab import export
+from contactlab.cli import arguments as shared
+from contactlab.cli.report import describe
+from contactlab.result import ImpactResult, plain
+from contactlab.scene import Scene
+from contactlab.scene_file import LawChoice, SceneFile, read_scene
+
+WRITERS = {".json": export.write_json, ".csv": export.write_csv, ".npz": export.write_npz}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the scene, the laws and the outputs."""
+    parser.add_argument("scene", nargs="?", metavar="SCENE.toml", help="a scene or a sweep")
+    parser.add_argument(
+        "--psi1", type=shared.finite, help="non-dimensional angle of incidence (29), without a file"
+    )
+    parser.add_argument(
+        "--chi", type=shared.finite, help="inertia ratio (38): 1.4412 for a solid sphere, nu = 0.3"
+    )
+    shared.add_laws(parser)
+    parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
+    parser.add_argument(
+        "--out",
+        type=shared.file_of(*WRITERS),
+        metavar="FILE",
+        help="also write .json, .csv or .npz",
+    )
+    parser.add_argument(
+        "--history",
+        type=shared.file_of(".csv"),
+        metavar="FILE.csv",
+        help="also write the course of a single impact",
+    )
+    shared.add_progress(parser)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Run and report; 1 if an impact was not followed to its end."""
+    file = read_scene(arguments.scene) if arguments.scene else None
+    scene = _scene(arguments, file)
+    if arguments.history and scene.shape:
+        raise ValueError("--history: needs a single impact, this scene is a sweep; leave it out")
+    choice = file.laws if file else LawChoice()
+    choice = choice.choose(
+        normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
+    )
+    simulation = choice.set(dict(arguments.settings)).simulation()
+    if scene.shape:
+        progress = shared.progress(arguments.progress, "impacts")
+        result = simulation.sweep(scene, progress=progress)
+    else:
+        result = simulation.run(scene, history=bool(arguments.history))
+    if arguments.out:
+        WRITERS[arguments.out.suffix.lower()](result, arguments.out)
+    if arguments.history:
+        export.write_history_csv(result, arguments.history)
+    varied: Mapping[str, Any] = file.varied if file else {}
+    if arguments.json:
+        content = export.to_dict(result) | {"varied": {k: plain(v) for k, v in varied.items()}}
+        print(json.dumps(content, indent=2, allow_nan=False))
+    else:
+        print(describe(result, title=file.title if file else "", varied=varied))
+    return _exit_status(result)
+
+
+def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Scene:
+    numbers = (arguments.psi1, arguments.chi)
+    if file is not None:
+        if numbers != (None, None):
+            raise ValueError("--psi1, --chi: stand in place of a scene file; leave out one of them")
+        return file.scene
+    if None in numbers:
+        missing = "a scene file, or --psi1 and --chi" if numbers == (None, None) else "both"
+        missing = missing if missing != "both" else "--chi" if numbers[1] is None else "--psi1"
+        raise ValueError(f"{missing}: must be given (chi is 1.4412 for a solid sphere, nu = 0.3)")
+    return Scene.nondimensional(psi1=numbers[0], chi=numbers[1])
+
+
+def _exit_status(result: ImpactResult) -> int:
+    statuses = np.ravel(np.array(result.status, dtype=object))
+    failed = [number for number, status in enumerate(statuses) if not status]
+    if not failed:
+        return 0
+    which = f"{len(failed)} of {statuses.size} impacts: " if result.scene.shape else ""
+    sentence = f"{statuses[failed[0]].value} {result.motion.detail}".strip()
+    print(f"contactlab run: failed: {which}{sentence}", file=sys.stderr)
+    return 1

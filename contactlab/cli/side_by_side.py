@@ -1,0 +1,198 @@
+"""A comparison as tables, JSON and CSV."""
+
+from __future__ import annotations
+
+import csv
+import textwrap
+from collections.abc import Iterator, Sequence
+from typing import Any, TextIO
+
+import numpy as np
+
+from contactlab.analysis.compare import Agreement, Comparison
+from contactlab.cli.table import number, table, time
+from contactlab.quantities import QUANTITIES
+from contactlab.result import plain
+from contactlab.scene_file import SceneFile
+from contactlab.scene_file.build import entry_unit
+
+#: Compared on a single impact; those that are undefined for its scene are left out.
+SINGLE = (
+    "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg", "rebound_spin",
+    "contact_time", "friction_work", "energy_imbalance",
+)  # fmt: skip
+
+CSV_HEADINGS = (
+    "table", "quantity", "unit", "against", "x", "law", "value", "reference", "difference",
+)  # fmt: skip
+
+
+def default_quantities(comparison: Comparison) -> list[str]:
+    """Return what was measured; failing that psi2, or for one impact whatever is defined."""
+    measured = [agreement.measured.quantity for agreement in comparison.agreements]
+    if measured:
+        return list(dict.fromkeys(measured))
+    if comparison.scene.shape:
+        return ["psi2"]
+    first = comparison.names[0]
+    return [name for name in SINGLE if not np.isnan(comparison.values(name, first)).all()]
+
+
+def describe(comparison: Comparison, quantities: Sequence[str], file: SceneFile) -> str:
+    """Return title, tables, agreement with measured values, and cost."""
+    parts = [part for part in (file.title, _wrapped(file.citation)) if part]
+    of: dict[str, list[Agreement]] = {name: [] for name in quantities}
+    for agreement in comparison.agreements:
+        of.setdefault(agreement.measured.quantity, []).append(agreement)
+    if comparison.scene.shape:
+        for name, agreements in of.items():
+            parts += [_points(agreement) for agreement in agreements]
+            if not agreements:
+                parts.append(_over_sweep(comparison, name))
+    else:
+        parts += [_one_impact(comparison, quantities), *map(_points, comparison.agreements)]
+    if comparison.agreements:
+        parts.append(_agreement(comparison))
+    parts.append(_cost(comparison))
+    return "\n\n".join(parts)
+
+
+def _one_impact(comparison: Comparison, quantities: Sequence[str]) -> str:
+    first, *others = comparison.names
+    headings = ["", *comparison.names, *(f"{name} - {first}" for name in others), "unit"]
+    rows = []
+    for name in quantities:
+        values = [float(comparison.values(name, law)) for law in comparison.names]
+        apart = [float(comparison.difference(name, law)) for law in others]
+        rows.append([name, *values, *apart, QUANTITIES[name].unit])
+    return table(headings, rows)
+
+
+def _over_sweep(comparison: Comparison, quantity: str) -> str:
+    first, *others = comparison.names
+    headings = [*map(_with_unit, comparison.varied)]
+    headings += [*comparison.names, *(f"{name} - {first}" for name in others)]
+    columns = [np.asarray(values) for values in comparison.varied.values()]
+    columns += [comparison.values(quantity, law) for law in comparison.names]
+    columns += [comparison.difference(quantity, law) for law in others]
+    unit = QUANTITIES[quantity].unit
+    heading = f"{quantity} ({unit})" if unit != "1" else quantity
+    return f"{heading}:\n{table(headings, np.transpose(columns).tolist())}"
+
+
+def _points(agreement: Agreement) -> str:
+    measured = agreement.measured
+    names = list(agreement.predicted)
+    headings = [_with_unit(measured.against), "measured", "reading error"]
+    headings += [*names, *(f"{name} - measured" for name in names)]
+    columns = [measured.x, measured.values, measured.error, *agreement.predicted.values()]
+    columns += [agreement.difference(name) for name in names]
+    rows = np.transpose(columns).tolist()
+    unit = QUANTITIES[measured.quantity].unit
+    heading = f"{measured.quantity} ({unit})" if unit != "1" else measured.quantity
+    return f"{heading}, measured: {measured.source}\n{table(headings, rows, digits=4)}"
+
+
+def _agreement(comparison: Comparison) -> str:
+    rows = []
+    for agreement in comparison.agreements:
+        measured = agreement.measured
+        unit = QUANTITIES[measured.quantity].unit
+        for law in agreement.predicted:
+            place = number(agreement.where_largest(law), digits=3)
+            worst = f"at {measured.against} {place}"
+            row = [measured.quantity, law, agreement.rms(law), agreement.largest(law), unit, worst]
+            rows.append(row)
+    headings = ["law - measured", "law", "rms", "largest", "unit", "where largest"]
+    return table(headings, rows, digits=3)
+
+
+def _cost(comparison: Comparison) -> str:
+    first = comparison.runs[0].run_time_per_impact
+    rows = []
+    for run in comparison.runs:
+        statuses = np.ravel(np.array(run.result.status, dtype=object))
+        followed = f"{sum(bool(status) for status in statuses)} of {statuses.size}"
+        ratio = number(run.run_time_per_impact / first, digits=2)
+        rows.append([run.name, time(run.run_time_per_impact), ratio, followed])
+    return table(["cost", "run time an impact", "relative", "impacts followed"], rows)
+
+
+def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]:
+    """Return the comparison as plain numbers, lists and text."""
+    return {
+        "laws": {
+            run.name: {
+                "versions": dict(run.result.laws),
+                "run_time_per_impact_s": run.run_time_per_impact,
+                "status": plain(np.array(run.result.status, dtype=object))
+                if comparison.scene.shape
+                else plain(run.result.status),
+                "values": {name: _list(comparison.values(name, run.name)) for name in quantities},
+                "differences": {
+                    name: _list(comparison.difference(name, run.name)) for name in quantities
+                },
+            }
+            for run in comparison.runs
+        },
+        "varied": {name: _list(values) for name, values in comparison.varied.items()},
+        "measured": [
+            {
+                "quantity": agreement.measured.quantity,
+                "unit": QUANTITIES[agreement.measured.quantity].unit,
+                "against": agreement.measured.against,
+                "source": agreement.measured.source,
+                "x": _list(agreement.measured.x),
+                "values": _list(agreement.measured.values),
+                "error": _list(agreement.measured.error),
+                "laws": {
+                    law: {
+                        "values": _list(values),
+                        "rms": plain(agreement.rms(law)),
+                        "largest": plain(agreement.largest(law)),
+                    }
+                    for law, values in agreement.predicted.items()
+                },
+            }
+            for agreement in comparison.agreements
+        ],
+    }
+
+
+def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO) -> None:
+    """Write one row a value; the reference is the first law, or the measured value."""
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(CSV_HEADINGS)
+    for name in quantities:
+        unit = QUANTITIES[name].unit
+        against, x = next(iter(comparison.varied.items()), ("", np.nan))
+        for law in comparison.names:
+            values, apart = comparison.values(name, law), comparison.difference(name, law)
+            for row in _rows(x, values, values - apart, apart):
+                writer.writerow(["scene", name, unit, against, row[0], law, *row[1:]])
+    for agreement in comparison.agreements:
+        measured = agreement.measured
+        unit = QUANTITIES[measured.quantity].unit
+        for law, values in agreement.predicted.items():
+            columns = (measured.x, values, measured.values, agreement.difference(law))
+            for row in _rows(*columns):
+                start = ["measured", measured.quantity, unit, measured.against]
+                writer.writerow([*start, row[0], law, *row[1:]])
+
+
+def _rows(*columns: Any) -> Iterator[list[Any]]:
+    for row in np.broadcast(*columns):
+        yield ["" if np.isnan(item) else float(item) for item in row]
+
+
+def _list(values: Any) -> Any:
+    return plain(np.asarray(values)) if np.ndim(values) else plain(float(values))
+
+
+def _with_unit(entry: str) -> str:
+    unit = entry_unit(entry)
+    return entry if unit in ("1", "deg") else f"{entry} ({unit})"
+
+
+def _wrapped(text: str) -> str:
+    return textwrap.fill(" ".join(text.split()), width=96)

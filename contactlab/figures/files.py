@@ -1,0 +1,36 @@
+"""Figures as files, drawn without a window."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from contactlab.figures.style import HEIGHT, RESOLUTION, WIDTH, styled
+
+
+def save(
+    path: Path,
+    draw: Callable[[Any], object],
+    *,
+    rows: int = 1,
+    columns: int = 1,
+    heights: tuple[float, ...] = (1.0,),
+) -> None:
+    """Draw on one Axes, or on an array of them, and write a PNG.
+
+    The canvas is made here, without pyplot: no backend is chosen for the process, nothing
+    stays open, and a display is not needed.
+    """
+    with styled():
+        scale = sum(heights) / max(heights)
+        figure = Figure(figsize=(WIDTH * (0.85 * columns if columns > 1 else 1.0), HEIGHT * scale))
+        FigureCanvasAgg(figure)
+        axes = figure.subplots(
+            rows, columns, sharex="col", gridspec_kw={"height_ratios": heights}, squeeze=False
+        )
+        draw(axes[0, 0] if rows == columns == 1 else axes)
+        figure.savefig(path, dpi=RESOLUTION)

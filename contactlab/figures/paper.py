@@ -1,0 +1,107 @@
+"""The paper's Figs 1-4, drawn from their numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from contactlab.analysis.paper_figures import FIXED_PSI1, SOLID_CHI, FigureData, chi_of_gyration
+from contactlab.figures.style import (
+    LAW_COLOURS,
+    QUIET,
+    label,
+    law_style,
+    ordered_colours,
+    zero_line,
+)
+
+SOLID_CHI_RANGE = (3.5 / 3.0, 3.5 / 2.0)  # nu = 0.5 and nu = 0 in eq. (38)
+
+
+def figure_1(axes: Axes, data: FigureData) -> Axes:
+    """Draw the forces over the contact at several angles of incidence."""
+    _forces(axes, data)
+    axes.legend(title=rf"$\psi_1$  ($\chi$ = {SOLID_CHI:.4f})", **_BESIDE)
+    return axes
+
+
+def figure_2(axes: Axes, data: FigureData) -> Axes:
+    """Draw psi2 against psi1 with the rigid-body theory, and name the regimes."""
+    _reflexion(axes, data)
+    axes.set_xlabel(label("psi1"))
+    axes.set_xlim(0.0, data.curves[0].x[-1])
+    full_slip = 4.0 * SOLID_CHI - 1.0
+    for place in (1.0, full_slip):
+        axes.axvline(place, color=QUIET, linewidth=0.8, linestyle=":", zorder=0)
+    top = axes.get_ylim()[1]
+    words = {0.5: "sticks\nat first", 0.5 * (1.0 + full_slip): "slips, sticks, slips"}
+    words[0.5 * (full_slip + data.curves[0].x[-1])] = "slips\nthroughout"
+    for place, text in words.items():
+        axes.text(place, top, text, ha="center", va="top", color="#555555", fontsize=9.5)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.17, 0.88))
+    return axes
+
+
+def figure_3(axes: Axes, data: FigureData) -> Axes:
+    """Draw the forces over the contact for several radii of gyration."""
+    _forces(axes, data, name=lambda ratio: f"{ratio:.3g}  ({chi_of_gyration(ratio):.2f})")
+    axes.legend(title=rf"$K$  ($\chi$),  $\psi_1$ = {FIXED_PSI1}", **_BESIDE)
+    return axes
+
+
+def figure_4(axes: Axes, data: FigureData) -> Axes:
+    """Draw psi2 against chi with the rigid-body theory, and the range of solid spheres."""
+    axes.set_xscale("log")
+    _reflexion(axes, data)
+    axes.set_xlabel(label("chi"))
+    axes.set_xlim(data.curves[0].x[0], data.curves[0].x[-1])
+    ticks = [0.25, 0.5, 1, 2, 4, 8, 16]
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.set_xticks([], minor=True)
+    axes.axvspan(*SOLID_CHI_RANGE, color="#E4E4E4", zorder=-1, linewidth=0.0)
+    axes.text(
+        np.sqrt(np.prod(SOLID_CHI_RANGE)),
+        axes.get_ylim()[1],
+        "solid spheres,\n" r"$0\leq\nu\leq0.5$",
+        ha="center",
+        va="top",
+        color="#555555",
+        fontsize=9.5,
+    )
+    axes.legend(title=rf"$\psi_1$ = {FIXED_PSI1}", loc="lower right")
+    return axes
+
+
+FIGURES: Mapping[int, Callable[[Axes, FigureData], Axes]] = {
+    1: figure_1, 2: figure_2, 3: figure_3, 4: figure_4,
+}  # fmt: skip
+
+_BESIDE: Mapping[str, Any] = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
+
+
+def _forces(
+    axes: Axes, data: FigureData, name: Callable[[float], str] = lambda value: f"{value:g}"
+) -> None:
+    normal, *tangential = data.curves
+    zero_line(axes)
+    for sign, text in ((1.0, r"$\pm P/P_{\max}$"), (-1.0, None)):
+        axes.plot(
+            normal.x, sign * normal.y, color="black", linestyle="--", linewidth=1.1, label=text
+        )
+    for curve, colour in zip(tangential, ordered_colours(len(tangential)), strict=True):
+        axes.plot(curve.x, curve.y, color=colour, label=name(curve.parameter))
+    axes.set_xlabel(r"time over duration of contact $t/t_{\mathrm{c}}$")
+    axes.set_ylabel(r"tangential force $F/(\mu P_{\max})$")
+    axes.set_xlim(0.0, 1.0)
+    axes.set_ylim(-1.05, 1.05)
+
+
+def _reflexion(axes: Axes, data: FigureData) -> None:
+    zero_line(axes)
+    elastic, rigid = data.curves
+    axes.plot(elastic.x, elastic.y, color=LAW_COLOURS[0], label="elastic (this model)")
+    axes.plot(rigid.x, rigid.y, **law_style(1), label="rigid-body theory")
+    axes.set_ylabel(label("psi2"))
