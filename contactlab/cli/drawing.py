@@ -27,6 +27,8 @@ def draw_comparison(path: Path, comparison: Comparison, quantities: Sequence[str
             laws_over_sweep(upper, comparison, name, agreement)
             differences(lower, comparison, name, agreement)
             upper.set_xlabel("")
-            upper.label_outer()
+            if column:
+                upper.get_legend().remove()  # the same laws in the same colours
+        axes[0, 0].figure.align_ylabels()
 
     save(path, draw, rows=2, columns=len(panels), heights=(2.4, 1.0))

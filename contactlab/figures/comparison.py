@@ -65,7 +65,8 @@ def differences(
         elif number:
             axes.plot(x, comparison.difference(quantity, name), **style)
     axes.set_xlabel(label(varied, entry_unit(varied)))
-    axes.set_ylabel("law $-$ measured" if agreement is not None else f"law $-$ {names[0]}")
+    other = "measured" if agreement is not None else names[0]
+    axes.set_ylabel(label(f"law $-$ {other}", QUANTITIES[quantity].unit))
     return axes
 
 

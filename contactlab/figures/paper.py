@@ -24,7 +24,8 @@ SOLID_CHI_RANGE = (3.5 / 3.0, 3.5 / 2.0)  # nu = 0.5 and nu = 0 in eq. (38)
 def figure_1(axes: Axes, data: FigureData) -> Axes:
     """Draw the forces over the contact at several angles of incidence."""
     _forces(axes, data)
-    axes.legend(title=rf"$\psi_1$  ($\chi$ = {SOLID_CHI:.4f})", **_BESIDE)
+    axes.legend(title=r"$\psi_1$", **_BESIDE)
+    axes.text(0.02, 0.03, rf"$\chi$ = {SOLID_CHI:.4f}", transform=axes.transAxes)
     return axes
 
 
@@ -48,7 +49,8 @@ def figure_2(axes: Axes, data: FigureData) -> Axes:
 def figure_3(axes: Axes, data: FigureData) -> Axes:
     """Draw the forces over the contact for several radii of gyration."""
     _forces(axes, data, name=lambda ratio: f"{ratio:.3g}  ({chi_of_gyration(ratio):.2f})")
-    axes.legend(title=rf"$K$  ($\chi$),  $\psi_1$ = {FIXED_PSI1}", **_BESIDE)
+    axes.legend(title=r"$K$  ($\chi$)", **_BESIDE)
+    axes.text(0.02, 0.03, rf"$\psi_1$ = {FIXED_PSI1}", transform=axes.transAxes)
     return axes
 
 
@@ -61,6 +63,7 @@ def figure_4(axes: Axes, data: FigureData) -> Axes:
     ticks = [0.25, 0.5, 1, 2, 4, 8, 16]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xticks([], minor=True)
+    axes.set_ylim(top=1.05)  # room for the legend above the oscillation
     axes.axvspan(*SOLID_CHI_RANGE, color="#E4E4E4", zorder=-1, linewidth=0.0)
     axes.text(
         np.sqrt(np.prod(SOLID_CHI_RANGE)),
@@ -71,7 +74,7 @@ def figure_4(axes: Axes, data: FigureData) -> Axes:
         color="#555555",
         fontsize=9.5,
     )
-    axes.legend(title=rf"$\psi_1$ = {FIXED_PSI1}", loc="lower right")
+    axes.legend(title=rf"$\psi_1$ = {FIXED_PSI1}", loc="upper right")
     return axes
 
 

@@ -10,15 +10,19 @@ from numpy.typing import NDArray
 
 from contactlab.figures.style import LAW_COLOURS
 
-#: Slip against the initial sense, stick, slip along it, and no contact.
-STATES = {-1: "slip, backward", 0: "stick", 1: "slip, forward", 2: "no contact"}
-COLOURS = (LAW_COLOURS[1], "#B9B9B9", LAW_COLOURS[0], "#FFFFFF")
+#: What an annulus may do, its colour and its number in the map.
+STATES = {"slip, backward": LAW_COLOURS[1], "stick": "#C4C4C4", "slip, forward": LAW_COLOURS[0]}
+NO_CONTACT = "#FFFFFF"
 
 
 def stick_slip_map(
-    axes: Axes, time: NDArray[np.float64], radius: NDArray[np.float64], state: NDArray[np.int64]
+    axes: Axes,
+    time: NDArray[np.float64],
+    radius: NDArray[np.float64],
+    stuck: NDArray[np.bool_],
+    slipping: NDArray[np.int8],
 ) -> Axes:
-    """Draw who sticks and who slips.
+    """Draw which annuli stick and which slip.
 
     Parameters
     ----------
@@ -27,19 +31,20 @@ def stick_slip_map(
         t over the duration of contact, increasing.
     radius : array, shape (n,)
         Middle of each annulus over the largest contact radius.
-    state : array of int, shape (K, n)
-        The keys of ``STATES``.
+    stuck : array of bool, shape (K, n)
+    slipping : array of int, shape (K, n)
+        Sign of the traction where an annulus slips, 0 elsewhere: positive where it opposes
+        slip in the sense of positive slip velocity.
     """
-    norm = BoundaryNorm(np.arange(-1.5, 3.0), len(COLOURS))
-    axes.pcolormesh(
-        time, radius, state.T, cmap=ListedColormap(COLOURS), norm=norm, shading="nearest",
-        rasterized=True,
-    )  # fmt: skip
+    state = np.where(stuck, 1, np.where(slipping == 0, 3, slipping + 1))
+    colours = ListedColormap([*STATES.values(), NO_CONTACT])
+    norm = BoundaryNorm(np.arange(-0.5, 4.0), 4)
+    axes.pcolormesh(time, radius, state.T, cmap=colours, norm=norm, shading="nearest")
     axes.set_xlabel(r"time over duration of contact $t/t_{\mathrm{c}}$")
     axes.set_ylabel(r"radius over largest contact radius $r/a$")
     axes.set_xlim(0.0, 1.0)
     axes.set_ylim(0.0, 1.0)
-    present = [key for key in STATES if np.any(state == key) and key != 2]
-    patches = [Patch(color=COLOURS[key + 1], label=STATES[key]) for key in present]
-    axes.legend(handles=patches, loc="upper left", bbox_to_anchor=(0.0, 1.0))
+    present = [name for number, name in enumerate(STATES) if np.any(state == number)]
+    patches = [Patch(color=STATES[name], label=name) for name in present]
+    axes.legend(handles=patches, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(patches))
     return axes

@@ -93,5 +93,6 @@ def friction_limit(axes: Axes, time: Any, normal_force: Any) -> None:
     """Draw P/P_max and its mirror image: inside them |F| <= mu P."""
     for sign, text in ((1.0, r"$\pm P/P_{\max}$"), (-1.0, None)):
         axes.plot(
-            time, sign * normal_force, color="black", linestyle="--", linewidth=1.1, label=text
-        )
+            time, sign * normal_force, color="black", linestyle="--", linewidth=0.9, label=text,
+            zorder=4,
+        )  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from contactlab.bodies import HalfSpace, Material, Sphere
 from contactlab.checks import Rule, refuse
 from contactlab.scene import Scene
-from contactlab.scene_file.table import Table, nearest_of
+from contactlab.scene_file.table import Table
 
 MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density")
 SPHERE_KEYS = ("radius", "mass", "gyration_ratio", "material")
@@ -48,16 +49,22 @@ def _entries() -> dict[str, str]:
 ENTRIES = _entries()
 
 
-def entry_path(name: str, *, where: str) -> str:
+def entry_path(name: str, *, where: str = "") -> str:
     """Return the dotted path of an entry that may vary.
 
     Raises
     ------
     ValueError
-        If there is no such entry; ``where`` says which key of the file named it.
+        If there is no such entry; ``where`` is the dotted path of the table that named it.
     """
     if name not in ENTRIES:
-        raise refuse(where, name, "is not an entry of a scene", nearest_of(name, ENTRIES))
+        nearest = difflib.get_close_matches(name, ENTRIES, n=1, cutoff=0.5)
+        hint = f"did you mean {nearest[0]!r}? " if nearest else ""
+        short = ", ".join((*IMPACT_KEYS, *NONDIMENSIONAL_KEYS))
+        raise ValueError(
+            f"{where}{name}: is not an entry of a scene; {hint}"
+            f"known: {short}, or dotted ones such as sphere.radius"
+        )
     return ENTRIES[name]
 
 
@@ -101,12 +108,23 @@ def _given(table: Table, keys: tuple[str, ...]) -> dict[str, Any]:
 def _material(table: Table) -> Material:
     material = table.table("material", known=MATERIAL_KEYS)
     material.require("poisson_ratio", "for example 0.3")
+    if material.has("shear_modulus") == material.has("young_modulus"):
+        raise ValueError(
+            f"{material.path}: exactly one of shear_modulus and young_modulus must be given, in Pa; "
+            "the other follows from E = 2 G (1 + nu)"
+        )
     return material.make(Material, **_given(material, MATERIAL_KEYS))
 
 
 def _sphere(table: Table) -> Sphere:
     numbers = _numbers(table, ("radius",)) | _given(table, ("mass", "gyration_ratio"))
-    return table.make(Sphere, material=_material(table), **numbers)
+    material = _material(table)
+    if material.density is None and not table.has("mass"):
+        raise ValueError(
+            f"{table.path}: mass is not known; give {table.at('mass')} in kg, "
+            f"or {table.at('material.density')} in kg/m³"
+        )
+    return table.make(Sphere, material=material, **numbers)
 
 
 def _target(root: Table) -> Sphere | HalfSpace:

@@ -59,7 +59,7 @@ def _series(content: object, path: str) -> Measured:
     quantity = table.text("quantity", remedy="name a quantity of the result")
     quantity_named(quantity, where=table.at("quantity"))
     against = table.text("against", remedy="name the entry that was varied, such as angle_deg")
-    entry_path(against, where=table.at("against"))
+    entry_path(against, where=f"{table.at('against')} = ")
     if table.has("readings") == table.has("x", "values"):
         raise ValueError(f"{path}: give either x and values, or several readings of them")
     columns = _means(table) if table.has("readings") else _plain(table)

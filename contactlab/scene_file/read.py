@@ -92,7 +92,7 @@ def read_scene(path: str | Path) -> SceneFile:
 
 def _scene_with(tables: Mapping[str, Any], entries: Mapping[str, Any]) -> Scene:
     for name, values in entries.items():
-        path = entry_path(name, where="entry")
+        path = entry_path(name)
         tables = replaced(tables, path, real(path, values))
     return build_scene(tables)
 

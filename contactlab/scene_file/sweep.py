@@ -28,7 +28,7 @@ def read_sweep(content: object) -> dict[str, Real]:
     varied: dict[str, Real] = {}
     paths: dict[str, str] = {}
     for name, value in _flat(content).items():
-        path = entry_path(name, where="sweep")
+        path = entry_path(name, where="sweep.")
         if path in paths:
             raise ValueError(f"sweep: {paths[path]} and {name} are the same entry; leave out one")
         paths[path] = name

@@ -92,6 +92,9 @@ class Table:
             return maker(**arguments)
         except ValueError as error:
             raise ValueError(self.at(str(error))) from error
+        except ArithmeticError as error:
+            rule = f"the numbers are too large or too small to compute with ({error})"
+            raise ValueError(f"{self.path}: {rule}; check their units") from error
 
     def _unknown(self, key: str) -> ValueError:
         return ValueError(f"{self.at(key)}: is not a known key; {nearest_of(key, self.known)}")

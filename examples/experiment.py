@@ -1,0 +1,31 @@
+"""The experiment of Kharaz, Gorham & Salman (2001) against the elastic and the rigid law.
+
+Writes ``kharaz2001.png`` in the current folder.
+"""
+
+from pathlib import Path
+
+from contactlab import Simulation, read_scene
+from contactlab.analysis.compare import compare
+from contactlab.figures.comparison import laws_over_sweep
+from contactlab.figures.files import save
+
+file = read_scene(Path(__file__).with_name("kharaz2001.toml"))
+laws = ("annulus", "coulomb")
+simulations = {law: Simulation(tangential=law, integrator="symplectic") for law in laws}
+comparison = compare(file, simulations)
+
+print(file.title)
+for agreement in comparison.agreements:
+    for law in laws:
+        where = agreement.where_largest(law)
+        print(
+            f"{agreement.measured.quantity:24s} {law:8s} rms {agreement.rms(law):.3f}, "
+            f"largest {agreement.largest(law):.3f} at {where:.0f} degrees"
+        )
+
+restitution = comparison.agreements[0]
+save(
+    Path("kharaz2001.png"),
+    lambda axes: laws_over_sweep(axes, comparison, "tangential_restitution", restitution),
+)

@@ -1,0 +1,30 @@
+"""Who sticks and who slips: the contact over radius and time at psi1 = 1.2.
+
+Writes ``stick_slip_map.png`` in the current folder.
+"""
+
+from pathlib import Path
+
+import contactlab
+from contactlab.figures.files import save
+from contactlab.figures.stick_slip import stick_slip_map
+
+scene = contactlab.Scene.nondimensional(psi1=1.2, chi=1.4412)
+simulation = contactlab.Simulation(
+    tangential=contactlab.create("tangential.annulus", annuli=100),
+    integrator=contactlab.create("integrator.symplectic", steps=400),
+)
+history = simulation.run(scene, history="fields").check().history
+assert history is not None
+fields = history.fields
+time = history.time / scene.duration
+radius = fields["radius"][0] / scene.maximum_radius
+in_contact = fields["stuck"] | (fields["slipping"] != 0)
+for instant in (0.1, 0.3, 0.5, 0.7, 0.9):
+    row = int(abs(time - instant).argmin())
+    share = fields["stuck"][row].sum() / in_contact[row].sum()
+    print(f"t/t_c = {instant}: {share:4.0%} of the annuli in contact stick")
+save(
+    Path("stick_slip_map.png"),
+    lambda axes: stick_slip_map(axes, time, radius, fields["stuck"], fields["slipping"]),
+)

@@ -1,0 +1,69 @@
+"""A linear spring in series with a slider."""
+
+from __future__ import annotations
+
+from typing import ClassVar, NamedTuple
+
+import attrs
+import numpy as np
+
+from contactlab.checks import POSITIVE, Real, quantity
+from contactlab.contracts import (
+    Increment,
+    NormalContact,
+    Problem,
+    SteppedTangentialLaw,
+    TangentialResponse,
+)
+
+
+class Spring(NamedTuple):
+    """Stiffness in N/m, friction coefficient, and the force in N: all the memory there is."""
+
+    stiffness: Real
+    friction_coefficient: Real
+    force: Real
+
+
+@attrs.frozen(kw_only=True)
+class CundallStrack(SteppedTangentialLaw):
+    """F = k D, cut off at mu P, with one stiffness for the whole impact.
+
+    Parameters
+    ----------
+    stiffness_ratio : float
+        k over 2 G* a, Mindlin's stiffness of the largest contact.
+
+    References
+    ----------
+    Cundall & Strack, Géotechnique 29 (1979) 47-65, doi:10.1680/geot.1979.29.1.47.
+    """
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
+    needs: ClassVar[frozenset[str]] = frozenset({"steps"})
+
+    stiffness_ratio: float = quantity("1", rule=POSITIVE, default=0.7)
+
+    def stiffness(self, problem: Problem) -> Real:
+        """Return k."""
+        mindlin = 2.0 * problem.pair.effective_shear_modulus * problem.maximum_radius
+        return self.stiffness_ratio * mindlin
+
+    def start(self, problem: Problem) -> Spring:
+        """Return the spring unloaded."""
+        return Spring(self.stiffness(problem), problem.friction_coefficient, 0.0)
+
+    def advance(
+        self,
+        state: Spring,
+        increment: Increment,
+        before: NormalContact,  # noqa: ARG002
+        after: NormalContact,  # noqa: ARG002
+    ) -> tuple[TangentialResponse, Spring]:
+        """Stretch the spring; what is beyond mu P is slip."""
+        trial = state.force + state.stiffness * increment.displacement
+        limit = state.friction_coefficient * increment.normal_force
+        force = np.minimum(np.maximum(trial, -limit), limit)
+        slip = np.abs(trial - force) / state.stiffness
+        return TangentialResponse(force, np.abs(force) * slip), state._replace(force=force)
