@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.cli.table import number, table, time
 from contactlab.quantities import QUANTITIES
 from contactlab.result import ImpactResult
-from contactlab.scene_file.build import entry_unit
+from contactlab.scene_file.entries import entry_unit
 
 #: Columns of the table of a sweep; those that are undefined for every impact are left out.
 SWEEP_COLUMNS = (

@@ -14,7 +14,7 @@ from contactlab.cli.table import number, table, time
 from contactlab.quantities import QUANTITIES
 from contactlab.result import plain
 from contactlab.scene_file import SceneFile
-from contactlab.scene_file.build import entry_unit
+from contactlab.scene_file.entries import entry_unit
 
 #: Compared on a single impact; those that are undefined for its scene are left out.
 SINGLE = (

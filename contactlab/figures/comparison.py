@@ -11,7 +11,7 @@ from contactlab.analysis.compare import Agreement, Comparison
 from contactlab.analysis.paper_figures import scaled_forces
 from contactlab.figures.style import MEASURED_COLOUR, friction_limit, label, law_style, zero_line
 from contactlab.quantities import QUANTITIES
-from contactlab.scene_file.build import entry_unit
+from contactlab.scene_file.entries import entry_unit
 
 POINTS: dict[str, Any] = {
     "color": MEASURED_COLOUR, "linestyle": "none", "marker": "o", "markersize": 4.5,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from contactlab.checks import refuse
 from contactlab.quantities import quantity_named
-from contactlab.scene_file.build import entry_path
+from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table
 
 KEYS = ("quantity", "against", "label", "source", "x", "values", "error", "readings")

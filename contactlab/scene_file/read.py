@@ -12,7 +12,8 @@ import attrs
 
 from contactlab.checks import Real, real
 from contactlab.scene import Scene
-from contactlab.scene_file.build import build_scene, entry_path, replaced
+from contactlab.scene_file.build import build_scene
+from contactlab.scene_file.entries import entry_path, replaced
 from contactlab.scene_file.laws import LawChoice, read_laws
 from contactlab.scene_file.measured import Measured, read_measured
 from contactlab.scene_file.sweep import read_sweep

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.checks import Real, refuse, whole
-from contactlab.scene_file.build import entry_path
+from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table, number_list
 
 RANGE_KEYS = ("start", "stop", "count")

@@ -125,7 +125,7 @@ def test_missing(tmp_path, missing, named):
     ("line", "named"),
     [
         ("impact.normal_speed = 1.0", "leave out one pair"),
-        ("sphere.material.shear_modulus = 8e10", "exactly one of the two"),
+        ("sphere.material.shear_modulus = 8e10", "exactly one of shear_modulus"),
         ("nondimensional.psi1 = 1.0", "leave out one or the other"),
         ("target.radius = 0.1", "target.radius: is not a known key"),
     ],

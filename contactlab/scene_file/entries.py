@@ -1,0 +1,68 @@
+"""The entries of a scene file: their keys, their units, and how one is replaced."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from typing import Any
+
+MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density")
+SPHERE_KEYS = ("radius", "mass", "gyration_ratio", "material")
+IMPACT_KEYS = (
+    "friction_coefficient", "speed", "angle_deg", "normal_speed", "tangential_velocity", "spin",
+)  # fmt: skip
+NONDIMENSIONAL_KEYS = ("psi1", "chi")
+BODY_SECTIONS = ("sphere", "target", "impact")
+
+#: Units for the remedies; the rules themselves are those of the classes that are made.
+UNITS = {
+    "shear_modulus": "Pa", "young_modulus": "Pa", "poisson_ratio": "1", "density": "kg/m³",
+    "radius": "m", "mass": "kg", "gyration_ratio": "1", "friction_coefficient": "1",
+    "speed": "m/s", "angle_deg": "deg", "normal_speed": "m/s",
+    "tangential_velocity": "m/s", "spin": "rad/s", "psi1": "1", "chi": "1",
+}  # fmt: skip
+
+
+def _entries() -> dict[str, str]:
+    """Return every entry that may vary: its short or dotted name, and its dotted path."""
+    names = {key: f"impact.{key}" for key in IMPACT_KEYS}
+    names |= {key: f"nondimensional.{key}" for key in NONDIMENSIONAL_KEYS}
+    dotted = list(names.values())
+    for body in ("sphere", "target"):
+        dotted += [f"{body}.{key}" for key in SPHERE_KEYS if key != "material"]
+        dotted += [f"{body}.material.{key}" for key in MATERIAL_KEYS]
+    return names | {path: path for path in dotted}
+
+
+ENTRIES = _entries()
+
+
+def entry_path(name: str, *, where: str = "") -> str:
+    """Return the dotted path of an entry that may vary.
+
+    Raises
+    ------
+    ValueError
+        If there is no such entry; ``where`` is the dotted path of the table that named it.
+    """
+    if name not in ENTRIES:
+        nearest = difflib.get_close_matches(name, ENTRIES, n=1, cutoff=0.5)
+        hint = f"did you mean {nearest[0]!r}? " if nearest else ""
+        short = ", ".join((*IMPACT_KEYS, *NONDIMENSIONAL_KEYS))
+        raise ValueError(
+            f"{where}{name}: is not an entry of a scene; {hint}"
+            f"known: {short}, or dotted ones such as sphere.radius"
+        )
+    return ENTRIES[name]
+
+
+def entry_unit(name: str) -> str:
+    """Return the unit of an entry that may vary."""
+    return UNITS[name.rpartition(".")[2]]
+
+
+def replaced(document: Mapping[str, Any], path: str, value: object) -> dict[str, Any]:
+    """Return a copy of ``document`` with ``value`` at the dotted ``path``."""
+    key, _, rest = path.partition(".")
+    inner = document.get(key, {})
+    return {**document, key: replaced(inner, rest, value) if rest else value}
