@@ -34,8 +34,12 @@ def default_quantities(comparison: Comparison) -> list[str]:
         return list(dict.fromkeys(measured))
     if comparison.scene.shape:
         return ["psi2"]
-    first = comparison.names[0]
-    return [name for name in SINGLE if not np.isnan(comparison.values(name, first)).all()]
+    laws = comparison.names
+    return [
+        name
+        for name in SINGLE
+        if name == "psi2" or not all(np.isnan(comparison.values(name, law)) for law in laws)
+    ]
 
 
 def describe(comparison: Comparison, quantities: Sequence[str], file: SceneFile) -> str:

@@ -1,0 +1,58 @@
+"""The command line run in this process, with its streams caught."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from contactlab.cli.main import main
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+class Ran(NamedTuple):
+    status: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def run(capsys):
+    def call(*arguments):
+        status = main([str(argument) for argument in arguments])
+        caught = capsys.readouterr()
+        return Ran(status, caught.out, caught.err)
+
+    return call
+
+
+@pytest.fixture
+def ball():
+    return EXAMPLES / "steel_ball.toml"
+
+
+@pytest.fixture
+def short_sweep(tmp_path):
+    path = tmp_path / "short.toml"
+    path.write_text(
+        "[nondimensional]\nchi = 1.0\n[sweep]\npsi1 = [0.0, 2.0, 6.0]\n"
+        "[simulation]\ntangential = 'coulomb'\nintegrator = 'symplectic'\n",
+        encoding="utf-8",
+    )
+    return path
+
+
+@pytest.fixture
+def measured(tmp_path):
+    """Rigid-body rebounds of psi1 = 6, 7 at chi = 1 are 2 and 3; measured 0.1 beside them."""
+    path = tmp_path / "measured.toml"
+    path.write_text(
+        "[nondimensional]\nchi = 1.0\n[sweep]\npsi1 = [1.0, 6.0]\n"
+        "[simulation]\ntangential = 'coulomb'\nintegrator = 'symplectic'\n"
+        "[[measured]]\nquantity = 'psi2'\nagainst = 'psi1'\nsource = 'made up'\n"
+        "x = [6.0, 7.0]\nvalues = [2.1, 2.9]\nerror = [0.05, 0.05]\n",
+        encoding="utf-8",
+    )
+    return path

@@ -1,0 +1,125 @@
+"""``contactlab compare``: laws side by side, against each other and against measurement."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+
+import pytest
+
+from contactlab import read_scene
+from contactlab.analysis.compare import compare
+
+BOTH = ("--tangential", "coulomb,frictionless")
+
+
+def test_differences_are_from_the_first_law(run, short_sweep):
+    content = json.loads(run("compare", short_sweep, *BOTH, "--json").out)
+    assert list(content["laws"]) == ["coulomb", "frictionless"]
+    assert content["laws"]["coulomb"]["differences"]["psi2"] == [0.0, 0.0, 0.0]
+    assert content["laws"]["frictionless"]["differences"]["psi2"] == pytest.approx([0, 2, 4])
+    assert content["laws"]["coulomb"]["run_time_per_impact_s"] > 0.0
+
+
+def test_measured_values_with_rms_and_largest_difference(run, measured):
+    content = json.loads(run("compare", measured, *BOTH, "--json").out)
+    (series,) = content["measured"]
+    rigid = series["laws"]["coulomb"]
+    assert rigid["values"] == pytest.approx([2.0, 3.0], abs=1e-9)
+    assert rigid["rms"] == pytest.approx(0.1, abs=1e-9)
+    assert rigid["largest"] == pytest.approx(0.1, abs=1e-9)
+    loose = series["laws"]["frictionless"]
+    assert loose["rms"] == pytest.approx(math.sqrt((3.9**2 + 4.1**2) / 2))
+
+
+def test_tables(run, measured, short_sweep, ball):
+    with_points = run("compare", measured, *BOTH)
+    for words in ("made up", "coulomb - measured", "rms", "run time an impact", "2 of 2"):
+        assert words in with_points.out
+    assert "frictionless - coulomb" in run("compare", short_sweep, *BOTH).out
+    single = run("compare", ball, *BOTH, "--normal", "hertz").out
+    assert "rebound_spin" in single
+    assert "1 of 1" in single
+
+
+def test_csv_is_tidy(run, measured):
+    rows = list(csv.DictReader(io.StringIO(run("compare", measured, *BOTH, "--csv").out)))
+    assert {row["table"] for row in rows} == {"scene", "measured"}
+    chosen = [row for row in rows if row["table"] == "measured" and row["law"] == "coulomb"]
+    assert [float(row["x"]) for row in chosen] == [6.0, 7.0]
+    assert [float(row["reference"]) for row in chosen] == [2.1, 2.9]
+    for row in rows:
+        gap = float(row["value"]) - float(row["reference"])
+        assert float(row["difference"]) == pytest.approx(gap)
+
+
+def test_integrators_can_be_compared_too(run, short_sweep):
+    content = json.loads(run("compare", short_sweep, "--tangential", "coulomb", "--integrator",
+                             "paper,symplectic", "--json").out)  # fmt: skip
+    assert list(content["laws"]) == ["paper", "symplectic"]
+
+
+def test_elastic_and_rigid_are_the_default(run, ball):
+    content = json.loads(run("compare", ball, "--json").out)
+    assert list(content["laws"]) == ["annulus", "coulomb"]
+    assert content["laws"]["annulus"]["values"]["psi2"] < -0.1
+    assert content["laws"]["coulomb"]["values"]["psi2"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_option_goes_to_the_laws_that_know_it(run, short_sweep):
+    ran = run("compare", short_sweep, "--tangential", "annulus,coulomb", "--json",
+              "--set", "tangential.annuli=5")  # fmt: skip
+    assert ran.status == 0
+    unknown = run("compare", short_sweep, *BOTH, "--set", "tangential.annuli=5")
+    assert unknown.status == 2
+    assert "none of the laws" in unknown.err
+
+
+@pytest.mark.parametrize("scene", ["measured", "short_sweep", "ball"])
+def test_figure(run, request, tmp_path, scene):
+    path = tmp_path / "figure.png"
+    file = request.getfixturevalue(scene)
+    assert run("compare", file, *BOTH, "--figure", path).status == 0
+    assert path.read_bytes().startswith(b"\x89PNG")
+    assert path.stat().st_size > 20_000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--tangential", "coulomb,columb"), "did you mean"),
+        (("--tangential", ","), "at least one"),
+        (("--tangential", "coulomb,coulomb"), "twice"),
+        (("--quantity", "psi3", *BOTH), "did you mean 'psi2'"),
+        (("--figure", "figure.pdf"), ".png"),
+        (("--json", "--csv"), "not allowed"),
+        (("--set", "annuli=3", *BOTH), "tangential.annuli = 50"),
+    ],
+)
+def test_bad_input(run, short_sweep, arguments, words):
+    ran = run("compare", short_sweep, *arguments)
+    assert ran.status == 2
+    assert ran.out == ""
+    assert len(ran.err.splitlines()) == 1
+    assert words in ran.err
+
+
+def test_failed_law_is_a_gap_and_status_1(run, tmp_path):
+    path = tmp_path / "stiff.toml"
+    path.write_text("[nondimensional]\npsi1 = 1.0\nchi = 1000.0\n", encoding="utf-8")
+    ran = run("compare", path, "--json", "--set", "integrator.steps=5")
+    content = json.loads(ran.out)
+    assert ran.status == 1
+    assert content["laws"]["annulus"]["values"]["psi2"] is None
+    assert content["laws"]["annulus"]["status"] == "TOO_FEW_STEPS"
+    assert "annulus" in ran.err
+
+
+def test_single_scene_object_can_be_compared(short_sweep):
+    file = read_scene(short_sweep)
+    comparison = compare(file.scene, {"rigid": file.laws.simulation()})
+    assert comparison.names == ["rigid"]
+    assert comparison.agreements == ()
+    assert comparison.failures() == []

@@ -1,0 +1,91 @@
+"""``contactlab figures``: the paper's figures as PNG and CSV."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+import pytest
+
+from contactlab import Simulation, create
+from contactlab.analysis.paper_figures import FIGURES, figure_1, figure_2, figure_3, figure_4
+
+FEW = (
+    "--set",
+    "tangential.annuli=10",
+    "--integrator",
+    "symplectic",
+    "--set",
+    "integrator.steps=60",
+)
+
+
+@pytest.fixture(scope="module")
+def simulation():
+    return Simulation(
+        tangential=create("tangential.annulus", annuli=20),
+        integrator=create("integrator.symplectic", steps=150),
+    )
+
+
+def test_every_figure_as_png_and_csv(run, tmp_path):
+    ran = run("figures", "--out", tmp_path / "new" / "folder", *FEW)
+    assert ran.status == 0
+    assert len(ran.out.splitlines()) == 8
+    for number in FIGURES:
+        picture = tmp_path / "new" / "folder" / f"figure-{number}.png"
+        assert picture.read_bytes().startswith(b"\x89PNG")
+        text = picture.with_suffix(".csv").read_text(encoding="utf-8")
+        rows = list(csv.DictReader(text.splitlines()))
+        assert len(rows) > 100
+        assert all(np.isfinite(float(list(row.values())[-1])) for row in rows)
+
+
+def test_only_some(run, tmp_path):
+    assert run("figures", "--out", tmp_path, "--only", "2", *FEW).status == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["figure-2.csv", "figure-2.png"]
+
+
+@pytest.mark.parametrize("only", ["5", "0", "two", ""])
+def test_unknown_figure_is_refused(run, tmp_path, only):
+    ran = run("figures", "--out", tmp_path, "--only", only)
+    assert ran.status == 2
+    assert "1, 2, 3, 4" in ran.err
+
+
+def test_folder_must_be_named(run):
+    assert "--out" in run("figures").err
+
+
+def test_figure_1_forces_stay_inside_the_friction_limit(simulation):
+    data = figure_1(simulation)
+    normal, *tangential = data.curves
+    assert normal.y.max() == pytest.approx(1.0, abs=1e-3)
+    assert len(tangential) >= 4
+    for curve in tangential:
+        assert np.all(np.abs(curve.y) <= normal.y + 0.05)
+        assert curve.y.min() < -0.02  # every one of them reverses
+
+
+def test_figure_2_has_the_papers_shape(simulation):
+    elastic, rigid = figure_2(simulation).curves
+    chi = 1.4411764706
+    assert rigid.y.min() == 0.0
+    assert elastic.y.min() == pytest.approx(-1.48, abs=0.04)
+    slips = elastic.x >= 4.0 * chi
+    assert elastic.y[slips] == pytest.approx(rigid.y[slips], abs=1e-12)
+
+
+def test_figure_3_reverses_more_often_as_chi_grows(simulation):
+    """The paper's §4.4: as chi is increased the number of reversals of the force increases."""
+    _, *curves = figure_3(simulation).curves
+    reversals = [np.sum(np.diff(np.sign(curve.y[np.abs(curve.y) > 1e-3])) != 0) for curve in curves]
+    assert reversals == sorted(reversals)
+    assert reversals[-1] >= reversals[0] + 2
+
+
+def test_figure_4_oscillates_about_the_rigid_theory(simulation):
+    elastic, rigid = figure_4(simulation).curves
+    assert np.all(rigid.y[rigid.x > 0.3] == 0.0)
+    signs = np.sign(elastic.y[elastic.x > 0.35])
+    assert np.sum(np.diff(signs) != 0) >= 4

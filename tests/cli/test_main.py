@@ -1,0 +1,88 @@
+"""The command itself: version, help, exit statuses, streams."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+import contactlab
+from contactlab.cli import main as module
+from contactlab.cli import run as run_command
+
+COMMAND = [sys.executable, "-m", "contactlab.cli.main"]
+PSI = ["run", "--psi1", "6", "--chi", "1", "--tangential", "coulomb"]
+
+
+def test_version(run):
+    assert run("--version") == (0, contactlab.__version__ + "\n", "")
+
+
+@pytest.mark.parametrize("command", module.COMMANDS)
+def test_help_of_every_command_has_examples(run, command):
+    ran = run(command, "--help")
+    assert ran.status == 0
+    assert "examples:" in ran.out
+    assert f"contactlab {command}" in ran.out
+
+
+def test_no_command_and_an_unknown_one(run):
+    assert run().status == 2
+    ran = run("rum")
+    assert ran.status == 2
+    assert len(ran.err.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("error", "status"),
+    [
+        (ValueError("bad\n  input"), 2),
+        (contactlab.PluginError("broken"), 1),
+        (contactlab.ImpactError("failed"), 1),
+        (PermissionError(13, "Permission denied", "out.csv"), 1),
+        (KeyboardInterrupt(), 130),
+    ],
+)
+def test_errors_become_one_line_and_a_status(run, monkeypatch, error, status):
+    def fail(_):
+        raise error
+
+    monkeypatch.setattr(run_command, "execute", fail)
+    ran = run(*PSI)
+    assert ran.status == status
+    assert len(ran.err.splitlines()) == 1
+    assert ran.out == ""
+
+
+def test_traceback_on_request(run):
+    plain, full = run("run", "nowhere.toml"), run("--traceback", "run", "nowhere.toml")
+    assert "Traceback" not in plain.err
+    assert "Traceback" in full.err
+    assert full.status == 2
+
+
+def test_bug_is_not_hidden(run, monkeypatch):
+    def fail(_):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(run_command, "execute", fail)
+    with pytest.raises(ZeroDivisionError):
+        run(*PSI)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX pipes")
+def test_reader_that_has_gone_is_no_error():
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run([*COMMAND, *PSI], stdout=write, stderr=subprocess.PIPE, check=False)
+    os.close(write)
+    assert done.returncode == module.BROKEN_PIPE
+    assert done.stderr == b""
+
+
+def test_installed_command_runs():
+    done = subprocess.run([*COMMAND, *PSI, "--json"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert '"psi2": 2.0' in done.stdout

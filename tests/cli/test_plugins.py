@@ -1,0 +1,58 @@
+"""``contactlab plugins``: what is installed, without importing it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import contactlab
+
+
+def test_list_as_json(run):
+    entries = {entry["name"]: entry for entry in json.loads(run("plugins", "list", "--json").out)}
+    coulomb = entries["tangential.coulomb"]
+    assert coulomb["kind"] == "tangential"
+    assert coulomb["distribution"] == "contactlab"
+    assert coulomb["version"] == contactlab.__version__
+    assert {"normal.hertz", "integrator.paper"} <= set(entries)
+
+
+def test_list_as_table(run):
+    out = run("plugins", "list").out
+    assert out.splitlines()[0].split() == ["name", "kind", "distribution", "version"]
+    assert "tangential.annulus" in out
+
+
+def test_show(run):
+    shown = json.loads(run("plugins", "show", "tangential.annulus", "--json").out)
+    assert shown["module"] == "contactlab_annulus"
+    assert "contactlab_annulus" in run("plugins", "show", "tangential.annulus").out
+
+
+def test_blocked_law_is_marked(run, monkeypatch):
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "tangential.coulomb")
+    assert "tangential.coulomb (blocked)" in run("plugins", "list").out
+    assert run("run", "--psi1", "1", "--chi", "1", "--tangential", "coulomb").status == 2
+
+
+def test_unknown_name(run):
+    ran = run("plugins", "show", "tangential.anulus")
+    assert ran.status == 2
+    assert "did you mean 'tangential.annulus'" in ran.err
+    assert run("plugins").status == 2
+    assert run("plugins", "remove").status == 2
+
+
+def test_listing_imports_no_law_no_scipy_no_matplotlib():
+    probe = (
+        "import sys; from contactlab.cli.main import main; main(['plugins', 'list']);"
+        "main(['plugins', 'show', 'tangential.annulus']);"
+        "heavy = [name for name in sys.modules if name.partition('.')[0] in"
+        "  ('scipy', 'matplotlib') or name.startswith('contactlab_')]; sys.exit(repr(heavy)"
+        "  if heavy else 0)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", probe], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr

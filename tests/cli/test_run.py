@@ -1,0 +1,165 @@
+"""``contactlab run``: answers, files, and refusals."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+RIGID = ("--tangential", "coulomb", "--integrator", "symplectic")
+PSI = ("--psi1", "6", "--chi", "1", *RIGID)
+
+
+def table(path):
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def test_json_has_the_promised_keys_and_the_right_answer(run):
+    ran = run("run", *PSI, "--json")
+    content = json.loads(ran.out)
+    assert ran.status == 0
+    assert ran.err == ""
+    assert {"psi2", "status", "run_time_s", "energy", "plan"} <= set(content)
+    assert content["psi2"] == pytest.approx(2.0, abs=1e-12)
+    assert content["status"] == "SUCCESS"
+    assert content["run_time_s"] > 0.0
+    assert abs(content["energy"]["relative_imbalance"]) < 1e-12
+    assert content["plan"]["left_out"]
+
+
+def test_json_of_the_elastic_law(run):
+    content = json.loads(run("run", "--psi1", "1.2", "--chi", "1.4411764706", "--json").out)
+    assert content["psi2"] == pytest.approx(-0.1805194095, abs=0.01)
+
+
+def test_negative_numbers_are_numbers(run):
+    content = json.loads(run("run", "--psi1", "-6e0", "--chi", "1", *RIGID, "--json").out)
+    assert content["psi2"] == pytest.approx(-2.0, abs=1e-12)
+
+
+def test_table_says_it_in_words(run, ball):
+    ran = run("run", ball, *RIGID)
+    assert ran.status == 0
+    for words in ("A steel ball", "m/s", "rad/s", "local angle psi", "friction work", "left out:",
+                  "run time", "from first touch to separation", "coulomb"):  # fmt: skip
+        assert words in ran.out
+
+
+def test_table_of_a_nondimensional_scene_claims_no_units(run):
+    out = run("run", *PSI).out
+    assert "m/s" not in out
+    assert " J" not in out
+
+
+def test_options_reach_the_laws(run):
+    content = json.loads(run("run", "--psi1", "1", "--chi", "1", *RIGID, "--json",
+                             "--set", "integrator.steps=123").out)  # fmt: skip
+    assert content["counters"]["steps"] == 123
+
+
+def test_laws_on_the_command_line_replace_those_of_the_file(run, ball):
+    """The file's options are for its own law, annulus, and must not reach another."""
+    content = json.loads(run("run", ball, "--tangential", "coulomb", "--json").out)
+    assert content["laws"]["tangential"].startswith("coulomb")
+    assert content["counters"]["steps"] == 400
+
+
+def test_full_names_of_laws_serve_too(run):
+    assert run("run", "--psi1", "6", "--chi", "1", "--tangential", "tangential.coulomb").status == 0
+
+
+def test_sweep(run, short_sweep):
+    ran = run("run", short_sweep, "--json")
+    content = json.loads(ran.out)
+    assert content["psi2"] == pytest.approx([0.0, 0.0, 2.0], abs=1e-9)
+    assert content["varied"] == {"psi1": [0.0, 2.0, 6.0]}
+    assert "SUCCESS" in run("run", short_sweep).out
+
+
+def test_progress_is_on_stderr_and_only_when_asked(run, short_sweep):
+    quiet = run("run", short_sweep, "--json")
+    shown = run("run", short_sweep, "--json", "--progress")
+    assert quiet.err == ""
+    assert "3/3" in shown.err
+    json.loads(shown.out)
+
+
+def test_out_files(run, short_sweep, tmp_path):
+    for suffix in (".json", ".csv", ".npz"):
+        assert run("run", short_sweep, "--out", tmp_path / f"out{suffix}").status == 0
+    rows = table(tmp_path / "out.csv")
+    assert [float(row["psi2 (1)"]) for row in rows] == pytest.approx([0.0, 0.0, 2.0], abs=1e-9)
+    assert json.loads((tmp_path / "out.json").read_text())["psi2"][2] == pytest.approx(2.0)
+    with np.load(tmp_path / "out.npz") as arrays:
+        assert arrays["psi2"][2] == pytest.approx(2.0)
+
+
+def test_history_file(run, tmp_path):
+    assert run("run", *PSI, "--history", tmp_path / "h.csv").status == 0
+    rows = table(tmp_path / "h.csv")
+    force = np.array([float(row["tangential_force (N)"]) for row in rows])
+    normal = np.array([float(row["normal_force (N)"]) for row in rows])
+    assert len(rows) > 100
+    assert force == pytest.approx(normal, rel=1e-9, abs=1e-12)  # mu = 1, slips throughout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((), "--psi1"),
+        (("--psi1", "1"), "--chi"),
+        (("--chi", "1"), "--psi1"),
+        (("--psi1", "nan", "--chi", "1"), "finite"),
+        (("--psi1", "inf", "--chi", "1"), "finite"),
+        (("--psi1", "-inf", "--chi", "1"), "finite"),
+        (("--psi1", "one", "--chi", "1"), "not a number"),
+        (("--psi1", "1", "--chi", "-1"), "chi = -1.0: must be positive"),
+        (("--psi1", "1", "--chi", "0"), "positive"),
+        (("nowhere.toml",), "no such file"),
+        ((*PSI, "--tangential", "columb"), "did you mean 'tangential.coulomb'"),
+        ((*PSI, "--normal", "herz"), "did you mean 'normal.hertz'"),
+        ((*PSI, "--integrator", "papers"), "did you mean 'integrator.paper'"),
+        ((*PSI, "--set", "integrator.stepz=3"), "stepz"),
+        ((*PSI, "--set", "integrator.steps=nan"), "whole number"),
+        ((*PSI, "--set", "integrator.steps=0"), "whole number"),
+        ((*PSI, "--set", "integrator.steps=many"), "whole number"),
+        ((*PSI, "--set", "steps=3"), "tangential.annuli = 50"),
+        ((*PSI, "--set", "intgrator.steps=3"), "did you mean 'integrator'"),
+        ((*PSI, "--set", "integrator.steps"), "tangential.annuli=50"),
+        ((*PSI, "--out", "result.xlsx"), ".json"),
+        ((*PSI, "--out", "no/such/folder/result.csv"), "no folder"),
+        ((*PSI, "--history", "history.json"), ".csv"),
+        ((*PSI, "--colour"), "--colour"),
+    ],
+)
+def test_bad_input_is_one_line_and_status_2(run, arguments, words):
+    ran = run("run", *arguments)
+    assert ran.status == 2
+    assert ran.out == ""
+    assert len(ran.err.splitlines()) == 1
+    assert ran.err.startswith("contactlab")
+    assert words in ran.err
+
+
+def test_file_and_numbers_do_not_mix(run, ball):
+    ran = run("run", ball, "--psi1", "1", "--chi", "1")
+    assert (ran.status, ran.out) == (2, "")
+
+
+def test_history_of_a_sweep_is_refused_before_it_runs(run, short_sweep, tmp_path):
+    ran = run("run", short_sweep, "--history", tmp_path / "h.csv")
+    assert ran.status == 2
+    assert "single impact" in ran.err
+    assert not (tmp_path / "h.csv").exists()
+
+
+def test_failed_run_still_reports_and_has_status_1(run):
+    ran = run("run", "--psi1", "1", "--chi", "1000", "--tangential", "annulus", "--json",
+              "--set", "integrator.steps=5")  # fmt: skip
+    assert ran.status == 1
+    assert json.loads(ran.out)["status"] == "TOO_FEW_STEPS"
+    assert json.loads(ran.out)["psi2"] is None
+    assert ran.err.startswith("contactlab run: failed:")
+    assert len(ran.err.splitlines()) == 1

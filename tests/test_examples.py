@@ -1,0 +1,111 @@
+"""Every example runs, and says what its text claims."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+PLUGIN = EXAMPLES / "third_party_plugin"
+
+#: Script, a word it prints, and the picture it writes.
+SCRIPTS = {
+    "one_impact": ("psi2 = -0.4", None),
+    "law_swap": ("coulomb", None),
+    "sweep": ("1000 impacts", None),
+    "experiment": ("coulomb  rms 0.046", "kharaz2001.png"),
+    "stick_slip_map": ("100% of the annuli", "stick_slip_map.png"),
+    "custom_law": ("mindlin cap", None),
+}
+
+
+def python(*arguments, folder, path=""):
+    environment = {**os.environ, "PYTHONPATH": str(path), "PYTHONWARNINGS": "error"}
+    return subprocess.run(
+        [sys.executable, *map(str, arguments)],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_every_script_is_listed_here():
+    assert {path.stem for path in EXAMPLES.glob("*.py")} == set(SCRIPTS)
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_script(name, tmp_path):
+    words, picture = SCRIPTS[name]
+    done = python(EXAMPLES / f"{name}.py", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert words in done.stdout
+    assert [path.name for path in tmp_path.iterdir()] == ([picture] if picture else [])
+
+
+def test_one_impact_is_six_lines():
+    lines = (EXAMPLES / "one_impact.py").read_text(encoding="utf-8").splitlines()
+    statements = [line for line in lines if line and not line.startswith(('"""', "from ", "print"))]
+    assert len(statements) <= 6
+
+
+@pytest.fixture
+def plugin_path(tmp_path):
+    """The plug-in as an installer would lay it out, from its own pyproject.toml."""
+    project = tomllib.loads((PLUGIN / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    info = tmp_path / "site" / f"contactlab_cundall-{project['version']}.dist-info"
+    info.mkdir(parents=True)
+    (info / "METADATA").write_text(
+        f"Metadata-Version: 2.1\nName: {project['name']}\nVersion: {project['version']}\n"
+    )
+    (group,) = project["entry-points"].items()
+    lines = [f"{name} = {module}" for name, module in group[1].items()]
+    (info / "entry_points.txt").write_text("\n".join([f"[{group[0]}]", *lines]) + "\n")
+    return f"{tmp_path / 'site'}{os.pathsep}{PLUGIN}"
+
+
+def test_third_party_plugin_keeps_its_own_tests(plugin_path, tmp_path):
+    done = python(
+        *("-m", "pytest", "-q", "-p", "no:cacheprovider", "-c", PLUGIN / "pyproject.toml"),
+        PLUGIN / "tests",
+        folder=tmp_path,
+        path=plugin_path,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "9 passed" in done.stdout
+
+
+def test_third_party_plugin_on_the_command_line(plugin_path, tmp_path):
+    command = ("-m", "contactlab.cli.main")
+    shown = python(
+        *command, "plugins", "show", "tangential.cundall", folder=tmp_path, path=plugin_path
+    )
+    assert "contactlab-cundall" in shown.stdout
+    scene = ("--psi1", "1.2", "--chi", "1.4412", "--tangential", "cundall")
+    ran = python(*command, "run", *scene, folder=tmp_path, path=plugin_path)
+    assert ran.returncode == 0, ran.stderr
+    assert "cundall (contactlab-cundall 1.0.0)" in ran.stdout
+
+
+def test_without_the_plugin_its_law_is_unknown(tmp_path):
+    scene = ("--psi1", "1.2", "--chi", "1.4412", "--tangential", "cundall")
+    ran = python("-m", "contactlab.cli.main", "run", *scene, folder=tmp_path)
+    assert ran.returncode == 2
+    assert "no such law" in ran.stderr
+
+
+@pytest.mark.slow
+def test_third_party_plugin_installs_with_pip(tmp_path):
+    """Needs a package index for the build back end."""
+    target = tmp_path / "site"
+    install = ("-m", "pip", "install", "-q", "--no-deps", "--target", target, PLUGIN)
+    done = python("-W", "ignore", *install, folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    shown = python("-m", "contactlab.cli.main", "plugins", "list", folder=tmp_path, path=target)
+    assert "tangential.cundall" in shown.stdout
