@@ -82,7 +82,7 @@ def test_third_party_plugin_keeps_its_own_tests(plugin_path, tmp_path):
 
 
 def test_third_party_plugin_on_the_command_line(plugin_path, tmp_path):
-    command = ("-m", "contactlab.cli.main")
+    command = ("-m", "contactlab")
     shown = python(
         *command, "plugins", "show", "tangential.cundall", folder=tmp_path, path=plugin_path
     )
@@ -95,7 +95,7 @@ def test_third_party_plugin_on_the_command_line(plugin_path, tmp_path):
 
 def test_without_the_plugin_its_law_is_unknown(tmp_path):
     scene = ("--psi1", "1.2", "--chi", "1.4412", "--tangential", "cundall")
-    ran = python("-m", "contactlab.cli.main", "run", *scene, folder=tmp_path)
+    ran = python("-m", "contactlab", "run", *scene, folder=tmp_path)
     assert ran.returncode == 2
     assert "no such law" in ran.stderr
 
@@ -107,5 +107,5 @@ def test_third_party_plugin_installs_with_pip(tmp_path):
     install = ("-m", "pip", "install", "-q", "--no-deps", "--target", target, PLUGIN)
     done = python("-W", "ignore", *install, folder=tmp_path)
     assert done.returncode == 0, done.stderr
-    shown = python("-m", "contactlab.cli.main", "plugins", "list", folder=tmp_path, path=target)
+    shown = python("-m", "contactlab", "plugins", "list", folder=tmp_path, path=target)
     assert "tangential.cundall" in shown.stdout

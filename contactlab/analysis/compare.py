@@ -14,6 +14,7 @@ from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.scene_file import Measured, SceneFile
 from contactlab.simulation import Simulation
+from contactlab.status import Status
 
 Array = NDArray[np.float64]
 
@@ -167,7 +168,13 @@ def compare(
 
 
 def _run(simulation: Simulation, scene: Scene) -> ImpactResult:
-    return simulation.sweep(scene) if scene.shape else simulation.run(scene)
+    if not scene.shape:
+        return simulation.run(scene)
+    result = simulation.sweep(scene)
+    # A sweep keeps what is done when it is interrupted; half a comparison is of no use.
+    if any(status is Status.INTERRUPTED for status in result.status):
+        raise KeyboardInterrupt
+    return result
 
 
 def _timed(name: str, simulation: Simulation, scene: Scene, *, history: bool) -> LawRun:

@@ -12,6 +12,9 @@ from typing import Any
 
 from contactlab.registry import KINDS
 
+#: Exit statuses; the last two are what a shell reports of a program ended by a signal.
+OK, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
+
 
 def finite(text: str) -> float:
     """Return a finite number, or refuse the text."""

@@ -17,6 +17,7 @@ import sys
 from typing import Any
 
 from contactlab.analysis.compare import compare
+from contactlab.analysis.compare_export import to_dict, write_csv
 from contactlab.cli import arguments as shared
 from contactlab.cli import side_by_side
 from contactlab.quantities import quantity_named
@@ -65,16 +66,16 @@ def execute(arguments: argparse.Namespace) -> int:
 
         draw_comparison(arguments.figure, comparison, quantities)
     if arguments.json:
-        content = side_by_side.to_dict(comparison, quantities) | {"title": file.title}
+        content = to_dict(comparison, quantities) | {"title": file.title}
         print(json.dumps(content, indent=2, allow_nan=False))
     elif arguments.csv:
-        side_by_side.write_csv(comparison, quantities, sys.stdout)
+        write_csv(comparison, quantities, sys.stdout)
     else:
         print(side_by_side.describe(comparison, quantities, file))
     failures = comparison.failures()
     for sentence in failures:
         print(f"contactlab compare: failed: {sentence}", file=sys.stderr)
-    return 1 if failures else 0
+    return shared.FAILED if failures else shared.OK
 
 
 def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation]:

@@ -11,11 +11,10 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 import contactlab
+from contactlab.cli.arguments import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
 
 #: A new subcommand is a module of this package and its name here.
 COMMANDS = ("run", "compare", "figures", "plugins")
-
-OK, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
 
 EPILOG = """examples:
   contactlab run --psi1 1.2 --chi 1.4412

@@ -25,6 +25,7 @@ from contactlab.cli.report import describe
 from contactlab.result import ImpactResult, plain
 from contactlab.scene import Scene
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
+from contactlab.status import Status
 
 WRITERS = {".json": export.write_json, ".csv": export.write_csv, ".npz": export.write_npz}
 
@@ -98,11 +99,14 @@ def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Scene:
 
 
 def _exit_status(result: ImpactResult) -> int:
-    statuses = np.ravel(np.array(result.status, dtype=object))
-    failed = [number for number, status in enumerate(statuses) if not status]
+    """Return the status of the command, and say on stderr what went wrong."""
+    statuses = np.ravel(np.array(result.status, dtype=object)).tolist()
+    failed = [status for status in statuses if not status]
     if not failed:
-        return 0
-    which = f"{len(failed)} of {statuses.size} impacts: " if result.scene.shape else ""
-    sentence = f"{statuses[failed[0]].value} {result.motion.detail}".strip()
-    print(f"contactlab run: failed: {which}{sentence}", file=sys.stderr)
-    return 1
+        return shared.OK
+    interrupted = Status.INTERRUPTED in failed
+    which = f"{len(failed)} of {len(statuses)} impacts: " if result.scene.shape else ""
+    sentence = f"{failed[0].value} {result.motion.detail}".strip()
+    word = "interrupted" if interrupted else "failed"
+    print(f"contactlab run: {word}: {which}{sentence}", file=sys.stderr)
+    return shared.INTERRUPTED if interrupted else shared.FAILED

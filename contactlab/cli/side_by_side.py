@@ -1,18 +1,15 @@
-"""A comparison as tables, JSON and CSV."""
+"""A comparison as tables, for reading."""
 
 from __future__ import annotations
 
-import csv
 import textwrap
-from collections.abc import Iterator, Sequence
-from typing import Any, TextIO
+from collections.abc import Sequence
 
 import numpy as np
 
 from contactlab.analysis.compare import Agreement, Comparison
 from contactlab.cli.table import number, table, time
 from contactlab.quantities import QUANTITIES
-from contactlab.result import plain
 from contactlab.scene_file import SceneFile
 from contactlab.scene_file.entries import entry_unit
 
@@ -20,10 +17,6 @@ from contactlab.scene_file.entries import entry_unit
 SINGLE = (
     "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg", "rebound_spin",
     "contact_time", "friction_work", "energy_imbalance",
-)  # fmt: skip
-
-CSV_HEADINGS = (
-    "table", "quantity", "unit", "against", "x", "law", "value", "reference", "difference",
 )  # fmt: skip
 
 
@@ -120,77 +113,6 @@ def _cost(comparison: Comparison) -> str:
         ratio = number(run.run_time_per_impact / first, digits=2)
         rows.append([run.name, time(run.run_time_per_impact), ratio, followed])
     return table(["cost", "run time an impact", "relative", "impacts followed"], rows)
-
-
-def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]:
-    """Return the comparison as plain numbers, lists and text."""
-    return {
-        "laws": {
-            run.name: {
-                "versions": dict(run.result.laws),
-                "run_time_per_impact_s": run.run_time_per_impact,
-                "status": plain(np.array(run.result.status, dtype=object))
-                if comparison.scene.shape
-                else plain(run.result.status),
-                "values": {name: _list(comparison.values(name, run.name)) for name in quantities},
-                "differences": {
-                    name: _list(comparison.difference(name, run.name)) for name in quantities
-                },
-            }
-            for run in comparison.runs
-        },
-        "varied": {name: _list(values) for name, values in comparison.varied.items()},
-        "measured": [
-            {
-                "quantity": agreement.measured.quantity,
-                "unit": QUANTITIES[agreement.measured.quantity].unit,
-                "against": agreement.measured.against,
-                "source": agreement.measured.source,
-                "x": _list(agreement.measured.x),
-                "values": _list(agreement.measured.values),
-                "error": _list(agreement.measured.error),
-                "laws": {
-                    law: {
-                        "values": _list(values),
-                        "rms": plain(agreement.rms(law)),
-                        "largest": plain(agreement.largest(law)),
-                    }
-                    for law, values in agreement.predicted.items()
-                },
-            }
-            for agreement in comparison.agreements
-        ],
-    }
-
-
-def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO) -> None:
-    """Write one row a value; the reference is the first law, or the measured value."""
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(CSV_HEADINGS)
-    for name in quantities:
-        unit = QUANTITIES[name].unit
-        against, x = next(iter(comparison.varied.items()), ("", np.nan))
-        for law in comparison.names:
-            values, apart = comparison.values(name, law), comparison.difference(name, law)
-            for row in _rows(x, values, values - apart, apart):
-                writer.writerow(["scene", name, unit, against, row[0], law, *row[1:]])
-    for agreement in comparison.agreements:
-        measured = agreement.measured
-        unit = QUANTITIES[measured.quantity].unit
-        for law, values in agreement.predicted.items():
-            columns = (measured.x, values, measured.values, agreement.difference(law))
-            for row in _rows(*columns):
-                start = ["measured", measured.quantity, unit, measured.against]
-                writer.writerow([*start, row[0], law, *row[1:]])
-
-
-def _rows(*columns: Any) -> Iterator[list[Any]]:
-    for row in np.broadcast(*columns):
-        yield ["" if np.isnan(item) else float(item) for item in row]
-
-
-def _list(values: Any) -> Any:
-    return plain(np.asarray(values)) if np.ndim(values) else plain(float(values))
 
 
 def _with_unit(entry: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 
@@ -12,7 +13,7 @@ import contactlab
 from contactlab.cli import main as module
 from contactlab.cli import run as run_command
 
-COMMAND = [sys.executable, "-m", "contactlab.cli.main"]
+COMMAND = [sys.executable, "-m", "contactlab"]
 PSI = ["run", "--psi1", "6", "--chi", "1", "--tangential", "coulomb"]
 
 
@@ -80,6 +81,28 @@ def test_reader_that_has_gone_is_no_error():
     os.close(write)
     assert done.returncode == module.BROKEN_PIPE
     assert done.stderr == b""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_interrupted_sweep_reports_what_is_done(tmp_path):
+    path = tmp_path / "long.toml"
+    path.write_text(
+        "[nondimensional]\nchi = 1\n[sweep]\npsi1 = {start = 0, stop = 3, count = 30000}\n"
+        "[simulation]\ntangential = 'coulomb'\nintegrator = 'symplectic'\n",
+        encoding="utf-8",
+    )
+    command = [*COMMAND, "run", path, "--progress", "--out", tmp_path / "part.npz", "--json"]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as running:
+        assert running.stderr.readline().startswith("impacts: 1000/")
+        running.send_signal(signal.SIGINT)
+        out, err = running.communicate()
+    assert running.returncode == module.INTERRUPTED
+    assert "interrupted" in err.splitlines()[-1]
+    assert '"SUCCESS"' in out
+    assert '"INTERRUPTED"' in out
+    assert (tmp_path / "part.npz").exists()
 
 
 def test_installed_command_runs():
