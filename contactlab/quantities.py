@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from contactlab.checks import refuse
 from contactlab.export import COLUMNS
 from contactlab.result import ImpactResult
+from contactlab.scene import Scene
 
 
 class Quantity(NamedTuple):
@@ -20,6 +21,10 @@ class Quantity(NamedTuple):
     name: str
     unit: str
     read: Callable[[ImpactResult], Any]
+
+    def unit_in(self, scene: Scene) -> str:
+        """Return the unit that its numbers have in ``scene``: the paper's own have only angles."""
+        return "1" if scene.sphere is None and self.unit not in ("rad", "deg") else self.unit
 
     def of(self, result: ImpactResult) -> NDArray[np.float64]:
         """Return it as an array of the scene's shape; NaN where it is not defined."""

@@ -63,7 +63,7 @@ def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO)
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(CSV_HEADINGS)
     for name in quantities:
-        unit = QUANTITIES[name].unit
+        unit = QUANTITIES[name].unit_in(comparison.scene)
         against, x = next(iter(comparison.varied.items()), ("", np.nan))
         for law in comparison.names:
             values, apart = comparison.values(name, law), comparison.difference(name, law)

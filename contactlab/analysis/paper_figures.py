@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import attrs
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.closed_forms import rigid_body_rebound
 from contactlab.history import History
+from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.simulation import Simulation
 
@@ -77,7 +78,7 @@ def figure_2(simulation: Simulation) -> FigureData:
     psi1 = FIGURE_2_PSI1
     result = simulation.sweep(Scene.nondimensional(psi1=psi1, chi=SOLID_CHI)).check()
     rigid = np.asarray(rigid_body_rebound(psi1, SOLID_CHI))
-    return _reflexion(2, "psi1", psi1, np.asarray(result.psi2), rigid)
+    return _reflexion(2, "psi1", psi1, result, rigid)
 
 
 def figure_3(simulation: Simulation) -> FigureData:
@@ -94,7 +95,7 @@ def figure_4(simulation: Simulation) -> FigureData:
     chi = FIGURE_4_CHI
     result = simulation.sweep(Scene.nondimensional(psi1=FIXED_PSI1, chi=chi)).check()
     rigid = np.asarray(rigid_body_rebound(FIXED_PSI1, chi))
-    return _reflexion(4, "chi", chi, np.asarray(result.psi2), rigid)
+    return _reflexion(4, "chi", chi, result, rigid)
 
 
 FIGURES: Mapping[int, Callable[[Simulation], FigureData]] = {
@@ -138,7 +139,12 @@ def _forces(
     )
 
 
-def _reflexion(number: int, x: str, values: Array, *answers: Array) -> FigureData:
-    names: Sequence[str] = ("elastic", "rigid body")
-    curves = [Curve(name, np.nan, values, y) for name, y in zip(names, answers, strict=True)]
-    return FigureData(number=number, x=x, y="psi2", parameter="", curves=tuple(curves))
+def _reflexion(
+    number: int, x: str, values: Array, result: ImpactResult, rigid: Array
+) -> FigureData:
+    law = result.laws["tangential"].partition(" ")[0]
+    curves = (
+        Curve(law, np.nan, values, np.asarray(result.psi2)),
+        Curve("rigid-body theory", np.nan, values, rigid),
+    )
+    return FigureData(number=number, x=x, y="psi2", parameter="", curves=curves)

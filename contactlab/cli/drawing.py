@@ -27,8 +27,12 @@ def draw_comparison(path: Path, comparison: Comparison, quantities: Sequence[str
             laws_over_sweep(upper, comparison, name, agreement)
             differences(lower, comparison, name, agreement)
             upper.set_xlabel("")
-            if column:
+            if column and _labels(upper) == _labels(axes[0, 0]):
                 upper.get_legend().remove()  # the same laws in the same colours
         axes[0, 0].figure.align_ylabels()
 
     save(path, draw, rows=2, columns=len(panels), heights=(2.4, 1.0))
+
+
+def _labels(axes: Any) -> list[str]:
+    return axes.get_legend_handles_labels()[1]  # type: ignore[no-any-return]

@@ -92,8 +92,7 @@ def _sweep(result: ImpactResult, varied: Mapping[str, Any]) -> list[str]:
     for name in SWEEP_COLUMNS:
         values = QUANTITIES[name].of(result)
         if name not in varied and not np.isnan(values).all():
-            unit = "1" if result.scene.sphere is None else QUANTITIES[name].unit
-            columns[_heading(name, unit)] = values
+            columns[_heading(name, QUANTITIES[name].unit_in(result.scene))] = values
     statuses = np.array(result.status, dtype=object)
     rows = [
         [*(float(values[index]) for values in columns.values()), statuses[index].name]

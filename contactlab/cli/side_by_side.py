@@ -61,7 +61,7 @@ def _one_impact(comparison: Comparison, quantities: Sequence[str]) -> str:
     for name in quantities:
         values = [float(comparison.values(name, law)) for law in comparison.names]
         apart = [float(comparison.difference(name, law)) for law in others]
-        rows.append([name, *values, *apart, QUANTITIES[name].unit])
+        rows.append([name, *values, *apart, QUANTITIES[name].unit_in(comparison.scene)])
     return table(headings, rows)
 
 
@@ -72,7 +72,7 @@ def _over_sweep(comparison: Comparison, quantity: str) -> str:
     columns = [np.asarray(values) for values in comparison.varied.values()]
     columns += [comparison.values(quantity, law) for law in comparison.names]
     columns += [comparison.difference(quantity, law) for law in others]
-    unit = QUANTITIES[quantity].unit
+    unit = QUANTITIES[quantity].unit_in(comparison.scene)
     heading = f"{quantity} ({unit})" if unit != "1" else quantity
     return f"{heading}:\n{table(headings, np.transpose(columns).tolist())}"
 

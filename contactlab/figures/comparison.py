@@ -38,7 +38,7 @@ def laws_over_sweep(
             **POINTS,
         )
     axes.set_xlabel(label(varied, entry_unit(varied)))
-    axes.set_ylabel(label(quantity, QUANTITIES[quantity].unit))
+    axes.set_ylabel(label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
     axes.legend()
     return axes
 
@@ -66,7 +66,7 @@ def differences(
             axes.plot(x, comparison.difference(quantity, name), **style)
     axes.set_xlabel(label(varied, entry_unit(varied)))
     other = "measured" if agreement is not None else names[0]
-    axes.set_ylabel(label(f"law $-$ {other}", QUANTITIES[quantity].unit))
+    axes.set_ylabel(label(f"law $-$ {other}", QUANTITIES[quantity].unit_in(comparison.scene)))
     return axes
 
 

@@ -12,6 +12,7 @@ from contactlab.analysis.paper_figures import FIXED_PSI1, SOLID_CHI, FigureData,
 from contactlab.figures.style import (
     LAW_COLOURS,
     QUIET,
+    friction_limit,
     label,
     law_style,
     ordered_colours,
@@ -42,7 +43,7 @@ def figure_2(axes: Axes, data: FigureData) -> Axes:
     words[0.5 * (full_slip + data.curves[0].x[-1])] = "slips\nthroughout"
     for place, text in words.items():
         axes.text(place, top, text, ha="center", va="top", color="#555555", fontsize=9.5)
-    axes.legend(loc="upper left", bbox_to_anchor=(0.17, 0.88))
+    axes.legend(title=rf"$\chi$ = {SOLID_CHI:.4f}", loc="upper left", bbox_to_anchor=(0.17, 0.9))
     return axes
 
 
@@ -90,10 +91,7 @@ def _forces(
 ) -> None:
     normal, *tangential = data.curves
     zero_line(axes)
-    for sign, text in ((1.0, r"$\pm P/P_{\max}$"), (-1.0, None)):
-        axes.plot(
-            normal.x, sign * normal.y, color="black", linestyle="--", linewidth=1.1, label=text
-        )
+    friction_limit(axes, normal.x, normal.y)
     for curve, colour in zip(tangential, ordered_colours(len(tangential)), strict=True):
         axes.plot(curve.x, curve.y, color=colour, label=name(curve.parameter))
     axes.set_xlabel(r"time over duration of contact $t/t_{\mathrm{c}}$")
@@ -105,6 +103,6 @@ def _forces(
 def _reflexion(axes: Axes, data: FigureData) -> None:
     zero_line(axes)
     elastic, rigid = data.curves
-    axes.plot(elastic.x, elastic.y, color=LAW_COLOURS[0], label="elastic (this model)")
-    axes.plot(rigid.x, rigid.y, **law_style(1), label="rigid-body theory")
+    axes.plot(elastic.x, elastic.y, color=LAW_COLOURS[0], label=f"{elastic.name} law")
+    axes.plot(rigid.x, rigid.y, **law_style(1), label=rigid.name)
     axes.set_ylabel(label("psi2"))

@@ -91,8 +91,6 @@ def zero_line(axes: Axes) -> None:
 
 def friction_limit(axes: Axes, time: Any, normal_force: Any) -> None:
     """Draw P/P_max and its mirror image: inside them |F| <= mu P."""
-    for sign, text in ((1.0, r"$\pm P/P_{\max}$"), (-1.0, None)):
-        axes.plot(
-            time, sign * normal_force, color="black", linestyle="--", linewidth=0.9, label=text,
-            zorder=4,
-        )  # fmt: skip
+    look: Any = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.9, "zorder": 4}
+    axes.plot(time, normal_force, label=r"$\pm P/P_{\max}$", **look)
+    axes.plot(time, -normal_force, **look)

@@ -44,6 +44,12 @@ def test_tables(run, measured, short_sweep, ball):
     assert "1 of 1" in single
 
 
+def test_a_nondimensional_scene_claims_no_units(run, short_sweep):
+    out = run("compare", short_sweep, *BOTH, "--quantity", "friction_work").out
+    assert "friction_work:" in out
+    assert "(J)" not in out
+
+
 def test_csv_is_tidy(run, measured):
     rows = list(csv.DictReader(io.StringIO(run("compare", measured, *BOTH, "--csv").out)))
     assert {row["table"] for row in rows} == {"scene", "measured"}
