@@ -10,6 +10,9 @@ from contactlab.contracts.normal import (
 )
 from contactlab.contracts.tangential import (
     Increment,
+    Run,
+    RunningTangentialLaw,
+    RunResponse,
     SteppedTangentialLaw,
     TangentialLaw,
     TangentialResponse,
@@ -27,6 +30,9 @@ __all__ = [
     "NormalLaw",
     "Observer",
     "Problem",
+    "Run",
+    "RunResponse",
+    "RunningTangentialLaw",
     "Sample",
     "SteppedTangentialLaw",
     "TangentialLaw",

@@ -83,6 +83,13 @@ class ClosedFormMotion(ABC):
         """
 
     @abstractmethod
+    def phase(self, fraction: Real) -> Real:
+        """Return the phase at which ``fraction`` of the duration has passed, to about 1e-8.
+
+        For steps that are even in time; what they start from is taken exactly from ``at``.
+        """
+
+    @abstractmethod
     def pace(self, phase: Real) -> Real:
         """Return dt/dx at ``phase``, in s."""
 

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from contactlab.contracts.integrator import Problem
 
 
+Array = NDArray[np.float64]
+
+
 class Increment(NamedTuple):
     """One step as a tangential law sees it; every entry broadcasts to the batch shape.
 
@@ -98,6 +101,25 @@ class TangentialLaw(Law):
         return np.zeros(np.broadcast_shapes(np.shape(psi1), np.shape(chi)), dtype=bool)
 
 
+class Run(NamedTuple):
+    """All fixed steps of one impact, arrays of shape (K,); see ``Increment``."""
+
+    force: Array
+    radius: Array
+    drift: Array
+    kick: Array
+    velocity: float
+    mass: float
+
+
+class RunResponse(NamedTuple):
+    """Forces at the K samples of a run (fewer where it stopped), and the friction work."""
+
+    force: Array
+    friction_work: float
+    settled: bool
+
+
 class SteppedTangentialLaw(TangentialLaw):
     """A tangential law that answers to a step: the return mapping of plasticity.
 
@@ -132,3 +154,17 @@ class SteppedTangentialLaw(TangentialLaw):
     def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:  # noqa: ARG002
         """Return named arrays of ``state`` for the history (traction, stuck, ...)."""
         return {}
+
+
+class RunningTangentialLaw(SteppedTangentialLaw):
+    """A stepped law that can also take all steps of one impact at a time, which may be faster.
+
+    Contract
+    --------
+    1. ``run(problem, run)`` gives, to rounding, the forces that ``advance`` gives step by step
+       when velocity falls by force times kick over mass after each step.
+    """
+
+    @abstractmethod
+    def run(self, problem: Problem, run: Run) -> RunResponse:
+        """Return the forces of a whole impact; ``problem`` has the batch shape ()."""

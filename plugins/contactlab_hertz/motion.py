@@ -74,6 +74,14 @@ class HertzMotion(ClosedFormMotion):
         contact = NormalContact(u**3 * self.force_scale, u * self.radius_scale, approach)
         return instant, approach, rate * self.speed, contact
 
+    def phase(self, fraction: Real) -> Real:
+        """Return the phase at ``fraction`` of the duration, by the inverse of ``scaled_time``."""
+        from scipy.special import betaincinv
+
+        half = np.minimum(fraction, 1.0 - np.asarray(fraction))
+        rising = np.arcsin(betaincinv(0.4, 0.5, 2.0 * half) ** 0.2)
+        return np.where(np.asarray(fraction) <= 0.5, rising, np.pi - rising)
+
     def pace(self, phase: Real) -> Real:
         """Return dt/dx at ``phase``, in s."""
         u = np.maximum(np.sin(phase), 0.0)

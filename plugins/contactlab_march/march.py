@@ -15,6 +15,8 @@ from contactlab.contracts import (
     NormalContact,
     Observer,
     Problem,
+    Run,
+    RunningTangentialLaw,
     Sample,
     SteppedTangentialLaw,
 )
@@ -76,6 +78,8 @@ def march(
     that it would swallow the change (theory §8).
     """
     single = not problem.shape
+    if single and observer is None and isinstance(law, RunningTangentialLaw):
+        return march_at_once(problem, law, steps, end)
     initial = problem.slip_velocity
     mass = problem.pair.tangential_mass
     change: Real = 0.0 if single else np.zeros(problem.shape)
@@ -100,13 +104,26 @@ def march(
             middle = velocity - 0.5 * force * step.kick / mass
             observer(_sample(step, middle, force, law, state))
         velocity = initial + change
-        if not np.all(response.settled):
+        if response.settled is not True and not np.all(response.settled):
             status = Status.UNSETTLED
         elif not (math.isfinite(force) if single else np.isfinite(force).all()):
             status = Status.NON_FINITE
         if status is not Status.SUCCESS:
             detail = f"At step {count}, from {type(law).__name__}."
             break
+    return _ended(problem, end, change, work, status, detail, count)
+
+
+def _ended(
+    problem: Problem,
+    end: NormalEnd,
+    change: Real,
+    work: Real,
+    status: Status,
+    detail: str,
+    count: int,
+) -> Motion:
+    """Return the motion, after a last look at how the normal motion ended."""
     if status is Status.SUCCESS and not np.all(np.isfinite(end.rate)):
         status, detail = Status.NON_FINITE, f"From {type(problem.normal).__name__}."
     elif status is Status.SUCCESS and not end.separated:
@@ -116,10 +133,32 @@ def march(
         normal_velocity=_spread(end.rate, problem.shape),
         slip_velocity_change=_spread(change, problem.shape),
         friction_work=_spread(work, problem.shape),
-        status=status if single else np.full(problem.shape, status, dtype=object),
+        status=np.full(problem.shape, status, dtype=object) if problem.shape else status,
         detail=detail,
         counters={"steps": count},
     )
+
+
+def march_at_once(
+    problem: Problem, law: RunningTangentialLaw, steps: Iterable[Step], end: NormalEnd
+) -> Motion:
+    """Follow the tangential motion of one impact with a law that takes all steps at once."""
+    course = list(steps)
+    numbers = np.array([(*step.contact[:2], step.drift, step.kick) for step in course])
+    mass, initial = float(problem.pair.tangential_mass), float(problem.slip_velocity)
+    if not np.isfinite(numbers).all():
+        count = int(np.isfinite(numbers).all(axis=1).argmin())
+        detail = f"At step {count + 1}, from {type(problem.normal).__name__}."
+        return _ended(problem, end, math.nan, math.nan, Status.NON_FINITE, detail, count)
+    response = law.run(problem, Run(*numbers.T, initial, mass))
+    count = len(response.force)
+    change = -float(np.sum(response.force * numbers[:count, 3] / mass))
+    status, detail = Status.SUCCESS, ""
+    if not response.settled:
+        status, detail = Status.UNSETTLED, f"At step {count + 1}, from {type(law).__name__}."
+    elif not math.isfinite(change):
+        status, detail = Status.NON_FINITE, f"From {type(law).__name__}."
+    return _ended(problem, end, change, response.friction_work, status, detail, count)
 
 
 def _sample(

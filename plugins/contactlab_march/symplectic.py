@@ -28,12 +28,10 @@ LONGEST_CONTACT = 10
 class Symplectic(Integrator):
     """Leapfrog: the contact is sampled in the middle of each step.
 
-    Where the normal motion is known in closed form it is taken, and the steps are equal
-    in its phase. Otherwise it is integrated by the same scheme in equal steps of time,
-    and the end of contact is located between samples rather than overshot.
-
-    A kick lasts as long as the sampled normal force needs to give the exact normal
-    impulse of its step, so that gross slip (F = mu P) is exact too.
+    Where the normal motion is known in closed form it is taken; otherwise it is integrated
+    by the same scheme, and the end of contact is located between samples rather than
+    overshot. Steps are even in time: even in the phase of the closed form the error is
+    about 1.6 times as large. A law is told the exact mean normal force of each step.
 
     Parameters
     ----------
@@ -67,19 +65,17 @@ class Symplectic(Integrator):
         motion = problem.normal.motion(problem.pair, problem.normal_speed)
         mass = problem.pair.normal_mass
         column = (-1,) + (1,) * len(problem.shape)
-        ends = np.linspace(0.0, np.pi, self.steps + 1)
-        middles = 0.5 * (ends[1:] + ends[:-1])
-        rates = motion.at(ends.reshape(column))[2]
-        times, approaches, velocities, contacts = motion.at(middles.reshape(column))
-        impulses = mass * (rates[:-1] - rates[1:])  # type: ignore[index]
-        kicks = impulses / contacts.force
-        drifts = np.diff(times, axis=0, prepend=0.0 * times[:1])  # type: ignore[index]
-        columns = [*contacts, drifts, kicks, times, approaches, velocities]
-        end.duration, end.rate = motion.duration, rates[-1]  # type: ignore[index]
+        halves: Any = motion.phase(np.linspace(0.0, 1.0, 2 * self.steps + 1))
+        halves[-1] = np.pi  # exactly, as the inverse is not
+        ends, rates = (motion.at(halves[::2].reshape(column))[entry] for entry in (0, 2))
+        times, approaches, velocities, contacts = motion.at(halves[1::2].reshape(column))
+        kicks = np.diff(ends, axis=0)
+        means = -mass * np.diff(rates, axis=0) / kicks
+        drifts = np.diff(times, axis=0, prepend=0.0 * np.asarray(times)[:1])
+        columns = [*contacts, drifts, kicks, means, times, approaches, velocities]
+        end.duration, end.rate = motion.duration, np.asarray(rates)[-1]
         for row in _rows(columns, self.steps):
-            force, radius, overlap, drift, kick, time, approach, rate = row
-            contact = NormalContact(force, radius, overlap)
-            yield Step(contact, drift, kick, force, time, approach, rate)
+            yield Step(NormalContact(*row[:3]), *row[3:])
 
     def _through(self, problem: Problem, end: NormalEnd) -> Iterator[Step]:
         """Yield steps of a motion integrated here; locate the end between two samples."""

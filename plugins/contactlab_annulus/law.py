@@ -1,0 +1,151 @@
+"""The annulus law: partial slip in rings, each of them stuck or slipping."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, NamedTuple
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.checks import Mask, Real, count
+from contactlab.closed_forms import slips_throughout_elastic
+from contactlab.contracts import (
+    Increment,
+    NormalContact,
+    Problem,
+    Run,
+    RunningTangentialLaw,
+    RunResponse,
+    TangentialResponse,
+)
+from contactlab_annulus import blocks, many, one
+from contactlab_annulus.tables import tables
+
+
+class Scales(NamedTuple):
+    """What turns SI into the paper's variables and back; floats, or arrays of the batch shape."""
+
+    radius: Real  # a, m
+    displacement: Real  # kappa R / (mu a²), 1/m: times u_x gives xi, eq. (27)
+    force: Real  # mu P_max, N
+    normal_force: Real  # P_max of a Hertz contact of radius a, N
+    work: Real  # mu P_max mu a²/(kappa R), J
+    traction: Real  # mu times the pressure unit 2 E* a/(pi R), Pa, eq. (3)
+
+
+class State(NamedTuple):
+    """Memory of a contact, and its scales. A value: never changed once made."""
+
+    scales: Scales
+    memory: Any  # one.Memory or many.Memory
+
+
+@attrs.frozen(kw_only=True)
+class Annulus(RunningTangentialLaw):
+    """Mindlin's partial slip by the paper's concentric annuli.
+
+    Each step solves (33) where the surfaces stick and (34) where they slip, tests the
+    division into stick and slip by (36) and (37), and repeats with all violators flipped
+    until the tests pass. Annuli outside the contact are left out (16).
+
+    Parameters
+    ----------
+    annuli : int
+        n, the number of annuli across the largest contact radius. The error is about 1/n.
+
+    References
+    ----------
+    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-4,
+    eqs (1), (13)-(18), (22), non-dimensional as (33)-(37).
+    """
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
+    needs: ClassVar[frozenset[str]] = frozenset({"steps", "hertzian_pressure"})
+
+    annuli: int = count(default=50, most=2000)
+
+    def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
+        """Return True where (44) and (46) say so."""
+        return slips_throughout_elastic(psi1, chi)
+
+    def stiffness(self, problem: Problem) -> Real:
+        """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""
+        return 2.0 * problem.pair.effective_shear_modulus * problem.maximum_radius
+
+    def start(self, problem: Problem) -> State:
+        """Return a contact without traction."""
+        pair, radius, friction = problem.pair, problem.maximum_radius, problem.friction_coefficient
+        peak = (4.0 / 3.0) * pair.effective_modulus * radius**3 / pair.radius
+        slip = friction * radius**2 / (pair.stiffness_ratio * pair.radius)
+        scales = Scales(
+            radius,
+            (friction > 0.0) / (slip + (friction == 0.0)),  # no friction: no traction either
+            friction * peak,
+            peak,
+            friction * peak * slip,
+            friction * 2.0 * pair.effective_modulus * radius / (np.pi * pair.radius),
+        )
+        single = not problem.shape
+        memory = one.start(self.annuli) if single else many.start(self.annuli, problem.shape)
+        return State(scales, memory)
+
+    def advance(
+        self,
+        state: State,
+        increment: Increment,
+        before: NormalContact,  # noqa: ARG002
+        after: NormalContact,
+    ) -> tuple[TangentialResponse, State]:
+        """Return the force (22) after the step."""
+        scales, memory = state
+        radius = after.radius / scales.radius
+        # 1 for a Hertz contact; another law may carry more or less force at the same radius.
+        cube = scales.normal_force * radius**3
+        pressure = after.force / (cube + (cube == 0.0))
+        solve = one.advance if isinstance(memory, one.Memory) else many.advance
+        slip = increment.displacement * scales.displacement
+        force, work, settled, memory = solve(tables(self.annuli), memory, slip, radius, pressure)
+        response = TangentialResponse(force * scales.force, work * scales.work, settled)
+        return response, State(scales, memory)
+
+    def run(self, problem: Problem, run: Run) -> RunResponse:
+        """Return the forces (22) of a whole impact, found in blocks of steps."""
+        scales = self.start(problem).scales
+        radius = run.radius / scales.radius
+        cube = scales.normal_force * radius**3
+        course = blocks.Course(
+            radius=radius,
+            pressure=run.force / np.where(cube == 0.0, 1.0, cube),
+            drift=run.drift * scales.displacement,
+            kick=run.kick * scales.force / run.mass,
+        )
+        runner = blocks.Runner(tables(self.annuli), course, run.velocity)
+        settled = runner.run()
+        work = runner.friction_work() * float(scales.work)
+        return RunResponse(runner.forces[: runner.at] * scales.force, work, settled)
+
+    def fields(self, state: State) -> Mapping[str, NDArray[Any]]:
+        """Return radius (m), traction (Pa), displacement (m), stuck and slipping of every annulus.
+
+        ``slipping`` is the sign of the traction of a slipping annulus, 0 elsewhere.
+        """
+        scales, memory = state
+        table = tables(self.annuli)
+        stuck, slipping = memory.division()
+
+        def column(value: Real) -> Any:
+            return np.asarray(value)[..., None]
+
+        xi = memory.traction @ table.compliance.T
+        with np.errstate(divide="ignore"):
+            length = np.where(np.asarray(scales.displacement) > 0, 1.0 / scales.displacement, 0.0)
+        return {
+            "radius": column(scales.radius) * np.sqrt(table.radius_squared),
+            "traction": column(scales.traction) * memory.traction,
+            "displacement": column(length) * xi,
+            "stuck": stuck,
+            "slipping": slipping,
+        }

@@ -1,0 +1,106 @@
+"""The contact problem of one impact, one step at a time."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab_annulus.tables import Array, Tables, response
+
+#: Passes of the division into stick and slip; measured never above 14 (theory §6).
+MOST_PASSES = 200
+
+
+class Memory(NamedTuple):
+    """What the contact remembers, and the last division into stick and slip."""
+
+    total: float  # D, slip displacement so far
+    lag: Array  # g_j = xi_j - D, shape (n,): constant while an annulus sticks
+    traction: Array  # q_j, shape (n,), zero outside the contact
+    signs: Array  # of the traction of those that slip, 0 for those that stick
+    reach: int  # annuli in contact
+
+    def division(self) -> tuple[NDArray[np.bool_], NDArray[np.int8]]:
+        """Return which annuli are stuck, and the sign of those that slip."""
+        inside = np.arange(len(self.lag)) < self.reach
+        return inside & (self.signs == 0.0), (inside * self.signs).astype(np.int8)
+
+
+def start(annuli: int) -> Memory:
+    """Return a contact without traction."""
+    return Memory(0.0, np.zeros(annuli), np.zeros(annuli), np.zeros(annuli), 0)
+
+
+def advance(
+    table: Tables, memory: Memory, displacement: float, radius: float, pressure: float
+) -> tuple[float, float, bool, Memory]:
+    """Return force, friction work, whether a division was found, and the new memory.
+
+    Parameters
+    ----------
+    displacement : float
+        Slip displacement of the step, 2.9432 psi dtau of eq. (33).
+    radius : float
+        beta at the end of the step.
+    pressure : float
+        Ratio of the pressure to that of a Hertz contact of this radius.
+    """
+    total, square = memory.total + displacement, radius * radius
+    if not math.isfinite(total * square * pressure):
+        return math.nan, math.nan, True, memory
+    limit = pressure * np.sqrt(np.maximum(square - table.radius_squared, 0.0))
+    inside = limit > 0.0
+    reach, lag = int(np.count_nonzero(inside)), memory.lag
+    signs = extended(memory.signs, memory.reach, reach)
+    seen: set[bytes] = set()
+    for _ in range(MOST_PASSES):
+        sticks = inside & (signs == 0.0)
+        given = np.where(sticks, lag, signs * limit)
+        force, found = respond(table, sticks, total, given)
+        over = sticks & (np.abs(found) > limit)  # (36) fails
+        back = inside & ~sticks & (signs * (lag - found) <= 0.0)  # (37) fails
+        key = signs.tobytes()
+        if not (over | back).any():
+            traction, new_lag = np.where(sticks, found, given), np.where(sticks, lag, found)
+            mean = 0.5 * table.weight * (traction + memory.traction)
+            work = float(mean.dot(lag - new_lag))
+            return force, work, True, Memory(total, new_lag, traction, signs, reach)
+        if key in seen:
+            break
+        seen.add(key)
+        signs = np.where(over, np.sign(found), np.where(back, 0.0, signs))
+    return math.nan, math.nan, False, memory
+
+
+def extended(signs: Array, reach_before: int, reach: int) -> Array:
+    """Return a first guess of the division: as before, newcomers as the outermost annulus."""
+    if reach <= reach_before or reach_before == 0:
+        return signs
+    guess = signs.copy()
+    guess[reach_before:reach] = signs[reach_before - 1]
+    return guess
+
+
+def respond(
+    table: Tables, sticks: NDArray[np.bool_], total: float, given: Array
+) -> tuple[float, Array]:
+    """Return the force, and tractions where it sticks, lags where not.
+
+    ``given`` holds lags where it sticks and tractions where not; see ``tables.exchange``.
+    """
+    if table.responses:
+        drive = np.concatenate(([total], given))
+        found = drive.dot(response(len(sticks), sticks.tobytes()))
+        return found.item(0), found[1:]
+    traction = np.where(sticks, 0.0, given)
+    rest = total + given[sticks] - table.compliance[sticks] @ traction
+    c = len(rest)
+    if sticks[:c].all():
+        traction[:c] = table.upper_inverse[:c, :c] @ (table.lower_inverse[:c, :c] @ rest)
+    else:
+        traction[sticks] = np.linalg.solve(table.compliance[np.ix_(sticks, sticks)], rest)
+    lags = table.compliance @ traction - total
+    return float(table.weight @ traction), np.where(sticks, traction, lags)

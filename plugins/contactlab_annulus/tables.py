@@ -1,0 +1,141 @@
+"""Matrices of the annulus method that depend on the number of annuli alone.
+
+The unknowns are the tractions q_j in the middles of the annuli, in units in which the
+Coulomb limit of eq. (34) is sqrt(beta² - r_j²), and not the coefficients phi_i of eq. (1):
+q = S phi with S upper triangular. The displacement of eq. (33) is then xi = B q with
+B = A S^-1 / 2, everywhere and always, the free surface outside the contact included. B has
+condition 3 n, the mixed matrix in phi n^2.5 (theory §6).
+
+Memory is the lag of each place behind the bodies, g_j = xi_j - D with D the slip displacement
+so far: while an annulus sticks its lag is constant, and (33) says no more than that.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: Above this the responses of all leading divisions (8 n³ bytes: 8 MB at 100) are not kept.
+LARGEST_TABLE = 100
+
+
+class Tables(NamedTuple):
+    """Read-only arrays for ``n`` annuli."""
+
+    radius_squared: Array  # r_j², shape (n,)
+    radius_list: list[float]  # the same as floats, for bisect
+    weight: Array  # F^ = weight . q, eq. (22), shape (n,)
+    compliance: Array  # B, shape (n, n)
+    lower_inverse: Array  # L^-1 of B = L U, shape (n, n)
+    upper_inverse: Array  # U^-1, shape (n, n)
+    grip: Array  # row m: change of q for unit displacement with 1..m stuck, shape (n + 1, n)
+    responses: list[Array]  # entry c: ``response`` with annuli 1..c stuck; empty for large n
+
+
+def influence(annuli: int) -> Array:
+    """Return A of eq. (14), places j in rows and distributions i in columns.
+
+    The misprint in the second branch is corrected: it holds for j = i+1 .. n.
+    """
+    i = np.arange(1, annuli + 1)[None, :]
+    place = np.arange(1, annuli + 1)[:, None] - 0.5
+    ratio = np.minimum(i / place, 1.0)  # inside, arcsin 1 = pi/2 gives the first branch
+    root = np.sqrt(np.maximum(place**2 - i**2, 0.0))
+    return np.asarray(((2 * i**2 - place**2) * np.arcsin(ratio) / i + root) / annuli)
+
+
+def traction_shape(annuli: int) -> Array:
+    """Return S of eq. (34): q = S phi, upper triangular."""
+    i = np.arange(1, annuli + 1)[None, :]
+    place = np.arange(1, annuli + 1)[:, None] - 0.5
+    return np.asarray(0.5 * np.pi * np.sqrt(np.maximum(1.0 - (place / i) ** 2, 0.0)))
+
+
+def factors(matrix: Array) -> tuple[Array, Array]:
+    """Return L and U of ``matrix`` without pivoting.
+
+    For B, n = 1 to 1000, no multiplier exceeds 1: partial pivoting would choose this order.
+    Leading blocks of L^-1 and U^-1 invert the leading blocks of B, so that one
+    factorisation serves every number of stuck annuli.
+    """
+    size = len(matrix)
+    lower, upper = np.eye(size), matrix.copy()
+    for k in range(size - 1):
+        lower[k + 1 :, k] = upper[k + 1 :, k] / upper[k, k]
+        upper[k + 1 :, k:] -= np.multiply.outer(lower[k + 1 :, k], upper[k, k:])
+    return lower, np.triu(upper)
+
+
+def exchange(response: Array, annulus: int) -> Array:
+    """Return the response after ``annulus`` (from 0) went from slip to stick or back.
+
+    A response M takes x to x M. In: D in place 0, then for each annulus its lag where it
+    sticks and its traction where it slips. Out: the force in place 0, then traction where
+    it sticks and lag where it slips. Exchanging one unknown for the other is a
+    principal pivot, so that nothing is ever solved anew.
+    """
+    k = annulus + 1
+    pivot = response[k, k]
+    row, column = response[k] / pivot, response[:, k].copy()
+    result = response - np.multiply.outer(column, row)
+    result[k] = row
+    result[:, k] = column / -pivot
+    result[k, k] = 1.0 / pivot
+    return np.asarray(result)
+
+
+@lru_cache(maxsize=8)
+def tables(annuli: int) -> Tables:
+    """Return the tables for ``annuli`` annuli, made once."""
+    inverse_shape = np.linalg.inv(traction_shape(annuli))
+    ring = 0.5 * np.pi * (np.arange(1, annuli + 1) / annuli) ** 2
+    weight = ring @ inverse_shape
+    compliance = 0.5 * influence(annuli) @ inverse_shape
+    lower, upper = factors(compliance)
+    responses = []
+    if annuli <= LARGEST_TABLE:
+        slipping = np.zeros((annuli + 1, annuli + 1))
+        slipping[0, 1:] = -1.0  # the lag of a surface that carries no traction: 0 - D
+        slipping[1:, 0] = weight
+        slipping[1:, 1:] = compliance.T
+        responses.append(slipping)
+        for stuck in range(annuli):
+            responses.append(exchange(responses[stuck], stuck))
+    radius_squared = ((np.arange(annuli) + 0.5) / annuli) ** 2
+    lower_inverse, upper_inverse = np.tril(np.linalg.inv(lower)), np.triu(np.linalg.inv(upper))
+    grip = np.zeros((annuli + 1, annuli))
+    np.cumsum(upper_inverse.T * lower_inverse.sum(axis=1)[:, None], axis=0, out=grip[1:])
+    made = Tables(
+        radius_squared,
+        radius_squared.tolist(),
+        weight,
+        compliance,
+        lower_inverse,
+        upper_inverse,
+        grip,
+        responses,
+    )
+    for array in [*made[:1], *made[2:-1], *responses]:
+        array.flags.writeable = False  # type: ignore[union-attr]
+    return made
+
+
+@lru_cache(maxsize=512)
+def response(annuli: int, sticks: bytes) -> Array:
+    """Return the response of any division; ``sticks`` holds a boolean an annulus.
+
+    Found from the nearest division with leading annuli stuck by one exchange an annulus, and
+    remembered (20 kB each at 50 annuli): divisions recur from step to step and impact to impact.
+    """
+    stuck = np.frombuffer(sticks, dtype=bool)
+    before = np.concatenate([[0], np.cumsum(stuck)])
+    nearest = int((np.arange(annuli + 1) - 2 * before).argmin())
+    found = tables(annuli).responses[nearest]
+    for annulus in np.flatnonzero(stuck != (np.arange(annuli) < nearest)):
+        found = exchange(found, int(annulus))
+    return found
