@@ -24,8 +24,8 @@ SCRIPTS = {
 }
 
 
-def python(*arguments, folder, path=""):
-    environment = {**os.environ, "PYTHONPATH": str(path), "PYTHONWARNINGS": "error"}
+def python(*arguments, folder, path="", warnings="error"):
+    environment = {**os.environ, "PYTHONPATH": str(path), "PYTHONWARNINGS": warnings}
     return subprocess.run(
         [sys.executable, *map(str, arguments)],
         cwd=folder,
@@ -105,7 +105,7 @@ def test_third_party_plugin_installs_with_pip(tmp_path):
     """Needs a package index for the build back end."""
     target = tmp_path / "site"
     install = ("-m", "pip", "install", "-q", "--no-deps", "--target", target, PLUGIN)
-    done = python("-W", "ignore", *install, folder=tmp_path)
+    done = python(*install, folder=tmp_path, warnings="ignore")
     assert done.returncode == 0, done.stderr
     shown = python("-m", "contactlab", "plugins", "list", folder=tmp_path, path=target)
     assert "tangential.cundall" in shown.stdout

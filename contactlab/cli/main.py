@@ -57,6 +57,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
             traceback.print_exc()
         print(f"contactlab {parsed.command}: error: {_one_line(error)}", file=sys.stderr)
         return BAD_INPUT if isinstance(error, ValueError) else FAILED
+    except OverflowError as error:  # numbers that pass every rule and still cannot be squared
+        print(
+            f"contactlab {parsed.command}: error: a number is too large ({error})", file=sys.stderr
+        )
+        return BAD_INPUT
     return status
 
 

@@ -117,6 +117,7 @@ def test_history_file(run, tmp_path):
         (("--psi1", "one", "--chi", "1"), "not a number"),
         (("--psi1", "1", "--chi", "-1"), "chi = -1.0: must be positive"),
         (("--psi1", "1", "--chi", "0"), "positive"),
+        (("--psi1", "1e300", "--chi", "1"), "too large"),
         (("nowhere.toml",), "no such file"),
         ((*PSI, "--tangential", "columb"), "did you mean 'tangential.coulomb'"),
         ((*PSI, "--normal", "herz"), "did you mean 'normal.hertz'"),
