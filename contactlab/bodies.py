@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import attrs
 import numpy as np
@@ -72,9 +73,8 @@ class Material:
             shear_modulus = young / (2.0 * (1.0 + ratio))
         if density is not None:
             density = real("density", density, rule=POSITIVE, remedy="give it in kg/m³")
-        self.__attrs_init__(  # type: ignore[attr-defined]
-            shear_modulus=shear_modulus, poisson_ratio=ratio, density=density
-        )
+        shear = real("shear_modulus", shear_modulus, rule=POSITIVE, remedy="give it in Pa")
+        self.__attrs_init__(shear_modulus=shear, poisson_ratio=ratio, density=density)
 
     @property
     def young_modulus(self) -> Real:
@@ -85,6 +85,10 @@ class Material:
 def _is_material(_: object, attribute: attrs.Attribute[Material], value: object) -> None:
     if not isinstance(value, Material):
         raise refuse(attribute.name, value, "must be a Material", "make one: Material(...)")
+
+
+def _material() -> Any:
+    return attrs.field(validator=_is_material)
 
 
 def _mass_or_none(value: object) -> Real | None:
@@ -114,10 +118,10 @@ class Sphere:
     """
 
     radius: Real = quantity("m", rule=POSITIVE)
-    material: Material = attrs.field(validator=_is_material)
+    material: Material = _material()
     mass: Real = attrs.field(
         default=None,
-        converter=_mass_or_none,  # type: ignore[misc]
+        converter=_mass_or_none,
         kw_only=True,
         metadata={"unit": "kg"},
     )
@@ -144,7 +148,7 @@ class Sphere:
 class HalfSpace:
     """An elastic body with a plane surface, so large that it does not move."""
 
-    material: Material = attrs.field(validator=_is_material)
+    material: Material = _material()
 
 
 @attrs.frozen(kw_only=True)

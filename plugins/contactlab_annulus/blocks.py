@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab_annulus import one
 from contactlab_annulus.tables import Array, Tables, response
@@ -91,7 +92,9 @@ class Runner:
         kept, wrong = _first_failure(good)
         here = slice(at + 1, at + 1 + kept)
         self.tractions[here] = found[:kept]
-        self.lags[here] = found[:kept] @ table.compliance.T - np.array(totals[1 : kept + 1])[:, None]
+        self.lags[here] = (
+            found[:kept] @ table.compliance.T - np.array(totals[1 : kept + 1])[:, None]
+        )
         self.forces[at : at + kept] = found[:kept] @ table.weight
         self.at, self.total, self.change = at + kept, totals[kept], changes[kept]
         if kept < len(good):
@@ -100,7 +103,7 @@ class Runner:
 
     def _block(self, until: int, reach: int) -> tuple[int, int]:
         """Take steps up to ``until`` with the division as it stands; return how many were kept."""
-        at, table, signs = self.at, self.table, self.signs
+        at, signs = self.at, self.signs
         signs[reach:] = signs[reach - 1] if reach else 0.0
         sticks = signs == 0.0
         sticks[reach:] = False
@@ -113,7 +116,9 @@ class Runner:
         slope, total, change = matrix.item(0), self.total, self.change
         totals, changes = [], []
         knowns = rows.dot(matrix[:, 0]).tolist()
-        for known, drift, kick in zip(knowns, self.drifts[at:until], self.kicks[at:until], strict=True):
+        for known, drift, kick in zip(
+            knowns, self.drifts[at:until], self.kicks[at:until], strict=True
+        ):
             total += (self.velocity + change) * drift
             change -= kick * (slope * total + known)
             totals.append(total)
@@ -155,7 +160,7 @@ class Runner:
         return settled
 
 
-def _first_failure(good: Array) -> tuple[int, Array]:
+def _first_failure(good: NDArray[np.bool_]) -> tuple[int, NDArray[np.bool_]]:
     """Return the number of rows before the first that fails, and where that one fails."""
     index = int(good.argmin())
     row = index // good.shape[1]

@@ -101,12 +101,12 @@ class Annulus(RunningTangentialLaw):
     ) -> tuple[TangentialResponse, State]:
         """Return the force (22) after the step."""
         scales, memory = state
-        radius = after.radius / scales.radius
+        radius: Any = after.radius / scales.radius
         # 1 for a Hertz contact; another law may carry more or less force at the same radius.
         cube = scales.normal_force * radius**3
-        pressure = after.force / (cube + (cube == 0.0))
+        pressure: Any = after.force / (cube + (cube == 0.0))
         solve = one.advance if isinstance(memory, one.Memory) else many.advance
-        slip = increment.displacement * scales.displacement
+        slip: Any = increment.displacement * scales.displacement
         force, work, settled, memory = solve(tables(self.annuli), memory, slip, radius, pressure)
         response = TangentialResponse(force * scales.force, work * scales.work, settled)
         return response, State(scales, memory)

@@ -69,8 +69,14 @@ def advance(
     settled[left] = False
     force = traction @ table.weight
     work = np.einsum("ij,ij->i", 0.5 * table.weight * (traction + old), lag - new_lag)
-    parts = (new_lag, traction, signs, contact)
-    after = Memory(total.reshape(*shape, 1), *(part.reshape(*shape, size) for part in parts))
+    whole = (*shape, size)
+    after = Memory(
+        total=total.reshape(*shape, 1),
+        lag=new_lag.reshape(whole),
+        traction=traction.reshape(whole),
+        signs=signs.reshape(whole),
+        contact=contact.reshape(whole),
+    )
     return force.reshape(shape), work.reshape(shape), settled.reshape(shape), after
 
 

@@ -121,7 +121,7 @@ def tables(annuli: int) -> Tables:
         responses,
     )
     for array in [*made[:1], *made[2:-1], *responses]:
-        array.flags.writeable = False  # type: ignore[union-attr]
+        array.flags.writeable = False
     return made
 
 

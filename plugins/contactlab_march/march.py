@@ -150,7 +150,8 @@ def march_at_once(
         count = int(np.isfinite(numbers).all(axis=1).argmin())
         detail = f"At step {count + 1}, from {type(problem.normal).__name__}."
         return _ended(problem, end, math.nan, math.nan, Status.NON_FINITE, detail, count)
-    response = law.run(problem, Run(*numbers.T, initial, mass))
+    force, radius, drift, kick = numbers.T
+    response = law.run(problem, Run(force, radius, drift, kick, initial, mass))
     count = len(response.force)
     change = -float(np.sum(response.force * numbers[:count, 3] / mass))
     status, detail = Status.SUCCESS, ""

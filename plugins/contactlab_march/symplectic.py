@@ -67,13 +67,14 @@ class Symplectic(Integrator):
         column = (-1,) + (1,) * len(problem.shape)
         halves: Any = motion.phase(np.linspace(0.0, 1.0, 2 * self.steps + 1))
         halves[-1] = np.pi  # exactly, as the inverse is not
-        ends, rates = (motion.at(halves[::2].reshape(column))[entry] for entry in (0, 2))
+        at_ends: Any = motion.at(halves[::2].reshape(column))
+        ends, rates = at_ends[0], at_ends[2]
         times, approaches, velocities, contacts = motion.at(halves[1::2].reshape(column))
         kicks = np.diff(ends, axis=0)
         means = -mass * np.diff(rates, axis=0) / kicks
         drifts = np.diff(times, axis=0, prepend=0.0 * np.asarray(times)[:1])
         columns = [*contacts, drifts, kicks, means, times, approaches, velocities]
-        end.duration, end.rate = motion.duration, np.asarray(rates)[-1]
+        end.duration, end.rate = motion.duration, rates[-1]
         for row in _rows(columns, self.steps):
             yield Step(NormalContact(*row[:3]), *row[3:])
 

@@ -50,7 +50,9 @@ def test_unlike_bodies_add_their_compliances():
     assert pair.effective_shear_modulus == pytest.approx(1 / shear, rel=1e-14)
 
 
-@pytest.mark.parametrize("bad", [0.0, -1.0, math.nan, math.inf, "1", None, True, 1j, [], [[1], [1, 2]]])
+@pytest.mark.parametrize(
+    "bad", [0.0, -1.0, math.nan, math.inf, "1", None, True, 1j, [], [[1], [1, 2]]]
+)
 def test_bad_radius_is_refused_by_name(bad):
     with pytest.raises(ValueError, match="radius"):
         Sphere(bad, STEEL)

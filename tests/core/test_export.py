@@ -47,7 +47,9 @@ def test_history_csv(tmp_path):
     result = SIM.run(SINGLE, history=True)
     write_history_csv(result, tmp_path / "h.csv")
     rows = table(tmp_path / "h.csv")
-    assert [float(row["tangential_force (N)"]) for row in rows] == result.history.tangential_force.tolist()
+    assert [
+        float(row["tangential_force (N)"]) for row in rows
+    ] == result.history.tangential_force.tolist()
     with pytest.raises(ValueError, match="history"):
         write_history_csv(SIM.run(SINGLE), tmp_path / "no.csv")
 

@@ -25,11 +25,20 @@ def test_import_is_lean():
 
 
 def test_listing_the_laws_imports_none():
-    heavy, laws = loaded(PROBE.replace("import contactlab\n", "import contactlab\nassert contactlab.registry.REGISTRY.names()\n"))
+    heavy, laws = loaded(
+        PROBE.replace(
+            "import contactlab\n",
+            "import contactlab\nassert contactlab.registry.REGISTRY.names()\n",
+        )
+    )
     assert heavy == []
     assert laws == []
 
 
 def test_only_the_named_law_is_imported():
-    _, laws = loaded(PROBE.replace("import contactlab\n", "import contactlab\ncontactlab.create('tangential.coulomb')\n"))
+    _, laws = loaded(
+        PROBE.replace(
+            "import contactlab\n", "import contactlab\ncontactlab.create('tangential.coulomb')\n"
+        )
+    )
     assert {name.split(".")[0] for name in laws} == {"contactlab_coulomb"}

@@ -40,7 +40,9 @@ def test_size_duration_and_radius_are_eqs_7_to_9():
 
 def test_size_does_not_underflow_at_tiny_speeds():
     """v1² underflows below 1e-162, C does not (theory §8)."""
-    assert scene(normal_speed=1e-200).size_ratio == pytest.approx(scene().size_ratio * (1e-200 / 1.5) ** 0.4)
+    assert scene(normal_speed=1e-200).size_ratio == pytest.approx(
+        scene().size_ratio * (1e-200 / 1.5) ** 0.4
+    )
 
 
 @pytest.mark.parametrize("psi1", [0.0, 1.2, -3.0, 1e-300, 1e16])
@@ -65,7 +67,7 @@ def test_bad_number_is_refused_by_name(name, bad):
 
 
 def test_normal_speed_must_be_positive():
-    with pytest.raises(ValueError, match="normal_speed = 0.0: must be positive and finite"):
+    with pytest.raises(ValueError, match=r"normal_speed = 0\.0: must be positive and finite"):
         scene(normal_speed=0.0)
 
 

@@ -1,4 +1,4 @@
-"""Section 2.1: the normal contact, eqs (2)-(9), against closed forms, quadrature and other codes."""
+"""Section 2.1: the normal contact, eqs (2)-(9), against closed forms and other codes."""
 
 import math
 
@@ -48,10 +48,14 @@ def test_batch_equals_one_by_one():
     approaches = np.linspace(-1.0, 2.0, 7)
     batch = respond(UNIT, approaches)
     for index, approach in enumerate(approaches.tolist()):
-        assert [entry[index] for entry in batch] == pytest.approx(list(respond(UNIT, approach)), rel=1e-15)
+        assert [entry[index] for entry in batch] == pytest.approx(
+            list(respond(UNIT, approach)), rel=1e-15
+        )
 
 
-@pytest.mark.parametrize("phase", [0.0, 1e-6, 0.1, 1.0, math.pi / 2 - 1e-7, math.pi / 2, 2.0, 3.1, math.pi])
+@pytest.mark.parametrize(
+    "phase", [0.0, 1e-6, 0.1, 1.0, math.pi / 2 - 1e-7, math.pi / 2, 2.0, 3.1, math.pi]
+)
 def test_closed_form_motion_keeps_energy_and_time(phase):
     """Theory §3: V² + zeta^2.5 = 1, and T against quadrature of dT/dx."""
     motion = hertz().motion(UNIT, 1.0)
@@ -98,7 +102,9 @@ def test_papers_steps_find_duration_and_restitution():
         (40e9, 0.35, 1800.0, 0.2, False, 0.1, 7233.0, None, None),
     ],
 )
-def test_against_the_hertz_scalars_of_other_codes(modulus, ratio, density, speed, two, radius, force, approach, time):
+def test_against_the_hertz_scalars_of_other_codes(
+    modulus, ratio, density, speed, two, radius, force, approach, time
+):
     """Chung & Ooi (2011), tests 1 and 2, digitised from plots in other codes: 0.5 %, times 1 %."""
     sphere = Sphere(radius, Material(young_modulus=modulus, poisson_ratio=ratio, density=density))
     scene = Scene(sphere, sphere if two else HalfSpace(RIGID), 0.1, speed)

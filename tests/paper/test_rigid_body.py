@@ -15,7 +15,9 @@ STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 def test_slip_then_rolling_is_exact_whatever_the_step(steps, psi1):
     """psi2 = 0 for |psi1| < 4 chi, else psi1 - 4 chi."""
     chi = 1.4411764706
-    sim = Simulation(tangential="coulomb", integrator=contactlab.create("integrator.symplectic", steps=steps))
+    sim = Simulation(
+        tangential="coulomb", integrator=contactlab.create("integrator.symplectic", steps=steps)
+    )
     result = sim.run(Scene.nondimensional(psi1=psi1, chi=chi)).check()
     assert result.psi2 == pytest.approx(rigid_body_rebound(psi1, chi), abs=1e-14)
 
@@ -37,13 +39,17 @@ def test_rolling_sphere_of_steel_keeps_five_sevenths():
     scene = Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.2, 1.0, 0.5)
     result = Simulation(tangential="coulomb", integrator="symplectic").run(scene)
     assert result.tangential_restitution == pytest.approx(5 / 7, rel=1e-12)
-    assert result.rebound_spin * 0.01 == pytest.approx(-result.rebound_tangential_velocity, rel=1e-12)
+    assert result.rebound_spin * 0.01 == pytest.approx(
+        -result.rebound_tangential_velocity, rel=1e-12
+    )
 
 
 def test_friction_work_is_the_energy_lost():
     for psi1 in (0.5, 2.0, 5.0, 7.0):
-        energy = Simulation(tangential="coulomb", integrator="symplectic").run(
-            Scene.nondimensional(psi1=psi1, chi=1.4411764706)
-        ).energy
+        energy = (
+            Simulation(tangential="coulomb", integrator="symplectic")
+            .run(Scene.nondimensional(psi1=psi1, chi=1.4411764706))
+            .energy
+        )
         assert energy.friction_work > 0
         assert abs(energy.relative_imbalance) < 1e-12

@@ -37,7 +37,9 @@ def install(tmp_path, monkeypatch):
         (tmp_path / f"{module}.py").write_text(source, encoding="utf-8")
         info = tmp_path / f"{distribution}-1.5.dist-info"
         info.mkdir()
-        (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {distribution}\nVersion: 1.5\n")
+        (info / "METADATA").write_text(
+            f"Metadata-Version: 2.1\nName: {distribution}\nVersion: 1.5\n"
+        )
         points = "\n".join(f"{name} = {module}" for name in names)
         (info / "entry_points.txt").write_text(f"[contactlab]\n{points}\n")
         modules.append(module)

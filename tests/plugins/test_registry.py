@@ -12,7 +12,11 @@ MINE = "tangential.mine"
 
 
 def test_every_declared_entry_point_loads(registry):
-    points = [point for point in metadata.entry_points(group="contactlab") if point.dist.name == "contactlab"]
+    points = [
+        point
+        for point in metadata.entry_points(group="contactlab")
+        if point.dist.name == "contactlab"
+    ]
     assert len(points) >= 6
     for point in points:
         law = registry.law_class(point.name)
@@ -24,12 +28,16 @@ def test_create_passes_options_and_checks_them():
     assert contactlab.create("integrator.paper", steps=123).steps == 123
     with pytest.raises(ValueError, match=r"integrator.paper: steps = 0: must be a whole number"):
         contactlab.create("integrator.paper", steps=0)
-    with pytest.raises(ValueError, match=r"step = 3: integrator.paper does not know it; it has steps"):
+    with pytest.raises(
+        ValueError, match=r"step = 3: integrator.paper does not know it; it has steps"
+    ):
         contactlab.create("integrator.paper", step=3)
 
 
 def test_unknown_name_gives_the_nearest_and_the_list():
-    with pytest.raises(ValueError, match=r"did you mean 'tangential.coulomb'.*installed: .*normal.hertz"):
+    with pytest.raises(
+        ValueError, match=r"did you mean 'tangential.coulomb'.*installed: .*normal.hertz"
+    ):
         contactlab.create("tangential.columb")
     with pytest.raises(ValueError, match=r"did you mean 'normal.hertz'"):
         contactlab.create("hertz")
@@ -65,12 +73,30 @@ def test_a_distribution_cannot_take_over_a_built_in_name(registry, install, law_
         ("raise SystemExit(3)", "could not be imported: SystemExit"),
         ("1/0", "could not be imported: ZeroDivisionError"),
         ("", "has no hook"),
-        ("import contactlab\n@contactlab.hookimpl\ndef contactlab_lwa(name): pass", "does not fit the hooks"),
-        ("import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name, more): pass", "does not fit the hooks"),
-        ("import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return 5", "not the class of a law"),
-        ("import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return None", "not the class of a law"),
-        ("import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return int", "not the class of a law"),
-        ("import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): 1/0", "raised when asked"),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_lwa(name): pass",
+            "does not fit the hooks",
+        ),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name, more): pass",
+            "does not fit the hooks",
+        ),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return 5",
+            "not the class of a law",
+        ),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return None",
+            "not the class of a law",
+        ),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return int",
+            "not the class of a law",
+        ),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): 1/0",
+            "raised when asked",
+        ),
     ],
 )
 def test_a_broken_plugin_says_so_and_harms_nobody(registry, install, source, message):
