@@ -140,7 +140,7 @@ class Sphere:
                 "is needed where the material has no density",
                 "give Sphere(mass=...) in kg or Material(density=...) in kg/m³",
             )
-        solid = 4.0 / 3.0 * math.pi * self.radius**3 * density
+        solid = 4.0 / 3.0 * math.pi * self.radius * self.radius * self.radius * density
         object.__setattr__(self, "mass", real("mass", solid, rule=POSITIVE))
 
 

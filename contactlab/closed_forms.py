@@ -22,10 +22,12 @@ def size_ratio(
 ) -> Real:
     """C of eq. (9), general pair: C⁵ = 15 M v1² / (16 E* R³).
 
-    The speed is raised to 2/5 on its own, so that v1² cannot underflow.
+    Each factor is raised to its power on its own, so that v1² and R³ neither underflow
+    nor overflow.
     """
-    stiffness = 15.0 * normal_mass / (16.0 * effective_modulus * radius**3)
-    return stiffness**0.2 * normal_speed**0.4
+    stiffness = 15.0 * normal_mass / (16.0 * effective_modulus)
+    ratio: Real = stiffness**0.2 * normal_speed**0.4 / radius**0.6
+    return ratio
 
 
 def gross_slip_rebound(psi1: Real, chi: Real, restitution: Real = 1.0) -> Real:

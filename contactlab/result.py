@@ -193,7 +193,9 @@ class ImpactResult:
         pair, motion = self.scene.pair, self.motion
         before, change = self.scene.slip_velocity, motion.slip_velocity_change
         speed, after = self.scene.normal_speed, motion.normal_velocity
-        start = 0.5 * pair.normal_mass * speed**2 + 0.5 * pair.tangential_mass * before**2
+        # Products, not powers: a float raised to a power raises OverflowError.
+        start = 0.5 * pair.normal_mass * speed * speed
+        start = start + 0.5 * pair.tangential_mass * before * before
         # The loss is formed from the changes: with a huge v_x, start - end would cancel.
         loss = 0.5 * pair.normal_mass * (speed - after) * (speed + after)
         loss = loss - pair.tangential_mass * change * (before + 0.5 * change)

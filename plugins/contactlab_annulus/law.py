@@ -143,7 +143,9 @@ class Annulus(RunningTangentialLaw):
         with np.errstate(divide="ignore"):
             length = np.where(np.asarray(scales.displacement) > 0, 1.0 / scales.displacement, 0.0)
         return {
-            "radius": column(scales.radius) * np.sqrt(table.radius_squared),
+            "radius": np.broadcast_to(
+                column(scales.radius) * np.sqrt(table.radius_squared), memory.traction.shape
+            ),
             "traction": column(scales.traction) * memory.traction,
             "displacement": column(length) * xi,
             "stuck": stuck,

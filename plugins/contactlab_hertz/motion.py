@@ -52,7 +52,7 @@ class HertzMotion(ClosedFormMotion):
         ratio = size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, speed)
         approach = ratio**2 * pair.radius
         # P_max follows from energy: ½ M v1² = (2/5) P_max C² R.
-        force = 1.25 * pair.normal_mass * speed**2 / approach
+        force = 1.25 * pair.normal_mass * speed * speed / approach
         return cls(speed, approach, force, ratio * pair.radius)
 
     @property

@@ -190,5 +190,5 @@ def refused(problem: Problem, needed: int, steps: int) -> Motion:
         slip_velocity_change=nothing,
         friction_work=nothing,
         status=np.full(problem.shape, status, dtype=object) if problem.shape else status,
-        detail=f"steps = {steps}; this scene needs at least {needed}.",
+        detail=f"steps = {steps}; this scene needs at least {needed:.6g}.",
     )
