@@ -24,13 +24,20 @@ class Law(ABC):
        ``radius``                the normal contact knows its contact radius
        ``hertzian_pressure``     pressure is a hemisphere over that radius, eq. (3)
        ``closed_form_motion``    the normal motion is known in closed form
+       ``elastic_hertz``         that motion is the elastic impact of eqs (2)-(7)
        ``advance``               the tangential law is a return mapping over a step
        ``phases``                the tangential law is a sequence of smooth phases
        ``steps``                 the integrator calls ``advance``
        ``events``                the integrator runs phases and locates their ends
        ========================  ====================================================
 
-    4. Words in the names of parameters; each is checked when the object is made and
+       An integrator needs what it calls, ``advance`` or ``phases``. A law that can be run in
+       one way only needs that way of its integrator (``steps`` or ``events``), so that a
+       refusal can name what would fit; a law that offers both needs neither.
+
+    4. ``resolution`` names the parameter that makes answers finer, if there is one: a count
+       (``steps``, ``annuli``) that grows, or ``tolerance``, which shrinks.
+    5. Words in the names of parameters; each is checked when the object is made and
        refused with a ``ValueError`` that names it.
     """
 
@@ -38,3 +45,4 @@ class Law(ABC):
     api_version: ClassVar[int]
     needs: ClassVar[frozenset[str]] = frozenset()
     offers: ClassVar[frozenset[str]] = frozenset()
+    resolution: ClassVar[str | None] = None

@@ -19,15 +19,17 @@ def save(
     rows: int = 1,
     columns: int = 1,
     heights: tuple[float, ...] = (1.0,),
+    wide: bool = False,
 ) -> None:
-    """Draw on one Axes, or on an array of them, and write a PNG.
+    """Draw on one Axes, or on an array of them, and write a PNG; ``wide`` for a long legend.
 
     The canvas is made here, without pyplot: no backend is chosen for the process, nothing
     stays open, and a display is not needed.
     """
     with styled():
         scale = sum(heights) / max(heights)
-        figure = Figure(figsize=(WIDTH * (0.85 * columns if columns > 1 else 1.0), HEIGHT * scale))
+        width = WIDTH * (0.85 * columns if columns > 1 else 1.6 if wide else 1.0)
+        figure = Figure(figsize=(width, HEIGHT * scale * (1.25 if wide else 1.0)))
         FigureCanvasAgg(figure)
         axes = figure.subplots(
             rows, columns, sharex="col", gridspec_kw={"height_ratios": heights}, squeeze=False

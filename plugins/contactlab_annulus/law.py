@@ -62,6 +62,7 @@ class Annulus(RunningTangentialLaw):
     """
 
     api_version: ClassVar[int] = 1
+    resolution: ClassVar[str | None] = "annuli"
     offers: ClassVar[frozenset[str]] = frozenset({"advance"})
     needs: ClassVar[frozenset[str]] = frozenset({"steps", "hertzian_pressure"})
 

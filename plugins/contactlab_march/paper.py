@@ -37,6 +37,7 @@ class PaperSteps(Integrator):
     """
 
     api_version: ClassVar[int] = 1
+    resolution: ClassVar[str | None] = "steps"
     order: ClassVar[int | None] = 1
     offers: ClassVar[frozenset[str]] = frozenset({"steps"})
     needs: ClassVar[frozenset[str]] = frozenset({"advance"})

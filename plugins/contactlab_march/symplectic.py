@@ -40,6 +40,7 @@ class Symplectic(Integrator):
     """
 
     api_version: ClassVar[int] = 1
+    resolution: ClassVar[str | None] = "steps"
     order: ClassVar[int | None] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"steps"})
     needs: ClassVar[frozenset[str]] = frozenset({"advance"})

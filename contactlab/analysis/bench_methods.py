@@ -1,0 +1,143 @@
+"""What the benchmark runs: methods with their ladders of resolutions, and a set of scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import attrs
+
+from contactlab.bodies import HalfSpace, Material, Sphere
+from contactlab.registry import REGISTRY, PluginError
+from contactlab.scene import Scene
+from contactlab.simulation import Simulation
+
+#: psi1 and chi of the scenes: every regime of theory §2 short of slip throughout, which the
+#: plan answers in closed form whatever the law.
+NONDIMENSIONAL = (
+    (0.1, 1.0), (0.5, 1.0), (1.0, 1.0), (1.2, 1.0), (2.0, 1.0),
+    (0.1, 49 / 34), (0.5, 49 / 34), (1.0, 49 / 34), (1.2, 49 / 34), (2.0, 49 / 34),
+    (3.0, 49 / 34), (4.0, 49 / 34),
+    (0.1, 3.0), (0.5, 3.0), (1.0, 3.0), (1.2, 3.0), (2.0, 3.0), (3.0, 3.0), (4.0, 3.0),
+)  # fmt: skip
+#: Those that a quick benchmark takes.
+QUICK = ((0.5, 49 / 34), (1.2, 49 / 34), (3.0, 49 / 34), (1.2, 3.0))
+
+#: Ladders. A law's own resolution is the number of steps over ``STEPS_PER_PART``.
+STEPS = (25, 50, 100, 200, 400, 800)
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10)
+QUICK_RUNGS = 3
+STEPS_PER_PART = 4
+#: The paper's steps are paired with annuli as in its own proportion, ten to one.
+PAPER_STEPS_PER_PART = 10
+
+
+@attrs.frozen(kw_only=True)
+class Method:
+    """A tangential law under an integrator, with Hertz's normal law.
+
+    Attributes
+    ----------
+    tangential, integrator : str
+        Names without the kind.
+    """
+
+    tangential: str
+    integrator: str
+
+    @property
+    def name(self) -> str:
+        """``law / integrator``."""
+        return f"{self.tangential} / {self.integrator}"
+
+    def order(self) -> int | None:
+        """Return the order that the integrator declares."""
+        declared: int | None = getattr(_law("integrator", self.integrator), "order", None)
+        return declared
+
+    def rungs(self, *, quick: bool = False) -> list[dict[str, dict[str, Any]]]:
+        """Return options of the two laws, coarse to fine."""
+        law = _law("tangential", self.tangential).resolution
+        steps = _law("integrator", self.integrator).resolution
+        values: Sequence[Any] = (None,)
+        if "tolerance" in (law, steps):
+            values = TOLERANCES
+        elif law or steps:
+            values = STEPS
+        if quick and len(values) > 1:
+            values = values[1::2][:QUICK_RUNGS]
+        per_part = PAPER_STEPS_PER_PART if self.integrator == "paper" else STEPS_PER_PART
+        ladder: list[dict[str, dict[str, Any]]] = []
+        for value in values:
+            options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {}}
+            if steps is not None:
+                options["integrator"][steps] = value
+            if law is not None:
+                count = value if isinstance(value, int) else round(value**-0.5)
+                options["tangential"][law] = max(count // per_part, 2)
+            ladder.append(options)
+        return ladder
+
+    def simulation(self, options: dict[str, dict[str, Any]]) -> Simulation:
+        """Return the composition at one rung."""
+        return Simulation(
+            normal="hertz",
+            tangential=REGISTRY.create(f"tangential.{self.tangential}", **options["tangential"]),
+            integrator=REGISTRY.create(f"integrator.{self.integrator}", **options["integrator"]),
+        )
+
+
+def scenes(*, quick: bool = False) -> list[Scene]:
+    """Return the fixed scenes: the paper's two parameters, and one in SI with spin."""
+    pairs = QUICK if quick else NONDIMENSIONAL
+    found = [Scene.nondimensional(psi1=psi1, chi=chi) for psi1, chi in pairs]
+    steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+    return [*found, Scene(Sphere(6.35e-3, steel), HalfSpace(steel), 0.15, 1.93, 0.9, -40.0)]
+
+
+def methods(laws: Iterable[str] | None = None) -> list[Method]:
+    """Return every installed composition that fits, or those of the tangential laws named.
+
+    Laws that make no force are left out, broken plug-ins too unless asked for by name.
+
+    Raises
+    ------
+    ValueError
+        If a law named is not installed, or fits no integrator.
+    """
+    named = None if laws is None else [_short(law) for law in laws]
+    found = []
+    for tangential in named or [_short(name) for name in REGISTRY.names("tangential")]:
+        try:
+            if named is None and getattr(_law("tangential", tangential), "inert", False):
+                continue
+            integrators = [_short(name) for name in REGISTRY.names("integrator")]
+            fitting = [
+                Method(tangential=tangential, integrator=integrator)
+                for integrator in integrators
+                if _fits(tangential, integrator)
+            ]
+        except PluginError:
+            if named is not None:
+                raise
+            continue
+        if named is not None and not fitting:
+            raise ValueError(f"--law {tangential}: fits no installed integrator under normal.hertz")
+        found += fitting
+    return found
+
+
+def _fits(tangential: str, integrator: str) -> bool:
+    try:
+        Simulation(normal="hertz", tangential=tangential, integrator=integrator)
+    except (ValueError, TypeError):
+        return False
+    return True
+
+
+def _law(kind: str, name: str) -> Any:
+    return REGISTRY.law_class(f"{kind}.{name}")
+
+
+def _short(name: str) -> str:
+    return name.partition(".")[2] or name

@@ -1,0 +1,206 @@
+"""Error against run time: every method at every resolution, against the exact solution.
+
+Errors are measured apart from timing. A time is the least of repeated runs after a warm-up: the
+least is what the work takes, the rest is what else the machine did. Failed runs are gaps with
+their status, never dropped.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.analysis.bench_methods import Method, scenes
+from contactlab.result import ImpactResult
+from contactlab.scene import Scene
+from contactlab.simulation import Simulation
+
+Array = NDArray[np.float64]
+
+#: The composition that gives the exact answers, and its instants for force histories.
+EXACT = ("fronts", "events")
+#: Repeats of a timed run; fewer once ``LONG`` seconds have gone into a method's rung.
+REPEATS, LONG = 5, 1.0
+#: Impacts in the sweep whose cost per impact is timed, where a sweep is expected to take
+#: less than ``SWEEP_BUDGET`` seconds.
+SWEEP, SWEEP_BUDGET = 500, 2.0
+#: Errors below this are rounding: an order is fitted above it.
+ROUNDING = 1e-11
+
+
+@attrs.frozen(kw_only=True)
+class Row:
+    """One method at one resolution. Errors are in psi, forces over mu P_max, books over the
+    energy at the start; NaN where a run failed.
+    """  # noqa: D205
+
+    method: str
+    options: str
+    error_rms: float
+    error_worst: float
+    force_error_rms: float
+    books_worst: float
+    time_s: float
+    sweep_time_s: float
+    failed: int
+    status: str
+
+    @property
+    def ok(self) -> bool:
+        """Return True if every scene gave an answer."""
+        return self.failed == 0
+
+
+@attrs.frozen(kw_only=True)
+class Benchmark:
+    """Rows, and for each method the order observed in its rms error."""
+
+    rows: tuple[Row, ...]
+    orders: dict[str, float]
+    complete: bool
+
+    def front(self) -> list[Row]:
+        """Return the Pareto front: rows that no other beats in both error and time."""
+        best: list[Row] = []
+        for row in sorted((row for row in self.rows if row.ok), key=lambda row: row.time_s):
+            if not best or row.error_rms < best[-1].error_rms:
+                best.append(row)
+        return best
+
+
+def bench(
+    methods: Sequence[Method],
+    *,
+    quick: bool = False,
+    budget: float = np.inf,
+    progress: Callable[[int, int], object] | None = None,
+) -> Benchmark:
+    """Run the benchmark.
+
+    Parameters
+    ----------
+    methods : sequence of Method
+    quick : bool
+        Fewer scenes and resolutions.
+    budget : float
+        Seconds after which no further rung is begun; ``complete`` then is False.
+    progress : callable, optional
+        Called as ``progress(done, total)`` after each rung.
+    """
+    given = scenes(quick=quick)
+    exact = [_exact(scene) for scene in given]
+    rungs = [(method, rung) for method in methods for rung in method.rungs(quick=quick)]
+    started, rows = time.perf_counter(), []
+    for done, (method, rung) in enumerate(rungs, start=1):
+        if time.perf_counter() - started > budget:
+            break
+        rows.append(_row(method, rung, given, exact))
+        if progress is not None:
+            progress(done, len(rungs))
+    orders = {
+        method.name: _order([row for row in rows if row.method == method.name])
+        for method in methods
+    }
+    return Benchmark(rows=tuple(rows), orders=orders, complete=len(rows) == len(rungs))
+
+
+def _exact(scene: Scene) -> ImpactResult:
+    return (
+        Simulation(normal="hertz", tangential=EXACT[0], integrator=EXACT[1])
+        .run(scene, history=True)
+        .check()
+    )
+
+
+def _row(
+    method: Method, rung: dict[str, dict[str, Any]], given: list[Scene], exact: list[ImpactResult]
+) -> Row:
+    simulation = method.simulation(rung)
+    results = [simulation.run(scene, history=True) for scene in given]
+    failed = [result for result in results if not result.status]
+    good = not failed
+    errors: Any = np.array(
+        [result.psi_change - true.psi_change for result, true in zip(results, exact, strict=True)]
+    )
+    forces = (
+        [_force_error(result, true) for result, true in zip(results, exact, strict=True)]
+        if good
+        else [np.nan]
+    )
+    books: list[Any] = [abs(result.energy.relative_imbalance) for result in results]
+    least = _least_time(simulation, given) if good else np.nan
+    options = {key: value for part in rung.values() for key, value in part.items()}
+    return Row(
+        method=method.name,
+        options=", ".join(f"{key}={value:g}" for key, value in options.items()),
+        error_rms=float(np.sqrt(np.mean(errors**2))) if good else np.nan,
+        error_worst=float(np.max(np.abs(errors))) if good else np.nan,
+        force_error_rms=float(np.sqrt(np.mean(np.square(forces)))),
+        books_worst=float(np.max(books)) if good else np.nan,
+        time_s=least,
+        sweep_time_s=_sweep_time(simulation) if good and least * SWEEP < SWEEP_BUDGET else np.nan,
+        failed=len(failed),
+        status=failed[0].status.name if failed else "SUCCESS",
+    )
+
+
+def _force_error(result: ImpactResult, exact: ImpactResult) -> float:
+    """Return the rms over the contact of the force's error, over mu P_max."""
+    history, true = result.history, exact.history
+    assert history is not None
+    assert true is not None
+    pair, scene = exact.scene.pair, exact.scene
+    peak = 1.25 * pair.normal_mass * scene.normal_speed**2 / scene.maximum_approach
+    expected = np.interp(history.time, true.time, true.tangential_force, right=0.0)
+    scale = float(np.asarray(scene.friction_coefficient * peak))
+    return float(np.sqrt(np.mean((history.tangential_force - expected) ** 2))) / scale
+
+
+def _least_time(simulation: Simulation, given: list[Scene]) -> float:
+    """Return the mean over the scenes of the least time of one run, in s."""
+    total = 0.0
+    started = time.perf_counter()
+    for scene in given:
+        simulation.run(scene)  # warm-up
+        least = np.inf
+        for _ in range(REPEATS):
+            before = time.perf_counter()
+            simulation.run(scene)
+            least = min(least, time.perf_counter() - before)
+            if time.perf_counter() - started > LONG:
+                break
+        total += least
+    return total / len(given)
+
+
+def _sweep_time(simulation: Simulation) -> float:
+    """Return the least time per impact of a sweep over psi1, none of it slip throughout, in s."""
+    chi = 49 / 34
+    batch = Scene.nondimensional(psi1=np.linspace(0.01, 4 * chi - 1.01, SWEEP), chi=chi)
+    least = np.inf
+    for _ in range(2):
+        before = time.perf_counter()
+        simulation.sweep(batch)
+        least = min(least, time.perf_counter() - before)
+    return least / SWEEP
+
+
+def _order(rows: list[Row]) -> float:
+    """Return the slope of rms error against the number of steps or parts, NaN if it has none.
+
+    Only rungs above rounding count; a tolerance has no order.
+    """
+    points = []
+    for row in rows:
+        sizes = [float(word.partition("=")[2]) for word in row.options.split(", ") if "=" in word]
+        if row.ok and sizes and row.error_rms > ROUNDING and "tolerance" not in row.options:
+            points.append((np.log(sizes[-1]), np.log(row.error_rms)))
+    if len(points) < 3:
+        return float("nan")
+    x, y = np.array(points).T
+    return float(-np.polyfit(x, y, 1)[0])

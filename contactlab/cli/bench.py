@@ -1,0 +1,103 @@
+"""Measure error against run time of every law and integrator, against the exact solution.
+
+Examples
+--------
+  contactlab bench --quick
+  contactlab bench --figure bench.png --csv bench.csv
+  contactlab bench --law tangential.cundall --law tangential.springs
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import math
+from pathlib import Path
+
+import attrs
+
+from contactlab.analysis.bench_methods import methods
+from contactlab.analysis.work_precision import Benchmark, Row, bench
+from contactlab.cli import arguments as shared
+from contactlab.cli.table import table, time
+from contactlab.result import plain
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the laws, the size, and the outputs."""
+    parser.add_argument(
+        "--law",
+        action="append",
+        metavar="NAME",
+        help="a tangential law, installed or of a plug-in; may be repeated (default: all)",
+    )
+    parser.add_argument("--quick", action="store_true", help="fewer scenes and resolutions")
+    parser.add_argument(
+        "--budget",
+        type=shared.finite,
+        default=math.inf,
+        metavar="SECONDS",
+        help="begin no further run after this time",
+    )
+    parser.add_argument("--figure", type=shared.file_of(".png"), metavar="FILE.png")
+    parser.add_argument("--csv", type=shared.file_of(".csv"), metavar="FILE.csv")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
+    shared.add_progress(parser)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Run the benchmark and report."""
+    if arguments.budget <= 0.0:
+        raise ValueError(f"--budget {arguments.budget:g}: must be positive, in seconds")
+    chosen = methods(arguments.law)
+    benchmark = bench(
+        chosen,
+        quick=arguments.quick,
+        budget=arguments.budget,
+        progress=shared.progress(arguments.progress, "bench"),
+    )
+    if arguments.csv:
+        _write_csv(arguments.csv, benchmark)
+    if arguments.figure:
+        from contactlab.figures.files import save  # matplotlib only when drawing
+        from contactlab.figures.work_precision import work_precision
+
+        save(arguments.figure, lambda axes: work_precision(axes, benchmark), wide=True)
+    print(json.dumps(_content(benchmark), indent=2) if arguments.json else _report(benchmark))
+    return shared.OK
+
+
+def _content(benchmark: Benchmark) -> dict[str, object]:
+    rows = [
+        {key: plain(value) for key, value in attrs.asdict(row).items()} for row in benchmark.rows
+    ]
+    orders = {name: plain(order) for name, order in benchmark.orders.items()}
+    return {"rows": rows, "orders": orders, "complete": benchmark.complete}
+
+
+def _report(benchmark: Benchmark) -> str:
+    front = benchmark.front()
+    lines = []
+    for row in benchmark.rows:
+        times = [time(value) if value == value else "-" for value in (row.time_s, row.sweep_time_s)]
+        errors = [row.error_rms, row.error_worst, row.force_error_rms, row.books_worst]
+        note = "front" if row in front else "" if row.ok else f"{row.failed} x {row.status}"
+        lines.append([row.method, row.options, *errors, *times, note])
+    headings = [
+        "method", "resolution", "psi2 rms", "psi2 worst", "force rms", "books worst",
+        "one impact", "in a sweep", "",
+    ]  # fmt: skip
+    text = table(headings, lines, digits=2)
+    orders = [[name, order] for name, order in benchmark.orders.items() if order == order]
+    if orders:
+        text += "\n\n" + table(["method", "order observed"], orders, digits=3)
+    return text if benchmark.complete else text + "\n\nnot complete: the budget ran out"
+
+
+def _write_csv(path: Path, benchmark: Benchmark) -> None:
+    names = [field.name for field in attrs.fields(Row)]
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(names)
+        writer.writerows([getattr(row, name) for name in names] for row in benchmark.rows)
