@@ -85,6 +85,11 @@ def make_plan(
         computed.append(f"normal motion: {kind}, integrated by {type(integrator).__name__}")
     if marched.any():
         computed.append(f"tangential motion: {integrator!r} over {tangential!r}{_share(marched)}")
+        if closed_form and tangential.exact and integrator.accuracy is not None:
+            computed.append(
+                f"exact to {integrator.accuracy:.0e}: closed-form normal motion, a friction law "
+                "without discretisation, errors under control (in psi2 over max(1, |psi1|))"
+            )
         if closed_form and "closed_form_motion" not in integrator.uses:
             computed.append(f"normal motion again, by the steps of {type(integrator).__name__}")
     if slipping.any():

@@ -35,6 +35,7 @@ class Simulation:
     ----------
     normal, tangential, integrator : str or law
         A name (``"hertz"``), or an object made by ``contactlab.create`` or by your own class.
+        The default is exact: Hertz's closed form and the slip front followed event by event.
 
     Raises
     ------
@@ -50,8 +51,8 @@ class Simulation:
         self,
         *,
         normal: str | NormalLaw = "hertz",
-        tangential: str | TangentialLaw = "annulus",
-        integrator: str | Integrator = "paper",
+        tangential: str | TangentialLaw = "fronts",
+        integrator: str | Integrator = "events",
     ) -> None:
         parts = {
             "normal": composition.law("normal", normal),

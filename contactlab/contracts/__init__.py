@@ -5,8 +5,17 @@ from contactlab.contracts.law import API_VERSION, Law
 from contactlab.contracts.normal import (
     ClosedFormMotion,
     ClosedFormNormalLaw,
+    Course,
     NormalContact,
     NormalLaw,
+)
+from contactlab.contracts.phases import (
+    ClosedPhase,
+    Path,
+    Phase,
+    PhasedTangentialLaw,
+    PhaseResponse,
+    PhaseState,
 )
 from contactlab.contracts.tangential import (
     Increment,
@@ -22,6 +31,8 @@ __all__ = [
     "API_VERSION",
     "ClosedFormMotion",
     "ClosedFormNormalLaw",
+    "ClosedPhase",
+    "Course",
     "Increment",
     "Integrator",
     "Law",
@@ -29,6 +40,11 @@ __all__ = [
     "NormalContact",
     "NormalLaw",
     "Observer",
+    "Path",
+    "Phase",
+    "PhaseResponse",
+    "PhaseState",
+    "PhasedTangentialLaw",
     "Problem",
     "Run",
     "RunResponse",

@@ -114,6 +114,14 @@ class Integrator(Law):
     #: Narrow contracts it makes use of where a law has them, such as ``closed_form_motion``.
     uses: ClassVar[frozenset[str]] = frozenset()
 
+    @property
+    def accuracy(self) -> float | None:
+        """Error of psi2 over max(1, |psi1|) that it keeps to, under laws that are ``exact``.
+
+        None for an integrator that does not control its error.
+        """
+        return None
+
     @abstractmethod
     def integrate(self, problem: Problem, observer: Observer | None = None) -> Motion:
         """Return the motion from first touch to separation."""

@@ -5,6 +5,9 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from contactlab.bodies import Pair
 from contactlab.checks import Real
 from contactlab.contracts.law import Law
@@ -56,6 +59,29 @@ class NormalLaw(Law):
         """Return the contact at ``approach`` (m) and ``rate`` (m/s), and the new state."""
 
 
+class Course(NamedTuple):
+    """A normal motion in units of its own, at many phases (arrays) or at one (floats).
+
+    Approach, radius and force are over their greatest values, the rate over that at first
+    touch; T is time in units of greatest approach over rate at first touch (theory §1).
+
+    Attributes
+    ----------
+    phase : float or array
+    approach, radius, rate, force : float or array
+        zeta, b/a, V and P/P_max.
+    pace : float or array
+        dT/dx.
+    """
+
+    phase: Any
+    approach: Any
+    radius: Any
+    rate: Any
+    force: Any
+    pace: Any
+
+
 class ClosedFormMotion(ABC):
     """A normal motion known in closed form, along a phase that runs from 0 to pi.
 
@@ -73,6 +99,33 @@ class ClosedFormMotion(ABC):
     @abstractmethod
     def maximum_radius(self) -> Real:
         """Largest contact radius, in m."""
+
+    @property
+    @abstractmethod
+    def maximum_approach(self) -> Real:
+        """Greatest approach, in m."""
+
+    @property
+    @abstractmethod
+    def maximum_force(self) -> Real:
+        """P_max, the greatest normal force, in N."""
+
+    @property
+    @abstractmethod
+    def scaled_mass(self) -> float:
+        """M in M dV/dT = -P/P_max; 0.8 for elastic Hertz contact."""
+
+    @abstractmethod
+    def course(self, phase: NDArray[np.float64]) -> Course:
+        """Return the scaled motion of one impact at many phases, as arrays."""
+
+    @abstractmethod
+    def instant(self, phase: float) -> Course:
+        """Return the scaled motion of one impact at one phase, as floats."""
+
+    @abstractmethod
+    def phase_at_rate(self, rate: float) -> float:
+        """Return the phase at which V = ``rate``, of one impact; V falls throughout."""
 
     @abstractmethod
     def at(self, phase: Real) -> tuple[Real, Real, Real, NormalContact]:

@@ -82,6 +82,8 @@ class TangentialLaw(Law):
     """
 
     kind: ClassVar[str] = "tangential"
+    #: True for a law with no discretisation of its own: the integrator's error is the whole error.
+    exact: ClassVar[bool] = False
     #: True for a law that never makes a force: the plan leaves the march out.
     inert: ClassVar[bool] = False
 

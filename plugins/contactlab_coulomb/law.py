@@ -9,16 +9,20 @@ import numpy as np
 
 from contactlab.checks import Mask, Real
 from contactlab.contracts import (
+    ClosedFormMotion,
     Increment,
     NormalContact,
+    Phase,
+    PhasedTangentialLaw,
     Problem,
     SteppedTangentialLaw,
     TangentialResponse,
 )
+from contactlab_coulomb.phases import Rolling, Sliding
 
 
 @attrs.frozen(kw_only=True)
-class Coulomb(SteppedTangentialLaw):
+class Coulomb(SteppedTangentialLaw, PhasedTangentialLaw):
     """Coulomb friction between bodies that do not deform tangentially.
 
     While the contact slips the force is mu P; once slip has stopped the bodies roll and
@@ -31,8 +35,8 @@ class Coulomb(SteppedTangentialLaw):
     """
 
     api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
-    needs: ClassVar[frozenset[str]] = frozenset({"steps"})
+    offers: ClassVar[frozenset[str]] = frozenset({"advance", "phases"})
+    exact: ClassVar[bool] = True
 
     def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
         """Return True for |psi1| >= 4 chi: friction cannot stop the slip."""
@@ -62,13 +66,18 @@ class Coulomb(SteppedTangentialLaw):
         slip = increment.velocity * increment.duration * (1.0 - 0.5 * share)
         return TangentialResponse(force, force * slip), state
 
+    def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:  # noqa: ARG002
+        """Slide, unless the velocity is zero."""
+        return Sliding() if velocity > 0.0 else Rolling()
+
 
 @attrs.frozen(kw_only=True)
-class Frictionless(SteppedTangentialLaw):
+class Frictionless(SteppedTangentialLaw, PhasedTangentialLaw):
     """No tangential force at all: the null object, and the yardstick for cost."""
 
     api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
+    offers: ClassVar[frozenset[str]] = frozenset({"advance", "phases"})
+    exact: ClassVar[bool] = True
     inert: ClassVar[bool] = True
 
     def start(self, problem: Problem) -> Real:
@@ -84,3 +93,7 @@ class Frictionless(SteppedTangentialLaw):
     ) -> tuple[TangentialResponse, Real]:
         """Return no force."""
         return TangentialResponse(state, state), state
+
+    def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:  # noqa: ARG002
+        """Make no force from start to end."""
+        return Rolling()

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.bodies import Pair
 from contactlab.checks import Real
 from contactlab.closed_forms import DURATION_CONSTANT, size_ratio
-from contactlab.contracts import ClosedFormMotion, NormalContact
+from contactlab.contracts import ClosedFormMotion, Course, NormalContact
+
+Array = NDArray[np.float64]
 
 
 def velocity_factor(root: Real) -> Real:
@@ -64,6 +69,41 @@ class HertzMotion(ClosedFormMotion):
     def maximum_radius(self) -> Real:
         """Largest contact radius (8), in m."""
         return self.radius_scale
+
+    @property
+    def maximum_approach(self) -> Real:
+        """Greatest approach C² R, in m."""
+        return self.approach_scale
+
+    @property
+    def maximum_force(self) -> Real:
+        """P_max, in N."""
+        return self.force_scale
+
+    @property
+    def scaled_mass(self) -> float:
+        """V' = -1.25 zeta^1.5, theory §1."""
+        return 0.8
+
+    def course(self, phase: Array) -> Course:
+        """Return zeta = u², b/a = u, V = cos x g(u), P/P_max = u³ and dT/dx = 2u/g(u)."""
+        u = np.sin(phase)
+        square = u * u
+        g = np.sqrt(1.0 + square + square * square / (1.0 + u))
+        return Course(phase, square, u, np.cos(phase) * g, u * square, (u + u) / g)
+
+    def instant(self, phase: float) -> Course:
+        """Return the same in plain floats."""
+        u = math.sin(phase)
+        square = u * u
+        g = math.sqrt(1.0 + square + square * square / (1.0 + u))
+        return Course(phase, square, u, math.cos(phase) * g, u * square, 2.0 * u / g)
+
+    def phase_at_rate(self, rate: float) -> float:
+        """Return x where V = ``rate``; by the tangent, accurate near the greatest compression."""
+        u = max(0.0, (1.0 - rate) * (1.0 + rate)) ** 0.2
+        g = math.sqrt(1.0 + u * u + u**4 / (1.0 + u))
+        return math.atan2(u, rate / g)
 
     def at(self, phase: Real) -> tuple[Real, Real, Real, NormalContact]:
         """Return (time, approach, rate, contact) at ``phase`` in [0, pi]."""

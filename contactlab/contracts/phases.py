@@ -1,0 +1,206 @@
+"""The contract of a tangential law that is smooth in pieces, for integrators that locate events.
+
+Such a law is a sequence of phases (stuck, edge slip, gross slip, ...). The integrator knows
+inertia, the normal motion and collocation; the law knows traction; they meet here only.
+
+All quantities are scaled, theory §1, so that a law reads like the paper and a change of units
+changes no digit. The normal motion is a ``Course``; besides it:
+
+======================  ==================================================================
+``x``                   phase of the normal motion (see ``ClosedFormMotion``)
+``velocity``            psi = kappa v_x/(mu v1), eq. (29), never negative at first touch
+``slip``                D, the integral of psi over T
+``force``               F/(mu P_max), positive where it opposes positive slip velocity
+``inertia``             d psi/dT = -inertia · force; 2.5 chi for elastic Hertz contact
+``work``                friction work in the units of force times slip
+======================  ==================================================================
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.contracts.normal import ClosedFormMotion, Course
+from contactlab.contracts.tangential import TangentialLaw
+
+if TYPE_CHECKING:
+    from contactlab.contracts.integrator import Problem
+
+Array = NDArray[np.float64]
+
+
+class PhaseState(NamedTuple):
+    """Where the tangential motion stands at one x.
+
+    ``change`` is the velocity gained since first touch, apart from the velocity, which may be
+    so large that it would swallow it; ``force_rate`` is d(force)/dT and serves guesses only.
+    """
+
+    x: float
+    slip: float
+    change: float
+    velocity: float
+    force: float
+    force_rate: float
+    work: float
+
+
+class PhaseResponse(NamedTuple):
+    """The tangential force, as a part known now and a part gathered on the way.
+
+    Attributes
+    ----------
+    force : array
+        A function of contact and slip alone.
+    stiffness : array or None
+        d force / d slip at fixed x; None means zero.
+    gathered : array or None
+        k in F = ``force`` + integral of k d(slip) since the phase began; None means zero.
+    memo : tuple of array
+        The law's own; a starting guess for its next call.
+    """
+
+    force: Array
+    stiffness: Array | None
+    gathered: Array | None
+    memo: tuple[Array, ...]
+
+
+class Path(Protocol):
+    """What a law may ask of a stretch just finished, and may keep in its history."""
+
+    def fields(self, x: Array) -> Array:
+        """Return rows slip, force, approach, radius, d(slip)/dx, d(approach)/dx at each x."""
+        ...
+
+
+class ClosedPhase(ABC):
+    """A phase's motion in closed form.
+
+    Attributes
+    ----------
+    end : PhaseState
+    event : int or None
+        Which event ends it; None if the contact ends first.
+    """
+
+    end: PhaseState
+    event: int | None
+
+    @abstractmethod
+    def states(self, contact: Course) -> tuple[Array, Array]:
+        """Return (change of velocity since first touch, force) at the contact's x."""
+
+
+class Phase(ABC):
+    """A stretch of motion in which the law's response is smooth; a value, never changed.
+
+    Contract
+    --------
+    1. ``respond`` is a pure function of contact, slip and the phase; ``memo`` only saves time.
+       It stays finite, and smooth if it can, somewhat beyond the end of the phase.
+    2. ``margin`` is positive inside the phase, smooth, and zero where the event happens. It
+       may be zero at the start. Events are numbered as in ``rough``.
+    3. ``rough[i]`` says that the force behaves as (x_event - x)^1.5 when event i comes near;
+       the integrator then ends a panel at the event and crowds its nodes there.
+    4. ``follow`` gives the phase after event i. It may end at once (zero length). Its ``path``
+       is None if the phase had no length.
+    5. ``carry_on`` gives the phase that continues after a panel which no event ended.
+    6. ``friction_power`` is the rate of loss per unit of T, from tractions and slip and not
+       from the force balance. It is asked only where ``dissipates``.
+    7. ``closed_form`` may give the motion to the phase's end. The origin of ``slip`` may move
+       there: nobody compares slips across it.
+    """
+
+    rough: tuple[bool, ...] = ()
+    #: A guess of the phase's length in x; saves time only.
+    span: float | None = None
+    #: The force is linear in slip: one step of Newton's method is exact.
+    linear: bool = False
+    dissipates: bool = True
+
+    @abstractmethod
+    def respond(self, contact: Course, slip: Array, memo: tuple[Array, ...]) -> PhaseResponse:
+        """Return the force at these contacts and slips (clause 1)."""
+
+    def margin(
+        self,
+        event: int,
+        contact: Course,  # noqa: ARG002
+        slip: Array,  # noqa: ARG002
+        velocity: Array,  # noqa: ARG002
+        response: PhaseResponse,  # noqa: ARG002
+    ) -> Array:
+        """Return the margin of one event (clause 2)."""
+        raise IndexError(event)
+
+    def follow(
+        self,
+        event: int,
+        state: PhaseState,  # noqa: ARG002
+        contact: Course,  # noqa: ARG002
+        path: Path | None,  # noqa: ARG002
+    ) -> Phase:
+        """Return the next phase (clause 4)."""
+        raise IndexError(event)
+
+    def carry_on(self, state: PhaseState, contact: Course, path: Path) -> Phase:  # noqa: ARG002
+        """Return the phase that goes on after a finished panel (clause 5)."""
+        return self
+
+    def friction_power(
+        self,
+        contact: Course,  # noqa: ARG002
+        slip: Array,
+        velocity: Array,  # noqa: ARG002
+        response: PhaseResponse,  # noqa: ARG002
+    ) -> Array:
+        """Return the rate of friction work (clause 6)."""
+        return np.zeros_like(slip)
+
+    def closed_form(
+        self,
+        state: PhaseState,  # noqa: ARG002
+        motion: ClosedFormMotion,  # noqa: ARG002
+        inertia: float,  # noqa: ARG002
+    ) -> ClosedPhase | None:
+        """Return the motion in closed form, if it has one (clause 7)."""
+        return None
+
+
+class PhasedTangentialLaw(TangentialLaw):
+    """A tangential law that is smooth between events it can name.
+
+    Contract
+    --------
+    1. ``begin`` returns the phase at first touch, for a velocity >= 0 (a law is odd).
+    2. Below the velocity ``linear_below`` the response is proportional to the velocity, to
+       1e-9 of itself; an integrator may then solve for ``linear_below`` and scale.
+    3. ``phase_fields`` names arrays in SI for the history; it changes nothing.
+    """
+
+    linear_below: ClassVar[float] = 0.0
+
+    @abstractmethod
+    def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
+        """Return the phase at first touch."""
+
+    def phase_fields(
+        self,
+        problem: Problem,  # noqa: ARG002
+        phase: Phase,  # noqa: ARG002
+        contact: Course,  # noqa: ARG002
+        slip: float,  # noqa: ARG002
+        factor: float,  # noqa: ARG002
+    ) -> Mapping[str, NDArray[Any]]:
+        """Return named arrays (traction, stuck, ...) of one impact at one instant.
+
+        ``factor`` is what the scaled solution is to be multiplied with: -1 for an impact
+        with negative slip velocity, and see clause 2.
+        """
+        return {}

@@ -1,0 +1,250 @@
+"""From first touch to separation: phases, the panels they are solved on, and their events."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.contracts import (
+    ClosedFormMotion,
+    ClosedPhase,
+    Phase,
+    PhasedTangentialLaw,
+    PhaseState,
+)
+from contactlab_events.nodes import lobatto, row, rows
+from contactlab_events.panel import Overshot, PanelPath, Solved, newton
+from contactlab_events.search import first_event
+
+Array = NDArray[np.float64]
+
+NODES = 16
+#: The normal motion's nearest singularity in x lies at 0.22 + 0.86 i (theory §3).
+LONGEST_PANEL = 0.9
+SHORTEST_PANEL = 1e-9
+PANEL_CAP = 3000
+ZERO_LENGTH_CAP = 12
+REJECT_CAP = 60
+#: Below this length an event at the very start of a panel is believed, resolved or not.
+SURELY_RESOLVED = 1e-6
+#: A panel is resolved if its highest Legendre terms, in velocity, are below this times the
+#: tolerance: collocation gains far more digits at a panel's end than inside it.
+TAIL_PER_TOLERANCE = 1.0
+#: A first panel is tried this much longer than the law's guess of its phase's length.
+SPAN_MARGIN = 1.08
+SHORTEST_SPAN = 1e-3
+RATE_GAP = 0.01
+
+
+class Piece(NamedTuple):
+    """A stretch of the motion: its phase, the state it began with, its course, where it ends."""
+
+    phase: Phase
+    start: PhaseState
+    path: PanelPath | ClosedPhase
+    stop: float
+
+
+class Followed(NamedTuple):
+    """What came out; ``failure`` is empty on success."""
+
+    failure: str
+    state: PhaseState
+    pieces: tuple[Piece, ...]
+    solves: int
+
+
+def follow(
+    law: PhasedTangentialLaw,
+    motion: ClosedFormMotion,
+    inertia: float,
+    velocity: float,
+    tolerance: float,
+) -> Followed:
+    """Follow one impact of scaled velocity >= 0 to the end of contact."""
+    walk = _Walk(law, motion, inertia, velocity, tolerance)
+    failure = walk.go()
+    return Followed(failure, walk.state, tuple(walk.pieces), walk.solves)
+
+
+class _Walk:
+    """One impact on its way: what is done, and the panel to try next."""
+
+    def __init__(
+        self,
+        law: PhasedTangentialLaw,
+        motion: ClosedFormMotion,
+        inertia: float,
+        velocity: float,
+        tolerance: float,
+    ) -> None:
+        self.motion, self.inertia = motion, inertia
+        self.tail = TAIL_PER_TOLERANCE * tolerance
+        self.nodes = lobatto(NODES)
+        self.state = PhaseState(0.0, 0.0, 0.0, velocity, 0.0, 0.0, 0.0)
+        self.pieces: list[Piece] = []
+        self.solves = self.idle = self.rejects = 0
+        self._enter(law.begin(velocity, inertia, motion))
+
+    def go(self) -> str:
+        """Advance to the end of contact; return what went wrong, if anything did."""
+        while self.state.x < math.pi:
+            closed = self.phase.closed_form(self.state, self.motion, self.inertia)
+            failure = self._panel() if closed is None else self._jump(closed)
+            if failure:
+                return f"{failure} In phase {type(self.phase).__name__} at x = {self.state.x:.9g}."
+        return ""
+
+    def _enter(self, phase: Phase) -> None:
+        """Begin a phase: its first panel, and no guess of its motion."""
+        self.phase = phase
+        self.guess: Array | None = None
+        self.aim: int | None = None
+        span = phase.span
+        self.length = LONGEST_PANEL
+        if span is not None:
+            self.length = min(LONGEST_PANEL, max(SPAN_MARGIN * span, SHORTEST_SPAN))
+
+    def _stand_still(self) -> str:
+        """Count phases of no length."""
+        self.idle += 1
+        return "Events follow one another without end." if self.idle > ZERO_LENGTH_CAP else ""
+
+    def _jump(self, closed: ClosedPhase) -> str:
+        """Take a phase in closed form."""
+        start, end = self.state, closed.end
+        self.pieces.append(Piece(self.phase, start, closed, end.x))
+        failure = ""
+        if end.x > start.x:
+            self.idle = 0
+        else:
+            failure = self._stand_still()
+        self.state = end
+        if closed.event is None:
+            self.state = end._replace(x=math.pi)
+        else:
+            instant = self.motion.instant(end.x)
+            self._enter(self.phase.follow(closed.event, end, instant, None))
+        return failure
+
+    def _panel(self) -> str:
+        """Try one panel; accept it, or set out what to try next."""
+        left = math.pi - self.state.x
+        if self.aim is None and (
+            self.length > left or (not self.rejects and 1.3 * self.length > left)
+        ):
+            self.length = left
+        if self.solves >= PANEL_CAP:
+            return f"{PANEL_CAP} panels were not enough."
+        if self.rejects > REJECT_CAP or self.length < min(SHORTEST_PANEL, 0.5 * left):
+            return "Newton's method fails on the shortest panel allowed."
+        solved = self._solve(self.length, self.guess, self.aim)
+        self.rejects += 1
+        aim, self.guess, self.aim = self.aim, None, None
+        if solved is None:
+            self.length *= 0.5
+            return ""
+        found: tuple[int, float] | None
+        if aim is not None and isinstance(solved, Solved):
+            if self._resolved(solved):
+                self._accept(solved, aim, 1.0, rooted=True)
+            else:
+                self.length = 0.5 * solved.length
+            return ""
+        good = False
+        if isinstance(solved, Overshot):
+            found = solved.event, solved.tau
+        else:
+            found = first_event(self.nodes, self.phase, solved)
+            good = self._resolved(solved)
+            if found is not None and found[1] == 0.0:
+                if good or self.length < SURELY_RESOLVED:
+                    self._turn(found[0])
+                    return self._stand_still()
+                found = None
+            if good:
+                event, stop = (None, 1.0) if found is None else found
+                self._accept(solved, event, stop, rooted=False)
+                return ""
+        self._retry(solved, found)
+        return ""
+
+    def _solve(
+        self, length: float, guess: Array | None, aim: int | None
+    ) -> Solved | Overshot | None:
+        self.solves += 1
+        return newton(
+            self.phase, self.motion, self.nodes, self.state, length, self.inertia, guess, fit=aim
+        )
+
+    def _resolved(self, solved: Solved) -> bool:
+        """Say whether the highest Legendre terms of the force are small."""
+        one, two = (self.nodes.tail @ (solved.contact.pace * solved.force)).tolist()
+        middle = abs(solved.velocity[NODES // 2].item())
+        scale = abs(self.state.velocity) + abs(solved.change[-1].item()) + middle
+        largest = self.inertia * solved.length * max(abs(one), abs(two))
+        return bool(largest <= self.tail * scale)
+
+    def _retry(self, solved: Solved | Overshot, found: tuple[int, float] | None) -> None:
+        """Set out another panel, shorter, after one that was not accepted."""
+        if found is None:
+            self.length *= 0.5
+            return
+        event, part = found
+        if self.phase.rough[event]:
+            self.guess = rows(self.nodes, part * self.nodes.rooted[0]) @ solved.change
+            self.length *= part
+            self.aim = event
+        elif part < 0.97:
+            part = min(1.0, part * (1.15 if isinstance(solved, Overshot) else 1.03))
+            self.guess = rows(self.nodes, part * self.nodes.points) @ solved.change
+            self.length *= part
+        else:
+            self.length *= 0.5
+
+    def _turn(self, event: int) -> None:
+        """Go over to the next phase at once."""
+        state = self.state
+        self._enter(self.phase.follow(event, state, self.motion.instant(state.x), None))
+
+    def _accept(self, solved: Solved, event: int | None, stop: float, *, rooted: bool) -> None:
+        """Move to tau = ``stop`` of a solved panel."""
+        self.idle = self.rejects = 0
+        start, motion = self.state, self.motion
+        x = min(start.x + solved.length * stop, math.pi)
+        path = PanelPath(solved, self.nodes, start.x, rooted)
+        self.pieces.append(Piece(self.phase, start, path, x))
+        self.state = self._arrive(solved, stop, x)
+        if event is None:
+            self.phase = self.phase.carry_on(self.state, motion.instant(x), path)
+            self.length = min(LONGEST_PANEL, 1.5 * solved.length)
+        else:
+            self._enter(self.phase.follow(event, self.state, motion.instant(x), path))
+
+    def _arrive(self, solved: Solved, stop: float, x: float) -> PhaseState:
+        """Return the state at tau = ``stop`` of a solved panel."""
+        start, nodes = self.state, self.nodes
+        here, earlier = row(nodes, stop), row(nodes, stop - RATE_GAP)
+        change = float(here @ solved.change)
+        force = float(here @ solved.force)
+        time = solved.time_matrix.sum(axis=1)
+        passed = float((here - earlier) @ time)
+        rate = (force - float(earlier @ solved.force)) / passed
+        work = start.work
+        if self.phase.dissipates:
+            power = self.phase.friction_power(
+                solved.contact, solved.slip, solved.velocity, solved.response
+            )
+            work += float(here @ (solved.time_matrix @ power))
+        return PhaseState(
+            x=x,
+            slip=float(here @ solved.slip),
+            change=start.change + change,
+            velocity=start.velocity + change,
+            force=force,
+            force_rate=rate,
+            work=work,
+        )

@@ -1,0 +1,89 @@
+"""The event-locating integrator."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab.checks import Rule, quantity
+from contactlab.contracts import (
+    Integrator,
+    Motion,
+    Observer,
+    PhasedTangentialLaw,
+    Problem,
+)
+from contactlab_events.dense import show
+from contactlab_events.scaled import Run, impacts
+
+#: Rounding allows no more than the first; with the second the answer still has three digits.
+TOLERANCES = Rule(
+    lambda value: (value >= 1e-12) & (value <= 1e-3), "must lie between 1e-12 and 1e-3"
+)
+
+
+@attrs.frozen(kw_only=True)
+class Events(Integrator):
+    """Collocation panels of high order within smooth phases, and events found between them.
+
+    The normal motion is taken in closed form along its phase x, in which everything is
+    analytic; a panel that holds an event is cut there, so that the order is never lost.
+
+    Parameters
+    ----------
+    tolerance : float
+        Error of psi2 over max(1, |psi1|) that is aimed at.
+
+    References
+    ----------
+    Hairer & Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), §§IV.5 and
+    IV.8: collocation at Lobatto points.
+    """
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset[str]] = frozenset({"events"})
+    needs: ClassVar[frozenset[str]] = frozenset({"phases", "closed_form_motion"})
+    uses: ClassVar[frozenset[str]] = frozenset({"closed_form_motion"})
+
+    tolerance: float = quantity("1", rule=TOLERANCES, default=1e-9)
+
+    @property
+    def accuracy(self) -> float:
+        """The error aimed at."""
+        return self.tolerance
+
+    def integrate(self, problem: Problem, observer: Observer | None = None) -> Motion:
+        """Return the motion, impact by impact."""
+        law = problem.tangential
+        assert isinstance(law, PhasedTangentialLaw)
+        runs = [impact.run(law, self.tolerance) for impact in impacts(problem)]
+        if observer is not None:
+            show(problem, law, runs, observer)
+        detail = next((run.failure for run in runs if run.failure), "")
+        return Motion(
+            **_columns(runs, problem.shape),
+            detail=detail,
+            counters={
+                "panels": sum(len(run.followed.pieces) for run in runs),
+                "solves": sum(run.followed.solves for run in runs),
+            },
+        )
+
+
+def _columns(runs: list[Run], shape: tuple[int, ...]) -> dict[str, Any]:
+    """Return the entries of a motion: numbers for one impact, arrays for a batch."""
+    columns = {
+        "duration": [run.duration for run in runs],
+        "normal_velocity": [run.normal_velocity for run in runs],
+        "slip_velocity_change": [run.slip_velocity_change for run in runs],
+        "friction_work": [run.friction_work for run in runs],
+    }
+    statuses = [run.status for run in runs]
+    if not shape:
+        return {name: column[0] for name, column in columns.items()} | {"status": statuses[0]}
+    filled = np.empty(len(runs), dtype=object)
+    filled[:] = statuses
+    arrays = {name: np.array(column).reshape(shape) for name, column in columns.items()}
+    return arrays | {"status": filled.reshape(shape)}

@@ -1,0 +1,98 @@
+"""Lobatto collocation on [0, 1]: nodes and the matrices that every panel shares."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: Added to a distance from a node: a point on a node then picks that node, and any other
+#: distance is unchanged.
+ON_NODE = 1e-290
+
+
+class Nodes(NamedTuple):
+    """Everything that depends on the number of nodes only.
+
+    Attributes
+    ----------
+    points : array, shape (n,)
+        tau, 0 and 1 included.
+    integral : array, shape (n, n)
+        ``integral[i] @ f`` is the integral of f from 0 to ``points[i]``.
+    weights : array, shape (n,)
+        Of barycentric interpolation.
+    fine : array, shape (m,)
+        Finer points, to look for events.
+    to_fine : array, shape (n, m)
+        Values at nodes @ ``to_fine`` are values at the finer points.
+    slope : array, shape (n,)
+        ``slope @ f`` is f'(0).
+    tail : array, shape (2, n)
+        The two highest Legendre coefficients.
+    plain, rooted : tuple of two arrays
+        (x - origin)/length at the nodes, and its derivative: even, or with nodes crowded
+        as (1 - tau)² at the end, which makes (1 - x)^1.5 a polynomial.
+    identity : array, shape (n, n)
+    """
+
+    points: Array
+    integral: Array
+    weights: Array
+    fine: Array
+    to_fine: Array
+    slope: Array
+    tail: Array
+    plain: tuple[Array, Array]
+    rooted: tuple[Array, Array]
+    identity: Array
+
+
+@cache
+def lobatto(count: int) -> Nodes:
+    """Return Gauss-Lobatto-Legendre nodes on [0, 1] and their matrices."""
+    top = np.zeros(count)
+    top[-1] = 1.0
+    inner = legendre.legroots(legendre.legder(top))
+    z = np.concatenate(([-1.0], np.sort(inner.real), [1.0]))
+    to_coefficients = np.linalg.inv(legendre.legvander(z, count - 1))
+    rows_of_identity = np.eye(count)
+    primitive = np.stack([legendre.legint(row, lbnd=-1.0) for row in rows_of_identity], axis=1)
+    integral = 0.5 * legendre.legvander(z, count) @ primitive @ to_coefficients
+    integral[0] = 0.0
+    difference = z[:, None] - z[None, :] + rows_of_identity
+    weights = 1.0 / np.prod(2.0 * difference, axis=1)
+    weights /= np.abs(weights).max()
+    fine = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 3 * count + 1))
+    to_fine = legendre.legvander(2.0 * fine - 1.0, count - 1) @ to_coefficients
+    slopes = [legendre.legval(-1.0, legendre.legder(row)) for row in rows_of_identity]
+    points = 0.5 + 0.5 * z
+    return Nodes(
+        points=points,
+        integral=np.ascontiguousarray(integral),
+        weights=weights,
+        fine=fine,
+        to_fine=np.ascontiguousarray(to_fine.T),
+        slope=2.0 * np.array(slopes) @ to_coefficients,
+        tail=np.ascontiguousarray(to_coefficients[-2:]),
+        plain=(points, np.ones(count)),
+        rooted=(points * (2.0 - points), 2.0 * (1.0 - points)),
+        identity=rows_of_identity,
+    )
+
+
+def rows(nodes: Nodes, tau: Array) -> Array:
+    """Return the matrix that takes values at the nodes to values at ``tau``."""
+    basis = nodes.weights / ((tau[..., None] - nodes.points) + ON_NODE)
+    return np.asarray(basis / basis.sum(axis=-1, keepdims=True))
+
+
+def row(nodes: Nodes, tau: float) -> Array:
+    """Return the same for one tau, as a vector; faster."""
+    basis = nodes.weights / ((tau - nodes.points) + ON_NODE)
+    return np.asarray(basis / basis.sum())

@@ -1,0 +1,214 @@
+"""One collocation panel: Newton's method for the velocity at Lobatto nodes."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import NamedTuple
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dgesv
+
+from contactlab.contracts import ClosedFormMotion, Course, Phase, PhaseResponse, PhaseState
+from contactlab_events.nodes import ON_NODE, Nodes, rows
+
+Array = NDArray[np.float64]
+
+NEWTON_CAP = 25
+#: Newton's method is quadratic: after a relative update this small, the error is rounding.
+LAST_UPDATE = 1e-7
+#: From this update on, a panel that runs far past an event shows it, and is given up.
+PEEK_UPDATE = 0.1
+PEEK_PART = 0.8
+#: Margins at the first nodes may still be zero, from the event that began the phase.
+PEEK_FROM = 3
+#: Radians of the fastest oscillation that one panel may hold.
+LONGEST_SWING = 9.0
+#: A fitted length is not moved for less than this, relative; nor by more than half.
+FIT_MOVE = 1e-10
+TINY = 1e-300
+
+
+class Solved(NamedTuple):
+    """Converged values at a panel's nodes; ``change`` is counted from the panel's start."""
+
+    contact: Course
+    response: PhaseResponse
+    slip: Array
+    change: Array
+    velocity: Array
+    force: Array
+    time_matrix: Array
+    length: float
+
+
+class Overshot(NamedTuple):
+    """A panel given up because ``event`` comes early in it, about at ``tau``."""
+
+    event: int
+    tau: float
+    change: Array
+
+
+@attrs.frozen(eq=False, slots=False)
+class PanelPath:
+    """A finished panel, as values at its nodes: the ``Path`` that laws see."""
+
+    solved: Solved
+    nodes: Nodes
+    origin: float
+    rooted: bool
+
+    def tau(self, x: Array) -> Array:
+        """Return the panel coordinate of ``x``."""
+        tau = (x - self.origin) / self.solved.length
+        return 1.0 - np.sqrt(np.maximum(0.0, 1.0 - tau)) if self.rooted else tau
+
+    @cached_property
+    def _columns(self) -> Array:
+        solved, contact = self.solved, self.solved.contact
+        return np.array(
+            [
+                solved.slip,
+                solved.force,
+                contact.approach,
+                contact.radius,
+                contact.pace * solved.velocity,
+                contact.pace * contact.rate,
+                self.nodes.plain[1],
+            ]
+        )
+
+    def fields(self, x: Array) -> Array:
+        """Return rows slip, force, approach, radius, d(slip)/dx, d(approach)/dx at each x."""
+        nodes = self.nodes
+        basis = nodes.points[:, None] - self.tau(x)
+        basis += ON_NODE
+        np.divide(nodes.weights[:, None], basis, out=basis)
+        values = self._columns @ basis
+        return np.asarray(values[:6] / values[6])
+
+    def motion(self, x: Array) -> tuple[Array, Array, Array]:
+        """Return (change of velocity in this panel, force, slip) at each x."""
+        solved = self.solved
+        basis = rows(self.nodes, self.tau(x))
+        return basis @ solved.change, basis @ solved.force, basis @ solved.slip
+
+
+def newton(
+    phase: Phase,
+    motion: ClosedFormMotion,
+    nodes: Nodes,
+    start: PhaseState,
+    length: float,
+    inertia: float,
+    guess: Array | None,
+    *,
+    fit: int | None = None,
+) -> Solved | Overshot | None:
+    """Solve a panel of given length or, with ``fit``, of the length at which that event ends it.
+
+    Returns None if Newton's method does not converge or the panel is too long for its nodes.
+    """
+    spot, spread = nodes.plain if fit is None else nodes.rooted
+    count = len(spot)
+    memo: tuple[Array, ...] = ()
+    change = guess
+    placed = last = False
+    peek = fit is None and bool(phase.rough) and not phase.linear
+    guess_size = 0.0
+    for step in range(NEWTON_CAP):
+        if not placed:
+            contact = motion.course(start.x + length * spot)
+            rate = contact.pace * (length * spread)
+            time_matrix = nodes.integral * rate
+            time = time_matrix.sum(axis=1)
+            base = start.velocity * time
+            base += start.slip
+            placed = True
+        if change is None:  # force as it was, growing as it did
+            change = time * (-inertia * start.force - (0.5 * inertia * start.force_rate) * time)
+        if step == 0:
+            guess_size = float(change.dot(change)) / count
+        slip = time_matrix @ change
+        slip += base
+        response = phase.respond(contact, slip, memo)
+        memo, force = response.memo, response.force
+        gathered, stiffness = response.gathered, response.stiffness
+        if gathered is not None:
+            force = force + time_matrix @ (gathered * (start.velocity + change))
+        residual = time_matrix @ force
+        residual *= inertia
+        if last:
+            np.negative(residual, out=residual)
+            return Solved(
+                contact,
+                response,
+                slip,
+                residual,
+                start.velocity + residual,
+                force,
+                time_matrix,
+                length,
+            )
+        residual += change
+        slope = gathered if stiffness is None else stiffness
+        if slope is None:
+            delta = residual
+        else:
+            if step == 0 and not inertia * float((slope * rate * rate).max()) < LONGEST_SWING**2:
+                return None
+            left = time_matrix if stiffness is None else time_matrix * slope
+            right = time_matrix * slope if stiffness is None else time_matrix
+            matrix = left @ right
+            matrix *= inertia
+            matrix += nodes.identity
+            delta = dgesv(matrix, residual, 1, 1)[2]
+        change = change - delta
+        size = float(change.dot(change)) / count + start.velocity**2 + guess_size + TINY
+        update = (float(delta.dot(delta)) / size) ** 0.5
+        if not update < 1e6:
+            return None
+        if fit is not None:
+            margin = phase.margin(fit, contact, slip, start.velocity + change, response)
+            one, two = margin[-2:].tolist()
+            shift = two * (1.0 - spot[-2].item()) * length / (one - two) if one != two else np.inf
+            if not abs(shift) < 0.5 * length:
+                return None
+            if abs(shift) > FIT_MOVE * length:
+                change -= (inertia * shift) * (force * contact.pace * spot)
+                length += shift
+                placed = False
+                update = max(update, 1e-3 * abs(shift) / length)
+        elif peek and update < PEEK_UPDATE and step:
+            peek = False
+            found = glance(phase, contact, slip, start.velocity + change, response, nodes)
+            if found is not None:
+                return Overshot(found[0], found[1], change)
+        last = update < LAST_UPDATE or phase.linear
+    return None
+
+
+def glance(
+    phase: Phase,
+    contact: Course,
+    slip: Array,
+    velocity: Array,
+    response: PhaseResponse,
+    nodes: Nodes,
+) -> tuple[int, float] | None:
+    """Return (event, about where) if one comes early, or roughly, in a panel not yet solved."""
+    best: tuple[int, float] | None = None
+    points = nodes.points.tolist()
+    for event, rough in enumerate(phase.rough):
+        margin = phase.margin(event, contact, slip, velocity, response).tolist()
+        for k in range(PEEK_FROM, len(margin)):
+            if margin[k] < 0.0:
+                a, b = margin[k - 1], margin[k]
+                left, right = points[k - 1], points[k]
+                tau = left + (right - left) * (a / (a - b) if a > 0.0 else 0.0)
+                if (rough or tau < PEEK_PART) and (best is None or tau < best[1]):
+                    best = event, tau
+                break
+    return best

@@ -1,0 +1,135 @@
+"""Between SI units and the scaled ones in which phases are written (theory §1)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import attrs
+import numpy as np
+
+from contactlab.bodies import Pair
+from contactlab.contracts import (
+    ClosedFormMotion,
+    ClosedFormNormalLaw,
+    PhasedTangentialLaw,
+    PhaseState,
+    Problem,
+)
+from contactlab.status import Status
+from contactlab_events.follow import Followed, follow
+
+
+class Run(NamedTuple):
+    """One impact followed, with its outcome in SI."""
+
+    impact: Impact
+    followed: Followed
+    factor: float
+    duration: float
+    normal_velocity: float
+    slip_velocity_change: float
+    friction_work: float
+    status: Status
+    failure: str
+
+
+class Impact(NamedTuple):
+    """One impact in scaled units, and what leads back to SI.
+
+    ``velocity_unit`` is mu v1/kappa (29), ``force_unit`` mu P_max; both 0 without friction.
+    """
+
+    motion: ClosedFormMotion
+    velocity: float
+    inertia: float
+    slip_velocity: float
+    speed: float
+    velocity_unit: float
+    force_unit: float
+    time_unit: float
+
+    def run(self, law: PhasedTangentialLaw, tolerance: float) -> Run:
+        """Follow the impact; a law is odd, so the velocity goes in without its sign."""
+        speed = abs(self.velocity)
+        factor = -1.0 if self.velocity < 0.0 else 1.0
+        if 0.0 < speed < law.linear_below:
+            speed, factor = law.linear_below, factor * (speed / law.linear_below)
+        if not (math.isfinite(speed) and math.isfinite(self.inertia) and self.inertia > 0.0):
+            ended = PhaseState(0.0, 0.0, math.nan, math.nan, math.nan, math.nan, math.nan)
+            followed = Followed("", ended, (), 0)
+            status, failure = Status.NON_FINITE, "psi1 or chi is not finite and positive."
+        elif speed == 0.0 or self.force_unit == 0.0:  # nothing moves, or nothing resists
+            ended = PhaseState(math.pi, 0.0, 0.0, speed, 0.0, 0.0, 0.0)
+            followed = Followed("", ended, (), 0)
+            status, failure = Status.SUCCESS, ""
+        else:
+            followed = follow(law, self.motion, self.inertia, speed, tolerance)
+            failure = followed.failure
+            status = Status.UNRESOLVED if failure else Status.SUCCESS
+        state = followed.state
+        usable = math.nan if status is not Status.SUCCESS else 1.0
+        work_unit = self.velocity_unit * self.time_unit * self.force_unit
+        return Run(
+            impact=self,
+            followed=followed,
+            factor=factor,
+            duration=float(self.motion.duration),
+            normal_velocity=self.motion.instant(math.pi).rate * self.speed,
+            slip_velocity_change=usable * factor * state.change * self.velocity_unit,
+            friction_work=usable * factor * factor * state.work * work_unit,
+            status=status,
+            failure=failure,
+        )
+
+
+def impacts(problem: Problem) -> Iterator[Impact]:
+    """Iterate over the impacts of a problem, in scaled units."""
+    if not problem.shape:
+        yield _scaled(problem)
+        return
+    for index in np.ndindex(problem.shape):
+        yield _scaled(item(problem, index))
+
+
+def _scaled(problem: Problem) -> Impact:
+    """Scale a problem of one impact."""
+    normal, pair = problem.normal, problem.pair
+    assert isinstance(normal, ClosedFormNormalLaw)
+    speed = float(problem.normal_speed)
+    motion = normal.motion(pair, speed)
+    friction, kappa = float(problem.friction_coefficient), float(pair.stiffness_ratio)
+    force, approach = float(motion.maximum_force), float(motion.maximum_approach)
+    unit = friction * speed / kappa
+    slip_velocity = float(problem.slip_velocity)
+    return Impact(
+        motion=motion,
+        velocity=slip_velocity / unit if unit else 0.0,
+        inertia=kappa * force * approach / (float(pair.tangential_mass) * speed**2),
+        slip_velocity=slip_velocity,
+        speed=speed,
+        velocity_unit=unit,
+        force_unit=friction * force,
+        time_unit=approach / speed,
+    )
+
+
+def item(problem: Problem, index: tuple[int, ...]) -> Problem:
+    """Return the problem of one impact of a batch."""
+    shape = problem.shape
+
+    def pick(value: object) -> float:
+        return float(np.broadcast_to(np.asarray(value), shape)[index])
+
+    names = [field.name for field in attrs.fields(Pair)]
+    return attrs.evolve(
+        problem,
+        pair=Pair(**{name: pick(getattr(problem.pair, name)) for name in names}),
+        friction_coefficient=pick(problem.friction_coefficient),
+        normal_speed=pick(problem.normal_speed),
+        slip_velocity=pick(problem.slip_velocity),
+        maximum_radius=pick(problem.maximum_radius),
+        duration=pick(problem.duration),
+        shape=(),
+    )

@@ -1,0 +1,49 @@
+"""The law of the slip front."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import attrs
+
+from contactlab.checks import Mask, Real
+from contactlab.closed_forms import slips_throughout_elastic
+from contactlab.contracts import ClosedFormMotion, Phase, PhasedTangentialLaw
+from contactlab_fronts.phases import Balanced, GrossSlip, Stuck
+
+#: |2 chi - 1| below which the edge's margin against slip is lost in rounding.
+BALANCE = 1e-10
+
+
+@attrs.frozen(kw_only=True)
+class Fronts(PhasedTangentialLaw):
+    """The continuum limit of the annulus law, with no discretisation.
+
+    Where the contact sticks and where it slips is a short list of fronts; between changes
+    of regime their motion is smooth (theory §§4 and 5).
+
+    References
+    ----------
+    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-4.
+    Ciavarella, J. Appl. Mech. 65 (1998) 998-1003, and Jaeger, J. Tribol. 120 (1998) 677-684:
+    tangential loading from superposed normal contacts, of which the springs are one form.
+    """
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset[str]] = frozenset({"phases"})
+    needs: ClassVar[frozenset[str]] = frozenset({"events", "elastic_hertz"})
+    exact: ClassVar[bool] = True
+    linear_below: ClassVar[float] = 1e-9
+
+    def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
+        """Return True where (44) and (46) say so."""
+        return slips_throughout_elastic(psi1, chi)
+
+    def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
+        """Stick below psi1 = 1 (44), else slip; at exactly 1 the inertia decides."""
+        ratio = inertia * motion.scaled_mass
+        if velocity > 1.0 or (velocity == 1.0 and ratio <= 1.0):
+            return GrossSlip(1)
+        if abs(ratio - 1.0) < BALANCE:
+            return Balanced(velocity)
+        return Stuck((), 0.0, 0.0, 0)

@@ -1,0 +1,199 @@
+"""The phases of the spring bundle: stuck, edge slip, gross slip (theory §5)."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.contracts import (
+    ClosedFormMotion,
+    ClosedPhase,
+    Course,
+    Path,
+    Phase,
+    PhaseResponse,
+    PhaseState,
+)
+from contactlab_fronts.gross import GrossMotion
+from contactlab_fronts.laid import Laid
+from contactlab_fronts.locked import Locked
+from contactlab_fronts.profile import Piece
+
+Array = NDArray[np.float64]
+Memo = tuple[Array, ...]
+Profile = tuple[Piece, ...]
+
+
+@attrs.frozen(eq=False)
+class Stuck(Phase):
+    """All springs stick while the contact grows; new ones are laid down unstressed."""
+
+    profile: Profile
+    start: float
+    force: float
+    began: int
+
+    rough = (False, False)
+    linear = True
+    dissipates = False
+
+    def respond(self, contact: Course, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
+        """Gather dF = 1.5 c dD."""
+        return PhaseResponse(np.full_like(slip, self.force), None, 1.5 * contact.radius, ())
+
+    def margin(
+        self,
+        event: int,
+        contact: Course,
+        slip: Array,  # noqa: ARG002
+        velocity: Array,
+        response: PhaseResponse,  # noqa: ARG002
+    ) -> Array:
+        """Return V -+ psi: the edge sticks while |psi| < V."""
+        return np.asarray(contact.rate + velocity if event else contact.rate - velocity)
+
+    def follow(self, event: int, state: PhaseState, contact: Course, path: Path | None) -> Phase:  # noqa: ARG002
+        """Begin to slip at the edge."""
+        sign = -1 if event else 1
+        return slipping(sign, self._grown(state, path, sign))
+
+    def carry_on(self, state: PhaseState, contact: Course, path: Path) -> Phase:  # noqa: ARG002
+        """Keep what the panel laid down."""
+        return Stuck(self._grown(state, path, 0), state.x, state.force, 0)
+
+    def _grown(self, state: PhaseState, path: Path | None, ended: int) -> Profile:
+        if path is None or state.x <= self.start:
+            return self.profile
+        return (*self.profile, Laid.along(path, self.start, state.x, self.began, ended))
+
+
+@attrs.frozen(eq=False)
+class EdgeSlip(Phase):
+    """Springs outside the front slip; the front works through the outermost piece."""
+
+    sign: int
+    profile: Profile
+    rough: tuple[bool, ...]
+    span: float | None
+
+    @classmethod
+    def through(cls, sign: int, profile: Profile) -> EdgeSlip:
+        """Return edge slip of this sign on a profile with at least one piece."""
+        piece = profile[-1]
+        return cls(sign, profile, (False, piece.flat(sign), False), piece.span(sign))
+
+    def respond(self, contact: Course, slip: Array, memo: Memo) -> PhaseResponse:
+        """Return the force of profile and slip zone; dF/dD = 1.5 c."""
+        radius, force, memo = self.profile[-1].front(self.sign, contact, slip, memo)
+        return PhaseResponse(force, 1.5 * radius, None, memo)
+
+    def margin(
+        self, event: int, contact: Course, slip: Array, velocity: Array, response: PhaseResponse
+    ) -> Array:
+        """Return s psi - V; what the front has left to its piece's inner end; zeta - q there."""
+        sign, piece = self.sign, self.profile[-1]
+        if event == 0:
+            return np.asarray(sign * velocity - contact.rate)
+        if event == 1:
+            inner = piece.inner_q + sign * piece.inner_f
+            return np.asarray(contact.approach - sign * slip - inner)
+        return piece.depth(sign, contact, slip, response.memo)
+
+    def follow(self, event: int, state: PhaseState, contact: Course, path: Path | None) -> Phase:  # noqa: ARG002
+        """Re-stick (0), go on to the next piece (1), or slip the other way (2)."""
+        sign = self.sign
+        if event == 1:
+            return slipping(sign, self.profile[:-1])
+        if event == 2:
+            return slipping(-sign, self.profile)
+        here = Course(*(np.array([value]) for value in contact))
+        c = self.profile[-1].front(sign, here, np.array([state.slip]), ()).radius.item()
+        inner_f = sign * (contact.approach - c * c) - state.slip
+        inner_force = state.force - sign * (contact.force - c**3)
+        locked = Locked(sign, c * c, inner_f, inner_force)
+        return sticking(sign, (*self.profile, locked), state, contact)
+
+    def friction_power(
+        self,
+        contact: Course,
+        slip: Array,  # noqa: ARG002
+        velocity: Array,
+        response: PhaseResponse,
+    ) -> Array:
+        """1.5 (s psi - V) times the integral of zeta - s² over the slip zone."""
+        assert response.stiffness is not None
+        b, c = contact.radius, response.stiffness / 1.5
+        zone = (b - c) ** 2 * (2.0 * b + c) * 0.5
+        return np.asarray((self.sign * velocity - contact.rate) * zone)
+
+
+@attrs.frozen(eq=False)
+class GrossSlip(Phase):
+    """The whole contact slips; Coulomb's force."""
+
+    sign: int
+
+    rough = (False,)
+
+    def respond(self, contact: Course, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
+        """F = s P."""
+        return PhaseResponse(self.sign * contact.force, None, None, ())
+
+    def margin(
+        self,
+        event: int,  # noqa: ARG002
+        contact: Course,
+        slip: Array,  # noqa: ARG002
+        velocity: Array,
+        response: PhaseResponse,  # noqa: ARG002
+    ) -> Array:
+        """Slip goes on while s psi > V."""
+        return np.asarray(self.sign * velocity - contact.rate)
+
+    def follow(self, event: int, state: PhaseState, contact: Course, path: Path | None) -> Phase:  # noqa: ARG002
+        """Re-stick, all at once."""
+        locked = Locked(self.sign, 0.0, self.sign * contact.approach - state.slip, 0.0)
+        return sticking(self.sign, (locked,), state, contact)
+
+    def closed_form(
+        self, state: PhaseState, motion: ClosedFormMotion, inertia: float
+    ) -> ClosedPhase:
+        """Return psi in proportion to V."""
+        return GrossMotion(self.sign, state, motion, inertia)
+
+
+@attrs.frozen(eq=False)
+class Balanced(Phase):
+    """chi = 1/2: psi = psi1 V and F = psi1 P, and no spring ever slips."""
+
+    share: float
+
+    def respond(self, contact: Course, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
+        """F = psi1 P."""
+        return PhaseResponse(self.share * contact.force, None, None, ())
+
+    def closed_form(
+        self,
+        state: PhaseState,
+        motion: ClosedFormMotion,
+        inertia: float,  # noqa: ARG002
+    ) -> ClosedPhase:
+        """Gross slip's formula with psi1 for the sign, and no work."""
+        path = GrossMotion(self.share, state, motion, 1.0 / motion.scaled_mass)
+        path.end = path.end._replace(work=state.work)
+        return path
+
+
+def slipping(sign: int, profile: Profile) -> Phase:
+    """Return the slip phase of this sign: pieces of the same sign are swept at once."""
+    while profile and profile[-1].swept(sign):
+        profile = profile[:-1]
+    return EdgeSlip.through(sign, profile) if profile else GrossSlip(sign)
+
+
+def sticking(sign: int, profile: Profile, state: PhaseState, contact: Course) -> Phase:
+    """Return what follows when slip of this sign stops: in unloading the edge slips back."""
+    if contact.rate > 0.0:
+        return Stuck(profile, state.x, state.force, sign)
+    return slipping(-sign, profile)
