@@ -1,10 +1,11 @@
-"""A whole run of fixed steps, several at a time.
+"""A whole run of fixed steps at once: step by step at the edge of stick, all tests in blocks.
 
-Between changes of the division into stick and slip the contact is linear: the force is
-a multiple of the slip displacement D plus what the known limits give. So a block of steps is
-taken with the division as it stands, by a recurrence of two numbers; all its tests (36), (37)
-are made at once; and the steps before the first failure are kept. The division changes in
-about every fifth step, so this gives what step by step gives at a fraction of the calls.
+Almost always the inner annuli stick and the outer ones slip in one direction. Then a step is one
+small product, and what changes is the number that stick: it is followed by two scalar tests at
+the edge, of the outermost annulus that sticks (36) and the innermost that slips (37). After
+a block of such steps the tests of all annuli are made together. The steps before the first
+failure are kept; the one that failed is searched in earnest, as are divisions of other
+kinds. So the result is that of step by step, at a fraction of the calls.
 """
 
 from __future__ import annotations
@@ -12,13 +13,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab_annulus import one
 from contactlab_annulus.tables import Array, Tables, response
 
 #: Steps in a block: it grows while no test fails.
-SHORTEST, LONGEST = 12, 64
+SHORTEST, LONGEST = 4, 128
+#: Moves of the edge in one step; more are left to the search.
+MOST_MOVES = 4
 #: Divisions tried on one step before it is left to ``one.advance``, which knows when to give up.
 MOST_TRIES = 8
 
@@ -36,132 +38,172 @@ class Course(NamedTuple):
 
 
 class Runner:
-    """One run. The rows of its tables are the steps; row 0 is the state at first touch."""
+    """One run. Row k of its tables is step k; row 0 of lags and tractions is first touch."""
 
     def __init__(self, table: Tables, course: Course, velocity: float) -> None:
         count, size = len(course.radius), len(table.weight)
-        square = np.square(course.radius)[:, None] - table.radius_squared
-        self.table, self.course, self.velocity = table, course, velocity
-        self.limits = course.pressure[:, None] * np.sqrt(np.maximum(square, 0.0))
-        self.outside = self.limits == 0.0
-        self.reaches = np.count_nonzero(~self.outside, axis=1)
+        limits = np.square(course.radius)[:, None] - table.radius_squared
+        np.sqrt(np.maximum(limits, 0.0, out=limits), out=limits)
+        limits *= course.pressure[:, None]
+        self.table, self.course, self.velocity, self.limits = table, course, velocity, limits
+        self.reaches = np.count_nonzero(limits, axis=1).tolist()
         self.drifts, self.kicks = course.drift.tolist(), course.kick.tolist()
         self.lags, self.tractions = np.zeros((count + 1, size)), np.zeros((count + 1, size))
-        self.forces = np.zeros(count)
-        self.signs = np.zeros(size)
+        self.found = np.zeros((count, size + 1))
+        self.signs, self.reach = np.zeros(size), 0  # the division, as in ``one.Memory``
         self.at, self.total, self.change = 0, 0.0, 0.0
+
+    @property
+    def forces(self) -> Array:
+        """F^ of the steps taken."""
+        return self.found[: self.at, 0]
 
     def run(self) -> bool:
         """Take all steps; return whether every division was found."""
-        count, length, tries = len(self.forces), SHORTEST, 0
+        count, length, tries = len(self.found), SHORTEST, 0
         while self.at < count:
             if tries > MOST_TRIES or not self.table.responses:
                 if not self._step():
                     return False
                 tries = 0
                 continue
-            reach = int(self.reaches[self.at])
-            # A contact that has shrunk slips at its edge.
-            if self.signs[:reach].any() or (self.at and reach < self.reaches[self.at - 1]):
-                kept, length = self._block(min(self.at + length, count), reach)
-            else:
-                kept, length = self._grip(min(self.at + length, count))
+            edge, until = self._edge(), min(self.at + length, count)
+            kept = self._fixed(until) if edge is None else self._follow(until, *edge)
+            length = min(2 * length, LONGEST) if self.at == until else SHORTEST
             tries = 0 if kept else tries + 1
         return True
 
     def friction_work(self) -> float:
         """Return the work of the mean tractions on the slips of all steps taken."""
         slips = self.lags[: self.at] - self.lags[1 : self.at + 1]
-        means = 0.5 * (self.tractions[: self.at] + self.tractions[1 : self.at + 1])
-        return float(np.vdot(means * self.table.weight, slips))
+        means = self.tractions[: self.at] + self.tractions[1 : self.at + 1]
+        return 0.5 * float(np.einsum("ij,ij,j->", means, slips, self.table.weight))
 
-    def _grip(self, until: int) -> tuple[int, int]:
-        """Take steps in which the whole contact sticks, newcomers without traction."""
-        at, table = self.at, self.table
-        grip = table.grip[self.reaches[at:until]]
-        totals, changes = [self.total], [self.change]
-        force = float(table.weight.dot(self.tractions[at]))
-        for k, stiffness in enumerate(grip.dot(table.weight).tolist(), at):
-            move = (self.velocity + changes[-1]) * self.drifts[k]
-            force += stiffness * move
-            totals.append(totals[-1] + move)
-            changes.append(changes[-1] - self.kicks[k] * force)
-        steps = np.diff(totals)
-        found = self.tractions[at] + np.cumsum(steps[:, None] * grip, axis=0)
-        good = np.abs(found) <= self.limits[at:until]
-        kept, wrong = _first_failure(good)
-        here = slice(at + 1, at + 1 + kept)
-        self.tractions[here] = found[:kept]
-        self.lags[here] = (
-            found[:kept] @ table.compliance.T - np.array(totals[1 : kept + 1])[:, None]
+    def _edge(self) -> tuple[int, float] | None:
+        """Return how many leading annuli stick and the sign of the rest, if that says it all."""
+        reach = self.reach
+        signs = self.signs[:reach]
+        slipping = signs.nonzero()[0]
+        if not len(slipping):
+            return reach, 1.0
+        first, sign = slipping.item(0), signs.item(-1)
+        return (
+            (first, sign)
+            if len(slipping) == reach - first and (signs[first:] == sign).all()
+            else None
         )
-        self.forces[at : at + kept] = found[:kept] @ table.weight
-        self.at, self.total, self.change = at + kept, totals[kept], changes[kept]
-        if kept < len(good):
-            self.signs = np.where(wrong, np.sign(found[kept]), 0.0)
-        return kept, min(2 * len(good), LONGEST) if kept == len(good) else SHORTEST
 
-    def _block(self, until: int, reach: int) -> tuple[int, int]:
-        """Take steps up to ``until`` with the division as it stands; return how many were kept."""
-        at, signs = self.at, self.signs
-        signs[reach:] = signs[reach - 1] if reach else 0.0
-        sticks = signs == 0.0
-        sticks[reach:] = False
-        matrix = response(len(signs), sticks.tobytes())
-        rows = np.empty((until - at, len(signs) + 1))
-        rows[:, 0] = 0.0
-        given = rows[:, 1:]
-        np.multiply(self.limits[at:until], signs, out=given)
-        np.copyto(given, self.lags[at], where=sticks)
-        slope, total, change = matrix.item(0), self.total, self.change
-        totals, changes = [], []
-        knowns = rows.dot(matrix[:, 0]).tolist()
-        for known, drift, kick in zip(
-            knowns, self.drifts[at:until], self.kicks[at:until], strict=True
+    def _follow(self, until: int, stuck: int, sign: float) -> int:
+        """Take steps up to ``until`` by the tests at the edge; return how many were kept."""
+        at, found, responses, reach = self.at, self.found, self.table.responses, self.reach
+        before, lag = self.lags[at], self.lags[at].copy()
+        rows = np.empty((until - at, found.shape[1]))
+        np.multiply(self.limits[at:until], sign, out=rows[:, 1:])
+        totals, changes, edges, senses = [self.total], [self.change], [], []
+        for k, now, row, limit, answer in zip(
+            range(at, until),
+            self.reaches[at:until],
+            rows,
+            self.limits[at:until],
+            found[at:until],
+            strict=True,
         ):
-            total += (self.velocity + change) * drift
-            change -= kick * (slope * total + known)
+            total = totals[-1] + (self.velocity + changes[-1]) * self.drifts[k]
+            known = stuck  # annuli whose lag is in ``lag``
+            stuck = now if stuck == reach else min(stuck, now)
+            if known < stuck:
+                lag[known:stuck] = before[known:stuck]
+                known = stuck
+            row[0], row[1 : stuck + 1] = total, lag[:stuck]
+            for _ in range(MOST_MOVES):
+                np.dot(row, responses[stuck], out=answer)
+                if stuck and abs(answer.item(stuck)) > limit.item(stuck - 1):
+                    if stuck == now and answer.item(stuck) * sign < 0.0:
+                        sign = -sign
+                        rows[k - at, stuck:] *= -1.0
+                        rows[k - at + 1 :, 1:] *= -1.0
+                    row[stuck] = sign * limit.item(stuck - 1)
+                    stuck -= 1
+                    continue
+                if stuck == now:
+                    break
+                lag_before = (lag if stuck < known else before).item(stuck)
+                if sign * (lag_before - answer.item(stuck + 1)) > 0.0:
+                    break
+                lag[stuck] = row[stuck + 1] = lag_before
+                stuck += 1
+                known = max(known, stuck)
+            else:
+                break  # not a matter of the edge alone
+            before, reach = answer[1:], now
             totals.append(total)
-            changes.append(change)
-        rows[:, 0] = totals
-        found = rows.dot(matrix)
-        answer, here = found[:, 1:], slice(at + 1, until + 1)
-        lags, tractions = self.lags[here], self.tractions[here]
-        lags[...] = answer
-        np.copyto(lags, given, where=sticks)
-        tractions[...] = given
-        np.copyto(tractions, answer, where=sticks)
-        good = signs * (self.lags[at:until] - lags) > 0.0  # (37)
-        good |= self.outside[at:until]
-        np.copyto(good, np.abs(answer) <= self.limits[at:until], where=sticks)  # (36)
-        kept, wrong = _first_failure(good)
-        self.forces[at : at + kept] = found[:kept, 0]
-        if kept:
-            self.at, self.total, self.change = at + kept, totals[kept - 1], changes[kept - 1]
+            changes.append(changes[-1] - self.kicks[k] * answer.item(0))
+            edges.append(stuck)
+            senses.append(sign)
+        if not edges:
+            self.signs[: self.reach] = 0.0  # start the tries anew, from stick all over
+            return 0
+        rows = rows[: len(edges)]
+        inner = np.arange(len(lag)) < np.array(edges)[:, None]
+        return self._tested(rows, np.where(inner, 0.0, np.array(senses)[:, None]), totals, changes)
+
+    def _fixed(self, until: int) -> int:
+        """Take steps up to ``until`` with any division as it stands; return how many were kept."""
+        at, signs, reach = self.at, self.signs, self.reach
+        signs[reach:] = signs[reach - 1]
+        if not signs[-1]:  # newcomers stick, from where they then are: not beyond this block
+            until = next((k for k in range(at, until) if self.reaches[k] > reach), until)
+            signs[reach:] = 1.0
+        if until == at:
+            self.reach = self.reaches[at]
+            signs[reach : self.reach] = 0.0
+            until = at + 1
+        sticks = signs == 0.0
+        matrix = response(len(signs), sticks.tobytes())
+        rows = np.zeros((until - at, self.found.shape[1]))
+        np.multiply(self.limits[at:until], signs, out=rows[:, 1:])
+        np.copyto(rows[:, 1:], self.lags[at], where=sticks)
+        totals, changes = [self.total], [self.change]
+        for k, known in enumerate(rows.dot(matrix[:, 0]).tolist(), at):
+            totals.append(totals[-1] + (self.velocity + changes[-1]) * self.drifts[k])
+            force = matrix.item(0) * totals[-1] + known
+            changes.append(changes[-1] - self.kicks[k] * force)
+        rows[:, 0] = totals[1:]
+        self.found[at:until] = rows.dot(matrix)
+        return self._tested(rows, np.tile(signs, (len(rows), 1)), totals, changes)
+
+    def _tested(self, rows: Array, signs: Array, totals: list[float], changes: list[float]) -> int:
+        """Enter a block of steps in the tables; keep and count those that pass (36) and (37)."""
+        at, until = self.at, self.at + len(rows)
+        given, answer, limits = rows[:, 1:], self.found[at:until, 1:], self.limits[at:until]
+        sticks, here = signs == 0.0, slice(at + 1, until + 1)
+        self.lags[here] = np.where(sticks, given, answer)
+        self.tractions[here] = np.where(sticks, answer, given)
+        good = signs * (self.lags[at:until] - self.lags[here]) > 0.0
+        good |= limits == 0.0
+        np.copyto(good, np.abs(answer) <= limits, where=sticks)
+        first = int(good.argmin())
+        kept = len(good) if good.flat[first] else first // good.shape[1]
+        self.at, self.total, self.change = at + kept, totals[kept], changes[kept]
         if kept == len(good):
-            return kept, min(2 * kept, LONGEST)
-        begins = np.where(sticks, np.sign(answer[kept]), 0.0)
-        self.signs = np.where(wrong, begins, signs)
-        return kept, SHORTEST
+            self.signs, self.reach = signs[-1].copy(), self.reaches[self.at - 1]
+        else:  # for the next try, all violators of the step that failed are flipped
+            begins = np.where(sticks[kept], np.sign(answer[kept]), 0.0)
+            self.signs = np.where(good[kept], signs[kept], begins)
+            self.reach = self.reaches[self.at]
+        return kept
 
     def _step(self) -> bool:
-        """Take one step by itself."""
+        """Take one step by the search for any division."""
         at, course = self.at, self.course
-        reach = int(self.reaches[at - 1]) if at else 0
-        memory = one.Memory(self.total, self.lags[at], self.tractions[at], self.signs, reach)
+        memory = one.Memory(self.total, self.lags[at], self.tractions[at], self.signs, self.reach)
         move = (self.velocity + self.change) * self.drifts[at]
         radius, pressure = float(course.radius[at]), float(course.pressure[at])
         force, _, settled, memory = one.advance(self.table, memory, move, radius, pressure)
         if settled:
-            self.total, self.lags[at + 1], self.tractions[at + 1], self.signs, _ = memory
-            self.forces[at] = force
+            self.total, self.lags[at + 1], self.tractions[at + 1], signs, self.reach = memory
+            self.signs = signs.copy()
+            self.found[at, 0] = force
             self.change -= self.kicks[at] * force
             self.at += 1
         return settled
-
-
-def _first_failure(good: NDArray[np.bool_]) -> tuple[int, NDArray[np.bool_]]:
-    """Return the number of rows before the first that fails, and where that one fails."""
-    index = int(good.argmin())
-    row = index // good.shape[1]
-    return (len(good), good[0]) if good.flat[index] else (row, ~good[row])

@@ -126,7 +126,7 @@ class Annulus(RunningTangentialLaw):
         runner = blocks.Runner(tables(self.annuli), course, run.velocity)
         settled = runner.run()
         work = runner.friction_work() * float(scales.work)
-        return RunResponse(runner.forces[: runner.at] * scales.force, work, settled)
+        return RunResponse(runner.forces * scales.force, work, settled)
 
     def fields(self, state: State) -> Mapping[str, NDArray[Any]]:
         """Return radius (m), traction (Pa), displacement (m), stuck and slipping of every annulus.
