@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from contactlab.checks import Real
-from contactlab.contracts.integrator import Motion
+from contactlab.contracts.integrator import MOTION_ENTRIES, Motion
 from contactlab.history import History
 from contactlab.plan import Plan
 from contactlab.scene import Scene
@@ -230,7 +230,7 @@ class ImpactResult:
 
         motion = attrs.evolve(
             self.motion,
-            **{name: pick(getattr(self.motion, name)) for name in _MOTION_NUMBERS},
+            **{name: pick(getattr(self.motion, name)) for name in MOTION_ENTRIES},
         )
         history = self.history
         if history is not None:
@@ -250,11 +250,6 @@ class ImpactResult:
     def __iter__(self) -> Iterator[ImpactResult]:
         """Iterate over the impacts of a batch."""
         return (self[index] for index in range(len(self)))
-
-
-_MOTION_NUMBERS = (
-    "duration", "normal_velocity", "slip_velocity_change", "friction_work", "status",
-)  # fmt: skip
 
 
 def plain(value: Any) -> Any:

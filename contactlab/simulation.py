@@ -12,7 +12,13 @@ import numpy as np
 
 from contactlab import composition
 from contactlab.checks import Real, refuse, whole
-from contactlab.contracts.integrator import Integrator, Motion, Problem, Sample
+from contactlab.contracts.integrator import (
+    MOTION_ENTRIES,
+    Integrator,
+    Motion,
+    Problem,
+    Sample,
+)
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.history import Recorder
@@ -84,6 +90,13 @@ class Simulation:
         """
         started = time.perf_counter()
         plan = self.plan(scene, history=history)
+        if history and scene.shape and not self.integrator.common_instants:
+            raise refuse(
+                "history",
+                history,
+                f"impacts of a batch have instants of their own under {self.integrator!r}",
+                "run them one by one",
+            )
         recorder = Recorder(scene.shape, with_fields=history == "fields") if history else None
         if plan.marched.all():
             motion = self._integrate(scene, recorder)
@@ -144,7 +157,7 @@ class Simulation:
         return ImpactResult(
             scene=batch,
             plan=self.plan(batch),
-            motion=_joined(motions),
+            motion=Motion.joined(motions, batch.shape),
             laws=composition.versions(self.normal, self.tangential, self.integrator),
             run_time=time.perf_counter() - started,
         )
@@ -221,11 +234,6 @@ class Simulation:
         return Motion(**merged, detail=marched.detail, counters=marched.counters)
 
 
-MOTION_ENTRIES = (
-    "duration", "normal_velocity", "slip_velocity_change", "friction_work", "status",
-)  # fmt: skip
-
-
 def _scene(scene: object) -> Scene:
     if not isinstance(scene, Scene):
         raise refuse("scene", scene, "must be a Scene", "make one: Scene(...)")
@@ -255,16 +263,3 @@ def _undone(shape: tuple[int, ...], status: Status) -> Motion:
         friction_work=nothing,
         status=_statuses(shape, status),
     )
-
-
-def _joined(motions: list[Motion]) -> Motion:
-    entries = {
-        name: np.concatenate([np.atleast_1d(getattr(motion, name)) for motion in motions])
-        for name in MOTION_ENTRIES
-    }
-    counters: dict[str, int] = {}
-    for motion in motions:
-        for key, number in motion.counters.items():
-            counters[key] = counters.get(key, 0) + number
-    detail = next((motion.detail for motion in motions if motion.detail), "")
-    return Motion(**entries, counters=counters, detail=detail)

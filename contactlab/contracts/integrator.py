@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import attrs
+import numpy as np
 
 from contactlab.bodies import Pair
 from contactlab.checks import Real
@@ -46,6 +49,21 @@ class Problem:
     maximum_radius: Real
     duration: Real
     shape: tuple[int, ...]
+
+    def impacts(self) -> Iterator[Problem]:
+        """Iterate over the impacts of a batch, each a problem of shape (), in C order."""
+        numbers = ("friction_coefficient", "normal_speed", "slip_velocity", "maximum_radius")
+        whole = {name: self._spread(getattr(self, name)) for name in (*numbers, "duration")}
+        fields = [field.name for field in attrs.fields(Pair)]
+        pairs = {name: self._spread(getattr(self.pair, name)) for name in fields}
+        for index in range(math.prod(self.shape)):
+            pair = Pair(**{name: column[index] for name, column in pairs.items()})
+            one: dict[str, Any] = {name: column[index] for name, column in whole.items()}
+            yield attrs.evolve(self, pair=pair, shape=(), **one)
+
+    def _spread(self, number: Real) -> list[float]:
+        spread: list[float] = np.broadcast_to(np.asarray(number), self.shape).ravel().tolist()
+        return spread
 
 
 class Sample(NamedTuple):
@@ -94,6 +112,28 @@ class Motion:
     detail: str = ""
     counters: Mapping[str, int] = attrs.field(factory=dict)
 
+    @classmethod
+    def joined(cls, motions: Sequence[Motion], shape: tuple[int, ...]) -> Motion:
+        """Return one motion of ``shape`` from those of its impacts, or of parts of them."""
+        entries = {
+            name: np.concatenate([np.ravel(getattr(motion, name)) for motion in motions])
+            for name in MOTION_ENTRIES
+        }
+        counters: Counter[str] = Counter()
+        for motion in motions:
+            counters.update(motion.counters)
+        return cls(
+            **{name: entry.reshape(shape) for name, entry in entries.items()},
+            detail=next((motion.detail for motion in motions if motion.detail), ""),
+            counters=dict(counters),
+        )
+
+
+#: What a motion says of each impact; the rest is of the whole batch.
+MOTION_ENTRIES = (
+    "duration", "normal_velocity", "slip_velocity_change", "friction_work", "status",
+)  # fmt: skip
+
 
 class Integrator(Law):
     """Advances the bodies through the impact.
@@ -113,6 +153,8 @@ class Integrator(Law):
     order: ClassVar[int | None] = None
     #: Narrow contracts it makes use of where a law has them, such as ``closed_form_motion``.
     uses: ClassVar[frozenset[str]] = frozenset()
+    #: False if each impact of a batch has instants of its own: no history of a batch then.
+    common_instants: ClassVar[bool] = True
 
     @property
     def accuracy(self) -> float | None:

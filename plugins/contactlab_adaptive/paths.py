@@ -1,0 +1,162 @@
+"""The normal motion as the adaptive integrator tries it: one whole leg against two half legs."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlab.contracts import ClosedFormMotion, NormalContact, NormalLaw, Problem
+
+
+class Leg(NamedTuple):
+    """A stretch of time with the contact sampled inside it.
+
+    ``lead`` and ``tail`` are the times before and after the sample, ``kick`` is their sum, all
+    in s; ``normal_force`` is the mean of P over the leg.
+    """
+
+    contact: NormalContact
+    lead: float
+    tail: float
+    kick: float
+    normal_force: float
+    time: float
+    approach: float
+    rate: float
+
+
+class Trial(NamedTuple):
+    """A step tried in two ways.
+
+    ``error`` is how far the two ways part in the normal motion, over its scale; ``place``
+    is where the two half legs end, and ``ended`` says that the contact has ended there.
+    """
+
+    whole: Leg
+    halves: tuple[Leg, Leg]
+    place: Any
+    error: float
+    ended: bool
+
+
+class NormalPath(ABC):
+    """Where the normal motion stands is a value, ``place``; trying a step changes nothing."""
+
+    #: Length of the whole path in the units of a step; None if it is not known beforehand.
+    length: float | None
+
+    @abstractmethod
+    def begin(self) -> Any:
+        """Return the place at first touch."""
+
+    @abstractmethod
+    def attempt(self, place: Any, step: float) -> Trial:
+        """Try a step."""
+
+    @abstractmethod
+    def end(self, place: Any) -> tuple[float, float]:
+        """Return (time, rate) at ``place``."""
+
+
+class ClosedPath(NormalPath):
+    """A motion in closed form; a step is one of its phase. Place: (phase, time, rate)."""
+
+    length = math.pi
+
+    def __init__(self, motion: ClosedFormMotion, mass: float) -> None:
+        self.motion, self.mass = motion, mass
+
+    def begin(self) -> tuple[float, float, float]:
+        """Return phase 0."""
+        return 0.0, 0.0, float(np.asarray(self.motion.at(0.0)[2]))
+
+    def attempt(self, place: Any, step: float) -> Trial:
+        """Try a step of the phase, cut off at pi."""
+        x, start, rate = place
+        stop = min(x + step, math.pi)
+        if math.pi - stop < 1e-12:
+            stop = math.pi
+        phases = np.array([0.25, 0.5, 0.75, 1.0]) * (stop - x) + x
+        phases[-1] = stop
+        *moving, contact = self.motion.at(phases)
+        found: list[Any] = [np.asarray(part).tolist() for part in moving]
+        contacts = np.array(contact)
+        times, rates = [start, *found[0]], [rate, *found[2]]
+        approaches = [math.nan, *found[1]]
+
+        def leg(first: int, middle: int, last: int) -> Leg:
+            kick = times[last] - times[first]
+            return Leg(
+                NormalContact(*contacts[:, middle - 1].tolist()),
+                times[middle] - times[first],
+                times[last] - times[middle],
+                kick,
+                self.mass * (rates[first] - rates[last]) / kick,
+                times[middle],
+                approaches[middle],
+                rates[middle],
+            )
+
+        halves = leg(0, 1, 2), leg(2, 3, 4)
+        return Trial(leg(0, 2, 4), halves, (stop, times[4], rates[4]), 0.0, stop == math.pi)
+
+    def end(self, place: Any) -> tuple[float, float]:
+        """Return (time, rate)."""
+        return place[1], place[2]
+
+
+class Flight(NamedTuple):
+    """Place of a motion that is integrated."""
+
+    time: float
+    approach: float
+    rate: float
+    overlap: float
+    state: Any
+
+
+class MarchedPath(NormalPath):
+    """A normal law without closed form, by the same leapfrog; a step is one of time."""
+
+    length = None
+
+    def __init__(self, law: NormalLaw, problem: Problem) -> None:
+        self.law, self.mass = law, float(problem.pair.normal_mass)
+        self.start = law.start(problem.pair)
+        self.speed = float(problem.normal_speed)
+        self.depth = self.speed * float(problem.duration)
+
+    def begin(self) -> Flight:
+        """Return first touch."""
+        return Flight(0.0, 0.0, self.speed, 0.0, self.start)
+
+    def attempt(self, place: Any, step: float) -> Trial:
+        """Try a step of time, cut off where the overlap is about to vanish."""
+        separating = place.rate < 0.0 and place.overlap > 0.0
+        # The bodies part no slower than they do now: the end is at most this far.
+        step = min(step, place.overlap / -place.rate) if separating else step
+        whole, there = self._leg(place, step)
+        first, middle = self._leg(place, 0.5 * step)
+        second, place = self._leg(middle, 0.5 * step)
+        error = abs(place.rate - there.rate) / self.speed
+        error += abs(place.approach - there.approach) / self.depth
+        ended = place.rate < 0.0 and place.overlap <= 1e-9 * self.depth
+        return Trial(whole, (first, second), place, error, ended)
+
+    def _leg(self, place: Flight, step: float) -> tuple[Leg, Flight]:
+        lead = 0.5 * step
+        approach = place.approach + place.rate * lead
+        contact, state = self.law.respond(place.state, approach, place.rate)
+        rate = place.rate - float(contact.force) * step / self.mass
+        time = place.time + lead
+        leg = Leg(contact, lead, lead, step, float(contact.force), time, approach, rate)
+        after = approach + rate * lead
+        overlap = float(contact.overlap) + rate * lead
+        return leg, Flight(place.time + step, after, rate, overlap, state)
+
+    def end(self, place: Any) -> tuple[float, float]:
+        """Return (time, rate)."""
+        return place.time, place.rate
