@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from contactlab.bodies import HalfSpace, Material, Pair, Sphere
+from contactlab.energy import EnergyLedger
 from contactlab.hookspecs import hookimpl
 from contactlab.registry import REGISTRY, PluginError
-from contactlab.result import EnergyLedger, ImpactError, ImpactResult
+from contactlab.result import ImpactError, ImpactResult
 from contactlab.scene import Scene
 from contactlab.simulation import Simulation
 from contactlab.status import Status

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.result import ImpactResult, plain
+from contactlab.plain import plain
+from contactlab.result import ImpactResult
 
 #: Column name, unit, and where it comes from. Tables and files read this one list.
 COLUMNS: tuple[tuple[str, str, Callable[[ImpactResult], Any]], ...] = (

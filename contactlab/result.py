@@ -10,6 +10,7 @@ import numpy as np
 
 from contactlab.checks import Real
 from contactlab.contracts.integrator import MOTION_ENTRIES, Motion
+from contactlab.energy import EnergyLedger, ledger
 from contactlab.history import History
 from contactlab.plan import Plan
 from contactlab.scene import Scene
@@ -18,36 +19,6 @@ from contactlab.status import Status
 
 class ImpactError(RuntimeError):
     """Raised by ``ImpactResult.check()`` for a run that did not succeed."""
-
-
-@attrs.frozen(kw_only=True, eq=False)
-class EnergyLedger:
-    """Kinetic energy of the relative motion at the contact, in J.
-
-    Attributes
-    ----------
-    start, end : float or array
-        ½ M_n v_z² + ½ M_t v_x² before and after.
-    friction_work : float or array
-        Added up by the law from traction and slip, step by step.
-    imbalance : float or array
-        start - end - friction_work: zero in an exact solution.
-    """
-
-    start: Real
-    end: Real
-    friction_work: Real
-    imbalance: Real
-
-    @property
-    def relative_imbalance(self) -> Real:
-        """Imbalance over the energy at the start."""
-        return self.imbalance / self.start
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the four entries and the relative imbalance as plain numbers or lists."""
-        entries = attrs.asdict(self) | {"relative_imbalance": self.relative_imbalance}
-        return {name: plain(value) for name, value in entries.items()}
 
 
 @attrs.frozen(kw_only=True, eq=False)
@@ -190,21 +161,7 @@ class ImpactResult:
     @property
     def energy(self) -> EnergyLedger:
         """Energy before and after, friction work, and what does not add up."""
-        pair, motion = self.scene.pair, self.motion
-        before, change = self.scene.slip_velocity, motion.slip_velocity_change
-        speed, after = self.scene.normal_speed, motion.normal_velocity
-        # Products, not powers: a float raised to a power raises OverflowError.
-        start = 0.5 * pair.normal_mass * speed * speed
-        start = start + 0.5 * pair.tangential_mass * before * before
-        # The loss is formed from the changes: with a huge v_x, start - end would cancel.
-        loss = 0.5 * pair.normal_mass * (speed - after) * (speed + after)
-        loss = loss - pair.tangential_mass * change * (before + 0.5 * change)
-        return EnergyLedger(
-            start=start,
-            end=start - loss,
-            friction_work=motion.friction_work,
-            imbalance=loss - motion.friction_work,
-        )
+        return ledger(self.scene, self.motion)
 
     # -- batches -------------------------------------------------------------
 
@@ -250,17 +207,6 @@ class ImpactResult:
     def __iter__(self) -> Iterator[ImpactResult]:
         """Iterate over the impacts of a batch."""
         return (self[index] for index in range(len(self)))
-
-
-def plain(value: Any) -> Any:
-    """Return ``value`` as JSON takes it: floats, lists, None for what is undefined."""
-    if isinstance(value, Status):
-        return value.name
-    if isinstance(value, np.ndarray):
-        return [plain(item) for item in value.tolist()]
-    if isinstance(value, float | np.floating):
-        return float(value) if np.isfinite(value) else None
-    return value
 
 
 def _ratio(after: Real, before: Real) -> Real:

@@ -21,6 +21,7 @@ from contactlab.contracts.integrator import (
 )
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.tangential import TangentialLaw
+from contactlab.energy import balanced
 from contactlab.history import Recorder
 from contactlab.plan import Plan, make_plan
 from contactlab.result import ImpactResult
@@ -70,9 +71,13 @@ class Simulation:
 
     def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
         """Say what ``run`` would compute for ``scene``, what it leaves out and why."""
-        return make_plan(
+        plan = make_plan(
             _scene(scene), self.normal, self.tangential, self.integrator, history=_asked(history)
         )
+        if not plan.marched.any():
+            return plan
+        remarks = self.integrator.remarks(self.problem(scene))
+        return attrs.evolve(plan, cautions=plan.cautions + remarks) if remarks else plan
 
     def run(self, scene: Scene, *, history: bool | str = False) -> ImpactResult:
         """Run one impact, or a batch scene at once.
@@ -107,7 +112,7 @@ class Simulation:
         return ImpactResult(
             scene=scene,
             plan=plan,
-            motion=motion,
+            motion=balanced(motion, scene, self.tangential.books_bound),
             laws=composition.versions(self.normal, self.tangential, self.integrator),
             history=recorder.history() if recorder else None,
             run_time=time.perf_counter() - started,

@@ -9,8 +9,8 @@ from typing import Any, TextIO
 import numpy as np
 
 from contactlab.analysis.compare import Comparison
+from contactlab.plain import plain
 from contactlab.quantities import QUANTITIES
-from contactlab.result import plain
 
 CSV_HEADINGS = (
     "table", "quantity", "unit", "against", "x", "law", "value", "reference", "difference",

@@ -21,7 +21,7 @@ from contactlab.analysis.bench_methods import methods
 from contactlab.analysis.work_precision import Benchmark, Row, bench
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table, time
-from contactlab.result import plain
+from contactlab.plain import plain
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

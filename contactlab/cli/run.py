@@ -22,7 +22,8 @@ import numpy as np
 from contactlab import export
 from contactlab.cli import arguments as shared
 from contactlab.cli.report import describe
-from contactlab.result import ImpactResult, plain
+from contactlab.plain import plain
+from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.status import Status

@@ -164,6 +164,10 @@ class Integrator(Law):
         """
         return None
 
+    def remarks(self, problem: Problem) -> tuple[str, ...]:  # noqa: ARG002
+        """Return what a plan should say of this problem: sentences, none by default."""
+        return ()
+
     @abstractmethod
     def integrate(self, problem: Problem, observer: Observer | None = None) -> Motion:
         """Return the motion from first touch to separation."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -86,6 +87,14 @@ class TangentialLaw(Law):
     exact: ClassVar[bool] = False
     #: True for a law that never makes a force: the plan leaves the march out.
     inert: ClassVar[bool] = False
+
+    @property
+    def books_bound(self) -> float:
+        """Imbalance of the energy books, over the energy at the start, that still is success.
+
+        Infinite unless the law declares one.
+        """
+        return math.inf
 
     def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
         """Return True where an elastic impact slips from start to end in one direction.

@@ -68,6 +68,11 @@ class Annulus(RunningTangentialLaw):
 
     annuli: int = count(default=50, most=2000)
 
+    @property
+    def books_bound(self) -> float:
+        """Return 1/n: collocation at midpoints is not reciprocal, and leaves about 0.3/n."""
+        return 1.0 / self.annuli
+
     def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
         """Return True where (44) and (46) say so."""
         return slips_throughout_elastic(psi1, chi)

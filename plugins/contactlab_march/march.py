@@ -59,25 +59,16 @@ class NormalEnd:
     separated: bool = True
 
 
-def largest_stable_steps(law: SteppedTangentialLaw, problem: Problem) -> int:
-    """Return the least number of steps an impact for which omega dt < 2: theory §4."""
-    frequency_squared = law.stiffness(problem) / problem.pair.tangential_mass
-    return int(np.max(0.5 * np.sqrt(frequency_squared) * problem.duration)) + 1
-
-
 def march(
-    problem: Problem,
-    law: SteppedTangentialLaw,
-    steps: Iterable[Step],
-    end: NormalEnd,
-    observer: Observer | None,
+    problem: Problem, steps: Iterable[Step], end: NormalEnd, observer: Observer | None
 ) -> Motion:
     """Follow the tangential motion along ``steps``.
 
     The change of velocity is summed apart from the velocity, which may be so large
     that it would swallow the change (theory §8).
     """
-    single = not problem.shape
+    law, single = problem.tangential, not problem.shape
+    assert isinstance(law, SteppedTangentialLaw)
     if single and observer is None and isinstance(law, RunningTangentialLaw):
         return march_at_once(problem, law, steps, end)
     initial = problem.slip_velocity
@@ -178,17 +169,3 @@ def _sample(
 
 def _spread(value: Real, shape: tuple[int, ...]) -> Real:
     return np.array(np.broadcast_to(value, shape)) if shape else float(value)
-
-
-def refused(problem: Problem, needed: int, steps: int) -> Motion:
-    """Return the motion of a run that was not begun: its steps are unstable."""
-    nothing = _spread(math.nan, problem.shape)
-    status = Status.TOO_FEW_STEPS
-    return Motion(
-        duration=nothing,
-        normal_velocity=nothing,
-        slip_velocity_change=nothing,
-        friction_work=nothing,
-        status=np.full(problem.shape, status, dtype=object) if problem.shape else status,
-        detail=f"steps = {steps}; this scene needs at least {needed:.6g}.",
-    )

@@ -9,8 +9,9 @@ import attrs
 import numpy as np
 
 from contactlab.checks import Real, count
-from contactlab.contracts import Integrator, Motion, Observer, Problem, SteppedTangentialLaw
-from contactlab_march.march import NormalEnd, Step, largest_stable_steps, march, refused
+from contactlab.contracts import Integrator, Motion, Observer, Problem
+from contactlab_march.march import NormalEnd, Step, march
+from contactlab_march.steps import MOST_STEPS, enough, refine_field, remarks
 
 #: A contact that lasts longer than this many Hertz durations is given up.
 LONGEST_CONTACT = 10
@@ -30,6 +31,9 @@ class PaperSteps(Integrator):
     ----------
     steps : int
         Steps in one duration (7) of a Hertz impact: delta tau = 1/steps.
+    refine : bool
+        Where ``steps`` are too few for the stiffness of the law: take more (the default),
+        or refuse with the status ``TOO_FEW_STEPS`` and the number needed.
 
     References
     ----------
@@ -42,27 +46,31 @@ class PaperSteps(Integrator):
     offers: ClassVar[frozenset[str]] = frozenset({"steps"})
     needs: ClassVar[frozenset[str]] = frozenset({"advance"})
 
-    steps: int = count(default=500)
+    steps: int = count(default=500, most=MOST_STEPS)
+    refine: bool = refine_field()
+
+    def remarks(self, problem: Problem) -> tuple[str, ...]:
+        """Say whether the steps are enough for ``problem``."""
+        return remarks(self.steps, self.refine, problem)
 
     def integrate(self, problem: Problem, observer: Observer | None = None) -> Motion:
-        """Return the motion; refuse steps above the stability limit."""
-        law = problem.tangential
-        assert isinstance(law, SteppedTangentialLaw)
-        needed = largest_stable_steps(law, problem)
-        if self.steps < needed:
-            return refused(problem, needed, self.steps)
-        end = NormalEnd()
-        return march(problem, law, self._steps(problem, end), end, observer)
+        """Return the motion, with more steps than asked for where those are too few."""
 
-    def _steps(self, problem: Problem, end: NormalEnd) -> Iterator[Step]:
+        def follow(problem: Problem, steps: int) -> Motion:
+            end = NormalEnd()
+            return march(problem, self._steps(problem, steps, end), end, observer)
+
+        return enough(self.steps, self.refine, problem, follow)
+
+    def _steps(self, problem: Problem, steps: int, end: NormalEnd) -> Iterator[Step]:
         """Yield the normal motion, (30)-(32), until every impact of the batch has ended."""
         normal, mass = problem.normal, problem.pair.normal_mass
         state = normal.start(problem.pair)
-        step = problem.duration / self.steps
+        step = problem.duration / steps
         rate, time = problem.normal_speed, 0.0 * problem.duration
         approach: Real = 0.0 * step
         touching: Any = np.ones(problem.shape, dtype=bool) if problem.shape else True
-        for _ in range(LONGEST_CONTACT * self.steps):
+        for _ in range(LONGEST_CONTACT * steps):
             approach = approach + rate * step
             contact, state = normal.respond(state, approach, rate)
             rate = rate - contact.force * step / mass

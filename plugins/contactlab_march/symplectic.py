@@ -16,9 +16,9 @@ from contactlab.contracts import (
     NormalContact,
     Observer,
     Problem,
-    SteppedTangentialLaw,
 )
-from contactlab_march.march import NormalEnd, Step, largest_stable_steps, march, refused
+from contactlab_march.march import NormalEnd, Step, march
+from contactlab_march.steps import MOST_STEPS, enough, refine_field, remarks
 
 #: A contact that lasts longer than this many Hertz durations is given up.
 LONGEST_CONTACT = 10
@@ -37,6 +37,9 @@ class Symplectic(Integrator):
     ----------
     steps : int
         Steps in one duration (7) of a Hertz impact.
+    refine : bool
+        Where ``steps`` are too few for the stiffness of the law: take more (the default),
+        or refuse with the status ``TOO_FEW_STEPS`` and the number needed.
     """
 
     api_version: ClassVar[int] = 1
@@ -46,27 +49,31 @@ class Symplectic(Integrator):
     needs: ClassVar[frozenset[str]] = frozenset({"advance"})
     uses: ClassVar[frozenset[str]] = frozenset({"closed_form_motion"})
 
-    steps: int = count(default=200)
+    steps: int = count(default=200, most=MOST_STEPS)
+    refine: bool = refine_field()
+
+    def remarks(self, problem: Problem) -> tuple[str, ...]:
+        """Say whether the steps are enough for ``problem``."""
+        return remarks(self.steps, self.refine, problem)
 
     def integrate(self, problem: Problem, observer: Observer | None = None) -> Motion:
-        """Return the motion; refuse steps above the stability limit."""
-        law = problem.tangential
-        assert isinstance(law, SteppedTangentialLaw)
-        needed = largest_stable_steps(law, problem)
-        if self.steps < needed:
-            return refused(problem, needed, self.steps)
-        end = NormalEnd()
+        """Return the motion, with more steps than asked for where those are too few."""
         closed = isinstance(problem.normal, ClosedFormNormalLaw)
-        steps = self._along(problem, end) if closed else self._through(problem, end)
-        return march(problem, law, steps, end, observer)
 
-    def _along(self, problem: Problem, end: NormalEnd) -> Iterator[Step]:
+        def follow(problem: Problem, count: int) -> Motion:
+            end = NormalEnd()
+            steps = self._along if closed else self._through
+            return march(problem, steps(problem, count, end), end, observer)
+
+        return enough(self.steps, self.refine, problem, follow)
+
+    def _along(self, problem: Problem, count: int, end: NormalEnd) -> Iterator[Step]:
         """Yield steps of a motion in closed form."""
         assert isinstance(problem.normal, ClosedFormNormalLaw)
         motion = problem.normal.motion(problem.pair, problem.normal_speed)
         mass = problem.pair.normal_mass
         column = (-1,) + (1,) * len(problem.shape)
-        halves: Any = motion.phase(np.linspace(0.0, 1.0, 2 * self.steps + 1))
+        halves: Any = motion.phase(np.linspace(0.0, 1.0, 2 * count + 1))
         halves[-1] = np.pi  # exactly, as the inverse is not
         at_ends: Any = motion.at(halves[::2].reshape(column))
         ends, rates = at_ends[0], at_ends[2]
@@ -76,18 +83,18 @@ class Symplectic(Integrator):
         drifts = np.diff(times, axis=0, prepend=0.0 * np.asarray(times)[:1])
         columns = [*contacts, drifts, kicks, means, times, approaches, velocities]
         end.duration, end.rate = motion.duration, rates[-1]
-        for row in _rows(columns, self.steps):
+        for row in _rows(columns, count):
             yield Step(NormalContact(*row[:3]), *row[3:])
 
-    def _through(self, problem: Problem, end: NormalEnd) -> Iterator[Step]:
+    def _through(self, problem: Problem, count: int, end: NormalEnd) -> Iterator[Step]:
         """Yield steps of a motion integrated here; locate the end between two samples."""
         normal, mass = problem.normal, problem.pair.normal_mass
         state = normal.start(problem.pair)
-        step = problem.duration / self.steps
+        step = problem.duration / count
         rate, drift = problem.normal_speed, 0.5 * step
         approach, time, before = 0.0 * step, 0.0 * step, 0.0 * step
         touching: Any = np.ones(problem.shape, dtype=bool) if problem.shape else True
-        for _ in range(LONGEST_CONTACT * self.steps):
+        for _ in range(LONGEST_CONTACT * count):
             approach = approach + rate * drift
             contact, state = normal.respond(state, approach, rate)
             # Where the overlap changed sign the contact ended on the way to this sample.

@@ -1,0 +1,78 @@
+"""How many fixed steps an impact needs, and what is done if fewer were asked for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.checks import refuse
+from contactlab.contracts import Motion, Problem, SteppedTangentialLaw
+from contactlab.status import Status
+
+#: Largest omega dt of the fastest tangential oscillation. At 2 the leapfrog is unstable (theory
+#: §4) and wrong by any amount; below it is stable, but useless well before: at 1/2 the
+#: phase is off by 1 % a radian.
+LARGEST_PHASE_STEP = 0.5
+#: More steps than this are refused, whoever asks for them.
+MOST_STEPS = 2_000_000
+
+
+def needed_steps(problem: Problem) -> Any:
+    """Return the least number of steps an impact that resolve omega = sqrt(stiffness/mass).
+
+    A float, or an array of the batch shape; 0 for a law without stiffness.
+    """
+    law = problem.tangential
+    assert isinstance(law, SteppedTangentialLaw)
+    omega = np.sqrt(law.stiffness(problem) / problem.pair.tangential_mass)
+    return np.ceil(omega * problem.duration / LARGEST_PHASE_STEP)
+
+
+def remarks(steps: int, refine: bool, problem: Problem) -> tuple[str, ...]:
+    """Return what the plan should say of the number of steps."""
+    needed = float(np.max(needed_steps(problem)))
+    if needed <= steps:
+        return ()
+    if refine and needed <= MOST_STEPS:
+        return (f"steps raised from {steps} to {needed:.0f}: fewer do not resolve the stiffness",)
+    return (f"{steps} steps are too few: this scene needs {needed:.6g}",)
+
+
+def enough(
+    steps: int, refine: bool, problem: Problem, follow: Callable[[Problem, int], Motion]
+) -> Motion:
+    """Follow ``problem`` with enough steps: refine, or refuse with the number needed.
+
+    Where some impacts of a batch must be refused, they are followed one by one.
+    """
+    needed = needed_steps(problem)
+    most = float(np.max(needed))
+    if most <= steps or (refine and most <= MOST_STEPS):
+        return follow(problem, max(steps, int(most)))
+    if problem.shape and float(np.min(needed)) <= (MOST_STEPS if refine else steps):
+        motions = [enough(steps, refine, impact, follow) for impact in problem.impacts()]
+        return Motion.joined(motions, problem.shape)
+    nothing = np.full(problem.shape, math.nan) if problem.shape else math.nan
+    status = Status.TOO_FEW_STEPS
+    return Motion(
+        duration=nothing,
+        normal_velocity=nothing,
+        slip_velocity_change=nothing,
+        friction_work=nothing,
+        status=np.full(problem.shape, status, dtype=object) if problem.shape else status,
+        detail=f"steps = {steps}; this scene needs at least {most:.6g}.",
+    )
+
+
+def _is_bool(_: object, attribute: attrs.Attribute[bool], value: object) -> None:
+    if not isinstance(value, bool):
+        raise refuse(attribute.name, value, "must be True or False")
+
+
+def refine_field() -> Any:
+    """Return the attrs field of ``refine``, True by default."""
+    return attrs.field(default=True, validator=_is_bool, metadata={"unit": "1"})

@@ -1,0 +1,94 @@
+"""No silent wrong answer: steps, energy books, limits."""
+
+from typing import ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Scene, Simulation, Status
+from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
+
+
+def annulus(integrator, **options):
+    return Simulation(
+        tangential=contactlab.create("tangential.annulus", annuli=20),
+        integrator=contactlab.create(f"integrator.{integrator}", **options),
+    )
+
+
+@pytest.mark.parametrize("integrator", ["paper", "symplectic"])
+def test_too_few_steps_are_raised_and_the_plan_says_so(integrator):
+    """Five steps at chi = 30: psi2 would be off by more than 1 (theory §4)."""
+    scene = Scene.nondimensional(psi1=1.2, chi=30.0)
+    sim = annulus(integrator, steps=5)
+    assert "steps raised from 5 to 63" in str(sim.plan(scene))
+    result = sim.run(scene).check()
+    assert result.counters["steps"] >= 63
+    fine = annulus(integrator, steps=2000).run(scene)
+    assert result.psi2 == pytest.approx(fine.psi2, abs=0.25)
+
+
+@pytest.mark.parametrize("integrator", ["paper", "symplectic"])
+def test_too_few_steps_are_refused_with_the_number_needed(integrator):
+    sim = annulus(integrator, steps=5, refine=False)
+    result = sim.run(Scene.nondimensional(psi1=1.2, chi=30.0))
+    assert result.status is Status.TOO_FEW_STEPS
+    assert "at least 63" in result.motion.detail
+    assert np.isnan(result.psi2)
+
+
+def test_the_limit_follows_the_law_and_the_scene():
+    """omega = sqrt(3.75 chi) in scaled time: N >= 2.94 sqrt(3.75 chi)/0.5; none for rigid laws."""
+    scene = Scene.nondimensional(psi1=1.2, chi=100.0)
+    assert not annulus("symplectic", steps=114).plan(scene).cautions
+    assert annulus("symplectic", steps=113).plan(scene).cautions
+    rigid = Simulation(
+        tangential="coulomb", integrator=contactlab.create("integrator.paper", steps=1)
+    )
+    assert not rigid.plan(scene).cautions
+
+
+def test_one_impossible_impact_does_not_spoil_a_batch():
+    chi = np.array([1.0, 1e300, 3.0])
+    result = annulus("symplectic", steps=50).run(Scene.nondimensional(psi1=0.5, chi=chi))
+    assert [status.name for status in result.status] == ["SUCCESS", "TOO_FEW_STEPS", "SUCCESS"]
+    assert np.isfinite(result.psi2).tolist() == [True, False, True]
+
+
+@attrs.frozen(kw_only=True)
+class Creator(SteppedTangentialLaw):
+    """Makes energy, and says that its books close to a thousandth."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"advance"})
+    books_bound: ClassVar[float] = 1e-3
+
+    def start(self, problem):
+        return problem.friction_coefficient
+
+    def advance(self, state, increment, before, after):
+        return TangentialResponse(-0.1 * state * increment.normal_force, 0.0), state
+
+
+@pytest.mark.parametrize("shape", [(), (3,)])
+def test_books_beyond_what_the_law_declares_are_a_status(shape):
+    psi1 = np.full(shape, 1.2) if shape else 1.2
+    result = Simulation(tangential=Creator(), integrator="symplectic").run(
+        Scene.nondimensional(psi1=psi1, chi=1.44)
+    )
+    assert np.all(np.asarray(result.status, dtype=object) == Status.UNBALANCED)
+    assert "declared: 0.001" in result.motion.detail
+
+
+@pytest.mark.parametrize("bad", [0, -1, 10**8, 1.5, "10", None, True])
+def test_bad_steps(bad):
+    for integrator in ("paper", "symplectic"):
+        with pytest.raises(ValueError, match="steps"):
+            contactlab.create(f"integrator.{integrator}", steps=bad)
+
+
+def test_bad_refine():
+    with pytest.raises(ValueError, match="refine"):
+        contactlab.create("integrator.paper", refine="yes")
