@@ -4,8 +4,12 @@ import contactlab
 
 
 @contactlab.hookimpl
-def contactlab_law() -> type:
-    """Return the class of ``tangential.annulus``."""
+def contactlab_law(name: str) -> type:
+    """Return the class of ``tangential.annulus`` or ``tangential.sharp_annulus``."""
+    if name == "tangential.sharp_annulus":
+        from contactlab_annulus.sharp import SharpAnnulus
+
+        return SharpAnnulus
     from contactlab_annulus.law import Annulus
 
     return Annulus

@@ -1,0 +1,148 @@
+"""The part of a law that does not depend on where it keeps w(s)."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.checks import Mask, Real
+from contactlab.closed_forms import slips_throughout_elastic
+from contactlab.contracts import (
+    Increment,
+    NormalContact,
+    Problem,
+    Run,
+    RunningTangentialLaw,
+    RunResponse,
+    TangentialResponse,
+)
+from contactlab_jaeger import step, whole
+from contactlab_jaeger.places import Array, Places
+
+
+class Scales(NamedTuple):
+    """What turns SI into scaled variables and back; floats, or arrays of the batch shape."""
+
+    radius: Real  # a, m
+    displacement: Real  # kappa R / (mu a²), 1/m; 0 without friction
+    force: Real  # mu P_max, N
+    normal_force: Real  # P_max of a Hertz contact of radius a, N
+    work: Real  # mu P_max mu a²/(kappa R), J
+
+    @classmethod
+    def of(cls, problem: Problem) -> Scales:
+        """Return the scales of ``problem``, theory §1."""
+        pair, radius, friction = problem.pair, problem.maximum_radius, problem.friction_coefficient
+        peak = (4.0 / 3.0) * pair.effective_modulus * radius**3 / pair.radius
+        slip = friction * radius**2 / (pair.stiffness_ratio * pair.radius)
+        per_slip = (friction > 0.0) / (slip + (friction == 0.0))
+        return cls(radius, per_slip, friction * peak, peak, friction * peak * slip)
+
+    def pressure(self, radius: Any, force: Any) -> Any:
+        """Return p: 1 for a Hertz contact; another law may carry another force at a radius."""
+        cube = self.normal_force * radius**3
+        return force / (cube + (cube == 0.0))
+
+
+class State(NamedTuple):
+    """Memory of the contacts of one batch shape, and their scales; never changed once made."""
+
+    shape: tuple[int, ...]
+    scales: Scales
+    memory: step.Memory
+
+
+class ProfileLaw(RunningTangentialLaw):
+    """A law of independent springs; a subclass says where they are."""
+
+    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
+    needs: ClassVar[frozenset[str]] = frozenset({"steps", "radius"})
+
+    @abstractmethod
+    def places(self) -> Places:
+        """Return the places, made once for each number of them."""
+
+    def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
+        """Return True where (44) and (46) say so."""
+        return slips_throughout_elastic(psi1, chi)
+
+    def stiffness(self, problem: Problem) -> Real:
+        """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""
+        return 2.0 * problem.pair.effective_shear_modulus * problem.maximum_radius
+
+    def start(self, problem: Problem) -> State:
+        """Return contacts without traction."""
+        return State(problem.shape, Scales.of(problem), step.start())
+
+    def advance(
+        self,
+        state: State,
+        increment: Increment,
+        before: NormalContact,  # noqa: ARG002
+        after: NormalContact,
+    ) -> tuple[TangentialResponse, State]:
+        """Return the force after the step."""
+        shape, scales, memory = state
+        radius: Any = after.radius / scales.radius
+        pressure = step.common(scales.pressure(radius, after.force), shape)
+        moved = increment.displacement * scales.displacement
+        items = 1
+        if shape:
+            moved = np.broadcast_to(moved, shape).reshape(-1)
+            items = moved.size
+        force, work, memory = step.advance(
+            self.places(), memory, moved, step.common(radius, shape), pressure, items
+        )
+        if not shape:
+            response = TangentialResponse(force.item() * scales.force, work.item() * scales.work)
+        else:
+            force, work = force.reshape(shape), work.reshape(shape)
+            response = TangentialResponse(force * scales.force, work * scales.work)
+        return response, State(shape, scales, memory)
+
+    def run(self, problem: Problem, run: Run) -> RunResponse:
+        """Return the forces of a whole impact."""
+        scales = Scales.of(problem)
+        radius = run.radius / scales.radius
+        course = whole.Course(
+            radius=radius,
+            pressure=scales.pressure(radius, run.force),
+            drift=run.drift * scales.displacement,
+            kick=run.kick * scales.force / run.mass,
+        )
+        force, work = whole.run(self.places(), course, run.velocity)
+        return RunResponse(force * scales.force, work * float(scales.work), True)
+
+    def fields(self, state: State) -> Mapping[str, NDArray[Any]]:
+        """Return radius (m), displacement and limit (m), stuck and slipping at every place.
+
+        ``displacement`` is w, the tangential displacement of the spring there; ``slipping``
+        is its sign where it is held at the limit, 0 elsewhere.
+        """
+        shape, scales, memory = state
+        squares = self.places().squares
+        items = int(np.prod(shape))
+
+        def whole_rows(rows: Array) -> Array:
+            full = np.zeros((items, len(squares)))
+            full[:, : len(rows)] = rows.T
+            return full.reshape(*shape, len(squares))
+
+        def column(value: Real) -> Any:
+            return np.asarray(value)[..., None]
+
+        stretch, limit = whole_rows(memory.stretch), whole_rows(memory.limit)
+        with np.errstate(divide="ignore"):
+            length = np.where(np.asarray(scales.displacement) > 0, 1.0 / scales.displacement, 0.0)
+        slips = (limit > 0.0) & (np.abs(stretch) >= limit)
+        return {
+            "radius": np.broadcast_to(column(scales.radius) * np.sqrt(squares), stretch.shape),
+            "displacement": column(length) * stretch,
+            "limit": column(length) * limit,
+            "stuck": (limit > 0.0) & ~slips,
+            "slipping": (slips * np.sign(stretch)).astype(np.int8),
+        }

@@ -1,0 +1,112 @@
+"""One spring with a cap: what most discrete-element codes take for friction."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, NamedTuple
+
+import attrs
+import numpy as np
+
+from contactlab.checks import Mask, Real
+from contactlab.contracts import (
+    Increment,
+    NormalContact,
+    Problem,
+    SteppedTangentialLaw,
+    TangentialResponse,
+)
+
+FORMS = ("displacement", "increment", "increment_rescaled")
+
+
+class State(NamedTuple):
+    """Twice G* in Pa, the friction coefficient, and what the spring remembers."""
+
+    modulus: Real
+    friction_coefficient: Real
+    held: Real  # displacement u in m, or force F in N, by the form
+    force: Real  # F in N
+
+
+@attrs.frozen(kw_only=True)
+class MindlinCap(SteppedTangentialLaw):
+    """The stiffness of a contact that sticks all over, 2 G* b, under Coulomb's cap mu P.
+
+    No part of the contact slips before the whole does. The energy that the changing
+    stiffness makes or loses is in nobody's books and shows as their imbalance.
+
+    Parameters
+    ----------
+    form : str
+        ``"displacement"``: F = 2 G* b u, u losing the excess over the cap on slip;
+        ``"increment"``: dF = 2 G* b du, F cut to the cap;
+        ``"increment_rescaled"``: the same, F multiplied with b/b before while b shrinks.
+
+    References
+    ----------
+    Mindlin, J. Appl. Mech. 16 (1949) 259-268, for the stiffness; Thornton, Cummins &
+    Cleary, Powder Technol. 210 (2011) 189-197, for the rescaled form.
+    """
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
+    needs: ClassVar[frozenset[str]] = frozenset({"steps", "radius"})
+
+    form: str = attrs.field(default="displacement", metadata={"unit": "1"})
+
+    @form.validator
+    def _known(self, _: Any, value: object) -> None:
+        if value not in FORMS:
+            raise ValueError(f"form = {value!r}: must be one of {', '.join(FORMS)}")
+
+    def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
+        """Return True where the force is at the cap from start to end.
+
+        Gross slip goes on while the cap changes slower than the spring: in scaled variables
+        while psi >= r V, r = 2/3 in the displacement form (F = 1.5 b u, cap b³), 1 in the
+        increment form, 1 in loading and 2/3 in unloading if rescaled.
+        """
+        loading = 2.0 / 3.0 if self.form == "displacement" else 1.0
+        unloading = 1.0 if self.form == "increment" else 2.0 / 3.0
+        return np.abs(psi1) >= np.maximum(
+            np.maximum(loading, 2.0 * np.asarray(chi)), 4.0 * np.asarray(chi) - unloading
+        )
+
+    def stiffness(self, problem: Problem) -> Real:
+        """Return 2 G* a, of the largest contact."""
+        return 2.0 * problem.pair.effective_shear_modulus * problem.maximum_radius
+
+    def start(self, problem: Problem) -> State:
+        """Return a spring at rest."""
+        nothing: Real = np.zeros(problem.shape) if problem.shape else 0.0
+        modulus = 2.0 * problem.pair.effective_shear_modulus
+        return State(modulus, problem.friction_coefficient, nothing, nothing)
+
+    def advance(
+        self, state: State, increment: Increment, before: NormalContact, after: NormalContact
+    ) -> tuple[TangentialResponse, State]:
+        """Return the force after the step, and the work of the mean force on the slip."""
+        stiffness: Any = state.modulus * after.radius
+        cap = state.friction_coefficient * after.force
+        compliance = (stiffness > 0.0) / (stiffness + (stiffness == 0.0))
+        if self.form == "displacement":
+            trial = state.held + increment.displacement
+            held = _cut(trial, cap * compliance)
+            force, slip = stiffness * held, trial - held
+        else:
+            shrunk: Any = 1.0
+            if self.form == "increment_rescaled":
+                wide = before.radius + (before.radius == 0.0)
+                shrunk = np.where(after.radius < before.radius, after.radius / wide, 1.0)
+            trial = state.held * shrunk + stiffness * increment.displacement
+            force = held = _cut(trial, cap)
+            slip = (trial - held) * compliance
+        work = np.maximum(0.5 * (force + state.force) * slip, 0.0)
+        shape = np.shape(state.force)
+        if not shape:
+            force, held, work = float(force), float(held), float(work)
+        return TangentialResponse(force, work), State(*state[:2], held, force)
+
+
+def _cut(value: Real, limit: Real) -> Any:
+    return np.minimum(np.maximum(value, -limit), limit)

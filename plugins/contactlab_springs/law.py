@@ -1,0 +1,78 @@
+"""A bundle of springs: partial slip without a matrix."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab.checks import count
+from contactlab_jaeger.law import ProfileLaw
+from contactlab_jaeger.places import Array, Places
+
+
+class Midpoints(Places):
+    """Springs in the middle of equal cells: F = mu P times the sum of w over that of l.
+
+    With this rule, rather than 1.5/n times the sum, gross slip gives mu P to rounding and
+    abs(F) never exceeds it.
+    """
+
+    def __init__(self, springs: int) -> None:
+        super().__init__((np.arange(springs) + 0.5) / springs, np.full(springs, 1.5 / springs))
+        self.sums = np.concatenate(([0.0], np.cumsum(self.squares)))  # of s² over the first m
+        self.sums_listed = self.sums.tolist()
+        self.ones = np.ones(springs)
+
+    def weights(self, square: Array) -> Array:
+        """Return b³ over the sum of b² - s², for every place of a contact alike."""
+        reach = self.squares.searchsorted(square)
+        full = reach * square - self.sums[reach]
+        factor = np.where(reach > 0, square**1.5 / (full + (reach == 0)), self.measure[0])
+        return np.broadcast_to(factor, (len(self.squares), len(square)))
+
+    def weights_within(self, square: float, reach: int) -> Array:
+        """Return the same for one contact."""
+        full = reach * square - self.sums_listed[reach]
+        return self.ones[:reach] * (square**1.5 / full if reach else 0.0)
+
+
+@lru_cache(maxsize=32)
+def midpoints(springs: int) -> Midpoints:
+    """Return the places of ``springs`` springs, made once."""
+    return Midpoints(springs)
+
+
+@attrs.frozen(kw_only=True)
+class Springs(ProfileLaw):
+    """Mindlin's partial slip as a bundle of independent springs.
+
+    The spring at distance r from the centre touches while r < b, follows the surfaces, and
+    is held at the displacement l = 3 mu P/(4 G* b³) (b² - r²) where it would go beyond:
+    w <- clip(w + f D, -l, l). A spring that the growing contact meets within a step moves
+    for the part f of it only. The force is 2 G* times the integral of w over r. Nothing is
+    solved and nothing is searched, and the error falls as the square of springs and steps.
+
+    Parameters
+    ----------
+    springs : int
+        Springs along the radius of the largest contact. With four steps to a spring the two
+        errors are about equal at 100 steps; 12 springs are enough for 5e-4 at 80 steps.
+
+    References
+    ----------
+    Jaeger, Arch. Appl. Mech. 65 (1995) 478-487; Popov & Hess, Method of Dimensionality
+    Reduction in Contact Mechanics and Friction (2015), ch. 5. The limit of Maw, Barber &
+    Fawcett's annuli, Wear 38 (1976) 101-114, as their number grows.
+    """
+
+    api_version: ClassVar[int] = 1
+    resolution: ClassVar[str | None] = "springs"
+
+    springs: int = count(default=50, most=100_000)
+
+    def places(self) -> Places:
+        """Return the middles of equal cells."""
+        return midpoints(self.springs)
