@@ -14,7 +14,7 @@ import contactlab
 from contactlab.cli.arguments import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
 
 #: A new subcommand is a module of this package and its name here.
-COMMANDS = ("run", "compare", "bench", "figures", "plugins")
+COMMANDS = ("run", "sweep", "compare", "bench", "stability", "validate", "figures", "plugins")
 
 EPILOG = """examples:
   contactlab run --psi1 1.2 --chi 1.4412
@@ -100,7 +100,7 @@ def _join_negative_numbers(words: list[str]) -> list[str]:
 
 def _is_negative(word: str) -> bool:
     try:
-        float(word)
+        float(word.partition(":")[0])
     except ValueError:
         return False
     return word.startswith("-")

@@ -78,12 +78,9 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.history:
         export.write_history_csv(result, arguments.history)
     varied: Mapping[str, Any] = file.varied if file else {}
-    if arguments.json:
-        content = export.to_dict(result) | {"varied": {k: plain(v) for k, v in varied.items()}}
-        print(json.dumps(content, indent=2, allow_nan=False))
-    else:
+    if not arguments.json:
         print(describe(result, title=file.title if file else "", varied=varied))
-    return _exit_status(result)
+    return report(result, as_json=arguments.json, varied=varied)
 
 
 def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Scene:
@@ -99,8 +96,13 @@ def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Scene:
     return Scene.nondimensional(psi1=numbers[0], chi=numbers[1])
 
 
-def _exit_status(result: ImpactResult) -> int:
-    """Return the status of the command, and say on stderr what went wrong."""
+def report(
+    result: ImpactResult, *, as_json: bool = False, varied: Mapping[str, Any] | None = None
+) -> int:
+    """Print JSON if asked, say on stderr what went wrong, and return the status of the command."""
+    if as_json:
+        swept = {name: plain(values) for name, values in (varied or {}).items()}
+        print(json.dumps(export.to_dict(result) | {"varied": swept}, indent=2, allow_nan=False))
     statuses = np.ravel(np.array(result.status, dtype=object)).tolist()
     failed = [status for status in statuses if not status]
     if not failed:
@@ -109,5 +111,5 @@ def _exit_status(result: ImpactResult) -> int:
     which = f"{len(failed)} of {len(statuses)} impacts: " if result.scene.shape else ""
     sentence = f"{failed[0].value} {result.motion.detail}".strip()
     word = "interrupted" if interrupted else "failed"
-    print(f"contactlab run: {word}: {which}{sentence}", file=sys.stderr)
+    print(f"contactlab: {word}: {which}{sentence}", file=sys.stderr)
     return shared.INTERRUPTED if interrupted else shared.FAILED

@@ -170,5 +170,5 @@ def test_failed_run_still_reports_and_has_status_1(run):
     assert ran.status == 1
     assert json.loads(ran.out)["status"] == "TOO_FEW_STEPS"
     assert json.loads(ran.out)["psi2"] is None
-    assert ran.err.startswith("contactlab run: failed:")
+    assert ran.err.startswith("contactlab: failed:")
     assert len(ran.err.splitlines()) == 1

@@ -1,0 +1,148 @@
+"""Does this installation give the right answers? Laws against what is known beforehand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.bodies import HalfSpace, Material, Sphere
+from contactlab.closed_forms import rigid_body_rebound
+from contactlab.registry import REGISTRY
+from contactlab.scene import Scene
+from contactlab.simulation import Simulation
+
+#: psi2 of the continuum limit for seven psi1 and three chi, to ten digits, by two independent
+#: methods that agree: front tracking, and springs with Richardson extrapolation.
+REFERENCE_PSI1 = (0.1, 0.5, 1.0, 1.2, 2.0, 3.0, 4.0)
+REFERENCE_PSI2 = {
+    49 / 34: (
+        0.0205907061, 0.0478310787, -0.0596967039, -0.1805194095,
+        -0.8372100068, -1.3796832924, -1.4365122247,
+    ),
+    1.0: (
+        -0.0410991914, -0.2650325763, -0.6328520783, -0.8138674261,
+        -1.2952883031, -1.0, 0.0,
+    ),
+    3.0: (
+        -0.0474078686, -0.1287928816, 0.0633660877, 0.2353785026,
+        0.8494911084, 1.1585220552, 0.6554364732,
+    ),
+}  # fmt: skip
+#: Kharaz, Gorham & Salman, Powder Technology 120 (2001) 281-291: angle from the normal in
+#: degrees and tangential restitution of the centre (mean of the readings in examples/).
+KHARAZ = (
+    (2.035, 0.7946), (3.95, 0.7455), (9.656, 0.6736), (20.1, 0.5974), (30.24, 0.6887),
+    (39.41, 0.7726), (49.61, 0.8474), (59.93, 0.9017), (71.07, 0.9366), (79.23, 0.9695),
+    (85.17, 0.9794),
+)  # fmt: skip
+#: What each composition must reach over the reference values: laws, their options, bound.
+COMPOSITIONS: tuple[tuple[str, dict[str, Any], str, dict[str, Any], float], ...] = (
+    ("fronts", {}, "events", {}, 1e-9),
+    ("springs", {"springs": 50}, "symplectic", {"steps": 200}, 2e-3),
+    ("sharp_annulus", {"annuli": 50}, "symplectic", {"steps": 200}, 2e-3),
+    ("annulus", {"annuli": 50}, "symplectic", {"steps": 200}, 0.03),
+    ("annulus", {"annuli": 50}, "paper", {"steps": 500}, 0.03),
+)
+
+
+@attrs.frozen(kw_only=True)
+class Finding:
+    """One comparison: what, against what, the worst difference, and the bound it must meet."""
+
+    what: str
+    against: str
+    difference: float
+    bound: float
+
+    @property
+    def ok(self) -> bool:
+        """Return True if the bound is met; NaN does not meet it."""
+        return self.difference <= self.bound
+
+
+def validate(progress: Callable[[int, int], object] | None = None) -> list[Finding]:
+    """Return all comparisons, in a few seconds."""
+    findings = []
+    checks = list(_checks())
+    for done, check in enumerate(checks, start=1):
+        findings.append(check())
+        if progress is not None:
+            progress(done, len(checks))
+    return findings
+
+
+def _checks() -> Iterator[Callable[[], Finding]]:
+    installed = REGISTRY.names()
+    yield _hertz
+    yield _rigid
+    for composition in COMPOSITIONS:
+        if {f"tangential.{composition[0]}", f"integrator.{composition[2]}"} <= set(installed):
+            yield lambda composition=composition: _reference(*composition)  # type: ignore[misc]
+    yield _experiment
+
+
+def _hertz() -> Finding:
+    scene = Scene.nondimensional(psi1=0.0, chi=1.0)
+    result = Simulation(tangential="coulomb", integrator="symplectic").run(scene)
+    duration = float(np.asarray(result.motion.duration / scene.duration)) - 1.0
+    worst = max(abs(duration), abs(float(np.asarray(result.normal_restitution)) - 1.0))
+    return Finding(
+        what="hertz: duration and restitution",
+        against="eq. (7), e = 1",
+        difference=worst,
+        bound=1e-9,
+    )
+
+
+def _rigid() -> Finding:
+    chi = 49 / 34
+    psi1 = np.linspace(-8.0, 8.0, 65)
+    sim = Simulation(tangential="coulomb", integrator="symplectic")
+    psi2 = sim.sweep(Scene.nondimensional(psi1=psi1, chi=chi)).psi2
+    worst = float(np.max(np.abs(psi2 - rigid_body_rebound(psi1, chi))))
+    return Finding(
+        what="coulomb: psi2", against="slip, then rolling", difference=worst, bound=1e-12
+    )
+
+
+def _reference(
+    tangential: str,
+    options: dict[str, Any],
+    integrator: str,
+    settings: dict[str, Any],
+    bound: float,
+) -> Finding:
+    sim = Simulation(
+        tangential=REGISTRY.create(f"tangential.{tangential}", **options),
+        integrator=REGISTRY.create(f"integrator.{integrator}", **settings),
+    )
+    worst = 0.0
+    for chi, expected in REFERENCE_PSI2.items():
+        psi2 = sim.sweep(Scene.nondimensional(psi1=np.array(REFERENCE_PSI1), chi=chi)).psi2
+        worst = float(np.max(np.append(np.abs(psi2 - np.array(expected)), worst)))
+    numbers = ", ".join(f"{key}={value}" for key, value in (options | settings).items())
+    return Finding(
+        what=f"{tangential} / {integrator}" + (f", {numbers}" if numbers else ""),
+        against="21 reference values of psi2",
+        difference=worst,
+        bound=bound,
+    )
+
+
+def _experiment() -> Finding:
+    oxide = Material(young_modulus=380e9, poisson_ratio=0.23, density=4000.0)
+    glass = Material(young_modulus=70e9, poisson_ratio=0.25)
+    angle, measured = np.radians([row[0] for row in KHARAZ]), np.array([row[1] for row in KHARAZ])
+    scene = Scene(
+        Sphere(2.5e-3, oxide), HalfSpace(glass), 0.092, 3.9 * np.cos(angle), 3.9 * np.sin(angle)
+    )
+    found: Any = Simulation().sweep(scene).tangential_restitution
+    return Finding(
+        what="exact law: e_t of aluminium oxide on glass",
+        against="Kharaz et al. (2001), 11 angles",
+        difference=float(np.max(np.abs(found - measured))),
+        bound=0.04,
+    )

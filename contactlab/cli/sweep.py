@@ -1,0 +1,107 @@
+"""Run many impacts: a sweep file, or ranges of the paper's two parameters.
+
+Examples
+--------
+  contactlab sweep --psi1 0:7:71 --chi 1.4412
+  contactlab sweep --psi1 1.2 --chi 0.5:8:76 --tangential coulomb --csv
+  contactlab sweep examples/sweep.toml --out sweep.npz
+"""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+import numpy as np
+
+from contactlab.checks import refuse
+from contactlab.cli import arguments as shared
+from contactlab.cli.run import WRITERS, report
+from contactlab.cli.table import table
+from contactlab.result import ImpactResult
+from contactlab.scene import Scene
+from contactlab.scene_file import LawChoice, read_scene
+
+#: Most impacts of a range: a slip of the finger should not fill the memory.
+MOST_IMPACTS = 1_000_000
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the scenes, the laws and the outputs."""
+    parser.add_argument("scene", nargs="?", metavar="SCENE.toml", help="a sweep, instead of ranges")
+    for name, words in (("psi1", "angle of incidence (29)"), ("chi", "inertia ratio (38)")):
+        parser.add_argument(
+            f"--{name}", type=numbers, metavar="START:STOP:COUNT", help=f"{words}; or one number"
+        )
+    shared.add_laws(parser)
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="print JSON instead of the table")
+    form.add_argument("--csv", action="store_true", help="print psi1, chi, psi2 as CSV")
+    parser.add_argument("--out", type=shared.file_of(*WRITERS), metavar="FILE")
+    shared.add_progress(parser)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Run the sweep and report; 1 if an impact was not followed to its end."""
+    file = read_scene(arguments.scene) if arguments.scene else None
+    if file is not None and (arguments.psi1 is not None or arguments.chi is not None):
+        raise ValueError("--psi1, --chi: stand in place of a scene file; leave out one of them")
+    scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
+    if not scene.shape:
+        raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
+    choice = (file.laws if file else LawChoice()).choose(
+        normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
+    )
+    simulation = choice.set(dict(arguments.settings)).simulation()
+    result = simulation.sweep(scene, progress=shared.progress(arguments.progress, "impacts"))
+    if arguments.out:
+        WRITERS[arguments.out.suffix.lower()](result, arguments.out)
+    if arguments.csv:
+        print("psi1,chi,psi2,status")
+        for psi1, chi, psi2, status in _rows(result):
+            print(f"{psi1!r},{chi!r},{psi2!r},{status}")
+        return report(result)
+    if arguments.json:
+        return report(result, as_json=True, varied=file.varied if file else {})
+    print(table(["psi1", "chi", "psi2", "status"], _rows(result)))
+    return report(result)
+
+
+def numbers(text: str) -> Any:
+    """Return one number, or an evenly spaced array from START:STOP:COUNT."""
+    parts = text.split(":")
+    if len(parts) == 1:
+        return shared.finite(text)
+    if len(parts) != 3:
+        raise argparse.ArgumentTypeError(f"{text!r}: write START:STOP:COUNT, or one number")
+    start, stop = shared.finite(parts[0]), shared.finite(parts[1])
+    try:
+        count = int(parts[2])
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}: COUNT must be a whole number") from None
+    if not 1 <= count <= MOST_IMPACTS:
+        raise argparse.ArgumentTypeError(f"{text!r}: COUNT must lie in [1, {MOST_IMPACTS}]")
+    return np.linspace(start, stop, count)
+
+
+def _ranges(psi1: Any, chi: Any) -> Scene:
+    """Return every psi1 with every chi, psi1 varying fastest."""
+    if psi1 is None or chi is None:
+        missing = " and ".join(n for n, v in (("--psi1", psi1), ("--chi", chi)) if v is None)
+        raise ValueError(f"{missing}: must be given, or a sweep file")
+    if np.size(psi1) * np.size(chi) > MOST_IMPACTS:
+        raise refuse(
+            "--psi1, --chi", np.size(psi1) * np.size(chi), f"at most {MOST_IMPACTS} impacts"
+        )
+    grid_chi, grid_psi1 = np.meshgrid(np.atleast_1d(chi), np.atleast_1d(psi1), indexing="ij")
+    return Scene.nondimensional(psi1=grid_psi1.ravel(), chi=grid_chi.ravel())
+
+
+def _rows(result: ImpactResult) -> list[tuple[float, float, float, str]]:
+    shape = result.scene.shape
+    columns = [
+        np.broadcast_to(np.asarray(column), shape).tolist()
+        for column in (result.psi1, result.scene.chi, result.psi2)
+    ]
+    names = [status.name for status in result.status]
+    return list(zip(*columns, names, strict=True))
