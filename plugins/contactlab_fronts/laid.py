@@ -14,6 +14,9 @@ from contactlab_fronts.profile import Front, Piece
 Array = NDArray[np.float64]
 
 FRONT_CAP = 12
+HALVING_CAP = 60
+#: Newton's method dances on rounding error near an end; moving more than this it is lost.
+LOST_PART = 1e-4
 #: Squared length of a Newton move that needs no second look; at 1e-7 psi2 would lose 1e-8.
 FRONT_MOVE = 1e-12
 #: A root's slope below this part of its mean is rounding error at the very end of the piece.
@@ -104,12 +107,37 @@ class Laid(Piece):
             y = new
             if move.dot(move) < FRONT_MOVE:
                 break
+        else:
+            lost = np.abs(move) > LOST_PART * length
+            if lost.any():
+                y = np.where(lost, self._halving(sign, level, floor), y)
+                old_slip, old_force, q, c, slip_rate, q_rate = self.path.fields(y)
+                move = np.where(lost, 0.0, move)
         gap = contact.radius - c
         force = slip - old_slip
         force *= 1.5 * c
         force += old_force
         force += (0.5 * sign) * gap * gap * (contact.radius + contact.radius + c)
         return Front(c, force, (y, old_slip + slip_rate * move))
+
+    def _halving(self, sign: int, level: Array, floor: float) -> Array:
+        """Find the same x by halving, between Newton steps: slower, and always right.
+
+        Needed where the edge almost began to slip as the piece was laid down: the level is
+        nearly stationary there, and Newton's method leaps.
+        """
+        low, high = np.full_like(level, floor), np.full_like(level, self.stop)
+        y = 0.5 * (low + high)
+        for _ in range(HALVING_CAP):
+            slip, _, q, _, slip_rate, q_rate = self.path.fields(y)
+            ahead = sign * slip - q - level
+            low, high = np.where(ahead > 0.0, y, low), np.where(ahead > 0.0, high, y)
+            new = y - ahead / (sign * slip_rate - q_rate - TINY)
+            new = np.where((new > low) & (new < high), new, 0.5 * (low + high))
+            move, y = new - y, new
+            if move.dot(move) < FRONT_MOVE**2:
+                break
+        return y
 
     def depth(self, sign: int, contact: Course, slip: Array, memo: tuple[Array, ...]) -> Array:  # noqa: ARG002
         """Return s (D - D when the front was the edge), which is zeta - q there."""

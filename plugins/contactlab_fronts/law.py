@@ -13,6 +13,9 @@ from contactlab_fronts.phases import Balanced, GrossSlip, Stuck
 
 #: |2 chi - 1| below which the edge's margin against slip is lost in rounding.
 BALANCE = 1e-10
+#: 2 chi - 1 up to which first slip that stops need not be told from slip throughout: psi and V
+#: then differ by less than this all the way.
+NARROW = 4e-9
 
 
 @attrs.frozen(kw_only=True)
@@ -33,7 +36,7 @@ class Fronts(PhasedTangentialLaw):
     offers: ClassVar[frozenset[str]] = frozenset({"phases"})
     needs: ClassVar[frozenset[str]] = frozenset({"events", "elastic_hertz"})
     exact: ClassVar[bool] = True
-    linear_below: ClassVar[float] = 1e-9
+    linear_below: ClassVar[float] = 1e-8
 
     def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
         """Return True where (44) and (46) say so."""
@@ -42,6 +45,8 @@ class Fronts(PhasedTangentialLaw):
     def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
         """Stick below psi1 = 1 (44), else slip; at exactly 1 the inertia decides."""
         ratio = inertia * motion.scaled_mass
+        if 1.0 < velocity < 2.0 * ratio - 1.0 <= 1.0 + 2.0 * NARROW:
+            return Balanced(ratio)
         if velocity > 1.0 or (velocity == 1.0 and ratio <= 1.0):
             return GrossSlip(1)
         if abs(ratio - 1.0) < BALANCE:

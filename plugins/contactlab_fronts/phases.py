@@ -165,12 +165,15 @@ class GrossSlip(Phase):
 
 @attrs.frozen(eq=False)
 class Balanced(Phase):
-    """chi = 1/2: psi = psi1 V and F = psi1 P, and no spring ever slips."""
+    """chi = 1/2: psi = psi1 V and F = psi1 P, and no spring ever slips.
+
+    ``share`` is F/P: psi1, or at the limit of slip 2 chi.
+    """
 
     share: float
 
     def respond(self, contact: Course, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
-        """F = psi1 P."""
+        """F = share P."""
         return PhaseResponse(self.share * contact.force, None, None, ())
 
     def closed_form(

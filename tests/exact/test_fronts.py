@@ -1,0 +1,188 @@
+"""The slip front under the event-locating integrator: exact, everywhere and on every edge."""
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
+from contactlab.closed_forms import initial_slip_end
+from tests.exact.bundle import extrapolated
+from tests.reference import TABLE
+
+CHI = 1.4411764706
+STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+CHIS = (0.35, 0.45, 0.5, 0.5 + 1e-9, 0.55, 0.8, 1.0, CHI, 3.0, 8.0, 30.0)
+
+
+def exact(tolerance=1e-9):
+    integrator = contactlab.create("integrator.events", tolerance=tolerance)
+    return Simulation(tangential="fronts", integrator=integrator)
+
+
+def scene(psi1, chi=CHI):
+    return Scene.nondimensional(psi1=psi1, chi=chi)
+
+
+def psi2(psi1, chi, tolerance=1e-9):
+    return exact(tolerance).run(scene(psi1, chi)).check().psi2
+
+
+@pytest.mark.parametrize(("chi", "psi1", "value"), TABLE)
+def test_reference_table(chi, psi1, value):
+    """Theory §5, to the digits printed."""
+    assert psi2(psi1, chi) == pytest.approx(value, abs=1.01e-10)
+
+
+def edges(chi):
+    """Regime boundaries, each from both sides, and a range from tiny to beyond full slip."""
+    borders = [1.0, max(1.0, 4.0 * chi - 1.0), 2.0 * chi]
+    sides = [border * (1.0 + d) for border in borders for d in (-1e-3, -1e-9, 0.0, 1e-9, 1e-3)]
+    return [*sides, 1e-6, 1e-3, 0.05, 0.3, 0.9, 1.2 * borders[1]]
+
+
+@pytest.mark.parametrize("chi", CHIS)
+def test_both_sides_of_every_boundary_against_a_tighter_tolerance(chi):
+    for psi1 in edges(chi):
+        coarse, fine = psi2(psi1, chi), psi2(psi1, chi, 1e-11)
+        assert coarse == pytest.approx(fine, abs=1e-9 * max(1.0, psi1)), psi1
+        assert abs(coarse) <= psi1 * (1.0 + 1e-9)
+        assert abs(coarse - psi1) <= 4.0 * chi * (1.0 + 1e-9)
+
+
+def test_continuous_across_every_boundary():
+    for chi in (0.4, 0.5, 0.7, CHI, 3.0, 12.0):
+        for border in (1.0, max(1.0, 4.0 * chi - 1.0), 2.0 * chi):
+            below, above = psi2(border - 1e-9, chi), psi2(border + 1e-9, chi)
+            assert abs(above - below) < 1e-7, (chi, border)
+
+
+@pytest.mark.parametrize("psi1", [1e-6, 0.1, 0.5, 0.9, 1.0 - 1e-9])
+def test_chi_one_half_never_slips(psi1):
+    """At chi = 1/2: psi = psi1 V and F = psi1 P, so psi2 = -psi1."""
+    result = exact().run(scene(psi1, 0.5), history=True).check()
+    assert result.psi2 == pytest.approx(-psi1, rel=1e-12)
+    assert result.history.tangential_force == pytest.approx(
+        psi1 * result.history.normal_force, abs=1e-13
+    )
+
+
+def test_small_incidence_has_its_own_limit():
+    """psi2/psi1 tends to 0.23167 at chi = 1.4411765, by springs too (theory §2)."""
+    assert psi2(1e-6, CHI) / 1e-6 == pytest.approx(0.23167, abs=1e-6)
+    assert psi2(1e-12, CHI) / 1e-12 == pytest.approx(psi2(1e-6, CHI) / 1e-6, abs=1e-6)
+    springs, _, _ = extrapolated([1e-3], CHI, 800, 2400)
+    assert psi2(1e-3, CHI) == pytest.approx(springs[0], abs=1e-8)
+
+
+@pytest.mark.parametrize("psi1", [1e-300, 1e-12, 0.3, 1.0, 2.0, 5.0, 7.0])
+def test_odd_to_the_last_bit(psi1):
+    forward, backward = exact().run(scene(psi1)), exact().run(scene(-psi1))
+    assert forward.psi2 == -backward.psi2
+    assert forward.energy.friction_work == backward.energy.friction_work
+
+
+@pytest.mark.parametrize("psi1", [0.3, 1.2, 2.5, 4.0])
+def test_units_do_not_matter(psi1):
+    """One impact in m and mm, kg and t, fast and slow: the same psi2."""
+    chi, friction = CHI, 0.3
+    expected = psi2(psi1, chi)
+    for radius, modulus, density, speed in ((0.01, 1.0, 1.0, 1.0), (10.0, 1e-6, 1e3, 1e-3)):
+        steel = Material(young_modulus=208e9 * modulus, poisson_ratio=0.3, density=7850.0 * density)
+        pair = Scene(Sphere(radius, steel), HalfSpace(steel), friction, speed, 0.0).pair
+        slip = psi1 * friction * speed / pair.stiffness_ratio
+        impact = Scene(Sphere(radius, steel), HalfSpace(steel), friction, speed, slip)
+        assert impact.chi == pytest.approx(chi, rel=1e-9)
+        result = exact().run(impact).check()
+        assert result.psi2 == pytest.approx(psi2(impact.psi1, impact.chi), abs=1e-12)
+        assert result.psi2 == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("chi", [0.4, 0.8, CHI, 3.0, 12.0])
+def test_energy_books(chi):
+    """Friction work, added up from traction and slip, is the energy lost."""
+    for psi1 in np.linspace(0.1, 4.0 * chi + 0.5, 12):
+        energy = exact().run(scene(float(psi1), chi)).check().energy
+        assert energy.friction_work >= 0.0
+        assert abs(energy.relative_imbalance) < 1e-6
+
+
+@pytest.mark.parametrize("chi", [0.45, CHI, 3.0, 8.0])
+@pytest.mark.parametrize("psi1", [-0.7, 0.3, 1.2, 2.5])
+def test_history_keeps_coulombs_law_and_agrees_with_springs(chi, psi1):
+    result = exact().run(scene(psi1, chi), history=True).check()
+    history = result.history
+    assert (np.diff(history.time) >= 0.0).all()
+    limit = history.normal_force
+    assert (np.abs(history.tangential_force) <= limit + 1e-11 * limit.max()).all()
+    assert history.tangential_force[-1] == pytest.approx(0.0, abs=1e-14)
+    assert history.slip_velocity[-1] == pytest.approx(result.psi2, abs=1e-12)
+    assert history.slip_velocity[0] == psi1
+    steps = 400
+    _, forces, _ = extrapolated([psi1], chi, 600, steps)
+    x = np.arcsin(np.sqrt(np.clip(history.approach, 0.0, 1.0)))
+    x = np.where(history.normal_velocity < 0.0, np.pi - x, x)
+    ours = np.interp(np.linspace(0, np.pi, steps + 1), x, history.tangential_force / limit.max())
+    assert ours == pytest.approx(forces[:, 0], abs=2e-3)
+
+
+def test_the_history_changes_nothing():
+    for psi1 in (0.3, 2.0, 7.0):
+        assert exact().run(scene(psi1), history=True).psi2 == exact().run(scene(psi1)).psi2
+
+
+def test_a_batch_gives_what_its_impacts_give():
+    psi1 = np.array([[-2.0, 0.0, 0.3], [1.0, 4.0, 9.0]])
+    batch = exact().run(Scene.nondimensional(psi1=psi1, chi=CHI)).check()
+    single = [exact().run(scene(float(value))).psi2 for value in psi1.ravel()]
+    assert batch.psi2.ravel() == pytest.approx(single, abs=1e-15)
+    kept = exact().run(Scene.nondimensional(psi1=psi1, chi=CHI), history=True)
+    assert kept.history.slip_velocity[-1] == pytest.approx(batch.psi2, abs=1e-12)
+
+
+def test_re_sticking_while_loading_and_reversals_are_found():
+    """chi = 8 re-sticks while loading; V at the end of first slip is known (theory §2)."""
+    result = exact().run(scene(4.0, 8.0), history=True).check()
+    force, limit = result.history.tangential_force, result.history.normal_force
+    slips = np.isclose(np.abs(force), limit, rtol=1e-9)
+    first = int(np.argmax(~slips[1:]))
+    assert result.history.normal_velocity[first] == pytest.approx(
+        initial_slip_end(4.0, 8.0), abs=0.01
+    )
+    assert len(np.flatnonzero(np.diff(np.sign(result.history.slip_velocity)))) >= 3
+
+
+def test_the_default_is_exact_and_says_so():
+    assert Simulation() == exact()
+    assert "exact to 1e-09" in str(Simulation().plan(scene(1.2)))
+    assert "exact" not in str(Simulation(tangential="annulus", integrator="paper").plan(scene(1.2)))
+
+
+def test_laws_that_cannot_run_under_events_are_refused():
+    with pytest.raises(ValueError, match="needs"):
+        Simulation(tangential="fronts", integrator="paper")
+    with pytest.raises(ValueError, match="needs"):
+        Simulation(tangential="annulus", integrator="events")
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, 1.0, 1e-20])
+def test_tolerances_out_of_range_are_refused(tolerance):
+    with pytest.raises(ValueError, match="tolerance"):
+        contactlab.create("integrator.events", tolerance=tolerance)
+
+
+def test_fields_and_extremes():
+    assert exact().run(scene(1e16), history="fields").check().psi_change == pytest.approx(-4 * CHI)
+    assert exact().run(scene(0.0)).check().psi2 == 0.0
+    problem = attrs.evolve(exact().problem(scene(1.0)), slip_velocity=float("nan"))
+    assert exact().integrator.integrate(problem).status is Status.NON_FINITE
+
+
+@pytest.mark.slow
+def test_a_wide_sample_against_a_tighter_tolerance():
+    """400 random impacts, chi from 0.35 to 30."""
+    rng = np.random.default_rng(5)
+    for chi in np.exp(rng.uniform(np.log(0.35), np.log(30.0), 400)).tolist():
+        psi1 = float(rng.uniform(0.0, 1.0) ** 1.5 * max(4.0 * chi - 1.0, 1.0) * 1.03)
+        difference = psi2(psi1, chi) - psi2(psi1, chi, 1e-11)
+        assert abs(difference) <= 1e-9 * max(1.0, psi1), (psi1, chi)
