@@ -1,0 +1,150 @@
+"""Stiff and extreme cases over every law and integrator: errors, refusals, silent wrongs."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
+
+import attrs
+import numpy as np
+
+from contactlab.analysis.bench_methods import Method
+from contactlab.analysis.stability_bounds import COARSE
+from contactlab.analysis.stability_cases import QUICK_STEPS_BELOW, Case, cases
+from contactlab.analysis.stability_map import Region, region, region_cells
+from contactlab.analysis.stability_outcome import (
+    ANSWERED,
+    RAISED,
+    REFUSED,
+    SKIPPED,
+    WRONG,
+    Outcome,
+    judge,
+)
+
+#: A case expected to take longer than this is skipped, in s; much less in the quick set.
+LONGEST, QUICK_LONGEST = 20.0, 0.5
+#: Seconds that a step takes before a method has shown its own pace.
+FIRST_PACE = 2e-5
+
+
+@attrs.frozen(kw_only=True)
+class Stability:
+    """Every outcome, and the usable region of each method."""
+
+    outcomes: tuple[Outcome, ...]
+    regions: tuple[Region, ...]
+    complete: bool
+
+    def failures(self) -> list[Outcome]:
+        """Return the cases that are silently wrong, or raised."""
+        return [item for item in self.outcomes if item.outcome in (WRONG, RAISED)]
+
+    def silently_wrong(self) -> int:
+        """Return how many answers are wrong without a word, those of the map included."""
+        return len([item for item in self.outcomes if item.outcome == WRONG]) + sum(
+            item.wrong for item in self.regions
+        )
+
+    def tried(self) -> int:
+        """Return the number of runs judged, those of the map included."""
+        done = sum(1 for item in self.outcomes if item.outcome != SKIPPED)
+        return done + sum(item.tried for item in self.regions)
+
+    def counts(self, method: str) -> Counter[str]:
+        """Return how often each outcome came about; ``coarse`` answers are also answered."""
+        mine = [item for item in self.outcomes if item.method == method]
+        counts = Counter(item.outcome for item in mine)
+        counts["coarse"] = sum(item.outcome == ANSWERED and item.bound > COARSE for item in mine)
+        return counts
+
+    def worst(self, method: str, family: str) -> float:
+        """Return the largest error of the answers that claim better than ``COARSE``."""
+        errors = [
+            item.error
+            for item in self.outcomes
+            if (item.method, item.family) == (method, family)
+            and item.outcome == ANSWERED
+            and item.bound <= COARSE
+        ]
+        return float(np.nanmax(errors)) if not np.all(np.isnan(errors)) else np.nan
+
+
+def stability(
+    methods: Sequence[Method],
+    *,
+    quick: bool = False,
+    budget: float = np.inf,
+    progress: Callable[[int, int], object] | None = None,
+    judged: Callable[[Case], Outcome] = judge,
+) -> Stability:
+    """Run the report.
+
+    Parameters
+    ----------
+    methods : sequence of Method
+    quick : bool
+        Fewer scenes and resolutions, none of them long.
+    budget : float
+        Seconds after which nothing further is begun; ``complete`` then is False.
+    progress : callable, optional
+        Called as ``progress(done, total)``.
+    judged : callable
+        What runs a case.
+    """
+    started = time.perf_counter()
+    listed = [list(cases(method, quick=quick)) for method in methods]
+    cells = [region_cells(method, quick=quick) for method in methods]
+    total = sum(map(len, listed)) + sum(map(len, cells))
+    outcomes: list[Outcome] = []
+    regions: list[Region] = []
+    pace: dict[str, float] = {}
+    longest = QUICK_LONGEST if quick else LONGEST
+    done = 0
+    # One family after another over all methods, so that a budget cuts all of them alike.
+    for case in sorted((case for mine in listed for case in mine), key=lambda c: c.family):
+        if time.perf_counter() - started > budget:
+            break
+        if _expected(case, pace) > longest:
+            outcomes.append(_skipped(case))
+        else:
+            outcomes.append(judged(case))
+            _learn(case, outcomes[-1], pace)
+        done += 1
+        if progress is not None:
+            progress(done, total)
+    for method, mine in zip(methods, cells, strict=True):
+        if not mine or time.perf_counter() - started > budget:
+            continue
+        regions.append(region(method, mine))
+        done += len(mine)
+        if progress is not None:
+            progress(done, total)
+    return Stability(outcomes=tuple(outcomes), regions=tuple(regions), complete=done == total)
+
+
+def _size(case: Case) -> float:
+    """Return steps times what a part costs beside a step."""
+    steps = float(case.options["integrator"].get("steps", 200))
+    parts = [value for name, value in case.options["tangential"].items() if name != "tolerance"]
+    return steps * (1.0 + max([0.0, *parts]) ** 2 / 1e4)
+
+
+def _expected(case: Case, pace: dict[str, float]) -> float:
+    return _size(case) * pace.get(case.method.name, FIRST_PACE)
+
+
+def _learn(case: Case, outcome: Outcome, pace: dict[str, float]) -> None:
+    if outcome.outcome == ANSWERED and outcome.run_time_s > 1e-3:
+        pace[case.method.name] = outcome.run_time_s / _size(case)
+
+
+def _skipped(case: Case) -> Outcome:
+    return Outcome(
+        method=case.method.name,
+        family=case.family,
+        case=case.label,
+        outcome=SKIPPED,
+        note="too long",
+    )

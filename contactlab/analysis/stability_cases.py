@@ -1,0 +1,101 @@
+"""The cases of one method: scenes at its own resolution, and resolutions on a few scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import attrs
+
+from contactlab.analysis.bench_methods import Method
+from contactlab.analysis.stability_scenes import CHI, Extreme, extreme_scenes
+from contactlab.registry import REGISTRY
+from contactlab.scene import Scene
+
+STEPS = (1, 2, 3, 4, 5, 7, 10, 20, 50, 100, 1000, 10_000, 100_000, 1_000_000)
+QUICK_STEPS = (1, 2, 3, 4, 5, 10, 50)
+PARTS = (1, 2, 3, 5, 10, 100, 1000)
+QUICK_PARTS = (1, 2)
+TOLERANCES = (1.0, 0.1, 1e-2, 1e-3, 1e-5, 1e-8, 1e-12)
+#: Scenes for the ladders of resolution: (psi1, chi).
+LADDER = ((0.3, 0.3), (0.5, CHI), (1.2, CHI), (3.0, CHI), (1.2, 30.0), (0.3, 1e3))
+QUICK_LADDER = ((1.2, CHI), (1.2, 30.0))
+#: Steps that follow a large chi: this many times 2.85 sqrt(chi), the stability limit.
+ABOVE_LIMIT = 8
+#: What a case of the quick set may need, in steps times parts squared.
+QUICK_STEPS_BELOW = 2000
+
+Options = dict[str, dict[str, Any]]
+
+
+@attrs.frozen(kw_only=True)
+class Case:
+    """One cell: a scene under a method at one resolution.
+
+    Attributes
+    ----------
+    planned : bool
+        False: the plan's short cuts are not taken, the march does the whole impact.
+    """
+
+    family: str
+    label: str
+    method: Method
+    options: Options
+    scene: Extreme = attrs.field(repr=False)
+    planned: bool = True
+
+
+def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
+    """Iterate over the cases of a method."""
+    law = REGISTRY.law_class(f"tangential.{method.tangential}")
+    integrator = REGISTRY.law_class(f"integrator.{method.integrator}")
+    for scene in extreme_scenes(quick=quick):
+        yield _case(method, scene, {})
+        if scene.family in ("psi1", "friction", "regimes"):
+            yield _case(method, scene, {}, planned=False)
+        if scene.family == "chi" and integrator.resolution == "steps":
+            steps = int(ABOVE_LIMIT * 2.85 * float(scene.make().chi) ** 0.5) + 8
+            yield _case(method, scene, {"integrator": {"steps": steps}})
+    for psi1, chi in QUICK_LADDER if quick else LADDER:
+        yield from _ladder(method, law.resolution, integrator.resolution, psi1, chi, quick=quick)
+
+
+def _ladder(
+    method: Method, part: str | None, step: str | None, psi1: float, chi: float, *, quick: bool
+) -> Iterator[Case]:
+    def scene(family: str) -> Extreme:
+        label = f"psi1={psi1:g} chi={chi:.4g}"
+        return Extreme(family, label, lambda: Scene.nondimensional(psi1=psi1, chi=chi))
+
+    if step == "steps":
+        for count in QUICK_STEPS if quick else STEPS:
+            yield _case(method, scene("steps"), {"integrator": {step: count}})
+    if "tolerance" in (part, step) or hasattr(_class(method), "tolerance"):
+        for tolerance in TOLERANCES[:: 3 if quick else 1]:
+            yield _case(method, scene("tolerance"), {"integrator": {"tolerance": tolerance}})
+    if part and part != "tolerance":
+        for count in QUICK_PARTS if quick else PARTS:
+            yield _case(method, scene("parts"), {"tangential": {part: count}})
+            if step == "steps":
+                steps = int(ABOVE_LIMIT * 2.85 * chi**0.5) + 8
+                both = {"tangential": {part: count}, "integrator": {step: steps}}
+                yield _case(method, scene("parts"), both)
+
+
+def _class(method: Method) -> Any:
+    return REGISTRY.law_class(f"integrator.{method.integrator}")
+
+
+def _case(method: Method, scene: Extreme, options: Options, *, planned: bool = True) -> Case:
+    words = [f"{name}={value:g}" for part in options.values() for name, value in part.items()] + (
+        [] if planned else ["marched"]
+    )
+    return Case(
+        family=scene.family,
+        label=", ".join([scene.label, *words]),
+        method=method,
+        options={"tangential": {}, "integrator": {}, **options},
+        scene=scene,
+        planned=planned,
+    )

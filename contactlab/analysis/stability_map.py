@@ -1,0 +1,115 @@
+"""Where a method's usable region ends: its resolution against chi."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.analysis.bench_methods import Method
+from contactlab.analysis.stability_cases import Case
+from contactlab.analysis.stability_outcome import ANSWERED, RAISED, WRONG, judge
+from contactlab.analysis.stability_scenes import Extreme
+from contactlab.registry import REGISTRY
+from contactlab.scene import Scene
+
+Array = NDArray[np.float64]
+
+#: psi1 of the impacts in each cell; the worst is shown.
+INCIDENCES = (0.3, 0.95, 1.2)
+CHIS = tuple(np.geomspace(0.05, 1e4, 17).tolist())
+STEPS = (1, 2, 3, 4, 6, 9, 14, 21, 32, 48, 72, 108, 162, 243, 365, 547, 820, 1230, 1845, 2768, 4152)
+TOLERANCES = tuple((10.0 ** -np.arange(0.0, 6.5, 0.5)).tolist())
+QUICK_CHIS = (0.05, 0.5, 3.0, 30.0)
+QUICK_STEPS = (1, 3, 5, 9, 16, 30, 80)
+QUICK_TOLERANCES = (1.0, 1e-2)
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class Region:
+    """Worst error over the range at each resolution (rows) and chi (columns).
+
+    Attributes
+    ----------
+    word : str
+        ``steps`` or ``tolerance``.
+    error : array, shape (rows, columns)
+        NaN where every impact was refused.
+    state : array of int
+        0 answered, 1 at least one impact refused, 2 at least one silently wrong.
+    """
+
+    method: str
+    word: str
+    resolutions: tuple[float, ...]
+    chis: tuple[float, ...]
+    error: Array
+    state: NDArray[np.int8]
+    tried: int
+    wrong: int
+
+
+def region_cells(method: Method, *, quick: bool = False) -> list[tuple[float, float]]:
+    """Return (resolution, chi) of every cell; none for a method without steps or tolerance."""
+    word = _word(method)
+    if word is None:
+        return []
+    if word == "steps":
+        ladder: tuple[float, ...] = QUICK_STEPS if quick else STEPS
+    else:
+        ladder = QUICK_TOLERANCES if quick else TOLERANCES
+    return [(fine, chi) for fine in ladder for chi in (QUICK_CHIS if quick else CHIS)]
+
+
+def region(method: Method, cells: list[tuple[float, float]]) -> Region:
+    """Run the cells of a method."""
+    word = _word(method)
+    assert word is not None
+    resolutions = tuple(dict.fromkeys(fine for fine, _ in cells))
+    chis = tuple(dict.fromkeys(chi for _, chi in cells))
+    error = np.full((len(resolutions), len(chis)), np.nan)
+    state = np.zeros(error.shape, dtype=np.int8)
+    tried = wrong = 0
+    for fine, chi in cells:
+        place = resolutions.index(fine), chis.index(chi)
+        for psi1 in INCIDENCES:
+            outcome = judge(_case(method, word, fine, psi1, chi))
+            tried += 1
+            if outcome.outcome in (WRONG, RAISED):
+                state[place] = 2
+                wrong += 1
+            elif outcome.outcome != ANSWERED:
+                state[place] = max(state[place], 1)
+            error[place] = np.fmax(error[place], outcome.error)
+    return Region(
+        method=method.name,
+        word=word,
+        resolutions=resolutions,
+        chis=chis,
+        error=error,
+        state=state,
+        tried=tried,
+        wrong=wrong,
+    )
+
+
+def _word(method: Method) -> str | None:
+    if method.tangential == "frictionless":
+        return None
+    found: str | None = REGISTRY.law_class(f"integrator.{method.integrator}").resolution
+    return found
+
+
+def _case(method: Method, word: str, fine: float, psi1: float, chi: float) -> Case:
+    options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {word: fine}}
+    scene = Extreme("map", "", lambda: Scene.nondimensional(psi1=psi1, chi=chi))
+    return Case(
+        family="map",
+        label=f"psi1={psi1:g} chi={chi:.4g} {word}={fine:g}",
+        method=method,
+        options=options,
+        scene=scene,
+        planned=False,
+    )

@@ -1,0 +1,126 @@
+"""What came of one case: an error, a refusal, or an answer that is silently wrong."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.analysis.stability_bounds import (
+    broken_invariants,
+    declared,
+    normal_error_allowed,
+    range_of,
+)
+from contactlab.analysis.stability_cases import Case
+from contactlab.analysis.stability_references import Reference, reference_for
+from contactlab.plan import make_plan
+from contactlab.registry import PluginError
+from contactlab.result import ImpactResult
+from contactlab.scene import Scene
+from contactlab.simulation import Simulation
+from contactlab.status import Status
+
+#: Outcomes. Only the last two are failures of the program.
+ANSWERED, REFUSED, SKIPPED = "answered", "refused", "skipped"
+WRONG, RAISED = "silently wrong", "raised"
+
+
+@attrs.frozen(kw_only=True)
+class Outcome:
+    """One cell of the report.
+
+    Attributes
+    ----------
+    error, bound : float
+        Of the change of slip velocity, over its possible range; NaN without an answer.
+    note : str
+        The status, or what is wrong.
+    """
+
+    method: str
+    family: str
+    case: str
+    outcome: str
+    error: float = np.nan
+    bound: float = np.nan
+    note: str = ""
+    run_time_s: float = 0.0
+
+
+def judge(case: Case) -> Outcome:
+    """Run one case and say what came of it."""
+    try:
+        scene = case.scene.make()
+        simulation = case.method.simulation(case.options)
+    except (ValueError, PluginError) as error:
+        return _told(case, REFUSED, note=f"bad input: {error}")
+    return judge_run(case, simulation, scene, reference_for(case.method.tangential))
+
+
+def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Reference) -> Outcome:
+    """Run one scene, and judge the answer against ``reference``."""
+    before = time.perf_counter()
+    try:
+        with np.errstate(all="ignore"):
+            result = simulation.run(scene) if case.planned else marched(simulation, scene)
+    except Exception as error:
+        # Whatever a law or the core lets out is a finding, not an end of the report. A run
+        # makes a status of what an integrator raises.
+        told = f"{type(error).__name__}: {error}"
+        outcome = RAISED if case.planned else REFUSED
+        return _told(case, outcome, note=told if case.planned else f"LAW_RAISED {told}")
+    taken = time.perf_counter() - before
+    if result.status is not Status.SUCCESS:
+        return _told(case, REFUSED, note=f"{result.status.name} {result.motion.detail}", time=taken)
+    with np.errstate(all="ignore"):
+        expected = reference(scene, simulation.tangential)
+        return _judged(case, simulation, result, expected, taken)
+
+
+def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
+    """Run without the plan's short cuts: the integrator does the whole impact."""
+    motion = simulation.integrator.integrate(simulation.problem(scene), None)
+    parts = (simulation.normal, simulation.tangential, simulation.integrator)
+    return ImpactResult(
+        scene=scene, plan=make_plan(scene, *parts), motion=motion, run_time=0.0, laws={}
+    )
+
+
+def _judged(
+    case: Case, simulation: Simulation, result: ImpactResult, expected: float | None, taken: float
+) -> Outcome:
+    scene = result.scene
+    bound = declared(simulation.tangential, simulation.integrator, scene)
+    wrong = broken_invariants(result, bound)
+    width = range_of(scene).width
+    error = np.nan
+    if expected is not None:
+        away = abs(float(result.motion.slip_velocity_change) - expected)
+        error = away / width if width > 0.0 else (0.0 if away == 0.0 else np.inf)
+        if not error <= bound:
+            wrong.append(f"error {error:.2g} of the range, declared {bound:.2g}")
+    off = abs(float(np.asarray(result.normal_restitution)) - 1.0)
+    if not off <= normal_error_allowed(simulation.integrator):
+        wrong.append(f"e is off by {off:.2g}")
+    return _told(
+        case,
+        WRONG if wrong else ANSWERED,
+        error=float(error),
+        bound=bound,
+        note="; ".join(wrong) if wrong else "" if expected is not None else "no reference",
+        time=taken,
+    )
+
+
+def _told(case: Case, outcome: str, *, time: float = 0.0, **entries: Any) -> Outcome:
+    return Outcome(
+        method=case.method.name,
+        family=case.family,
+        case=case.label,
+        outcome=outcome,
+        run_time_s=time,
+        **entries,
+    )

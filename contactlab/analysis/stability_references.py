@@ -1,0 +1,110 @@
+"""What the answers are judged against: each law's own exact answer.
+
+A law that leaves something out (a rigid body has no partial slip) is not unstable for that. So
+the laws that converge to the continuum are judged by the exact solution, a rigid body by its
+closed form, and any other law by itself at high resolution.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from contactlab.analysis.stability_bounds import range_of
+from contactlab.closed_forms import rigid_body_rebound
+from contactlab.contracts import SteppedTangentialLaw, TangentialLaw
+from contactlab.registry import REGISTRY
+from contactlab.scene import Scene
+from contactlab.simulation import Simulation
+
+#: Laws that converge to the axisymmetric continuum as their resolution grows.
+CONTINUUM = frozenset({"annulus", "fronts", "springs", "sharp_annulus"})
+#: Closer than the default, so that the default can be judged.
+REFERENCE_TOLERANCES = (1e-11, 1e-9)
+#: Steps of a law's own reference: this many times the stability limit, and no fewer or more.
+FINE, FEWEST, MOST = 64, 4000, 100_000
+
+#: Change of slip velocity in m/s, or None where there is nothing to judge by.
+Reference = Callable[[Scene, TangentialLaw], float | None]
+
+
+def reference_for(name: str) -> Reference:
+    """Return how answers of the tangential law called ``name`` are judged."""
+    if name in CONTINUUM:
+        return continuum
+    return {"coulomb": rigid, "frictionless": none}.get(name, itself)
+
+
+def none(scene: Scene, law: TangentialLaw) -> float:  # noqa: ARG001
+    """Return no change."""
+    return 0.0
+
+
+def rigid(scene: Scene, law: TangentialLaw) -> float:  # noqa: ARG001
+    """Return the change of the rigid-body theory, |change| = min(|psi1|, 4 chi)."""
+    unit, width, speed = range_of(scene)
+    if speed * 1e-6 > width:  # far inside gross slip, where psi2 would swallow the change
+        return -float(np.copysign(width, scene.slip_velocity))
+    scale = speed if unit * float(scene.chi) == 0.0 else unit
+    if scale == 0.0:
+        return 0.0
+    psi1 = float(scene.slip_velocity) / scale
+    grip = 0.0 if scale != unit else float(scene.chi)
+    return (float(rigid_body_rebound(psi1, grip)) - psi1) * scale
+
+
+@lru_cache(maxsize=4096)
+def _exact(key: bytes, scene: _Held) -> float | None:  # noqa: ARG001
+    for tolerance in REFERENCE_TOLERANCES:
+        result = Simulation(
+            integrator=REGISTRY.create("integrator.events", tolerance=tolerance)
+        ).run(scene.scene)
+        if result.status:
+            return float(result.motion.slip_velocity_change)
+    return None
+
+
+class _Held:
+    """A scene as part of a cache's key: only the key beside it counts."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+
+    def __hash__(self) -> int:
+        return 0
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Held)
+
+
+def continuum(scene: Scene, law: TangentialLaw) -> float | None:  # noqa: ARG001
+    """Return the change of the exact solution."""
+    return _exact(_key(scene), _Held(scene))
+
+
+def itself(scene: Scene, law: TangentialLaw) -> float | None:
+    """Return the change of the same law at many more steps."""
+    if not isinstance(law, SteppedTangentialLaw):
+        return None
+    coarse: Any = Simulation(tangential=law, integrator="symplectic")
+    problem = coarse.problem(scene)
+    frequency = np.sqrt(law.stiffness(problem) / problem.pair.tangential_mass)
+    needed = int(0.5 * frequency * problem.duration) + 1
+    steps = min(max(FINE * needed, FEWEST), MOST)
+    fine = Simulation(
+        tangential=law, integrator=REGISTRY.create("integrator.symplectic", steps=steps)
+    ).run(scene)
+    return float(fine.motion.slip_velocity_change) if fine.status else None
+
+
+def _key(scene: Scene) -> bytes:
+    pair = scene.pair
+    numbers = (
+        scene.slip_velocity, scene.friction_coefficient, scene.normal_speed, pair.radius,
+        pair.effective_modulus, pair.effective_shear_modulus, pair.normal_mass,
+        pair.tangential_mass,
+    )  # fmt: skip
+    return np.array(numbers, dtype=np.float64).tobytes()

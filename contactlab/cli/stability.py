@@ -1,0 +1,122 @@
+"""Run stiff and extreme cases over every law and integrator; find answers silently wrong.
+
+Examples
+--------
+  contactlab stability --quick
+  contactlab stability --figure stability.png --csv stability.csv
+  contactlab stability --law tangential.cundall --budget 60
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import math
+from pathlib import Path
+
+import attrs
+
+from contactlab.analysis.bench_methods import methods
+from contactlab.analysis.stability import Stability, stability
+from contactlab.analysis.stability_outcome import Outcome
+from contactlab.cli import arguments as shared
+from contactlab.cli.table import table
+from contactlab.plain import plain
+
+#: Failures listed one by one under the table; all of them are in the CSV and the JSON.
+LISTED = 40
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the laws, the size, and the outputs."""
+    parser.add_argument(
+        "--law",
+        action="append",
+        metavar="NAME",
+        help="a tangential law, installed or of a plug-in; may be repeated (default: all)",
+    )
+    parser.add_argument("--quick", action="store_true", help="fewer scenes and resolutions")
+    parser.add_argument(
+        "--budget",
+        type=shared.finite,
+        default=math.inf,
+        metavar="SECONDS",
+        help="begin no further run after this time",
+    )
+    parser.add_argument("--figure", type=shared.file_of(".png"), metavar="FILE.png")
+    parser.add_argument("--csv", type=shared.file_of(".csv"), metavar="FILE.csv")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
+    shared.add_progress(parser)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Run the report; a single silently wrong answer makes it fail."""
+    if arguments.budget <= 0.0:
+        raise ValueError(f"--budget {arguments.budget:g}: must be positive, in seconds")
+    found = stability(
+        methods(arguments.law),
+        quick=arguments.quick,
+        budget=arguments.budget,
+        progress=shared.progress(arguments.progress, "stability"),
+    )
+    if arguments.csv:
+        _write_csv(arguments.csv, found)
+    if arguments.figure:
+        from contactlab.figures.stability import draw_regions  # matplotlib only when drawing
+
+        draw_regions(arguments.figure, found.regions)
+    print(json.dumps(_content(found), indent=2) if arguments.json else report(found))
+    return shared.FAILED if found.failures() or found.silently_wrong() else shared.OK
+
+
+def report(found: Stability) -> str:
+    """Return the table, the failures and the totals."""
+    families = list(dict.fromkeys(item.family for item in found.outcomes))
+    lines = []
+    for method in dict.fromkeys(item.method for item in found.outcomes):
+        counts = found.counts(method)
+        errors = [found.worst(method, family) for family in families]
+        words = ("answered", "coarse", "refused", "skipped", "raised", "silently wrong")
+        lines.append([method, *errors, *(counts[word] for word in words)])
+    headings = ["worst error", *families, "answers", "coarse", "refused", "skipped", "raised"]
+    parts = [table([*headings, "wrong"], lines, digits=2)]
+    if found.regions:
+        rows = [[item.method, item.word, item.tried, item.wrong] for item in found.regions]
+        parts.append(table(["map", "against chi", "tried", "wrong"], rows))
+    failures = found.failures()
+    if failures:
+        rows = [[item.method, item.case, item.outcome, item.note] for item in failures[:LISTED]]
+        parts.append(table(["method", "case", "", ""], rows))
+    parts.append(
+        f"{found.tried()} runs tried, {found.silently_wrong()} silently wrong. Errors are over "
+        "the range that physics leaves to psi2;\nof answers whose declared error is below a "
+        "quarter of it: the others are counted as coarse."
+    )
+    if not found.complete:
+        parts.append("not complete: the budget ran out")
+    return "\n\n".join(parts)
+
+
+def _content(found: Stability) -> dict[str, object]:
+    rows = [
+        {key: plain(value) for key, value in attrs.asdict(item).items()} for item in found.outcomes
+    ]
+    regions = [
+        {key: plain(value) for key, value in attrs.asdict(item).items()} for item in found.regions
+    ]
+    return {
+        "outcomes": rows,
+        "map": regions,
+        "tried": found.tried(),
+        "silently_wrong": found.silently_wrong(),
+        "complete": found.complete,
+    }
+
+
+def _write_csv(path: Path, found: Stability) -> None:
+    names = [field.name for field in attrs.fields(Outcome)]
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(names)
+        writer.writerows([getattr(item, name) for name in names] for item in found.outcomes)
