@@ -159,7 +159,7 @@ class Runner:
             signs[reach : self.reach] = 0.0
             until = at + 1
         sticks = signs == 0.0
-        matrix = response(len(signs), sticks.tobytes())
+        matrix = response(len(signs), self.table.mean, sticks.tobytes())
         rows = np.zeros((until - at, self.found.shape[1]))
         np.multiply(self.limits[at:until], signs, out=rows[:, 1:])
         np.copyto(rows[:, 1:], self.lags[at], where=sticks)

@@ -93,7 +93,7 @@ def respond(
     """
     if table.responses:
         drive = np.concatenate(([total], given))
-        found = drive.dot(response(len(sticks), sticks.tobytes()))
+        found = drive.dot(response(len(sticks), table.mean, sticks.tobytes()))
         return found.item(0), found[1:]
     traction = np.where(sticks, 0.0, given)
     rest = total + given[sticks] - table.compliance[sticks] @ traction
