@@ -123,7 +123,7 @@ def newton(
             contact = motion.course(start.x + length * spot)
             rate = contact.pace * (length * spread)
             time_matrix = nodes.integral * rate
-            time = time_matrix.sum(axis=1)
+            time = nodes.integral.dot(rate)
             base = start.velocity * time
             base += start.slip
             placed = True
@@ -131,14 +131,14 @@ def newton(
             change = time * (-inertia * start.force - (0.5 * inertia * start.force_rate) * time)
         if step == 0:
             guess_size = float(change.dot(change)) / count
-        slip = time_matrix @ change
+        slip = time_matrix.dot(change)
         slip += base
         response = phase.respond(contact, slip, memo)
         memo, force = response.memo, response.force
         gathered, stiffness = response.gathered, response.stiffness
         if gathered is not None:
-            force = force + time_matrix @ (gathered * (start.velocity + change))
-        residual = time_matrix @ force
+            force = force + time_matrix.dot(gathered * (start.velocity + change))
+        residual = time_matrix.dot(force)
         residual *= inertia
         if last:
             np.negative(residual, out=residual)
@@ -161,7 +161,7 @@ def newton(
                 return None
             left = time_matrix if stiffness is None else time_matrix * slope
             right = time_matrix * slope if stiffness is None else time_matrix
-            matrix = left @ right
+            matrix = left.dot(right)
             matrix *= inertia
             matrix += nodes.identity
             delta = dgesv(matrix, residual, 1, 1)[2]

@@ -85,8 +85,7 @@ class Laid(Piece):
         else:
             y = start + length * ((high - level) / drop)
         floor = start + 1e-6 * length if flat else start - 0.2 * length
-        np.maximum(y, floor, out=y)
-        np.minimum(y, stop, out=y)
+        y = np.minimum(np.maximum(y, floor), stop)
         for _ in range(FRONT_CAP):
             old_slip, old_force, q, c, slip_rate, q_rate = self.path.fields(y)
             here = sign * old_slip - q

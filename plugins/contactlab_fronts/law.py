@@ -13,8 +13,8 @@ from contactlab_fronts.phases import Balanced, GrossSlip, Stuck
 
 #: |2 chi - 1| below which the edge's margin against slip is lost in rounding.
 BALANCE = 1e-10
-#: 2 chi - 1 up to which first slip that stops need not be told from slip throughout: psi and V
-#: then differ by less than this all the way.
+#: 2 chi - 1 up to which an impact that slips first is Balanced too: psi and V never differ by
+#: more than this, and what comes after the first slip is lost in rounding.
 NARROW = 4e-9
 
 
@@ -45,8 +45,10 @@ class Fronts(PhasedTangentialLaw):
     def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
         """Stick below psi1 = 1 (44), else slip; at exactly 1 the inertia decides."""
         ratio = inertia * motion.scaled_mass
-        if 1.0 < velocity < 2.0 * ratio - 1.0 <= 1.0 + 2.0 * NARROW:
-            return Balanced(ratio)
+        excess, range_of_slip = velocity - 1.0, 2.0 * (ratio - 1.0)
+        if 0.0 < excess < range_of_slip <= 2.0 * NARROW:
+            # psi2 = -1 - excess (1 - excess/range), to first order in the range
+            return Balanced(1.0 + excess - 0.5 * excess * (excess / range_of_slip))
         if velocity > 1.0 or (velocity == 1.0 and ratio <= 1.0):
             return GrossSlip(1)
         if abs(ratio - 1.0) < BALANCE:
