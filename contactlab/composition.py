@@ -8,6 +8,9 @@ from contactlab.checks import refuse
 from contactlab.contracts.law import Law
 from contactlab.registry import REGISTRY, PluginError
 
+#: Taken where none is named: exact where the laws allow it, else of second order.
+PREFERRED_INTEGRATORS = ("events", "symplectic")
+
 
 def law(kind: str, value: object) -> Any:
     """Return the law of ``kind`` that ``value`` names or already is."""
@@ -17,6 +20,18 @@ def law(kind: str, value: object) -> Any:
         known = ", ".join(REGISTRY.names(kind))
         raise refuse(kind, value, f"must be a name or a {kind} law", f"installed: {known}")
     return value
+
+
+def fitting_integrator(normal: Law, tangential: Law) -> Any:
+    """Return the first of ``PREFERRED_INTEGRATORS`` that fits, or else the first."""
+    candidates = [law("integrator", name) for name in PREFERRED_INTEGRATORS]
+    for candidate in candidates:
+        try:
+            check_fit(normal, tangential, candidate)
+        except ValueError:
+            continue
+        return candidate
+    return candidates[0]
 
 
 def check_fit(normal: Law, tangential: Law, integrator: Law) -> None:

@@ -43,6 +43,7 @@ class Simulation:
     normal, tangential, integrator : str or law
         A name (``"hertz"``), or an object made by ``contactlab.create`` or by your own class.
         The default is exact: Hertz's closed form and the slip front followed event by event.
+        Where no integrator is named, the best that fits the two laws is taken.
 
     Raises
     ------
@@ -59,13 +60,17 @@ class Simulation:
         *,
         normal: str | NormalLaw = "hertz",
         tangential: str | TangentialLaw = "fronts",
-        integrator: str | Integrator = "events",
+        integrator: str | Integrator | None = None,
     ) -> None:
         parts = {
             "normal": composition.law("normal", normal),
             "tangential": composition.law("tangential", tangential),
-            "integrator": composition.law("integrator", integrator),
         }
+        parts["integrator"] = (
+            composition.fitting_integrator(**parts)
+            if integrator is None
+            else composition.law("integrator", integrator)
+        )
         composition.check_fit(**parts)
         self.__attrs_init__(**parts)
 

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 import attrs
+import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.checks import Mask, Real
 from contactlab.closed_forms import slips_throughout_elastic
-from contactlab.contracts import ClosedFormMotion, Phase, PhasedTangentialLaw
-from contactlab_fronts.phases import Balanced, GrossSlip, Stuck
+from contactlab.contracts import ClosedFormMotion, Course, Phase, PhasedTangentialLaw, Problem
+from contactlab_fronts.phases import Balanced, FrontPhase, GrossSlip, Stuck
+
+#: Rings in which stick and slip are shown; the solution itself knows no rings.
+RINGS = 200
 
 #: |2 chi - 1| below which the edge's margin against slip is lost in rounding.
 BALANCE = 1e-10
@@ -54,3 +60,23 @@ class Fronts(PhasedTangentialLaw):
         if abs(ratio - 1.0) < BALANCE:
             return Balanced(velocity)
         return Stuck((), 0.0, 0.0, 0)
+
+    def phase_fields(
+        self, problem: Problem, phase: Phase, contact: Course, slip: float, factor: float
+    ) -> Mapping[str, NDArray[Any]]:
+        """Return rings of equal width: radius (m), stuck, and the sign of slipping traction.
+
+        ``front`` (m) is the radius within which the contact sticks.
+        """
+        assert isinstance(phase, FrontPhase)
+        front, sign = phase.division(contact, slip)
+        ring = (np.arange(RINGS) + 0.5) / RINGS
+        touching, inside = ring < contact.radius, ring < front
+        sense = sign if factor > 0.0 else -sign
+        largest = float(problem.maximum_radius)
+        return {
+            "radius": largest * ring,
+            "front": np.array(largest * front),
+            "stuck": touching & inside,
+            "slipping": np.where(touching & ~inside, sense, 0).astype(np.int8),
+        }

@@ -25,8 +25,16 @@ Memo = tuple[Array, ...]
 Profile = tuple[Piece, ...]
 
 
+class FrontPhase(Phase):
+    """A phase of the spring bundle: stuck within a radius, slipping one way outside."""
+
+    def division(self, contact: Course, slip: float) -> tuple[float, int]:  # noqa: ARG002
+        """Return radius of the front and sense of slip outside it: here all sticks."""
+        return contact.radius, 0
+
+
 @attrs.frozen(eq=False)
-class Stuck(Phase):
+class Stuck(FrontPhase):
     """All springs stick while the contact grows; new ones are laid down unstressed."""
 
     profile: Profile
@@ -69,7 +77,7 @@ class Stuck(Phase):
 
 
 @attrs.frozen(eq=False)
-class EdgeSlip(Phase):
+class EdgeSlip(FrontPhase):
     """Springs outside the front slip; the front works through the outermost piece."""
 
     sign: int
@@ -107,12 +115,17 @@ class EdgeSlip(Phase):
             return slipping(sign, self.profile[:-1])
         if event == 2:
             return slipping(-sign, self.profile)
-        here = Course(*(np.array([value]) for value in contact))
-        c = self.profile[-1].front(sign, here, np.array([state.slip]), ()).radius.item()
+        c, _ = self.division(contact, state.slip)
         inner_f = sign * (contact.approach - c * c) - state.slip
         inner_force = state.force - sign * (contact.force - c**3)
         locked = Locked(sign, c * c, inner_f, inner_force)
         return sticking(sign, (*self.profile, locked), state, contact)
+
+    def division(self, contact: Course, slip: float) -> tuple[float, int]:
+        """Return the front at one instant."""
+        here = Course(*(np.array([value]) for value in contact))
+        front = self.profile[-1].front(self.sign, here, np.array([slip]), ())
+        return front.radius.item(), self.sign
 
     def friction_power(
         self,
@@ -129,7 +142,7 @@ class EdgeSlip(Phase):
 
 
 @attrs.frozen(eq=False)
-class GrossSlip(Phase):
+class GrossSlip(FrontPhase):
     """The whole contact slips; Coulomb's force."""
 
     sign: int
@@ -139,6 +152,10 @@ class GrossSlip(Phase):
     def respond(self, contact: Course, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
         """F = s P."""
         return PhaseResponse(self.sign * contact.force, None, None, ())
+
+    def division(self, contact: Course, slip: float) -> tuple[float, int]:  # noqa: ARG002
+        """Return a front at the centre."""
+        return 0.0, self.sign
 
     def margin(
         self,
@@ -164,7 +181,7 @@ class GrossSlip(Phase):
 
 
 @attrs.frozen(eq=False)
-class Balanced(Phase):
+class Balanced(FrontPhase):
     """chi = 1/2: psi = psi1 V and F = psi1 P, and no spring ever slips.
 
     ``share`` is F/P: psi1, or at the limit of slip 2 chi.

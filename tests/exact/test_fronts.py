@@ -158,6 +158,26 @@ def test_the_default_is_exact_and_says_so():
     assert "exact" not in str(Simulation(tangential="annulus", integrator="paper").plan(scene(1.2)))
 
 
+def test_without_an_integrator_the_best_that_fits_is_taken():
+    assert type(Simulation(tangential="annulus").integrator).__name__ == "Symplectic"
+    assert Simulation(tangential="coulomb").integrator == exact().integrator
+
+
+@pytest.mark.parametrize("psi1", [0.5, -1.2, 2.5, 7.0])
+def test_fields_show_the_front(psi1):
+    history = exact().run(scene(psi1), history="fields").check().history
+    fields, largest = history.fields, history.contact_radius.max()
+    assert (fields["front"] <= history.contact_radius + 1e-9 * largest).all()
+    slipping = fields["slipping"] != 0
+    assert not (slipping & fields["stuck"]).any()
+    touching = fields["radius"] < history.contact_radius[:, None]
+    assert ((slipping | fields["stuck"]) == touching).mean() > 0.999
+    # all rings slip one way exactly where the force is at its limit
+    gross = (fields["front"] == 0.0) & (history.normal_force > 0.0)
+    limit = np.abs(history.tangential_force) > (1.0 - 1e-9) * history.normal_force
+    assert (gross[2:-2] == limit[2:-2]).mean() > 0.99
+
+
 def test_laws_that_cannot_run_under_events_are_refused():
     with pytest.raises(ValueError, match="needs"):
         Simulation(tangential="fronts", integrator="paper")
