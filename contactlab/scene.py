@@ -126,16 +126,18 @@ class Scene:
                 raise refuse(f"scenes[{position}]", scene.shape, "must be a single impact")
         stacked = _stacked(scenes)
         assert isinstance(stacked, cls)
-        full = np.ones(len(scenes)) * stacked.normal_speed
-        return attrs.evolve(stacked, normal_speed=full)
+        if stacked.shape:
+            return stacked
+        return attrs.evolve(stacked, normal_speed=np.full(len(scenes), stacked.normal_speed))
 
     def take(self, part: Any) -> Scene:
-        """Return the batch scene of some of the impacts, by slice, mask or indices."""
-        shape = self.shape
-        taken = _taken(self, shape, part)
+        """Return the batch scene of some of the impacts, by slice, mask or indices.
+
+        What all impacts share stays a plain number: laws are faster then.
+        """
+        taken = _taken(self, self.shape, part)
         assert isinstance(taken, Scene)
-        speed = np.broadcast_to(np.asarray(self.normal_speed), shape)[part]
-        return attrs.evolve(taken, normal_speed=speed)
+        return taken
 
     @property
     def shape(self) -> tuple[int, ...]:

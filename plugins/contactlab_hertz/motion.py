@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import lru_cache
 
 import attrs
 import numpy as np
@@ -14,6 +16,9 @@ from contactlab.closed_forms import DURATION_CONSTANT, size_ratio
 from contactlab.contracts import ClosedFormMotion, Course, NormalContact
 
 Array = NDArray[np.float64]
+
+#: Longer tables are not kept: 64 of them, three columns of 8 bytes, are 6 MB at most.
+LONGEST_KEPT = 4000
 
 
 def velocity_factor(root: Real) -> Real:
@@ -37,6 +42,38 @@ def scaled_time(root: Real, rate: Real) -> Real:
     )
     half = 0.5 * DURATION_CONSTANT
     return np.where(np.asarray(rate) >= 0.0, half * quarter, half * (2.0 - quarter))
+
+
+def scaled_motion(phase: Array) -> tuple[Array, Array, Array]:
+    """Return u = sqrt(zeta), V and T at ``phase``."""
+    u = np.maximum(np.sin(phase), 0.0)
+    rate = np.cos(phase) * velocity_factor(u)
+    return u, rate, np.asarray(scaled_time(u, rate))
+
+
+def phase_at_fraction(fraction: Array) -> tuple[Array]:
+    """Return the phase at ``fraction`` of the duration, by the inverse of ``scaled_time``."""
+    from scipy.special import betaincinv
+
+    half = np.minimum(fraction, 1.0 - fraction)
+    rising = np.arcsin(betaincinv(0.4, 0.5, 2.0 * half) ** 0.2)
+    return (np.where(fraction <= 0.5, rising, np.pi - rising),)
+
+
+def remembered(function: Callable[[Array], tuple[Array, ...]], at: Real) -> tuple[Array, ...]:
+    """Return ``function(at)``, kept if short: every impact with equal steps asks for the same."""
+    points = np.asarray(at, dtype=np.float64)
+    if points.size > LONGEST_KEPT:
+        return function(points)
+    return tuple(array.reshape(points.shape) for array in _kept(function, points.tobytes()))
+
+
+@lru_cache(maxsize=64)
+def _kept(function: Callable[[Array], tuple[Array, ...]], at: bytes) -> tuple[Array, ...]:
+    found = function(np.frombuffer(at))
+    for array in found:
+        array.flags.writeable = False
+    return found
 
 
 @attrs.frozen
@@ -107,20 +144,15 @@ class HertzMotion(ClosedFormMotion):
 
     def at(self, phase: Real) -> tuple[Real, Real, Real, NormalContact]:
         """Return (time, approach, rate, contact) at ``phase`` in [0, pi]."""
-        u, cosine = np.maximum(np.sin(phase), 0.0), np.cos(phase)
-        rate = cosine * velocity_factor(u)
-        instant = scaled_time(u, rate) * (self.approach_scale / self.speed)
+        u, rate, instant = remembered(scaled_motion, phase)
+        instant = instant * (self.approach_scale / self.speed)
         approach = u * u * self.approach_scale
         contact = NormalContact(u**3 * self.force_scale, u * self.radius_scale, approach)
         return instant, approach, rate * self.speed, contact
 
     def phase(self, fraction: Real) -> Real:
         """Return the phase at ``fraction`` of the duration, by the inverse of ``scaled_time``."""
-        from scipy.special import betaincinv
-
-        half = np.minimum(fraction, 1.0 - np.asarray(fraction))
-        rising = np.arcsin(betaincinv(0.4, 0.5, 2.0 * half) ** 0.2)
-        return np.where(np.asarray(fraction) <= 0.5, rising, np.pi - rising)
+        return remembered(phase_at_fraction, fraction)[0]
 
     def pace(self, phase: Real) -> Real:
         """Return dt/dx at ``phase``, in s."""

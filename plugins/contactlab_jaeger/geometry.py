@@ -37,7 +37,9 @@ def of_one(places: Places, before: float, after: float, pressure: Real) -> Geome
     reach = bisect_left(places.listed, after)
     room = after - places.squares[:reach, None]
     settled = bisect_left(places.listed, before) if after > before else reach
-    share = np.minimum(room[settled:] / (after - before or 1.0), 1.0)
+    share = room[settled:]
+    if settled < reach:
+        share = np.minimum(share / (after - before), 1.0)
     return Geometry(settled, share, pressure * room, places.weights_within(after, reach))
 
 

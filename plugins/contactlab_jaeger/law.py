@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
@@ -59,7 +60,7 @@ class State(NamedTuple):
 class ProfileLaw(RunningTangentialLaw):
     """A law of independent springs; a subclass says where they are."""
 
-    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
+    offers: ClassVar[frozenset[str]] = frozenset({"advance", "partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"steps", "radius"})
 
     @abstractmethod
@@ -87,22 +88,21 @@ class ProfileLaw(RunningTangentialLaw):
     ) -> tuple[TangentialResponse, State]:
         """Return the force after the step."""
         shape, scales, memory = state
-        radius: Any = after.radius / scales.radius
-        pressure = step.common(scales.pressure(radius, after.force), shape)
+        radius = step.plain(after.radius) / scales.radius
+        pressure = scales.pressure(radius, step.plain(after.force))
+        radius, pressure = step.common(radius, shape), step.common(pressure, shape)
         moved = increment.displacement * scales.displacement
-        items = 1
-        if shape:
-            moved = np.broadcast_to(moved, shape).reshape(-1)
-            items = moved.size
-        force, work, memory = step.advance(
-            self.places(), memory, moved, step.common(radius, shape), pressure, items
-        )
         if not shape:
+            force, work, memory = step.advance(self.places(), memory, moved, radius, pressure, 1)
             response = TangentialResponse(force.item() * scales.force, work.item() * scales.work)
-        else:
-            force, work = force.reshape(shape), work.reshape(shape)
-            response = TangentialResponse(force * scales.force, work * scales.work)
-        return response, State(shape, scales, memory)
+            return response, State(shape, scales, memory)
+        if len(shape) > 1 or np.shape(moved) != shape:
+            moved = np.broadcast_to(moved, shape).reshape(-1)
+        force, work, memory = step.advance(
+            self.places(), memory, moved, radius, pressure, math.prod(shape)
+        )
+        force, work = force.reshape(shape) * scales.force, work.reshape(shape) * scales.work
+        return TangentialResponse(force, work), State(shape, scales, memory)
 
     def run(self, problem: Problem, run: Run) -> RunResponse:
         """Return the forces of a whole impact."""
@@ -125,7 +125,7 @@ class ProfileLaw(RunningTangentialLaw):
         """
         shape, scales, memory = state
         squares = self.places().squares
-        items = int(np.prod(shape))
+        items = math.prod(shape)
 
         def whole_rows(rows: Array) -> Array:
             full = np.zeros((items, len(squares)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -33,11 +33,15 @@ def common(value: Real, shape: tuple[int, ...]) -> Real:
     """Return ``value`` as a float where the whole batch agrees on it, else flat."""
     if isinstance(value, float):
         return value
-    array = np.asarray(value)
-    first = float(array.flat[0])
-    if array.size == 1 or np.ptp(array) <= ROUNDING * abs(first):
+    first = float(value.flat[0])
+    if value.size == 1 or np.ptp(value) <= ROUNDING * abs(first):
         return first
-    return np.broadcast_to(array, shape).reshape(-1)
+    return np.broadcast_to(value, shape).reshape(-1)
+
+
+def plain(value: Real) -> Any:
+    """Return an array of one number as a float: arithmetic with it is faster."""
+    return value if isinstance(value, float) or value.size > 1 else value.item()
 
 
 def advance(
@@ -69,8 +73,9 @@ def advance(
     reach, known = len(limit), min(len(old), len(limit))
     trial = np.empty((reach, items))
     np.add(old[:settled], displacement, out=trial[:settled])
-    np.multiply(share, displacement, out=trial[settled:])
-    trial[settled:known] += old[settled:known]
+    if settled < reach:
+        np.multiply(share, displacement, out=trial[settled:])
+        trial[settled:known] += old[settled:known]
     stretch = np.minimum(trial, limit)
     np.maximum(stretch, -limit, out=stretch)
 
@@ -84,12 +89,9 @@ def advance(
     if reach < len(old):  # places that came out of contact let go of all they held
         left = old[reach:]
         done = done + places.measure[reach : len(old)] @ (left * (left + displacement))
-    # No contact must not hide a displacement that is not a number.
-    return (
-        force + 0.0 * displacement,
-        0.5 * np.maximum(done, 0.0),
-        Memory(stretch, limit, square),
-    )
+    if not reach:  # no contact must not hide a displacement that is not a number
+        force = force + 0.0 * displacement
+    return force, 0.5 * np.maximum(done, 0.0), Memory(stretch, limit, square)
 
 
 def _weighed(weights: Array, values: Array) -> Array:

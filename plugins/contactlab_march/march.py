@@ -81,18 +81,19 @@ def march(
     status, detail, count = Status.SUCCESS, "", 0
     velocity: Real = initial
     for step in steps:
-        arresting = mass * velocity / step.kick
+        change_per_force = step.kick / mass  # once: often the same for a whole batch
+        arresting = velocity / change_per_force
         increment = Increment(
             velocity * step.drift, velocity, arresting, step.normal_force, step.kick
         )
         response, state = law.advance(state, increment, before, step.contact)
         force = response.force
-        change = change - force * step.kick / mass
+        change = change - force * change_per_force
         work = work + response.friction_work
         before = step.contact
         count += 1
         if observer is not None:
-            middle = velocity - 0.5 * force * step.kick / mass
+            middle = velocity - 0.5 * force * change_per_force
             observer(_sample(step, middle, force, law, state))
         velocity = initial + change
         if response.settled is not True and not np.all(response.settled):

@@ -73,7 +73,7 @@ class Symplectic(Integrator):
         motion = problem.normal.motion(problem.pair, problem.normal_speed)
         mass = problem.pair.normal_mass
         column = (-1,) + (1,) * len(problem.shape)
-        halves: Any = motion.phase(np.linspace(0.0, 1.0, 2 * count + 1))
+        halves: Any = np.array(motion.phase(np.linspace(0.0, 1.0, 2 * count + 1)))
         halves[-1] = np.pi  # exactly, as the inverse is not
         at_ends: Any = motion.at(halves[::2].reshape(column))
         ends, rates = at_ends[0], at_ends[2]
