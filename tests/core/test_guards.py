@@ -40,14 +40,27 @@ def test_too_few_steps_are_refused_with_the_number_needed(integrator):
 
 
 def test_the_limit_follows_the_law_and_the_scene():
-    """omega = sqrt(3.75 chi) in scaled time: N >= 2.94 sqrt(3.75 chi)/0.5; none for rigid laws."""
+    """omega = sqrt(3.75 chi) in scaled time: N >= 2.94 sqrt(3.75 chi)/0.5.
+
+    A rigid law has no stiffness: the half oscillation of the normal motion remains, N >= 2 pi.
+    """
     scene = Scene.nondimensional(psi1=1.2, chi=100.0)
     assert not annulus("symplectic", steps=114).plan(scene).cautions
     assert annulus("symplectic", steps=113).plan(scene).cautions
     rigid = Simulation(
-        tangential="coulomb", integrator=contactlab.create("integrator.paper", steps=1)
+        tangential="coulomb", integrator=contactlab.create("integrator.paper", steps=7)
     )
     assert not rigid.plan(scene).cautions
+
+
+def test_the_normal_motion_takes_steps_too():
+    """In one explicit step a rigid sphere would rebound 18 times as fast as it came."""
+    scene = Scene.nondimensional(psi1=1.2, chi=1.44)
+    rigid = Simulation(
+        tangential="coulomb", integrator=contactlab.create("integrator.paper", steps=1)
+    )
+    assert rigid.plan(scene).cautions
+    assert rigid.run(scene).check().normal_restitution == pytest.approx(1.0, abs=0.01)
 
 
 def test_one_impossible_impact_does_not_spoil_a_batch():
