@@ -11,12 +11,11 @@ import numpy as np
 
 from contactlab.analysis.bench_methods import Method
 from contactlab.analysis.stability_bounds import COARSE
-from contactlab.analysis.stability_cases import QUICK_STEPS_BELOW, Case, cases
+from contactlab.analysis.stability_cases import Case, cases
 from contactlab.analysis.stability_map import Region, region, region_cells
 from contactlab.analysis.stability_outcome import (
     ANSWERED,
     RAISED,
-    REFUSED,
     SKIPPED,
     WRONG,
     Outcome,

@@ -28,7 +28,7 @@ from contactlab.contracts import Integrator, TangentialLaw
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 
-STEP, PHASE, PART = 1.0, 3.0, 0.5
+STEP, PHASE, PART = 1.0, 2.0, 0.5
 #: Tolerances are aims: of an adaptive scheme the error per unit of its path is held, and a law
 #: that is not smooth (annuli) is stepped over at a least step.
 TOLERANCE = 50.0
@@ -63,12 +63,19 @@ def range_of(scene: Scene) -> Range:
     return Range(unit, min(grip, 2.0 * speed), speed)
 
 
-def declared(tangential: TangentialLaw, integrator: Integrator, scene: Scene) -> float:
-    """Return the declared error of the change of slip velocity, over the range of ``scene``."""
+def declared(
+    tangential: TangentialLaw, integrator: Integrator, scene: Scene, taken: int | None = None
+) -> float:
+    """Return the declared error of the change of slip velocity, over the range of ``scene``.
+
+    ``taken`` is the number of steps that a run took, where it refined those asked for.
+    """
     growth = 1.0 + float(scene.chi) ** 0.5
     bound = ROUNDING
     for law in (tangential, integrator):
         fineness = getattr(law, law.resolution) if law.resolution else None
+        if law.resolution == "steps":
+            fineness = taken or fineness
         if law.resolution == "steps":
             bound += STEP * growth / fineness + PHASE * float(scene.chi) ** 1.5 / fineness**2
         elif law.resolution and law.resolution != "tolerance":
@@ -80,10 +87,13 @@ def declared(tangential: TangentialLaw, integrator: Integrator, scene: Scene) ->
     return bound
 
 
-def broken_invariants(result: ImpactResult, bound: float) -> list[str]:
-    """Return the laws of physics (theory §7) that a result breaks beyond what is declared."""
+def broken_invariants(result: ImpactResult, bound: float, *, passive: bool = True) -> list[str]:
+    """Return the laws of physics (theory §7) that a result breaks beyond what is declared.
+
+    ``passive`` is False for a law whose model itself makes energy.
+    """
     scene, motion = result.scene, result.motion
-    unit, width, speed = range_of(scene)
+    _, width, speed = range_of(scene)
     change, rate = float(motion.slip_velocity_change), float(motion.normal_velocity)
     numbers = (change, rate, float(motion.duration), float(motion.friction_work))
     if not np.all(np.isfinite(numbers)):
@@ -95,8 +105,11 @@ def broken_invariants(result: ImpactResult, bound: float) -> list[str]:
     along = -change * np.sign(float(scene.slip_velocity))
     if along < -allowed * width:
         broken.append("friction speeds the slip up")
-    if along > (1.0 + allowed) * width:
-        broken.append("|psi2| > |psi1|" if width < 4.0 * float(scene.chi) * unit else "> 4 chi")
+    gripped = width < 2.0 * speed  # the range is that of slip throughout, 4 chi
+    if along > (1.0 + allowed) * width and (passive or gripped):
+        broken.append("|psi2 - psi1| > 4 chi" if gripped else "|psi2| > |psi1|")
+    if not passive:
+        return broken
     books = result.energy
     scale = 0.5 * float(scene.pair.normal_mass * scene.normal_speed**2)
     scale += float(scene.pair.tangential_mass) * width * speed
@@ -107,10 +120,10 @@ def broken_invariants(result: ImpactResult, bound: float) -> list[str]:
     return broken
 
 
-def normal_error_allowed(integrator: Integrator) -> float:
+def normal_error_allowed(integrator: Integrator, taken: int | None = None) -> float:
     """Return the largest |1 - e| of an elastic impact that the integrator may make."""
     if integrator.resolution == "steps":
-        steps: int = getattr(integrator, "steps", 1)
+        steps: int = taken or getattr(integrator, "steps", 1)
         return min(NORMAL / steps**2, LARGEST_NORMAL) + ROUNDING
     return TOLERANCE * (_tolerance(integrator) or 0.0) + ROUNDING
 

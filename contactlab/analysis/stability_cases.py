@@ -22,8 +22,6 @@ LADDER = ((0.3, 0.3), (0.5, CHI), (1.2, CHI), (3.0, CHI), (1.2, 30.0), (0.3, 1e3
 QUICK_LADDER = ((1.2, CHI), (1.2, 30.0))
 #: Steps that follow a large chi: this many times 2.85 sqrt(chi), the stability limit.
 ABOVE_LIMIT = 8
-#: What a case of the quick set may need, in steps times parts squared.
-QUICK_STEPS_BELOW = 2000
 
 Options = dict[str, dict[str, Any]]
 
@@ -69,8 +67,12 @@ def _ladder(
         return Extreme(family, label, lambda: Scene.nondimensional(psi1=psi1, chi=chi))
 
     if step == "steps":
+        refines = hasattr(_class(method), "refine")
         for count in QUICK_STEPS if quick else STEPS:
             yield _case(method, scene("steps"), {"integrator": {step: count}})
+            if refines and count < QUICK_STEPS[-1]:
+                options = {"integrator": {step: count, "refine": False}}
+                yield _case(method, scene("steps"), options)
     if "tolerance" in (part, step) or hasattr(_class(method), "tolerance"):
         for tolerance in TOLERANCES[:: 3 if quick else 1]:
             yield _case(method, scene("tolerance"), {"integrator": {"tolerance": tolerance}})

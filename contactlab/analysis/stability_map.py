@@ -104,6 +104,8 @@ def _word(method: Method) -> str | None:
 
 def _case(method: Method, word: str, fine: float, psi1: float, chi: float) -> Case:
     options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {word: fine}}
+    if hasattr(REGISTRY.law_class(f"integrator.{method.integrator}"), "refine"):
+        options["integrator"]["refine"] = False  # what the steps asked for are worth
     scene = Extreme("map", "", lambda: Scene.nondimensional(psi1=psi1, chi=chi))
     return Case(
         family="map",

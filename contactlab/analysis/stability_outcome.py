@@ -15,7 +15,7 @@ from contactlab.analysis.stability_bounds import (
     range_of,
 )
 from contactlab.analysis.stability_cases import Case
-from contactlab.analysis.stability_references import Reference, reference_for
+from contactlab.analysis.stability_references import ACTIVE, Reference, reference_for
 from contactlab.plan import make_plan
 from contactlab.registry import PluginError
 from contactlab.result import ImpactResult
@@ -93,8 +93,10 @@ def _judged(
     case: Case, simulation: Simulation, result: ImpactResult, expected: float | None, taken: float
 ) -> Outcome:
     scene = result.scene
-    bound = declared(simulation.tangential, simulation.integrator, scene)
-    wrong = broken_invariants(result, bound)
+    steps = result.counters.get("steps")
+    bound = declared(simulation.tangential, simulation.integrator, scene, steps)
+    passive = case.method.tangential not in ACTIVE
+    wrong = broken_invariants(result, bound, passive=passive)
     width = range_of(scene).width
     error = np.nan
     if expected is not None:
@@ -103,7 +105,7 @@ def _judged(
         if not error <= bound:
             wrong.append(f"error {error:.2g} of the range, declared {bound:.2g}")
     off = abs(float(np.asarray(result.normal_restitution)) - 1.0)
-    if not off <= normal_error_allowed(simulation.integrator):
+    if not off <= normal_error_allowed(simulation.integrator, steps):
         wrong.append(f"e is off by {off:.2g}")
     return _told(
         case,

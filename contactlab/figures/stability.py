@@ -43,6 +43,7 @@ def draw_regions(path: Path, regions: Sequence[Region]) -> None:
             axes.tick_params(labelbottom=last)
             if last:
                 axes.set_xlabel(r"inertia ratio $\chi$")
+        assert image is not None
         bar = figure.colorbar(image, ax=panels, extend="both", ticks=DECADES, pad=0.015)
         bar.set_label(r"worst error of $\psi_2$, over its possible range")
         entries = [
