@@ -43,6 +43,7 @@ class Events(Integrator):
     """
 
     api_version: ClassVar[int] = 1
+    resolution: ClassVar[str | None] = "tolerance"
     offers: ClassVar[frozenset[str]] = frozenset({"events"})
     needs: ClassVar[frozenset[str]] = frozenset({"phases", "closed_form_motion"})
     uses: ClassVar[frozenset[str]] = frozenset({"closed_form_motion"})

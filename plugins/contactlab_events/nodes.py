@@ -29,6 +29,8 @@ class Nodes(NamedTuple):
         Of barycentric interpolation.
     fine : array, shape (m,)
         Finer points, to look for events.
+    second : int
+        The first of the finer points that is not before the second node.
     to_fine : array, shape (n, m)
         Values at nodes @ ``to_fine`` are values at the finer points.
     slope : array, shape (n,)
@@ -45,6 +47,7 @@ class Nodes(NamedTuple):
     integral: Array
     weights: Array
     fine: Array
+    second: int
     to_fine: Array
     slope: Array
     tail: Array
@@ -77,6 +80,7 @@ def lobatto(count: int) -> Nodes:
         integral=np.ascontiguousarray(integral),
         weights=weights,
         fine=fine,
+        second=int(np.searchsorted(fine, points[1])),
         to_fine=np.ascontiguousarray(to_fine.T),
         slope=2.0 * np.array(slopes) @ to_coefficients,
         tail=np.ascontiguousarray(to_coefficients[-2:]),
@@ -95,4 +99,4 @@ def rows(nodes: Nodes, tau: Array) -> Array:
 def row(nodes: Nodes, tau: float) -> Array:
     """Return the same for one tau, as a vector; faster."""
     basis = nodes.weights / ((tau - nodes.points) + ON_NODE)
-    return np.asarray(basis / basis.sum())
+    return np.asarray(basis / basis.dot(nodes.plain[1]))

@@ -47,10 +47,11 @@ def first_event(nodes: Nodes, phase: Phase, solved: Solved) -> tuple[int, float]
         else:
             margin, noise, begin = _quotient(nodes, table[event], first, solved)
             fine = margin @ nodes.to_fine
-        below = np.flatnonzero(fine[begin:] < noise)
-        if not len(below):
+        below = fine[begin:] < noise
+        k = int(below.argmax())
+        if not below[k]:
             continue
-        k = int(below[0]) + begin
+        k += begin
         if k == 0:
             return event, 0.0
         left, right = nodes.fine[k - 1].item(), nodes.fine[k].item()
@@ -76,7 +77,7 @@ def _quotient(
     quotient[0] = nodes.slope @ margin
     # If the nodes say it begins inside the phase, the interpolant's first wiggle is noise.
     inside = quotient[1] > 0.0 or quotient[0] > 0.0
-    begin = int(np.searchsorted(nodes.fine, nodes.points[1])) if inside else 0
+    begin = nodes.second if inside else 0
     return quotient, -NOISE * size, begin
 
 
