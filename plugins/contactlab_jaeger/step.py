@@ -89,8 +89,8 @@ def advance(
     if reach < len(old):  # places that came out of contact let go of all they held
         left = old[reach:]
         done = done + places.measure[reach : len(old)] @ (left * (left + displacement))
-    if not reach:  # no contact must not hide a displacement that is not a number
-        force = force + 0.0 * displacement
+    if not reach:  # no contact must not hide what is not a number
+        force = force + 0.0 * (displacement * pressure)
     return force, 0.5 * np.maximum(done, 0.0), Memory(stretch, limit, square)
 
 

@@ -1,0 +1,84 @@
+"""The annulus law against the paper's equations written plainly, and against the exact solution."""
+
+import numpy as np
+import pytest
+
+from contactlab import Scene
+from tests.exact.laws import CHI, grid, rms, simulation
+from tests.paper import plain
+
+
+def impact(psi1, chi, annuli, steps, *, history=False, integrator="paper"):
+    sim = simulation("annulus", integrator, steps=steps, annuli=annuli)
+    return sim.run(Scene.nondimensional(psi1=psi1, chi=chi), history=history).check()
+
+
+@pytest.mark.parametrize("chi", [0.4, 1.0, CHI, 3.0])
+@pytest.mark.parametrize("psi1", [0.1, 0.7, 1.2, 2.6])
+def test_equations_30_to_37(psi1, chi):
+    """psi2 and the force at every step, to 1e-9."""
+    steps, annuli = 300, 30
+    psi2, forces = plain.impact(psi1, chi, annuli=annuli, steps=steps)
+    if psi1 >= max(
+        1.0, 4.0 * chi - 1.0
+    ):  # here the plan takes eq. (45) unless fields are asked for
+        result = impact(psi1, chi, annuli, steps, history="fields")
+    else:
+        result = impact(psi1, chi, annuli, steps, history=True)
+        assert impact(psi1, chi, annuli, steps).psi2 == pytest.approx(psi2, abs=1e-9)
+    assert result.psi2 == pytest.approx(psi2, abs=1e-9)
+    found = result.history.tangential_force / 1.25  # mu P_max of a non-dimensional scene
+    assert found == pytest.approx(forces, abs=1e-9)
+
+
+@pytest.mark.parametrize("annuli", [1, 2, 200])
+def test_any_number_of_annuli(annuli):
+    psi2, _ = plain.impact(1.2, CHI, annuli=annuli, steps=100)
+    assert impact(1.2, CHI, annuli, 100).psi2 == pytest.approx(psi2, abs=1e-9)
+
+
+def test_worst_error_at_50_annuli_and_500_steps():
+    """Over psi1 in (0, 4 chi], chi in [0.35, 4]; sign and size of the error are the paper's."""
+    psi1, chi, psi2 = grid()
+    error = impact(psi1, chi, 50, 500).psi2 - psi2
+    assert np.abs(error).max() <= 0.03
+    assert rms(error) > 1e-4  # else these are not the paper's annuli
+
+
+def test_a_batch_gives_what_its_impacts_give_one_by_one():
+    psi1 = np.array([0.05, 0.8, -1.3, 2.2, 4.1])
+    chi = np.array([CHI, 0.7, 1.4, 2.0, CHI])
+    together = impact(psi1, chi, 20, 100)
+    for k in range(len(psi1)):
+        alone = impact(float(psi1[k]), float(chi[k]), 20, 100)
+        assert together.psi2[k] == pytest.approx(alone.psi2, abs=1e-11)
+        assert together.motion.friction_work[k] == pytest.approx(
+            alone.motion.friction_work, abs=1e-11
+        )
+
+
+@pytest.mark.parametrize("integrator", ["paper", "symplectic"])
+@pytest.mark.parametrize(("psi1", "chi"), [(0.1, CHI), (1.2, CHI), (2.0, 3.0), (0.6, 0.4)])
+def test_blocks_of_steps_are_step_by_step(psi1, chi, integrator):
+    """An observer forces step by step."""
+    at_once = impact(psi1, chi, 40, 200, integrator=integrator)
+    stepped = impact(psi1, chi, 40, 200, integrator=integrator, history=True)
+    assert at_once.psi2 == pytest.approx(stepped.psi2, abs=1e-11)
+    works = at_once.motion.friction_work, stepped.motion.friction_work
+    assert works[0] == pytest.approx(works[1], abs=1e-11)
+
+
+def test_whole_slip_is_the_closed_form():
+    """Eq. (45), to 1e-12."""
+    for psi1 in (4.0 * CHI - 1.0, -7.0, 1e6):
+        found = impact(psi1, CHI, 10, 50).psi2
+        assert found == pytest.approx(psi1 - np.sign(psi1) * 4.0 * CHI, rel=1e-12)
+
+
+def test_sharper_annuli_are_the_same_model_with_less_error():
+    """At the same number of annuli, a quarter of the error or less, at a fifth of the steps."""
+    psi1, chi, psi2 = grid()
+    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    sharp = simulation("sharp_annulus", steps=100, annuli=50).run(scene).check().psi2
+    paper = simulation("annulus", "paper", steps=500, annuli=50).run(scene).check().psi2
+    assert rms(sharp - psi2) < 0.25 * rms(paper - psi2)
