@@ -25,7 +25,9 @@ class PaperSteps(Integrator):
     approach grows with the old velocity (32), the contact (30) and its tractions (33)-(37)
     are found at the new approach, and the forces change both velocities (31), (35). Taking
     every right-hand side from the start of the step instead gains energy, 1.1 % in e at
-    500 steps; taken in this order e - 1 is 1e-9.
+    500 steps; taken in this order e - 1 is 1e-9. It is then Verlet's scheme, of second order:
+    the velocities stand half a step before the approach, and the half step missing at
+    first touch has no force. That the paper's errors fall more slowly is its annuli's doing.
 
     Parameters
     ----------
@@ -42,7 +44,7 @@ class PaperSteps(Integrator):
 
     api_version: ClassVar[int] = 1
     resolution: ClassVar[str | None] = "steps"
-    order: ClassVar[int | None] = 1
+    order: ClassVar[int | None] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"steps"})
     needs: ClassVar[frozenset[str]] = frozenset({"advance"})
 
