@@ -1,32 +1,40 @@
-"""List the installed laws, or show one, without importing any.
+"""List the installed laws, show one, or put one through the checks of its contract.
 
 Examples
 --------
   contactlab plugins list
   contactlab plugins show tangential.annulus --json
+  contactlab plugins check tangential.coulomb
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+from collections import Counter
 
+from contactlab.cli.arguments import FAILED, OK, add_progress, progress
 from contactlab.cli.table import table
 from contactlab.registry import REGISTRY, PluginInfo
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add ``list`` and ``show NAME``."""
-    actions = parser.add_subparsers(dest="action", metavar="list|show", required=True)
+    """Add ``list``, ``show NAME`` and ``check NAME``."""
+    actions = parser.add_subparsers(dest="action", metavar="list|show|check", required=True)
     listing = actions.add_parser("list", help="name, kind, distribution and version of every law")
     show = actions.add_parser("show", help="the same of one law, and the module it comes from")
-    show.add_argument("name", metavar="NAME", help="such as tangential.annulus")
-    for action in (listing, show):
+    check = actions.add_parser("check", help="put a law through its contract; exit 1 if it fails")
+    for action in (show, check):
+        action.add_argument("name", metavar="NAME", help="such as tangential.annulus")
+    add_progress(check)
+    for action in (listing, show, check):
         action.add_argument("--json", action="store_true", help="print JSON")
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Print what the entry points say."""
+    """Print what the entry points say, or what the checks find."""
+    if arguments.action == "check":
+        return _check(arguments)
     if arguments.action == "show":
         entry = _entry(REGISTRY.info(arguments.name))
         width = max(map(len, entry))
@@ -43,6 +51,28 @@ def execute(arguments: argparse.Namespace) -> int:
         row[0] = f"{row[0]} (blocked)" if entry["blocked"] else row[0]
     print(table(keys, rows))
     return 0
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    """Put a law through its contract; the kit is loaded only here."""
+    from contactlab.testing import examine
+
+    outcomes = examine(
+        arguments.name, progress=progress(arguments.progress, f"checking {arguments.name}")
+    )
+    failures = [outcome for outcome in outcomes if not outcome.verdict.good]
+    if arguments.json:
+        entries = [
+            {"check": one.check, "outcome": one.verdict.value, "sentence": one.sentence}
+            for one in outcomes
+        ]
+        print(json.dumps({"name": arguments.name, "good": not failures, "checks": entries}))
+    else:
+        rows = [(one.check, one.verdict.value, one.sentence) for one in outcomes]
+        print(table(("check", "outcome", "sentence"), rows))
+        counts = Counter(one.verdict.value for one in outcomes)
+        print(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
+    return FAILED if failures else OK
 
 
 def _entry(info: PluginInfo) -> dict[str, str | bool]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC
+from collections.abc import Mapping
 from typing import ClassVar
 
 #: Version of the contracts in this package. A plug-in states the one it was written for.
@@ -29,6 +30,9 @@ class Law(ABC):
        ``phases``                the tangential law is a sequence of smooth phases
        ``steps``                 the integrator calls ``advance``
        ``events``                the integrator runs phases and locates their ends
+       ``partial_slip``          the contact slips from its edge inwards: at fixed normal
+                                 load its force is Cattaneo and Mindlin's (a claim, held by
+                                 ``contactlab.testing``)
        ========================  ====================================================
 
        An integrator needs what it calls, ``advance`` or ``phases``. A law that can be run in
@@ -39,6 +43,8 @@ class Law(ABC):
        (``steps``, ``annuli``) that grows, or ``tolerance``, which shrinks.
     5. Words in the names of parameters; each is checked when the object is made and
        refused with a ``ValueError`` that names it.
+    6. ``expected_failures`` names the checks of ``contactlab.testing`` that the law fails by
+       its nature, each with the reason.
     """
 
     kind: ClassVar[str]
@@ -46,3 +52,4 @@ class Law(ABC):
     needs: ClassVar[frozenset[str]] = frozenset()
     offers: ClassVar[frozenset[str]] = frozenset()
     resolution: ClassVar[str | None] = None
+    expected_failures: ClassVar[Mapping[str, str]] = {}

@@ -71,7 +71,7 @@ class Annulus(RunningTangentialLaw):
 
     api_version: ClassVar[int] = 1
     resolution: ClassVar[str | None] = "annuli"
-    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
+    offers: ClassVar[frozenset[str]] = frozenset({"advance", "partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"steps", "hertzian_pressure"})
 
     annuli: int = count(default=50, most=2000)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.checks import Real
+from contactlab_annulus.one import TIE
 from contactlab_annulus.tables import Array, Tables
 
 #: Passes of the division into stick and slip; measured never above 14 (theory §6).
@@ -59,7 +60,7 @@ def advance(
         found = _tractions(table, sticks, total[left] + before, sign * most)
         lags = np.where(sticks, before, found @ table.compliance.T - total[left])
         traction[left], new_lag[left] = found, lags
-        over = sticks & (np.abs(found) > most)
+        over = sticks & (np.abs(found) > TIE * most)
         wrong = over | ((sign != 0.0) & (sign * (before - lags) <= 0.0))
         signs[left] = np.where(wrong, np.where(over, np.sign(found), 0.0), sign)
         left = left[wrong.any(axis=1)]

@@ -12,6 +12,9 @@ from contactlab_annulus.tables import Array, Tables, response
 
 #: Passes of the division into stick and slip; measured never above 14 (theory §6).
 MOST_PASSES = 200
+#: Back at a turning point the traction is at its limit to rounding, and would be found now
+#: above it, now below, without end: a tie is stick.
+TIE = 1.0 + 1e-12
 
 
 class Memory(NamedTuple):
@@ -60,7 +63,7 @@ def advance(
         sticks = inside & (signs == 0.0)
         given = np.where(sticks, lag, signs * limit)
         force, found = respond(table, sticks, total, given)
-        over = sticks & (np.abs(found) > limit)  # (36) fails
+        over = sticks & (np.abs(found) > TIE * limit)  # (36) fails
         back = inside & ~sticks & (signs * (lag - found) <= 0.0)  # (37) fails
         key = signs.tobytes()
         if not (over | back).any():

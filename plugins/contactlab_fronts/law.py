@@ -39,7 +39,7 @@ class Fronts(PhasedTangentialLaw):
     """
 
     api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset[str]] = frozenset({"phases"})
+    offers: ClassVar[frozenset[str]] = frozenset({"phases", "partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"events", "elastic_hertz"})
     exact: ClassVar[bool] = True
     linear_below: ClassVar[float] = 1e-8

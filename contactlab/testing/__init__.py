@@ -1,0 +1,51 @@
+"""Put any law through its contract: small named checks, for anybody's plug-in.
+
+In a plug-in's own tests::
+
+    from contactlab.testing import parametrize_with_checks
+
+    @parametrize_with_checks(["tangential.mine"])
+    def test_conformance(law, check):
+        check(law)
+
+On the command line: ``contactlab plugins check tangential.mine``.
+
+A law that does not do something by its nature says so, with the reason::
+
+    expected_failures: ClassVar[Mapping[str, str]] = {
+        "cattaneo_mindlin": "one spring for the whole contact: it sticks or slips as one",
+    }
+"""
+
+import importlib
+
+from contactlab.testing.check import CHECKS, Check, CheckFailedError
+from contactlab.testing.outcomes import (
+    ConformanceError,
+    Outcome,
+    Verdict,
+    check_law,
+    checks_for,
+    examine,
+    outcome,
+)
+from contactlab.testing.parametrize import parametrize_with_checks
+
+#: Modules with checks: each enters its own, in the order in which they are run.
+ORDER = ("every_law", "stepping", "friction", "energy", "memory", "impacts")
+for _module in ORDER:
+    importlib.import_module(f"contactlab.testing.{_module}")
+
+__all__ = [
+    "CHECKS",
+    "Check",
+    "CheckFailedError",
+    "ConformanceError",
+    "Outcome",
+    "Verdict",
+    "check_law",
+    "checks_for",
+    "examine",
+    "outcome",
+    "parametrize_with_checks",
+]

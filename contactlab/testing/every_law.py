@@ -1,0 +1,126 @@
+"""Checks of every law: contract, parameters, copies."""
+
+from __future__ import annotations
+
+import copy
+import inspect
+import pickle
+from collections.abc import Iterator
+from typing import Any
+
+from contactlab.contracts import (
+    API_VERSION,
+    Integrator,
+    Law,
+    NormalLaw,
+    PhasedTangentialLaw,
+    SteppedTangentialLaw,
+    TangentialLaw,
+)
+from contactlab.registry import KINDS
+from contactlab.testing.check import CHECKS, check, hold
+from contactlab.testing.compare import same
+
+#: What no numerical parameter may be.
+BAD_NUMBERS = (float("nan"), float("inf"), float("-inf"), "seven", 1j)
+#: What no parameter that is a word may be.
+BAD_WORDS = ("no such word", 3.5)
+
+
+@check(Law)
+def contract(law: Law) -> None:
+    """Kind, needs, offers and resolution say what the law is (contract of Law, 2 to 4)."""
+    bases = {"normal": NormalLaw, "tangential": TangentialLaw, "integrator": Integrator}
+    hold(law.kind in KINDS, f"kind = {law.kind!r}: must be one of {', '.join(KINDS)}.")
+    hold(
+        isinstance(law, bases[law.kind]), f"A {law.kind} law must be a {bases[law.kind].__name__}."
+    )
+    for name in ("needs", "offers"):
+        words = getattr(law, name)
+        good = isinstance(words, frozenset) and all(isinstance(word, str) for word in words)
+        hold(good, f"{name} = {words!r}: must be a frozenset of words.")
+    if isinstance(law, TangentialLaw):
+        ways = {"advance": SteppedTangentialLaw, "phases": PhasedTangentialLaw}
+        hold(law.offers & ways.keys(), "It must offer 'advance' or 'phases': nobody can run it.")
+        for word, narrow in ways.items():
+            hold(
+                isinstance(law, narrow) == (word in law.offers),
+                f"It must offer {word!r} if, and only if, it is a {narrow.__name__}.",
+            )
+    known = inspect.signature(type(law)).parameters
+    hold(
+        law.resolution is None or law.resolution in known,
+        f"resolution = {law.resolution!r}: must name a parameter.",
+    )
+
+
+@check(Law)
+def api_version(law: Law) -> None:
+    """The class states the version of the contracts it was written for (Law, 2)."""
+    version = next(
+        (
+            owner.__dict__["api_version"]
+            for owner in type(law).__mro__
+            if "api_version" in vars(owner)
+        ),
+        None,
+    )
+    hold(
+        type(version) is int and version == API_VERSION,
+        f"api_version = {version!r}: contactlab has {API_VERSION}.",
+    )
+
+
+@check(Law)
+def expected_failures(law: Law) -> None:
+    """What the law expects to fail are checks, each with a reason, and not what it claims."""
+    known = {entry.name: entry for entry in CHECKS}
+    for name, reason in dict(law.expected_failures).items():
+        hold(name in known, f"expected_failures names {name!r}, which is not a check.")
+        hold(isinstance(reason, str) and len(reason.split()) > 2, f"{name!r} needs a reason.")
+        claim = known[name].claim
+        hold(claim not in law.offers, f"It offers {claim!r} and expects to fail {name!r}.")
+        hold(isinstance(law, known[name].contract), f"{name!r} is not a check of such a law.")
+
+
+@check(Law)
+def parameters(law: Law) -> None:
+    """Each parameter refuses what is not finite or of another kind, by its name (Law, 5)."""
+    for name, value in _parameters(law):
+        bad = BAD_WORDS if isinstance(value, str) else BAD_NUMBERS
+        for wrong in bad:
+            try:
+                type(law)(**{name: wrong})
+            except ValueError as error:
+                hold(name in str(error), f"{name} = {wrong!r}: refused without its name: {error}")
+            else:
+                hold(False, f"{name} = {wrong!r}: taken without a word.")
+
+
+@check(Law)
+def immutable(law: Law) -> None:
+    """No attribute can be set, changed or added (Law, 1)."""
+    for name in (*(name for name, _ in _parameters(law)), "something_new"):
+        before = getattr(law, name, None)
+        try:
+            setattr(law, name, 1.0)
+        except (AttributeError, TypeError):
+            continue
+        object.__setattr__(law, name, before)
+        hold(False, f"{name} can be set: freeze the class, attrs.frozen(kw_only=True).")
+
+
+@check(Law)
+def copies(law: Law) -> None:
+    """The law can be copied and pickled, and comes back as it was (Law, 1)."""
+    for made in (copy.copy(law), copy.deepcopy(law), pickle.loads(pickle.dumps(law))):
+        hold(same(made, law), f"A copy differs: {made!r}.")
+        hold(made == law, "A copy is not equal to the law: attrs.frozen defines equality.")
+
+
+def _parameters(law: Law) -> Iterator[tuple[str, Any]]:
+    """Iterate over the names and values of parameters that are numbers or words."""
+    for name in inspect.signature(type(law)).parameters:
+        value = getattr(law, name, None)
+        if isinstance(value, int | float | str) and not isinstance(value, bool):
+            yield name, value

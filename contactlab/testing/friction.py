@@ -1,0 +1,164 @@
+"""Checks of a stepped law's friction: symmetry, units, Coulomb's limit, stiffness."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from contactlab.contracts import NormalContact, SteppedTangentialLaw
+from contactlab.testing.bench import (
+    ODD_UNITS,
+    Bench,
+    Path,
+    continue_from,
+    drive,
+    slack,
+    straight,
+    wandering,
+)
+from contactlab.testing.check import check, hold
+
+#: Forces that should agree to rounding, over mu P_max.
+ROUNDING = 1e-9
+SEEDS = (11, 12, 13)
+
+
+@check(SteppedTangentialLaw)
+def odd_in_slip(law: Any) -> None:
+    """Reversing every displacement reverses every force (TangentialLaw, 2)."""
+    bench = Bench.of(law)
+    for seed in SEEDS:
+        path = wandering(seed)
+        there = drive(law, bench, path)
+        back = drive(law, bench, Path(-path.slip, path.level))
+        gap = _worst(there.force + back.force)
+        hold(gap <= ROUNDING, f"Reversed slip gives a force that differs by {gap:.1e} mu P_max.")
+        gap = _worst(there.work - back.work)
+        hold(gap <= ROUNDING, "Reversed slip gives another friction work.")
+
+
+@check(SteppedTangentialLaw)
+def opposes_slip(law: Any) -> None:
+    """A first slip is opposed: the force is positive with it, or zero (TangentialResponse)."""
+    force = drive(law, Bench.of(law), straight((0.0, 0.7), (1.0, 0.7))).force
+    hold(force.min() >= -ROUNDING, f"A first, positive slip meets a force of {force.min():.2g}.")
+
+
+@check(SteppedTangentialLaw)
+def units(law: Any) -> None:
+    """Metres, seconds and kilograms may be called anything (theory §7)."""
+    for seed in SEEDS:
+        path = wandering(seed)
+        here = drive(law, Bench.of(law), path)
+        there = drive(law, Bench.of(law, units=ODD_UNITS), path)
+        gap = max(_worst(here.force - there.force), _worst(here.work - there.work))
+        hold(gap <= ROUNDING, f"In other units the answer differs by {gap:.1e} of mu P_max.")
+
+
+@check(SteppedTangentialLaw)
+def coulomb_limit(law: Any) -> None:
+    """The force is within mu P, always (TangentialLaw, 1)."""
+    for seed in SEEDS:
+        path = wandering(seed)
+        over = np.abs(drive(law, Bench.of(law), path).force) - path.level**1.5
+        hold(
+            over.max() <= slack(law),
+            f"abs(F) exceeds mu P by {over.max():.2g} of mu P_max, at zeta = "
+            f"{path.level[over.argmax()]:.2g}.",
+        )
+
+
+@check(SteppedTangentialLaw)
+def separation(law: Any) -> None:
+    """Out of contact there is no force (TangentialLaw, 1)."""
+    away = straight((0.0, 0.7), (0.4, 0.7), (0.5, 0.0), (0.6, -0.3))
+    gone = drive(law, Bench.of(law), away).force[away.level <= 0.0]
+    hold(np.all(gone == 0.0), f"F = {np.max(np.abs(gone)):.2g} mu P_max out of contact.")
+
+
+@check(SteppedTangentialLaw)
+def normal_load_alone(law: Any) -> None:
+    """Normal load that grows or falls makes no tangential force (stepped contract, 4)."""
+    bench = Bench.of(law)
+    force = drive(law, bench, straight((0.0, 1.0), (0.0, 0.2), (0.0, 0.6))).force
+    hold(np.all(force == 0.0), f"Pressing alone makes F = {_worst(force):.2g} mu P_max.")
+    path = straight((0.0, 0.4), (0.3, 0.4), (0.3, 1.0))
+    held = drive(law, bench, path).force
+    rise = _worst(held[80:]) - abs(held[79])
+    hold(
+        rise <= slack(law),
+        f"Pressing on a contact that is sheared adds {rise:.2g} mu P_max to its force.",
+    )
+
+
+@check(SteppedTangentialLaw)
+def gross_slip(law: Any) -> None:
+    """A large displacement one way ends at F = mu P, and the work is F times slip."""
+    path = straight((0.0, 0.7), (4.0, 0.7), (8.0, 0.7))
+    found = drive(law, Bench.of(law), path)
+    gap = abs(float(found.force[-1]) - 0.7**1.5)
+    hold(gap <= slack(law), f"F = {found.force[-1]:.4g} mu P_max where mu P is {0.7**1.5:.4g}.")
+    work = float(np.sum(found.work[80:]))
+    paid = 4.0 * float(found.force[-1])
+    hold(
+        abs(work - paid) <= max(slack(law), 1e-6) * paid,
+        f"Friction work {work:.4g} in slip by 4.0 at a force of {found.force[-1]:.4g}.",
+    )
+
+
+@check(SteppedTangentialLaw)
+def non_finite(law: Any) -> None:
+    """NaN in, as slip or as contact, is refused or comes out; never a clean number."""
+    bench = Bench.of(law)
+    state = drive(law, bench, straight((0.0, 0.7), (0.3, 0.7), steps=8)).state
+    before, nan = bench.contact(0.7), math.nan
+    sound = bench.increment(0.1, before, bench.time / 16.0)
+    ill = sound._replace(displacement=nan, velocity=nan, arresting_force=nan)
+    pressed = sound._replace(normal_force=nan)
+    for what, given, after in (
+        ("slip", ill, before),
+        ("normal contact", pressed, NormalContact(nan, nan, nan)),
+    ):
+        try:
+            response, _ = law.advance(state, given, before, after)
+        except (ValueError, ArithmeticError):
+            continue
+        clean = bool(response.settled) and math.isfinite(response.force)
+        hold(not clean, f"NaN as {what} gives F = {response.force!r}, as if nothing were wrong.")
+
+
+@check(SteppedTangentialLaw)
+def stiffness(law: Any) -> None:
+    """``stiffness`` bounds dF/dD, so that a step can be known to be stable (stepped, 6)."""
+    bench = Bench.of(law)
+    bound = float(law.stiffness(bench.problem)) * bench.slip / bench.friction_force
+    hold(bound >= 0.0 and math.isfinite(bound), f"stiffness = {bound!r}.")
+    if bound == 0.0:
+        _ignores_displacement(law, bench)
+        return
+    for level in (0.3, 1.0):
+        pressed = drive(law, bench, straight((0.0, level), steps=8)).state
+        path = straight((1e-3, 0.0), (-1e-3, 0.0), steps=4)
+        path = Path(path.slip, np.full_like(path.slip, level))
+        found = continue_from(law, bench, pressed, path, level=level)
+        slope = np.diff(found.force, prepend=0.0) / np.diff(path.slip, prepend=0.0)
+        hold(
+            slope.max() <= bound * (1.0 + slack(law, 1e-6)),
+            f"dF/dD is {slope.max() / bound:.3g} times the stiffness it states, at zeta = {level}.",
+        )
+
+
+def _ignores_displacement(law: Any, bench: Bench) -> None:
+    """Hold that a law which states no stiffness takes no notice of displacement."""
+    after = bench.contact(0.7)
+    given = bench.increment(0.1, after, bench.time / 16.0)
+    moved = given._replace(displacement=2.0 * given.displacement)
+    state = law.start(bench.problem)
+    forces = [law.advance(state, each, after, after)[0].force for each in (given, moved)]
+    hold(forces[0] == forces[1], "It states stiffness 0, and its force depends on displacement.")
+
+
+def _worst(values: Any) -> float:
+    return float(np.nan_to_num(np.max(np.abs(values)), nan=np.inf))

@@ -1,0 +1,51 @@
+"""Checks of a stepped law's memory at fixed normal load: turning points, partial slip."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from contactlab.contracts import SteppedTangentialLaw
+from contactlab.testing.bench import Bench, drive, slack, straight
+from contactlab.testing.check import check, hold
+
+LEVEL = 0.8
+STEPS = 40
+
+
+@check(SteppedTangentialLaw)
+def turning_points(law: Any) -> None:
+    """Masing: unloading is loading doubled, and a closed loop is forgotten (theory §7)."""
+    bench, press = Bench.of(law), (0.0, LEVEL)
+    for turn in (0.3, 0.6, 1.5):
+        loading = drive(law, bench, straight(press, (turn, LEVEL), steps=STEPS)).force[STEPS:]
+        path = straight(press, (turn, LEVEL), (-turn, LEVEL), steps=STEPS)
+        unloading = drive(law, bench, path).force[2 * STEPS :]
+        gap = float(np.max(np.abs(loading[-1] - unloading - 2.0 * loading)))
+        hold(
+            gap <= 2.0 * slack(law, 1e-6),
+            f"Turned at slip {turn}, unloading is {gap:.2g} mu P_max off twice the loading curve.",
+        )
+        loop = [(0.4 * turn, LEVEL), (turn, LEVEL), (1.4 * turn, LEVEL)]
+        looped = drive(law, bench, straight(press, (turn, LEVEL), *loop, steps=STEPS)).force
+        plain = straight(press, (turn, LEVEL), (1.4 * turn, LEVEL), steps=STEPS)
+        straight_on = drive(law, bench, plain).force
+        gap = float(np.max(np.abs(looped[-STEPS:] - straight_on[-STEPS:])))
+        hold(
+            gap <= slack(law, 1e-6),
+            f"A closed loop at slip {turn} is not forgotten: {gap:.2g} mu P_max.",
+        )
+
+
+@check(SteppedTangentialLaw, claim="partial_slip")
+def cattaneo_mindlin(law: Any) -> None:
+    """At fixed P, F/(mu P) = 1 - (1 - xi)^1.5: slip from the edge inwards (theory §7)."""
+    path = straight((0.0, LEVEL), (1.3 * LEVEL, LEVEL), steps=65)
+    found = drive(law, Bench.of(law), path).force[65:] / LEVEL**1.5
+    xi = np.minimum(path.slip[65:] / LEVEL, 1.0)
+    gap = np.abs(found - (1.0 - (1.0 - xi) ** 1.5))
+    hold(
+        gap.max() <= slack(law, 1e-3),
+        f"F/(mu P) is {gap.max():.2g} off Cattaneo and Mindlin's, at xi = {xi[gap.argmax()]:.2g}.",
+    )

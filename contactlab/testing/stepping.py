@@ -1,0 +1,143 @@
+"""Checks of a stepped law's answers: their form, and that history is a value."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import numpy as np
+
+from contactlab.contracts import SteppedTangentialLaw
+from contactlab.testing.bench import Bench, Path, continue_from, drive, straight, wandering
+from contactlab.testing.check import check, hold
+from contactlab.testing.compare import same, well_formed
+
+#: Rounding apart, over mu P_max: a batch may be added up in another order.
+ROUNDING = 1e-9
+
+
+@check(SteppedTangentialLaw)
+def answers(law: Any) -> None:
+    """Every answer holds real, finite numbers of the batch's shape (TangentialResponse)."""
+    for shape in ((), (3,), (2, 3)):
+        bench = Bench.of(law, shape)
+        state = law.start(bench.problem)
+        path = _spread(wandering(1, knots=5, steps=6), shape)
+        before, slip = bench.contact(0.0 * path.level[0]), 0.0 * path.slip[0]
+        for step in range(len(path.slip)):
+            now, level = _row(path.slip, step), _row(path.level, step)
+            after = bench.contact(level)
+            given = bench.increment(now - slip, after, bench.time / 100.0)
+            answer = law.advance(state, given, before, after)
+            where = f"at step {step + 1} of a batch of shape {shape}"
+            hold(
+                isinstance(answer, tuple) and len(answer) == 2,
+                f"advance returned {_short(answer)} {where}, not (TangentialResponse, state).",
+            )
+            response, state = answer
+            for name in ("force", "friction_work"):
+                value = getattr(response, name, None)
+                good = well_formed(value, shape) and np.all(np.isfinite(np.asarray(value)))
+                hold(good, f"{name} = {_short(value)} {where}.")
+            before, slip = after, now
+
+
+@check(SteppedTangentialLaw)
+def batch(law: Any) -> None:
+    """A batch answers as its contacts do one by one (design: one code path)."""
+    paths = [wandering(seed, knots=8) for seed in (2, 3, 4, 5)]
+    whole = Bench.of(law, (4,))
+    together = drive(
+        law,
+        whole,
+        Path(
+            np.stack([path.slip for path in paths], 1), np.stack([path.level for path in paths], 1)
+        ),
+    )
+    for place, (one, path) in enumerate(zip(whole.problem.impacts(), paths, strict=True)):
+        alone = drive(law, Bench.with_problem(one), path)
+        gap = _gap(alone.force, together.force[:, place])
+        hold(gap <= ROUNDING, f"Contact {place} of a batch is off by {gap:.1e} of mu P_max.")
+
+
+@check(SteppedTangentialLaw)
+def pure(law: Any) -> None:
+    """``advance`` changes neither the state that goes in nor the law (stepped contract, 2)."""
+    bench, path = Bench.of(law), wandering(6, knots=6)
+    law_before = copy.deepcopy(law)
+    before, slip, state = bench.contact(0.0), 0.0, law.start(bench.problem)
+    duration = bench.time / len(path.slip)
+    for step, (now, level) in enumerate(zip(path.slip.tolist(), path.level.tolist(), strict=True)):
+        kept, after = copy.deepcopy(state), bench.contact(level)
+        given = bench.increment(now - slip, after, duration)
+        first, new = law.advance(state, given, before, after)
+        hold(same(state, kept), f"The state that went in was changed at step {step + 1}.")
+        tried = bench.increment(5.0 - slip, after, duration)
+        law.advance(state, tried, before, after)
+        again, _ = law.advance(state, given, before, after)
+        hold(
+            same(first, again),
+            f"A step tried and thrown away changed the next one, at step {step + 1}.",
+        )
+        before, slip, state = after, now, new
+    hold(same(law, law_before), "The law itself was changed by a run.")
+
+
+@check(SteppedTangentialLaw)
+def repeatable(law: Any) -> None:
+    """Two runs of one law do not know of each other, interleaved or not (Law, 1)."""
+    bench, paths = Bench.of(law), (wandering(7, knots=6), wandering(8, knots=6))
+    alone = [drive(law, bench, path).force for path in paths]
+    parts: list[list[Any]] = [[], []]
+    states, places = [law.start(bench.problem) for _ in paths], [(0.0, 0.0), (0.0, 0.0)]
+    for part in range(0, len(paths[0].slip), 8):
+        for run, path in enumerate(paths):
+            piece = Path(path.slip[part : part + 8], path.level[part : part + 8])
+            slip, level = places[run]
+            found = continue_from(
+                law, bench, states[run], piece, slip=slip, level=level, count=len(path.slip)
+            )
+            parts[run].extend(found.force)
+            states[run] = found.state
+            places[run] = (float(piece.slip[-1]), float(piece.level[-1]))
+    for run, force in enumerate(alone):
+        hold(
+            same(np.array(parts[run]), force), "Interleaved with another, a run gives other forces."
+        )
+        hold(same(drive(law, bench, paths[run]).force, force), "A second run gives other forces.")
+    copied = drive(copy.deepcopy(law), bench, paths[0]).force
+    hold(same(copied, alone[0]), "A copy of the law gives other forces.")
+
+
+@check(SteppedTangentialLaw)
+def fields(law: Any) -> None:
+    """``fields`` names arrays and changes nothing (stepped contract, 5)."""
+    bench = Bench.of(law)
+    state = drive(law, bench, straight((0.0, 0.7), (0.3, 0.7), steps=8)).state
+    kept = copy.deepcopy(state)
+    named = law.fields(state)
+    for name, value in named.items():
+        hold(isinstance(name, str), f"fields: {name!r} is not a name.")
+        hold(np.asarray(value).dtype.kind in "fiub", f"fields[{name!r}] = {_short(value)}.")
+    hold(same(state, kept), "Asking for the fields changed the state.")
+
+
+def _spread(path: Path, shape: tuple[int, ...]) -> Path:
+    """Give each contact of a batch a path of its own."""
+    factor = np.linspace(0.5, 1.0, int(np.prod(shape))).reshape(shape)
+    return Path(np.multiply.outer(path.slip, factor), np.multiply.outer(path.level, factor))
+
+
+def _row(column: Any, step: int) -> Any:
+    row = column[step]
+    return row if isinstance(row, np.ndarray) and row.ndim else float(row)
+
+
+def _gap(one: Any, other: Any) -> float:
+    """Return the greatest difference; NaN on either side is infinitely far off."""
+    return float(np.nan_to_num(np.max(np.abs(one - other)), nan=np.inf))
+
+
+def _short(value: object) -> str:
+    shown = " ".join(repr(value).split())
+    return shown if len(shown) <= 60 else shown[:57] + "..."
