@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Callable
 from enum import Enum
 
@@ -68,7 +69,8 @@ def outcome(law: Law, check: Check) -> Outcome:
     except CheckFailedError as failure:
         sentence = str(failure)
     except Exception as error:
-        sentence = f"Raised {type(error).__name__}: {error}"
+        where = traceback.extract_tb(error.__traceback__)[-1]
+        sentence = f"Raised {type(error).__name__}: {error} (in {where.name}, line {where.lineno})"
     else:
         if reason is None:
             return Outcome(check.name, Verdict.PASSED, check.holds)

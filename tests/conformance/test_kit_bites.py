@@ -1,0 +1,71 @@
+"""The kit catches each broken law by the check that is meant for it, and lets a sound one pass."""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import pytest
+
+from contactlab.testing import ConformanceError, Verdict, check_law, checks_for, outcome
+
+
+def _broken_laws():
+    """Import the file beside this one under a name of its own, so that its classes pickle."""
+    name = "contactlab_broken_laws"
+    if name not in sys.modules:
+        path = Path(__file__).with_name("broken_laws.py")
+        spec = importlib.util.spec_from_file_location(name, path)
+        sys.modules[name] = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(sys.modules[name])
+    return sys.modules[name]
+
+
+laws = _broken_laws()
+
+
+def failed(law):
+    """Names of the checks failed, the slow ones on whole impacts left out."""
+    checks = [check for check in checks_for(law) if not check.name.startswith("impact_")]
+    return [check.name for check in checks if outcome(law, check).verdict is Verdict.FAILED]
+
+
+def test_the_sound_law_passes_every_check():
+    verdicts = {entry.verdict for entry in check_law(laws.Sound())}
+    assert verdicts == {Verdict.PASSED, Verdict.NOT_CLAIMED}
+
+
+@pytest.mark.parametrize(
+    ("broken", "name"), laws.BROKEN.items(), ids=[law.__name__ for law in laws.BROKEN]
+)
+def test_each_broken_law_is_caught_by_the_check_meant_for_it(broken, name):
+    law = broken()
+    check = next(check for check in checks_for(law) if check.name == name)
+    found = outcome(law, check)
+    assert found.verdict is Verdict.FAILED, found
+    assert found.check == name
+    assert len(found.sentence.split()) > 3
+
+
+@pytest.mark.parametrize("broken", [laws.NotOdd, laws.UnderstatesStiffness, laws.WrongVersion])
+def test_a_fault_in_one_clause_fails_few_checks(broken):
+    assert laws.BROKEN[broken] in failed(broken())
+    assert len(failed(broken())) <= 4
+
+
+def test_a_refusal_names_law_check_and_fault():
+    with pytest.raises(ConformanceError, match=r"WrongSign.*\n(.*\n)*opposes_slip: failed: "):
+        check_law(laws.WrongSign())
+
+
+def test_an_unexpected_pass_is_reported():
+    law = laws.ExpectsTooMuch()
+    check = next(check for check in checks_for(law) if check.name == "units")
+    assert outcome(law, check).verdict is Verdict.UNEXPECTED_PASS
+    with pytest.raises(ConformanceError, match="units: unexpected pass"):
+        check_law(law)
+
+
+def test_a_fault_in_one_law_harms_no_other():
+    for broken in (laws.Raises, laws.HiddenMemory, laws.ReturnsNone):
+        failed(broken())
+    assert failed(laws.Sound()) == []
