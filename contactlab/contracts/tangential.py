@@ -113,21 +113,27 @@ class TangentialLaw(Law):
 
 
 class Run(NamedTuple):
-    """All fixed steps of one impact, arrays of shape (K,); see ``Increment``."""
+    """All fixed steps of one impact, arrays of shape (K,); see ``Increment``.
+
+    Of a batch of B impacts: arrays of shape (K, B), or (K, 1) where they agree.
+    """
 
     force: Array
     radius: Array
     drift: Array
     kick: Array
-    velocity: float
-    mass: float
+    velocity: Any
+    mass: Any
 
 
 class RunResponse(NamedTuple):
-    """Forces at the K samples of a run (fewer where it stopped), and the friction work."""
+    """Forces at the K samples of a run (fewer where it stopped), and the friction work.
+
+    Of a batch: shapes (K, B) and (B,).
+    """
 
     force: Array
-    friction_work: float
+    friction_work: Real
     settled: bool
 
 
@@ -174,8 +180,12 @@ class RunningTangentialLaw(SteppedTangentialLaw):
     --------
     1. ``run(problem, run)`` gives, to rounding, the forces that ``advance`` gives step by step
        when velocity falls by force times kick over mass after each step.
+    2. ``problem`` has the batch shape (), or (B,) if ``runs_batches``.
+    3. ``run`` may return None: these impacts are better done step by step.
     """
 
+    runs_batches: ClassVar[bool] = False
+
     @abstractmethod
-    def run(self, problem: Problem, run: Run) -> RunResponse:
-        """Return the forces of a whole impact; ``problem`` has the batch shape ()."""
+    def run(self, problem: Problem, run: Run) -> RunResponse | None:
+        """Return the forces of whole impacts."""

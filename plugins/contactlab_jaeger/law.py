@@ -25,6 +25,10 @@ from contactlab_jaeger import step, whole
 from contactlab_jaeger.places import Array, Places
 
 
+#: Numbers in a table of a whole run; larger ones (16 MB each) are not made.
+LARGEST_RUN = 2_000_000
+
+
 class Scales(NamedTuple):
     """What turns SI into scaled variables and back; floats, or arrays of the batch shape."""
 
@@ -62,6 +66,7 @@ class ProfileLaw(RunningTangentialLaw):
 
     offers: ClassVar[frozenset[str]] = frozenset({"advance", "partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"steps", "radius"})
+    runs_batches: ClassVar[bool] = True
 
     @abstractmethod
     def places(self) -> Places:
@@ -104,18 +109,24 @@ class ProfileLaw(RunningTangentialLaw):
         force, work = force.reshape(shape) * scales.force, work.reshape(shape) * scales.work
         return TangentialResponse(force, work), State(shape, scales, memory)
 
-    def run(self, problem: Problem, run: Run) -> RunResponse:
-        """Return the forces of a whole impact."""
-        scales = Scales.of(problem)
+    def run(self, problem: Problem, run: Run) -> RunResponse | None:
+        """Return the forces of a whole impact, or of many that differ in scale only."""
+        scales, shape = Scales.of(problem), problem.shape
+        columns = math.prod(shape) if shape else len(self.places().squares)
+        if len(run.radius) * columns > LARGEST_RUN:
+            return None
         radius = run.radius / scales.radius
-        course = whole.Course(
-            radius=radius,
-            pressure=scales.pressure(radius, run.force),
-            drift=run.drift * scales.displacement,
-            kick=run.kick * scales.force / run.mass,
-        )
-        force, work = whole.run(self.places(), course, run.velocity)
-        return RunResponse(force * scales.force, work * float(scales.work), True)
+        pressure = scales.pressure(radius, run.force)
+        drift, kick = run.drift * scales.displacement, run.kick * (scales.force / run.mass)
+        if not shape:
+            course = whole.Course(radius, pressure, drift, kick)
+            force, work = whole.run(self.places(), course, run.velocity)
+            return RunResponse(force * scales.force, work * scales.work, True)
+        if not (_alike(radius) and _alike(pressure)):
+            return None
+        course = whole.Course(radius[:, 0], pressure[:, 0], drift, kick)
+        forces, works = whole.run_many(self.places(), course, run.velocity, shape[0])
+        return RunResponse(forces * scales.force, works * scales.work, True)
 
     def fields(self, state: State) -> Mapping[str, NDArray[Any]]:
         """Return radius (m), displacement and limit (m), stuck and slipping at every place.
@@ -146,3 +157,9 @@ class ProfileLaw(RunningTangentialLaw):
             "stuck": (limit > 0.0) & ~slips,
             "slipping": (slips * np.sign(stretch)).astype(np.int8),
         }
+
+
+def _alike(rows: Array) -> bool:
+    """Return whether all impacts agree, to rounding, in each row."""
+    first = rows[:, :1]
+    return rows.shape[1] == 1 or bool((np.abs(rows - first) <= step.ROUNDING * first).all())

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.checks import Real
-from contactlab_jaeger.geometry import of_each, of_one
+from contactlab_jaeger.geometry import Geometry, of_each, of_one
 from contactlab_jaeger.places import Array, Places
 
 #: Numbers of a batch that differ by less than this, relatively, are taken as one: impacts of
@@ -62,14 +62,25 @@ def advance(
         above what they carried.
     memory : Memory
     """
-    old, square = memory.stretch, radius * radius
+    square = radius * radius
     if isinstance(square, float) and isinstance(memory.square, float):
         if square != square:
             return np.full(items, np.nan), np.full(items, np.nan), memory
-        settled, share, limit, weights = of_one(places, memory.square, square, pressure)
+        geometry = of_one(places, memory.square, square, pressure)
     else:
         each = np.broadcast_to(square, (items,))
-        settled, share, limit, weights = of_each(places, memory.square, each, pressure)
+        geometry = of_each(places, memory.square, each, pressure)
+    force, work, stretch = follow(places, memory.stretch, geometry, displacement, items)
+    if not len(stretch):  # no contact must not hide what is not a number
+        force = force + 0.0 * (displacement * pressure)
+    return force, work, Memory(stretch, geometry.limit, square)
+
+
+def follow(
+    places: Places, old: Array, geometry: Geometry, displacement: Real, items: int
+) -> tuple[Array, Array, Array]:
+    """Return force, friction work and the new w: w <- clip(w + share D, -l, l)."""
+    settled, share, limit, weights = geometry
     reach, known = len(limit), min(len(old), len(limit))
     trial = np.empty((reach, items))
     np.add(old[:settled], displacement, out=trial[:settled])
@@ -85,13 +96,11 @@ def advance(
     else:
         work[:known] *= stretch[:known] + old[:known]
         work[known:] *= stretch[known:]
-    force, done = _weighed(weights, stretch), _weighed(weights, work)
+    done = _weighed(weights, work)
     if reach < len(old):  # places that came out of contact let go of all they held
         left = old[reach:]
         done = done + places.measure[reach : len(old)] @ (left * (left + displacement))
-    if not reach:  # no contact must not hide what is not a number
-        force = force + 0.0 * (displacement * pressure)
-    return force, 0.5 * np.maximum(done, 0.0), Memory(stretch, limit, square)
+    return _weighed(weights, stretch), 0.5 * np.maximum(done, 0.0), stretch
 
 
 def _weighed(weights: Array, values: Array) -> Array:

@@ -1,4 +1,4 @@
-"""All steps of one impact: the geometry of every step at once, then a lean loop."""
+"""All steps at once: the geometry of every step, then a lean loop; one impact, or many alike."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlab_jaeger.geometry import of_each
+from contactlab.checks import Real
+from contactlab_jaeger.geometry import of_each, of_one
 from contactlab_jaeger.places import Array, Places
+from contactlab_jaeger.step import follow
 
 
 class Course(NamedTuple):
-    """The steps, arrays of shape (K,), scaled.
+    """The steps, scaled: radius and pressure of shape (K,), the others too or (K, items).
 
     ``drift`` takes the slip velocity to displacement, ``kick`` takes F to its change.
     """
@@ -56,3 +58,19 @@ def run(places: Places, course: Course, velocity: float) -> tuple[Array, float]:
     slip *= held[1:] + held[:-1]
     work = np.maximum(np.einsum("ij,ij->i", weigh, slip), 0.0)
     return np.array(forces), 0.5 * float(work.sum())
+
+
+def run_many(places: Places, course: Course, velocity: Real, items: int) -> tuple[Array, Array]:
+    """Return forces, shape (K, items), and works of impacts that go through one course."""
+    squares = (course.radius * course.radius).tolist()
+    old, work, change = np.zeros((0, 1)), np.zeros(items), np.zeros(items)
+    forces = np.empty((len(squares), items))
+    before = 0.0
+    for k, (square, pressure) in enumerate(zip(squares, course.pressure.tolist(), strict=True)):
+        geometry = of_one(places, before, square, pressure)
+        displacement = (velocity + change) * course.drift[k]
+        forces[k], lost, old = follow(places, old, geometry, displacement, items)
+        change -= course.kick[k] * forces[k]
+        work += lost
+        before = square
+    return forces, work

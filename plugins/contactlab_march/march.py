@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -51,6 +51,30 @@ class Step(NamedTuple):
     rate: Real
 
 
+class Table:
+    """All steps at once, as columns of K rows; iterates over them as steps.
+
+    A column has shape (K,) for one impact, and (K, B), or (K, 1), for a batch.
+    """
+
+    def __init__(self, columns: Step) -> None:
+        self.columns: Any = columns
+
+    @classmethod
+    def of(cls, steps: Iterable[Step]) -> Table:
+        """Gather the steps of one impact."""
+        rows = [(*step.contact, *step[1:]) for step in steps]
+        columns = np.array(rows, dtype=np.float64).reshape(-1, 9).T
+        return cls(Step(NormalContact(*columns[:3]), *columns[3:]))
+
+    def __iter__(self) -> Iterator[Step]:
+        """Iterate over the steps: floats for one impact (much faster), arrays for a batch."""
+        columns = [np.asarray(column) for column in (*self.columns.contact, *self.columns[1:])]
+        lists = [column.tolist() if column.ndim == 1 else column for column in columns]
+        for row in zip(*lists, strict=True):
+            yield Step(NormalContact(*row[:3]), *row[3:])
+
+
 class NormalEnd:
     """How the normal motion ended; filled in by the scheme that produces the steps."""
 
@@ -69,8 +93,13 @@ def march(
     """
     law, single = problem.tangential, not problem.shape
     assert isinstance(law, SteppedTangentialLaw)
-    if single and observer is None and isinstance(law, RunningTangentialLaw):
-        return march_at_once(problem, law, steps, end)
+    if observer is None and isinstance(law, RunningTangentialLaw):
+        if single and not isinstance(steps, Table):
+            steps = Table.of(steps)
+        if isinstance(steps, Table) and (single or (law.runs_batches and len(problem.shape) == 1)):
+            motion = march_at_once(problem, law, steps, end)
+            if motion is not None:
+                return motion
     initial = problem.slip_velocity
     mass = problem.pair.tangential_mass
     change: Real = 0.0 if single else np.zeros(problem.shape)
@@ -132,24 +161,30 @@ def _ended(
 
 
 def march_at_once(
-    problem: Problem, law: RunningTangentialLaw, steps: Iterable[Step], end: NormalEnd
-) -> Motion:
-    """Follow the tangential motion of one impact with a law that takes all steps at once."""
-    course = list(steps)
-    numbers = np.array([(*step.contact[:2], step.drift, step.kick) for step in course])
-    mass, initial = float(problem.pair.tangential_mass), float(problem.slip_velocity)
-    if not np.isfinite(numbers).all():
-        count = int(np.isfinite(numbers).all(axis=1).argmin())
-        detail = f"At step {count + 1}, from {type(problem.normal).__name__}."
-        return _ended(problem, end, math.nan, math.nan, Status.NON_FINITE, detail, count)
-    force, radius, drift, kick = numbers.T
-    response = law.run(problem, Run(force, radius, drift, kick, initial, mass))
+    problem: Problem, law: RunningTangentialLaw, table: Table, end: NormalEnd
+) -> Motion | None:
+    """Follow the tangential motion with a law that takes all steps at once, if it will."""
+    columns = table.columns
+    force, radius = columns.contact[:2]
+    numbers = (force, radius, columns.drift, columns.kick)
+    for column in numbers:
+        if not np.isfinite(column).all():
+            bad = ~np.isfinite(column).reshape(len(column), -1).all(axis=1)
+            detail = f"At step {int(bad.argmax()) + 1}, from {type(problem.normal).__name__}."
+            nothing = math.nan
+            return _ended(
+                problem, end, nothing, nothing, Status.NON_FINITE, detail, int(bad.argmax())
+            )
+    mass, initial = problem.pair.tangential_mass, problem.slip_velocity
+    response = law.run(problem, Run(*numbers, initial, mass))
+    if response is None:
+        return None
     count = len(response.force)
-    change = -float(np.sum(response.force * numbers[:count, 3] / mass))
+    change = -np.sum(response.force * (columns.kick[:count] / mass), axis=0)
     status, detail = Status.SUCCESS, ""
     if not response.settled:
         status, detail = Status.UNSETTLED, f"At step {count + 1}, from {type(law).__name__}."
-    elif not math.isfinite(change):
+    elif not np.isfinite(change).all():
         status, detail = Status.NON_FINITE, f"From {type(law).__name__}."
     return _ended(problem, end, change, response.friction_work, status, detail, count)
 

@@ -17,7 +17,7 @@ from contactlab.contracts import (
     Observer,
     Problem,
 )
-from contactlab_march.march import NormalEnd, Step, march
+from contactlab_march.march import NormalEnd, Step, Table, march
 from contactlab_march.steps import MOST_STEPS, enough, refine_field, remarks
 
 #: A contact that lasts longer than this many Hertz durations is given up.
@@ -67,8 +67,8 @@ class Symplectic(Integrator):
 
         return enough(self.steps, self.refine, problem, follow)
 
-    def _along(self, problem: Problem, count: int, end: NormalEnd) -> Iterator[Step]:
-        """Yield steps of a motion in closed form."""
+    def _along(self, problem: Problem, count: int, end: NormalEnd) -> Table:
+        """Return the steps of a motion in closed form."""
         assert isinstance(problem.normal, ClosedFormNormalLaw)
         motion = problem.normal.motion(problem.pair, problem.normal_speed)
         mass = problem.pair.normal_mass
@@ -81,10 +81,10 @@ class Symplectic(Integrator):
         kicks = np.diff(ends, axis=0)
         means = -mass * np.diff(rates, axis=0) / kicks
         drifts = np.diff(times, axis=0, prepend=0.0 * np.asarray(times)[:1])
-        columns = [*contacts, drifts, kicks, means, times, approaches, velocities]
         end.duration, end.rate = motion.duration, rates[-1]
-        for row in _rows(columns, count):
-            yield Step(NormalContact(*row[:3]), *row[3:])
+        full = np.zeros_like(times)  # what all impacts share may lack the batch's axes
+        contact = NormalContact(*(full + entry for entry in contacts))
+        return Table(Step(contact, drifts, kicks, means, times, approaches, velocities))
 
     def _through(self, problem: Problem, count: int, end: NormalEnd) -> Iterator[Step]:
         """Yield steps of a motion integrated here; locate the end between two samples."""
@@ -109,12 +109,3 @@ class Symplectic(Integrator):
                 end.duration, end.rate = time, rate
                 return
         end.duration, end.rate, end.separated = time, rate, False
-
-
-def _rows(columns: list[Any], count: int) -> Iterator[tuple[Any, ...]]:
-    """Iterate over the instants: floats for one impact (much faster), arrays for a batch."""
-    lists = [
-        np.broadcast_to(column, (count, *np.shape(column)[1:]))
-        for column in map(np.asarray, columns)
-    ]
-    return zip(*(rows.tolist() if rows.ndim == 1 else rows for rows in lists), strict=True)
