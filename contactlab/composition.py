@@ -22,16 +22,15 @@ def law(kind: str, value: object) -> Any:
     return value
 
 
-def fitting_integrator(normal: Law, tangential: Law) -> Any:
-    """Return the first of ``PREFERRED_INTEGRATORS`` that fits, or else the first."""
-    candidates = [law("integrator", name) for name in PREFERRED_INTEGRATORS]
-    for candidate in candidates:
+def fitting_integrator(normal: Law, tangential: Law) -> str:
+    """Return the name of the first of ``PREFERRED_INTEGRATORS`` that fits, or else the first."""
+    for name in PREFERRED_INTEGRATORS:
         try:
-            check_fit(normal, tangential, candidate)
+            check_fit(normal, tangential, law("integrator", name))
         except ValueError:
             continue
-        return candidate
-    return candidates[0]
+        return name
+    return PREFERRED_INTEGRATORS[0]
 
 
 def check_fit(normal: Law, tangential: Law, integrator: Law) -> None:

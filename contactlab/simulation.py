@@ -66,11 +66,8 @@ class Simulation:
             "normal": composition.law("normal", normal),
             "tangential": composition.law("tangential", tangential),
         }
-        parts["integrator"] = (
-            composition.fitting_integrator(**parts)
-            if integrator is None
-            else composition.law("integrator", integrator)
-        )
+        chosen = composition.fitting_integrator(**parts) if integrator is None else integrator
+        parts["integrator"] = composition.law("integrator", chosen)
         composition.check_fit(**parts)
         self.__attrs_init__(**parts)
 

@@ -25,9 +25,11 @@ QUICK = ((0.5, 49 / 34), (1.2, 49 / 34), (3.0, 49 / 34), (1.2, 3.0))
 
 #: Ladders. A law's own resolution is the number of steps over ``STEPS_PER_PART``.
 STEPS = (25, 50, 100, 200, 400, 800)
-TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10)
+TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
 QUICK_RUNGS = 3
 STEPS_PER_PART = 4
+#: Parts under a tolerance, however coarse.
+LEAST_PARTS = 10
 #: The paper's steps are paired with annuli as in its own proportion, ten to one.
 PAPER_STEPS_PER_PART = 10
 
@@ -64,8 +66,6 @@ class Method:
             values = TOLERANCES
         elif law or steps:
             values = STEPS
-        if quick and len(values) > 1:
-            values = values[1::2][:QUICK_RUNGS]
         per_part = PAPER_STEPS_PER_PART if self.integrator == "paper" else STEPS_PER_PART
         ladder: list[dict[str, dict[str, Any]]] = []
         for value in values:
@@ -74,9 +74,11 @@ class Method:
                 options["integrator"][steps] = value
             if law is not None:
                 count = value if isinstance(value, int) else round(value**-0.5)
-                options["tangential"][law] = max(count // per_part, 2)
-            ladder.append(options)
-        return ladder
+                least = 2 if isinstance(value, int) else LEAST_PARTS
+                options["tangential"][law] = max(count // per_part, least)
+            if _accepted(f"integrator.{self.integrator}", options["integrator"]):
+                ladder.append(options)
+        return ladder[1::2][:QUICK_RUNGS] if quick and len(ladder) > 1 else ladder
 
     def simulation(self, options: dict[str, dict[str, Any]]) -> Simulation:
         """Return the composition at one rung."""
@@ -109,7 +111,7 @@ def methods(laws: Iterable[str] | None = None) -> list[Method]:
     found = []
     for tangential in named or [_short(name) for name in REGISTRY.names("tangential")]:
         try:
-            if named is None and getattr(_law("tangential", tangential), "inert", False):
+            if _law("tangential", tangential).inert and named is None:
                 continue
             integrators = [_short(name) for name in REGISTRY.names("integrator")]
             fitting = [
@@ -131,6 +133,15 @@ def _fits(tangential: str, integrator: str) -> bool:
     try:
         Simulation(normal="hertz", tangential=tangential, integrator=integrator)
     except (ValueError, TypeError):
+        return False
+    return True
+
+
+def _accepted(name: str, options: dict[str, Any]) -> bool:
+    """Return False for a value beyond what the integrator allows, such as a coarse tolerance."""
+    try:
+        REGISTRY.create(name, **options)
+    except ValueError:
         return False
     return True
 

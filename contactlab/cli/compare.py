@@ -83,13 +83,16 @@ def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Si
     asked = {kind: getattr(arguments, kind) or [getattr(file.laws, kind)] for kind in KINDS}
     if arguments.tangential is None:
         asked["tangential"] = list(dict.fromkeys([file.laws.tangential, *DEFAULT_LAWS]))
-    asked = {kind: [n.removeprefix(f"{kind}.") for n in names] for kind, names in asked.items()}
+    asked = {
+        kind: [name and name.removeprefix(f"{kind}.") for name in names]
+        for kind, names in asked.items()
+    }
     several = [kind for kind in KINDS if len(asked[kind]) > 1] or ["tangential"]
     simulations = {}
     used: set[str] = set()
     for combination in itertools.product(*asked.values()):
         chosen = dict(zip(KINDS, combination, strict=True))
-        choice = file.laws.choose(**chosen)
+        choice = file.laws.choose(**chosen).resolved()
         settings = {path: value for path, value in arguments.settings if _knows(choice, path, used)}
         name = " + ".join(chosen[kind] for kind in several)
         simulations[name] = choice.set(settings).simulation()

@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the figures and print their paths."""
-    choice = LawChoice().choose(
+    choice = LawChoice(tangential="annulus", integrator="paper").choose(
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )
     simulation = choice.set(dict(arguments.settings)).simulation()

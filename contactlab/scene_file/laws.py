@@ -7,11 +7,11 @@ from typing import Any
 
 import attrs
 
+from contactlab import composition
 from contactlab.registry import KINDS, REGISTRY
 from contactlab.scene_file.table import Table, nearest_of
 from contactlab.simulation import Simulation
 
-DEFAULTS = {"normal": "hertz", "tangential": "annulus", "integrator": "paper"}
 OPTION_REMEDY = "write tangential.annuli = 50, or tangential.annulus.annuli = 50 for one law only"
 
 
@@ -21,16 +21,18 @@ class LawChoice:
 
     Attributes
     ----------
-    normal, tangential, integrator : str
-        Names without their kind.
+    normal, tangential : str
+        Names without their kind; the exact solution by default.
+    integrator : str or None
+        None for the best that fits the two laws.
     options : mapping of str to mapping
         Options by kind, for the law chosen here (``{"tangential": {"annuli": 50}}``), or by
         full name, for that law whenever it is chosen (``{"tangential.annulus": ...}``).
     """
 
-    normal: str = DEFAULTS["normal"]
-    tangential: str = DEFAULTS["tangential"]
-    integrator: str = DEFAULTS["integrator"]
+    normal: str = "hertz"
+    tangential: str = "fronts"
+    integrator: str | None = None
     options: Mapping[str, Mapping[str, Any]] = attrs.field(factory=dict)
 
     def choose(self, **names: str | None) -> LawChoice:
@@ -64,9 +66,18 @@ class LawChoice:
         ValueError
             If a law is not installed, an option is unknown, or the laws do not fit.
         """
-        return Simulation(**{kind: self._make(kind) for kind in KINDS})
+        choice = self.resolved()
+        return Simulation(**{kind: choice.made(kind) for kind in KINDS})
 
-    def _make(self, kind: str) -> Any:
+    def resolved(self) -> LawChoice:
+        """Return the choice with its integrator named."""
+        if self.integrator is not None:
+            return self
+        best = composition.fitting_integrator(self.made("normal"), self.made("tangential"))
+        return attrs.evolve(self, integrator=best)
+
+    def made(self, kind: str) -> Any:
+        """Return the law of one kind with its options."""
         name = f"{kind}.{getattr(self, kind)}"
         options = {**self.options.get(kind, {}), **self.options.get(name, {})}
         return REGISTRY.create(name, **options)

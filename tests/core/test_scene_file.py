@@ -123,6 +123,7 @@ def test_laws_and_options_in_both_spellings(read):
 
 def test_option_of_a_named_law_goes_only_to_it(read):
     text = "[nondimensional]\npsi1 = 1\nchi = 1\n[simulation]\ntangential = 'coulomb'\n"
+    text += "integrator = 'paper'\n"
     laws = read(text + "options.integrator.paper.steps = 33\n").laws
     assert laws.simulation().integrator.steps == 33
     assert laws.choose(integrator="symplectic").simulation().integrator.steps == 200

@@ -1,0 +1,93 @@
+"""`contactlab bench`: errors, orders, gaps, the front."""
+
+import json
+
+import numpy as np
+import pytest
+
+from contactlab.analysis import work_precision
+from contactlab.analysis.bench_methods import Method, methods, scenes
+from contactlab.analysis.work_precision import Benchmark, Row, bench
+from contactlab.cli.main import main
+
+
+def row(method="a", error=1.0, time=1.0, failed=0, options="steps=10"):
+    return Row(
+        method=method, options=options, error_rms=error, error_worst=error, force_error_rms=error,
+        books_worst=0.0, time_s=time, sweep_time_s=time, failed=failed,
+        status="SUCCESS" if not failed else "NON_FINITE",
+    )  # fmt: skip
+
+
+def test_every_fitting_composition_is_there_and_no_other():
+    names = {method.name for method in methods()}
+    assert {"annulus / paper", "springs / symplectic", "fronts / events"} <= names
+    assert "fronts / paper" not in names
+    assert not any(name.startswith("frictionless") for name in names)
+
+
+def test_law_by_name_and_unknown_law():
+    assert {method.tangential for method in methods(["tangential.coulomb"])} == {"coulomb"}
+    with pytest.raises(ValueError, match=r"did you mean 'tangential.springs'"):
+        methods(["springz"])
+
+
+def test_no_scene_is_answered_in_closed_form():
+    """Slip throughout would make every law look exact."""
+    for scene in scenes():
+        assert abs(scene.psi1) < max(1.0, 4.0 * scene.chi - 1.0)
+
+
+def test_errors_fall_with_the_steps_and_the_order_is_seen():
+    found = bench([Method(tangential="springs", integrator="symplectic")], quick=True)
+    errors = [entry.error_rms for entry in found.rows]
+    assert errors[0] > 10 * errors[-1] > 0
+    assert found.orders["springs / symplectic"] == pytest.approx(2.0, abs=0.4)
+    assert all(entry.time_s > 0 for entry in found.rows)
+
+
+def test_front_holds_what_nothing_beats():
+    rows = (row(error=1.0, time=1.0), row(error=0.5, time=2.0), row(error=0.7, time=3.0))
+    failed = row(error=np.nan, time=np.nan, failed=1)
+    benchmark = Benchmark(rows=(*rows, failed), orders={}, complete=True)
+    assert benchmark.front() == [rows[0], rows[1]]
+
+
+def test_an_order_is_a_slope_and_a_flat_ladder_has_none():
+    falling = [row(error=h**-2.0, options=f"steps={h}") for h in (10, 20, 40)]
+    assert work_precision._order(falling) == pytest.approx(2.0)
+    flat = [row(error=0.3, options=f"steps={h}") for h in (10, 20, 40)]
+    assert np.isnan(work_precision._order(flat))
+
+
+def test_failed_and_slow_resolutions_are_gaps_never_dropped(monkeypatch):
+    monkeypatch.setattr(work_precision, "SLOW_QUICK", 0.0)
+    found = bench([Method(tangential="coulomb", integrator="symplectic")], quick=True)
+    assert [entry.status for entry in found.rows] == ["SUCCESS", "NOT_RUN", "NOT_RUN"]
+    assert not found.rows[-1].ok
+
+
+def test_budget_ends_it_and_says_so(capsys):
+    assert main(["bench", "--quick", "--law", "coulomb", "--budget", "1e-6"]) == 0
+    assert "not complete" in capsys.readouterr().out
+
+
+def test_command_writes_table_csv_and_picture(tmp_path, capsys):
+    files = [str(tmp_path / name) for name in ("b.png", "b.csv")]
+    arguments = [
+        "bench",
+        "--quick",
+        "--law",
+        "coulomb",
+        "--json",
+        "--figure",
+        files[0],
+        "--csv",
+        files[1],
+    ]
+    assert main(arguments) == 0
+    content = json.loads(capsys.readouterr().out)
+    assert content["complete"] is True
+    assert len((tmp_path / "b.csv").read_text().splitlines()) == len(content["rows"]) + 1
+    assert (tmp_path / "b.png").stat().st_size > 10_000
+    assert main(["bench", "--budget", "-1"]) == 2
