@@ -24,8 +24,12 @@ from contactlab.analysis.stability_outcome import (
 
 #: A case expected to take longer than this is skipped, in s; much less in the quick set.
 LONGEST, QUICK_LONGEST = 20.0, 0.5
+#: Seconds that a method may take in the quick set; what is left then is skipped.
+QUICK_ALLOWANCE = 3.0
 #: Seconds that a step takes before a method has shown its own pace.
 FIRST_PACE = 2e-5
+#: Seconds a step of the runs so far, by method.
+Paces = dict[str, list[float]]
 
 
 @attrs.frozen(kw_only=True)
@@ -98,23 +102,29 @@ def stability(
     total = sum(map(len, listed)) + sum(map(len, cells))
     outcomes: list[Outcome] = []
     regions: list[Region] = []
-    pace: dict[str, float] = {}
+    pace: Paces = {}
+    spent: dict[str, float] = dict.fromkeys((method.name for method in methods), 0.0)
     longest = QUICK_LONGEST if quick else LONGEST
+    allowance = QUICK_ALLOWANCE if quick else np.inf
     done = 0
     # One family after another over all methods, so that a budget cuts all of them alike.
     for case in sorted((case for mine in listed for case in mine), key=lambda c: c.family):
         if time.perf_counter() - started > budget:
             break
-        if _expected(case, pace) > longest:
+        if spent[case.method.name] > allowance or _expected(case, pace) > longest:
             outcomes.append(_skipped(case))
         else:
             outcomes.append(judged(case))
             _learn(case, outcomes[-1], pace)
+            spent[case.method.name] += outcomes[-1].run_time_s
         done += 1
         if progress is not None:
             progress(done, total)
     for method, mine in zip(methods, cells, strict=True):
         if not mine or time.perf_counter() - started > budget:
+            continue
+        if spent[method.name] > allowance:
+            done += len(mine)
             continue
         regions.append(region(method, mine))
         done += len(mine)
@@ -130,13 +140,14 @@ def _size(case: Case) -> float:
     return steps * (1.0 + max([0.0, *parts]) ** 2 / 1e4)
 
 
-def _expected(case: Case, pace: dict[str, float]) -> float:
-    return _size(case) * pace.get(case.method.name, FIRST_PACE)
+def _expected(case: Case, pace: Paces) -> float:
+    seen = pace.get(case.method.name)
+    return _size(case) * (float(np.median(seen)) if seen else FIRST_PACE)
 
 
-def _learn(case: Case, outcome: Outcome, pace: dict[str, float]) -> None:
+def _learn(case: Case, outcome: Outcome, pace: Paces) -> None:
     if outcome.outcome == ANSWERED and outcome.run_time_s > 1e-3:
-        pace[case.method.name] = outcome.run_time_s / _size(case)
+        pace.setdefault(case.method.name, []).append(outcome.run_time_s / _size(case))
 
 
 def _skipped(case: Case) -> Outcome:

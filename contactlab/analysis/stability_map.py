@@ -23,8 +23,8 @@ CHIS = tuple(np.geomspace(0.05, 1e4, 17).tolist())
 STEPS = (1, 2, 3, 4, 6, 9, 14, 21, 32, 48, 72, 108, 162, 243, 365, 547, 820, 1230, 1845, 2768, 4152)
 TOLERANCES = tuple((10.0 ** -np.arange(0.0, 6.5, 0.5)).tolist())
 QUICK_CHIS = (0.05, 0.5, 3.0, 30.0)
-QUICK_STEPS = (1, 3, 5, 9, 16, 30, 80)
-QUICK_TOLERANCES = (1.0, 1e-2)
+QUICK_STEPS = (1, 5, 9, 30)
+QUICK_TOLERANCES = (0.1, 1e-3)
 
 
 @attrs.frozen(kw_only=True, eq=False)

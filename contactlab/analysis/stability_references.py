@@ -93,6 +93,12 @@ def itself(scene: Scene, law: TangentialLaw) -> float | None:
     """Return the change of the same law at many more steps."""
     if not isinstance(law, SteppedTangentialLaw):
         return None
+    return _fine(_key(scene), law, _Held(scene))
+
+
+@lru_cache(maxsize=4096)
+def _fine(key: bytes, law: SteppedTangentialLaw, held: _Held) -> float | None:  # noqa: ARG001
+    scene = held.scene
     coarse: Any = Simulation(tangential=law, integrator="symplectic")
     problem = coarse.problem(scene)
     frequency = np.sqrt(law.stiffness(problem) / problem.pair.tangential_mass)
