@@ -29,7 +29,7 @@ from contactlab.scene import Scene
 from contactlab.status import Status
 
 #: Impacts advanced together: large enough to hide the cost of a call, small enough for caches.
-CHUNK = 1000
+CHUNK = 2000
 #: Instants in the history of an impact that is done in closed form.
 CLOSED_FORM_INSTANTS = 201
 

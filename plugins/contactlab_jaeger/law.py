@@ -24,7 +24,6 @@ from contactlab.contracts import (
 from contactlab_jaeger import step, whole
 from contactlab_jaeger.places import Array, Places
 
-
 #: Numbers in a table of a whole run; larger ones (16 MB each) are not made.
 LARGEST_RUN = 2_000_000
 

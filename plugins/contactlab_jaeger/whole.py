@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactlab.checks import Real
-from contactlab_jaeger.geometry import of_each, of_one
+from contactlab_jaeger.geometry import Geometry, of_each
 from contactlab_jaeger.places import Array, Places
 from contactlab_jaeger.step import follow
 
@@ -62,15 +62,27 @@ def run(places: Places, course: Course, velocity: float) -> tuple[Array, float]:
 
 def run_many(places: Places, course: Course, velocity: Real, items: int) -> tuple[Array, Array]:
     """Return forces, shape (K, items), and works of impacts that go through one course."""
-    squares = (course.radius * course.radius).tolist()
     old, work, change = np.zeros((0, 1)), np.zeros(items), np.zeros(items)
-    forces = np.empty((len(squares), items))
-    before = 0.0
-    for k, (square, pressure) in enumerate(zip(squares, course.pressure.tolist(), strict=True)):
-        geometry = of_one(places, before, square, pressure)
+    forces = np.empty((len(course.radius), items))
+    for k, geometry in enumerate(_steps(places, course)):
         displacement = (velocity + change) * course.drift[k]
         forces[k], lost, old = follow(places, old, geometry, displacement, items)
         change -= course.kick[k] * forces[k]
         work += lost
-        before = square
     return forces, work
+
+
+def _steps(places: Places, course: Course) -> list[Geometry]:
+    """Return the geometry of each step of a course that all impacts share."""
+    square = course.radius * course.radius
+    before = np.concatenate(([0.0], square[:-1]))
+    found = of_each(places, before, square, course.pressure)
+    reach = places.squares.searchsorted(square)
+    settled = np.where(square > before, places.squares.searchsorted(before), reach)
+    rows = (np.ascontiguousarray(table.T) for table in found[1:])
+    return [
+        Geometry(first, share[first:last, None], limit[:last, None], weights[:last])
+        for first, last, share, limit, weights in zip(
+            settled.tolist(), reach.tolist(), *rows, strict=True
+        )
+    ]

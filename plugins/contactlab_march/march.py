@@ -8,9 +8,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from contactlab import faults
 from contactlab.checks import Real
 from contactlab.contracts import (
     Increment,
+    Law,
     Motion,
     NormalContact,
     Observer,
@@ -93,13 +95,23 @@ def march(
     """
     law, single = problem.tangential, not problem.shape
     assert isinstance(law, SteppedTangentialLaw)
+    if not isinstance(steps, Table):
+        steps = watched(problem, steps)
     if observer is None and isinstance(law, RunningTangentialLaw):
-        if single and not isinstance(steps, Table):
-            steps = Table.of(steps)
-        if isinstance(steps, Table) and (single or (law.runs_batches and len(problem.shape) == 1)):
-            motion = march_at_once(problem, law, steps, end)
-            if motion is not None:
-                return motion
+        try:
+            if single and not isinstance(steps, Table):
+                steps = Table.of(steps)
+            if isinstance(steps, Table) and (
+                single or (law.runs_batches and len(problem.shape) == 1)
+            ):
+                motion = march_at_once(problem, law, steps, end)
+                if motion is not None:
+                    return motion
+        except faults.LawFaultError as fault:
+            return _ended(problem, end, math.nan, math.nan, fault.status, fault.detail, 0)
+        except Exception as error:
+            detail = faults.told(law, f"all steps at once: {faults.raised(error)}", 1)
+            return _ended(problem, end, math.nan, math.nan, Status.LAW_RAISED, detail, 0)
     initial = problem.slip_velocity
     mass = problem.pair.tangential_mass
     change: Real = 0.0 if single else np.zeros(problem.shape)
@@ -107,32 +119,77 @@ def march(
     nothing = 0.0 * change
     before = NormalContact(nothing, nothing, nothing)
     state = law.start(problem)
-    status, detail, count = Status.SUCCESS, "", 0
+    status, detail, what, count = Status.SUCCESS, "", "", 0
     velocity: Real = initial
-    for step in steps:
-        change_per_force = step.kick / mass  # once: often the same for a whole batch
-        arresting = velocity / change_per_force
-        increment = Increment(
-            velocity * step.drift, velocity, arresting, step.normal_force, step.kick
-        )
-        response, state = law.advance(state, increment, before, step.contact)
-        force = response.force
-        change = change - force * change_per_force
-        work = work + response.friction_work
-        before = step.contact
-        count += 1
-        if observer is not None:
-            middle = velocity - 0.5 * force * change_per_force
-            observer(_sample(step, middle, force, law, state))
-        velocity = initial + change
-        if response.settled is not True and not np.all(response.settled):
-            status = Status.UNSETTLED
-        elif not (math.isfinite(force) if single else np.isfinite(force).all()):
-            status = Status.NON_FINITE
-        if status is not Status.SUCCESS:
-            detail = f"At step {count}, from {type(law).__name__}."
-            break
+    blamed: Law = law
+    time: Real = 0.0
+    try:
+        for step in steps:
+            time = step.time
+            count += 1
+            change_per_force = step.kick / mass  # once: often the same for a whole batch
+            arresting = velocity / change_per_force
+            increment = Increment(
+                velocity * step.drift, velocity, arresting, step.normal_force, step.kick
+            )
+            response, state = law.advance(state, increment, before, step.contact)
+            force, lost = response.force, response.friction_work
+            if not (single and isinstance(force, float) and isinstance(lost, float)):
+                for number in (force, lost):
+                    if faults.malformed(number, problem.shape):
+                        status, what = Status.MALFORMED, f"the answer {faults.shown(number)}"
+                        break
+                if status is not Status.SUCCESS:
+                    break
+            change = change - force * change_per_force
+            work = work + lost
+            before = step.contact
+            if observer is not None:
+                middle = velocity - 0.5 * force * change_per_force
+                observer(_sample(step, middle, force, law, state))
+            velocity = initial + change
+            if response.settled is not True and not np.all(response.settled):
+                status, what = Status.UNSETTLED, "no division found"
+            elif not (math.isfinite(force) if single else np.isfinite(force).all()):
+                status, what = Status.NON_FINITE, f"force {faults.shown(force)}"
+            if status is not Status.SUCCESS:
+                break
+    except faults.LawFaultError as fault:
+        status, detail = fault.status, fault.detail
+    except Exception as error:
+        status, what = Status.LAW_RAISED, faults.raised(error)
+    if status is not Status.SUCCESS and not detail:
+        if faults.unsound(step.contact, problem.shape):
+            blamed, what = problem.normal, faults.shown(tuple(step.contact))
+        detail = faults.told(blamed, what, count, time)
     return _ended(problem, end, change, work, status, detail, count)
+
+
+def watched(problem: Problem, steps: Iterable[Step]) -> Iterator[Step]:
+    """Iterate over steps for which the normal law is asked; name it if it fails.
+
+    Raises
+    ------
+    LawFaultError
+        If the normal law raises, or answers with other than real numbers.
+    """
+    law, shape, count, time = problem.normal, problem.shape, 0, None
+    iterator = iter(steps)
+    while True:
+        count += 1
+        try:
+            step = next(iterator)
+        except StopIteration:
+            return
+        except Exception as error:
+            detail = faults.told(law, faults.raised(error), count, time)
+            raise faults.LawFaultError(Status.LAW_RAISED, detail) from error
+        time = step.time
+        for part in step.contact:
+            if type(part) is not float and faults.malformed(part, shape):
+                detail = faults.told(law, f"the answer {faults.shown(part)}", count, time)
+                raise faults.LawFaultError(Status.MALFORMED, detail)
+        yield step
 
 
 def _ended(
@@ -146,7 +203,12 @@ def _ended(
 ) -> Motion:
     """Return the motion, after a last look at how the normal motion ended."""
     if status is Status.SUCCESS and not np.all(np.isfinite(end.rate)):
-        status, detail = Status.NON_FINITE, f"From {type(problem.normal).__name__}."
+        status = Status.NON_FINITE
+        detail = faults.told(problem.normal, f"rate {faults.shown(end.rate)}", count, end.duration)
+    elif status is Status.SUCCESS and not np.all(np.isfinite(work)):
+        status = Status.NON_FINITE
+        what = f"friction work {faults.shown(work)}"
+        detail = faults.told(problem.tangential, what, count, end.duration)
     elif status is Status.SUCCESS and not end.separated:
         status, detail = Status.NOT_SEPARATED, f"After {count} steps."
     return Motion(

@@ -77,10 +77,12 @@ class Symplectic(Integrator):
         halves[-1] = np.pi  # exactly, as the inverse is not
         at_ends: Any = motion.at(halves[::2].reshape(column))
         ends, rates = at_ends[0], at_ends[2]
-        times, approaches, velocities, contacts = motion.at(halves[1::2].reshape(column))
-        kicks = np.diff(ends, axis=0)
-        means = -mass * np.diff(rates, axis=0) / kicks
-        drifts = np.diff(times, axis=0, prepend=0.0 * np.asarray(times)[:1])
+        middles: Any = motion.at(halves[1::2].reshape(column))
+        times, approaches, velocities, contacts = middles
+        kicks = ends[1:] - ends[:-1]
+        means = mass * (rates[:-1] - rates[1:]) / kicks
+        drifts = np.array(times)
+        drifts[1:] -= times[:-1]
         end.duration, end.rate = motion.duration, rates[-1]
         full = np.zeros_like(times)  # what all impacts share may lack the batch's axes
         contact = NormalContact(*(full + entry for entry in contacts))
