@@ -15,6 +15,7 @@ class Status(Enum):
     UNRESOLVED = "The motion could not be followed to the tolerance asked for."
     UNBALANCED = "The energy books are out of balance by more than the law declares."
     NOT_SEPARATED = "The bodies were still in contact when the step limit was reached."
+    MALFORMED = "A law's answer is not made of real numbers, or not of the batch's shape."
     LAW_RAISED = "A law raised an error in the middle of the run."
     INTERRUPTED = "The run was interrupted; this impact was not computed."
 

@@ -26,7 +26,7 @@ STEPS = 200
 #: What the integration may add to an error in psi: second order at 200 steps.
 INTEGRATION = 2e-3
 #: What steps may leave out of the books, where a force ends or begins within one.
-BOOKS = 0.02
+BOOKS = 0.03
 #: psi2 of partial slip, theory §5.
 REFERENCE = {
     (1.4411764706, 0.1): 0.0205907061,

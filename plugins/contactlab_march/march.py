@@ -110,7 +110,7 @@ def march(
         except faults.LawFaultError as fault:
             return _ended(problem, end, math.nan, math.nan, fault.status, fault.detail, 0)
         except Exception as error:
-            detail = faults.told(law, f"all steps at once: {faults.raised(error)}", 1)
+            detail = faults.told(law, f"{faults.raised(error)}, all steps at once", 1)
             return _ended(problem, end, math.nan, math.nan, Status.LAW_RAISED, detail, 0)
     initial = problem.slip_velocity
     mass = problem.pair.tangential_mass
@@ -232,11 +232,10 @@ def march_at_once(
     for column in numbers:
         if not np.isfinite(column).all():
             bad = ~np.isfinite(column).reshape(len(column), -1).all(axis=1)
-            detail = f"At step {int(bad.argmax()) + 1}, from {type(problem.normal).__name__}."
-            nothing = math.nan
-            return _ended(
-                problem, end, nothing, nothing, Status.NON_FINITE, detail, int(bad.argmax())
-            )
+            count, nothing = int(bad.argmax()), math.nan
+            what, time = faults.shown(column[count]), columns.time[count]
+            detail = faults.told(problem.normal, what, count + 1, time)
+            return _ended(problem, end, nothing, nothing, Status.NON_FINITE, detail, count)
     mass, initial = problem.pair.tangential_mass, problem.slip_velocity
     response = law.run(problem, Run(*numbers, initial, mass))
     if response is None:
@@ -245,9 +244,12 @@ def march_at_once(
     change = -np.sum(response.force * (columns.kick[:count] / mass), axis=0)
     status, detail = Status.SUCCESS, ""
     if not response.settled:
-        status, detail = Status.UNSETTLED, f"At step {count + 1}, from {type(law).__name__}."
+        status, detail = Status.UNSETTLED, faults.told(law, "no division found", count + 1)
     elif not np.isfinite(change).all():
-        status, detail = Status.NON_FINITE, f"From {type(law).__name__}."
+        bad = ~np.isfinite(response.force).reshape(count, -1).all(axis=1)
+        step = int(bad.argmax())
+        detail = faults.told(law, f"force {faults.shown(response.force[step])}", step + 1)
+        status = Status.NON_FINITE
     return _ended(problem, end, change, response.friction_work, status, detail, count)
 
 

@@ -1,0 +1,68 @@
+"""What to say of a law that fails in the middle of a run, and how to know that it did.
+
+For integrators: nothing here is called in a step that goes well, but for ``malformed``, and
+that only where an answer is not a plain float.
+"""
+
+from __future__ import annotations
+
+import traceback
+from typing import Any
+
+import numpy as np
+
+from contactlab.contracts.law import Law
+from contactlab.contracts.normal import NormalContact
+from contactlab.status import Status
+
+
+class LawFaultError(Exception):
+    """A law failed; raised and caught within an integrator, to end the run with a status."""
+
+    def __init__(self, status: Status, detail: str) -> None:
+        super().__init__(detail)
+        self.status, self.detail = status, detail
+
+
+def malformed(value: Any, shape: tuple[int, ...]) -> bool:
+    """Return whether ``value`` is other than real numbers that broadcast to the batch ``shape``."""
+    if isinstance(value, np.ndarray):
+        if value.dtype.kind not in "fiu":
+            return True
+        return value.shape != shape and not _broadcasts(value.shape, shape)
+    return isinstance(value, bool) or not isinstance(value, float | int | np.floating | np.integer)
+
+
+def unsound(contact: NormalContact, shape: tuple[int, ...]) -> bool:
+    """Return whether a normal contact is malformed or not finite: then its law is to blame."""
+    return any(malformed(part, shape) or not np.all(np.isfinite(part)) for part in contact)
+
+
+def told(law: Law, what: str, step: int, time: Any = None) -> str:
+    """Return the sentence of a fault: step, time, what happened, and whose law it was."""
+    from contactlab.registry import REGISTRY  # only a run that fails asks for names
+
+    try:
+        when = f", time {float(np.max(time)):.6g} s" if time is not None else ""
+    except (TypeError, ValueError):
+        when = ""
+    return f"At step {step}{when}: {what}, from {type(law).__name__}, {REGISTRY.describe(law)}."
+
+
+def raised(error: Exception) -> str:
+    """Say what was raised and where."""
+    where = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{type(error).__name__}: {error} ({where.name}, line {where.lineno})"
+
+
+def shown(value: Any) -> str:
+    """Return a value on one short line."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _broadcasts(given: tuple[int, ...], shape: tuple[int, ...]) -> bool:
+    try:
+        return np.broadcast_shapes(given, shape) == shape
+    except ValueError:
+        return False

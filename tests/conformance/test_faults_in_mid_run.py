@@ -1,0 +1,186 @@
+"""A law that fails in the middle of a run is named, with step and time; others are not harmed."""
+
+import re
+import warnings
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import ImpactError, Scene, Simulation, Status
+from contactlab.contracts import (
+    NormalContact,
+    NormalLaw,
+    SteppedTangentialLaw,
+    TangentialResponse,
+)
+
+AT = 7
+SCENE = Scene.nondimensional(psi1=1.2, chi=1.44)
+BATCH = Scene.nondimensional(psi1=np.array([0.5, 1.2, 3.0]), chi=1.44)
+STEPPING = ("paper", "symplectic")
+
+
+@attrs.frozen(kw_only=True)
+class Friction(SteppedTangentialLaw):
+    """Rigid friction, and at one step something else; the state counts the steps."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"advance"})
+    answer: Any = None
+
+    def start(self, problem):
+        return 0
+
+    def advance(self, state, increment, before, after):
+        force = np.clip(increment.arresting_force, -after.force, after.force)
+        sound = TangentialResponse(force, 0.0 * force), state + 1
+        return self.answer(*sound) if state + 1 == AT else sound
+
+
+@attrs.frozen(kw_only=True)
+class Press(NormalLaw):
+    """A linear spring, and at one step something else."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"radius"})
+    answer: Any = None
+
+    def start(self, pair):
+        return 0
+
+    def respond(self, state, approach, rate):
+        deep = approach * (approach > 0.0)
+        sound = NormalContact(2.0 * deep, deep, approach), state + 1
+        return self.answer(*sound) if state + 1 == AT else sound
+
+
+def raises(response, state):
+    raise KeyError("stiffness")
+
+
+def divides(response, state):
+    return 1 / 0
+
+
+TANGENTIAL = {
+    "raises": (raises, Status.LAW_RAISED, "KeyError: 'stiffness'"),
+    "divides": (divides, Status.LAW_RAISED, "ZeroDivisionError"),
+    "None": (lambda *_: None, Status.LAW_RAISED, "TypeError"),
+    "a number": (lambda *_: 0.0, Status.LAW_RAISED, "TypeError"),
+    "three": (lambda response, state: (response, state, 1), Status.LAW_RAISED, "ValueError"),
+    "no force": (lambda r, s: (r._replace(force=None), s), Status.MALFORMED, "None"),
+    "text": (lambda r, s: (r._replace(force="0"), s), Status.MALFORMED, "'0'"),
+    "complex": (lambda r, s: (r._replace(force=r.force + 0j), s), Status.MALFORMED, "j"),
+    "wide": (
+        lambda r, s: (r._replace(force=np.stack([r.force] * 2)), s),
+        Status.MALFORMED,
+        "array",
+    ),
+    "column": (
+        lambda r, s: (r._replace(force=np.atleast_1d(r.force)[:, None]), s),
+        Status.MALFORMED,
+        "array",
+    ),
+    "work": (
+        lambda r, s: (r._replace(friction_work=r.friction_work + 1j), s),
+        Status.MALFORMED,
+        "j",
+    ),
+    "no work": (lambda r, s: (r._replace(friction_work=None), s), Status.MALFORMED, "None"),
+    "nan": (lambda r, s: (r._replace(force=r.force * np.nan), s), Status.NON_FINITE, "nan"),
+    "infinite": (lambda r, s: (r._replace(force=r.force + np.inf), s), Status.NON_FINITE, "inf"),
+    "unsettled": (lambda r, s: (r._replace(settled=False), s), Status.UNSETTLED, "no division"),
+}
+NORMAL = {
+    "raises": (raises, Status.LAW_RAISED, "KeyError: 'stiffness'"),
+    "None": (lambda *_: None, Status.LAW_RAISED, "TypeError"),
+    "half": (lambda _, state: (None, state), Status.LAW_RAISED, "AttributeError"),
+    "nan": (lambda c, s: (NormalContact(*[c.force * np.nan] * 3), s), Status.NON_FINITE, "nan"),
+    "nan force": (lambda c, s: (c._replace(force=c.force * np.nan), s), Status.NON_FINITE, "nan"),
+    "infinite": (lambda c, s: (c._replace(force=c.force + np.inf), s), Status.NON_FINITE, "inf"),
+    "wide": (
+        lambda c, s: (c._replace(force=np.stack([c.force] * 2)), s),
+        Status.MALFORMED,
+        "array",
+    ),
+}
+
+
+def one_status(result):
+    statuses = {*np.ravel(np.asarray(result.status, dtype=object))}
+    assert len(statuses) == 1
+    return statuses.pop()
+
+
+@pytest.mark.parametrize("scene", [SCENE, BATCH], ids=["one", "batch"])
+@pytest.mark.parametrize("integrator", STEPPING)
+@pytest.mark.parametrize("fault", TANGENTIAL)
+def test_a_tangential_law_is_named_with_step_and_time(fault, integrator, scene):
+    answer, status, words = TANGENTIAL[fault]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        result = Simulation(tangential=Friction(answer=answer), integrator=integrator).run(
+            scene, history=True
+        )
+    assert one_status(result) is status
+    assert re.match(rf"At step {AT}, time \S+ s: .*Friction", result.motion.detail)
+    assert words in result.motion.detail
+    assert AT - 1 <= len(result.history.time) <= AT
+    with pytest.raises(ImpactError, match=f"At step {AT}"):
+        result.check()
+
+
+@pytest.mark.parametrize("scene", [SCENE, BATCH], ids=["one", "batch"])
+@pytest.mark.parametrize("integrator", STEPPING)
+@pytest.mark.parametrize("tangential", ["coulomb", "springs", "frictionless"])
+@pytest.mark.parametrize("fault", NORMAL)
+def test_a_normal_law_is_named(fault, tangential, integrator, scene):
+    answer, status, words = NORMAL[fault]
+    simulation = Simulation(
+        normal=Press(answer=answer), tangential=tangential, integrator=integrator
+    )
+    result = simulation.run(scene, history=True)
+    assert one_status(result) is status
+    assert re.match(r"At step \d+, time \S+ s: ", result.motion.detail)
+    assert re.search(f"{words}|nan", result.motion.detail)
+    assert "Press" in result.motion.detail
+    assert one_status(simulation.run(scene)) is status  # unwatched, steps may be taken at once
+
+
+def test_plug_in_and_distribution_are_named():
+    """A registered law is named as the registry knows it."""
+    soft = contactlab.create("tangential.coulomb")
+    result = Simulation(
+        normal=Press(answer=NORMAL["raises"][0]), tangential=soft, integrator="symplectic"
+    ).run(SCENE)
+    assert "Press (not registered)" in result.motion.detail
+    from contactlab import faults
+
+    assert f"coulomb (contactlab {contactlab.__version__})" in faults.told(soft, "NaN", 3, 1e-6)
+
+
+def test_contact_that_never_ends_is_bounded_and_said():
+    def floats(contact, state):
+        return contact, state
+
+    @attrs.frozen(kw_only=True)
+    class Sticky(Press):
+        def respond(self, state, approach, rate):
+            return NormalContact(0.0 * approach, 0.0 * approach, 1.0 + 0.0 * approach), state
+
+    for integrator in STEPPING:
+        result = Simulation(
+            normal=Sticky(answer=floats), tangential="coulomb", integrator=integrator
+        ).run(SCENE)
+        assert result.status is Status.NOT_SEPARATED
+
+
+def test_a_fault_harms_no_other_run():
+    sound = Simulation(tangential="annulus", integrator="symplectic")
+    before = sound.run(SCENE).psi2
+    for answer, _, _ in TANGENTIAL.values():
+        Simulation(tangential=Friction(answer=answer), integrator="symplectic").run(SCENE)
+    assert sound.run(SCENE).psi2 == before
