@@ -5,6 +5,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene
+from contactlab.contracts import Increment, NormalContact
 from tests.exact.laws import CHI, simulation
 
 #: psi2 measured by running the codes, steps converged, chi = 49/34: displacement form (LAMMPS
@@ -68,3 +69,18 @@ def test_force_never_above_the_cap(form):
 def test_an_unknown_form_is_refused():
     with pytest.raises(ValueError, match=r"form = 'cubic'.*displacement"):
         contactlab.create("tangential.mindlin_cap", form="cubic")
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_friction_work_under_a_steady_load(form):
+    """mu P times the way slipped, which is all but the mu P/(2 G* b) that the spring takes."""
+    law = contactlab.create("tangential.mindlin_cap", form=form)
+    problem = simulation("mindlin_cap", steps=1).problem(Scene.nondimensional(psi1=1.0, chi=CHI))
+    contact, state, work = NormalContact(1.0, 0.8, 0.64), law.start(problem), 0.0
+    taken = 1.0 / (2.0 * problem.pair.effective_shear_modulus * 0.8)
+    for _ in range(1000):
+        step = Increment(0.004, 0.004, 0.0, 1.0, 1.0)
+        response, state = law.advance(state, step, contact, contact)
+        work += response.friction_work
+    assert response.force == pytest.approx(1.0)
+    assert work == pytest.approx(4.0 - taken, rel=2e-3)
