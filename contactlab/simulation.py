@@ -26,6 +26,7 @@ from contactlab.history import Recorder
 from contactlab.plan import Plan, make_plan
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
+from contactlab.soundness import sound
 from contactlab.status import Status
 
 #: Impacts advanced together: large enough to hide the cost of a call, small enough for caches.
@@ -114,7 +115,7 @@ class Simulation:
         return ImpactResult(
             scene=scene,
             plan=plan,
-            motion=balanced(motion, scene, self.tangential.books_bound),
+            motion=balanced(sound(motion), scene, self.tangential.books_bound),
             laws=composition.versions(self.normal, self.tangential, self.integrator),
             history=recorder.history() if recorder else None,
             run_time=time.perf_counter() - started,
