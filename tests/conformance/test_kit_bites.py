@@ -9,18 +9,19 @@ import pytest
 from contactlab.testing import ConformanceError, Verdict, check_law, checks_for, outcome
 
 
-def _broken_laws():
-    """Import the file beside this one under a name of its own, so that its classes pickle."""
-    name = "contactlab_broken_laws"
+def _imported(stem):
+    """Import a file beside this one under a name of its own, so that its classes pickle."""
+    name = f"contactlab_{stem}"
     if name not in sys.modules:
-        path = Path(__file__).with_name("broken_laws.py")
+        path = Path(__file__).with_name(f"{stem}.py")
         spec = importlib.util.spec_from_file_location(name, path)
         sys.modules[name] = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(sys.modules[name])
     return sys.modules[name]
 
 
-laws = _broken_laws()
+laws = _imported("broken_laws")
+BROKEN = {**laws.BROKEN, **_imported("broken_others").BROKEN}
 
 
 def failed(law):
@@ -34,9 +35,7 @@ def test_the_sound_law_passes_every_check():
     assert verdicts == {Verdict.PASSED, Verdict.NOT_CLAIMED}
 
 
-@pytest.mark.parametrize(
-    ("broken", "name"), laws.BROKEN.items(), ids=[law.__name__ for law in laws.BROKEN]
-)
+@pytest.mark.parametrize(("broken", "name"), BROKEN.items(), ids=[law.__name__ for law in BROKEN])
 def test_each_broken_law_is_caught_by_the_check_meant_for_it(broken, name):
     law = broken()
     check = next(check for check in checks_for(law) if check.name == name)
