@@ -7,7 +7,6 @@ from collections.abc import Callable
 from enum import Enum
 
 import attrs
-import numpy as np
 
 from contactlab.contracts import Law
 from contactlab.registry import REGISTRY
@@ -64,8 +63,7 @@ def outcome(law: Law, check: Check) -> Outcome:
         return Outcome(check.name, Verdict.NOT_CLAIMED, f"The law does not offer {check.claim!r}.")
     reason = expected(law).get(check.name)
     try:
-        with np.errstate(all="ignore"):
-            check(law)
+        check(law)
     except CheckFailedError as failure:
         sentence = str(failure)
     except Exception as error:

@@ -30,6 +30,32 @@ def test_show(run):
     assert "contactlab_annulus" in run("plugins", "show", "tangential.annulus").out
 
 
+def test_check_of_a_law_that_keeps_its_contract(run):
+    ran = run("plugins", "check", "normal.hertz")
+    assert ran.status == 0
+    assert ran.out.splitlines()[0].split() == ["check", "outcome", "sentence"]
+    assert 'never "no contact"' in ran.out
+
+
+def test_check_as_json_names_expected_failures_and_reasons(run):
+    ran = run("plugins", "check", "tangential.coulomb", "--json")
+    found = json.loads(ran.out)
+    assert ran.status == 0
+    assert found["good"]
+    outcomes = {entry["check"]: entry for entry in found["checks"]}
+    assert outcomes["cattaneo_mindlin"]["outcome"] == "expected failure"
+    assert "no partial slip" in outcomes["cattaneo_mindlin"]["sentence"]
+
+
+def test_check_of_a_law_that_fails_exits_with_1(run, monkeypatch):
+    law = type(contactlab.create("normal.hertz"))
+    monkeypatch.setattr(law, "api_version", 99)
+    ran = run("plugins", "check", "normal.hertz")
+    assert ran.status == 1
+    assert "api_version = 99: contactlab has 1." in ran.out
+    assert run("plugins", "check", "normal.herz").status == 2
+
+
 def test_blocked_law_is_marked(run, monkeypatch):
     monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "tangential.coulomb")
     assert "tangential.coulomb (blocked)" in run("plugins", "list").out

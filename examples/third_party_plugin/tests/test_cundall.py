@@ -4,6 +4,13 @@ import numpy as np
 import pytest
 
 import contactlab
+from contactlab.testing import parametrize_with_checks
+
+
+@parametrize_with_checks(["tangential.cundall"])
+def test_conformance(law, check):
+    """All of contactlab's own checks of a tangential law."""
+    check(law)
 
 
 def simulation(**options):
