@@ -97,10 +97,14 @@ def march(
     assert isinstance(law, SteppedTangentialLaw)
     if not isinstance(steps, Table):
         steps = watched(problem, steps)
+    elif (motion := _unsound(problem, steps, end)) is not None:
+        return motion
     if observer is None and isinstance(law, RunningTangentialLaw):
         try:
             if single and not isinstance(steps, Table):
                 steps = Table.of(steps)
+                if (motion := _unsound(problem, steps, end)) is not None:
+                    return motion
             if isinstance(steps, Table) and (
                 single or (law.runs_batches and len(problem.shape) == 1)
             ):
@@ -222,20 +226,29 @@ def _ended(
     )
 
 
-def march_at_once(
-    problem: Problem, law: RunningTangentialLaw, table: Table, end: NormalEnd
-) -> Motion | None:
-    """Follow the tangential motion with a law that takes all steps at once, if it will."""
+def _unsound(problem: Problem, table: Table, end: NormalEnd) -> Motion | None:
+    """Return the motion of a run that is not begun: a normal motion that is not finite.
+
+    Not left to the tangential law: where the force is infinite Coulomb's cap is no cap, and
+    the answer would look right.
+    """
     columns = table.columns
-    force, radius = columns.contact[:2]
-    numbers = (force, radius, columns.drift, columns.kick)
-    for column in numbers:
+    for column in (*columns.contact[:2], columns.drift, columns.kick, columns.normal_force):
         if not np.isfinite(column).all():
             bad = ~np.isfinite(column).reshape(len(column), -1).all(axis=1)
             count, nothing = int(bad.argmax()), math.nan
             what, time = faults.shown(column[count]), columns.time[count]
             detail = faults.told(problem.normal, what, count + 1, time)
             return _ended(problem, end, nothing, nothing, Status.NON_FINITE, detail, count)
+    return None
+
+
+def march_at_once(
+    problem: Problem, law: RunningTangentialLaw, table: Table, end: NormalEnd
+) -> Motion | None:
+    """Follow the tangential motion with a law that takes all steps at once, if it will."""
+    columns = table.columns
+    numbers = (*columns.contact[:2], columns.drift, columns.kick)
     mass, initial = problem.pair.tangential_mass, problem.slip_velocity
     response = law.run(problem, Run(*numbers, initial, mass))
     if response is None:
