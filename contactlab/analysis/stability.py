@@ -25,7 +25,7 @@ from contactlab.analysis.stability_outcome import (
 #: A case expected to take longer than this is skipped, in s; much less in the quick set.
 LONGEST, QUICK_LONGEST = 20.0, 0.5
 #: Seconds that a method may take in the quick set; what is left then is skipped.
-QUICK_ALLOWANCE = 3.0
+QUICK_ALLOWANCE = 1.5
 #: Seconds that a step takes before a method has shown its own pace.
 FIRST_PACE = 2e-5
 #: Seconds a step of the runs so far, by method.

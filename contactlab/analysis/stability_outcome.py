@@ -21,6 +21,7 @@ from contactlab.registry import PluginError
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.simulation import Simulation
+from contactlab.soundness import sound
 from contactlab.status import Status
 
 #: Outcomes. Only the last two are failures of the program.
@@ -82,7 +83,7 @@ def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Refer
 
 def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
     """Run without the plan's short cuts: the integrator does the whole impact."""
-    motion = simulation.integrator.integrate(simulation.problem(scene), None)
+    motion = sound(simulation.integrator.integrate(simulation.problem(scene), None))
     parts = (simulation.normal, simulation.tangential, simulation.integrator)
     return ImpactResult(
         scene=scene, plan=make_plan(scene, *parts), motion=motion, run_time=0.0, laws={}

@@ -1,0 +1,161 @@
+"""The stability report: nothing silently wrong on the reduced set, and it can fail."""
+
+from typing import ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Scene, Simulation
+from contactlab.analysis.bench_methods import Method, methods
+from contactlab.analysis.stability import stability
+from contactlab.analysis.stability_bounds import broken_invariants, range_of
+from contactlab.analysis.stability_cases import Case, cases
+from contactlab.analysis.stability_outcome import ANSWERED, REFUSED, WRONG, judge, judge_run
+from contactlab.analysis.stability_references import continuum, rigid
+from contactlab.analysis.stability_scenes import Extreme, extreme_scenes
+from contactlab.contracts import NormalContact, NormalLaw, SteppedTangentialLaw, TangentialResponse
+
+CHI = 49 / 34
+
+
+def test_nothing_is_silently_wrong():
+    """The reduced set over every installed law and integrator."""
+    found = stability(methods(), quick=True)
+    told = [f"{item.method}, {item.case}: {item.note}" for item in found.failures()]
+    assert not told
+    assert found.silently_wrong() == 0
+    assert found.complete
+    assert found.tried() > 500
+
+
+@attrs.frozen(kw_only=True)
+class Spoiled(SteppedTangentialLaw):
+    """The annulus law with its force multiplied: finite, odd, and wrong."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"advance"})
+    needs: ClassVar[frozenset] = frozenset({"hertzian_pressure"})
+    factor: float = 1.0
+
+    @property
+    def law(self):
+        return contactlab.create("tangential.annulus", annuli=40)
+
+    def start(self, problem):
+        return self.law.start(problem)
+
+    def stiffness(self, problem):
+        return self.law.stiffness(problem)
+
+    def advance(self, state, increment, before, after):
+        response, state = self.law.advance(state, increment, before, after)
+        response = TangentialResponse(
+            self.factor * response.force, response.friction_work, response.settled
+        )
+        return response, state
+
+
+@attrs.frozen(kw_only=True)
+class Bouncy(NormalLaw):
+    """Hertz's law that pushes harder on the way out."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"radius", "hertzian_pressure"})
+
+    def start(self, pair):
+        return contactlab.create("normal.hertz").start(pair)
+
+    def respond(self, state, approach, rate):
+        contact, state = contactlab.create("normal.hertz").respond(state, approach, rate)
+        push = np.where(np.asarray(rate) < 0.0, 1.5, 1.0)
+        return NormalContact(float(contact.force * push), contact.radius, contact.overlap), state
+
+
+def judged(tangential, psi1=1.2, chi=CHI, normal="hertz", reference=continuum):
+    scene = Extreme("test", "", lambda: Scene.nondimensional(psi1=psi1, chi=chi))
+    method = Method(tangential="annulus", integrator="symplectic")
+    case = Case(family="test", label="", method=method, options={}, scene=scene, planned=False)
+    simulation = Simulation(normal=normal, tangential=tangential, integrator="symplectic")
+    return judge_run(case, simulation, scene.make(), reference)
+
+
+@pytest.mark.parametrize("psi1", [0.3, 1.2, 3.0])
+def test_a_law_that_is_right_is_let_pass(psi1):
+    outcome = judged(Spoiled(factor=1.0), psi1)
+    assert outcome.outcome == ANSWERED
+    assert outcome.error < outcome.bound < 0.02
+
+
+@pytest.mark.parametrize("factor", [-1.0, 0.0, 0.6, 1.6])
+def test_a_law_that_is_wrong_is_found(factor):
+    outcome = judged(Spoiled(factor=factor))
+    assert outcome.outcome == WRONG
+    assert outcome.note
+
+
+def test_a_wrong_law_nobody_knows_is_found_by_the_invariants():
+    """Judged by itself, which agrees: friction that speeds the slip up is still found."""
+    outcome = judged(Spoiled(factor=-1.0), reference=lambda scene, law: None)
+    assert outcome.outcome == WRONG
+    assert "speeds" in outcome.note
+
+
+def test_a_normal_law_that_makes_energy_is_found():
+    assert "e is off" in judged(Spoiled(), normal=Bouncy()).note
+
+
+def test_the_report_counts_what_is_wrong():
+    method = Method(tangential="coulomb", integrator="symplectic")
+
+    def wrong(case):
+        return attrs.evolve(judge(case), outcome=WRONG)
+
+    found = stability([method], quick=True, judged=wrong)
+    assert found.silently_wrong() == len(found.failures()) == len(found.outcomes) > 0
+
+
+def test_a_budget_ends_the_report_early():
+    found = stability(methods(), quick=True, budget=1e-9)
+    assert not found.complete
+    assert not found.outcomes
+
+
+def test_the_range_holds_at_any_friction():
+    nothing = range_of(Scene.nondimensional(psi1=0.0, chi=1.0))
+    assert nothing.width == 0.0
+    stuck = range_of(Scene.nondimensional(psi1=0.5, chi=1.0))
+    assert stuck.width == pytest.approx(1.0)
+    slipping = range_of(Scene.nondimensional(psi1=1e16, chi=1.0))
+    assert slipping.width == pytest.approx(4.0)
+
+
+def test_a_rigid_body_is_judged_by_its_own_theory():
+    for psi1, change in ((1.0, -1.0), (-3.0, 3.0), (5.0, -4.0), (1e16, -4.0)):
+        scene = Scene.nondimensional(psi1=psi1, chi=1.0)
+        assert rigid(scene, None) == pytest.approx(change, rel=1e-12)
+
+
+def test_exact_answers_break_no_invariant():
+    for psi1 in (0.0, 1e-300, 0.5, -1.2, 3.0, 1e16):
+        result = Simulation().run(Scene.nondimensional(psi1=psi1, chi=CHI)).check()
+        assert broken_invariants(result, 1e-9) == []
+
+
+def test_bad_input_is_a_refusal():
+    method = Method(tangential="coulomb", integrator="symplectic")
+    scene = Extreme("test", "", lambda: Scene.nondimensional(psi1=np.nan, chi=1.0))
+    outcome = judge(Case(family="test", label="", method=method, options={}, scene=scene))
+    assert outcome.outcome == REFUSED
+    assert "psi1" in outcome.note
+
+
+def test_every_family_of_the_issue_is_there():
+    families = {scene.family for scene in extreme_scenes()}
+    assert families >= {
+        "psi1", "regimes", "chi", "friction", "poisson", "speed", "radius", "mass", "types",
+    }  # fmt: skip
+    method = Method(tangential="annulus", integrator="symplectic")
+    listed = {case.family for case in cases(method)}
+    assert listed >= {"steps", "parts"}
