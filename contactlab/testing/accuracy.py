@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.contracts import ClosedFormNormalLaw, Integrator
 from contactlab.simulation import Simulation
 from contactlab.testing.bench import scene
-from contactlab.testing.check import check, hold
+from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.integrators import CHI, fitting, run
 from contactlab.testing.laws import PressedSpring, SlidingForEver
 
@@ -22,8 +22,7 @@ ORDER_ROOM = 0.3
 @check(Integrator)
 def order(integrator: Any) -> None:
     """The error falls with the steps as the declared order says, for a smooth law (4)."""
-    if integrator.order is None or integrator.resolution is None:
-        return
+    apply_if(integrator.order and integrator.resolution, "It declares no order.")
     for way in fitting(integrator, (PressedSpring(),), "normal.hertz"):
         exact = _exact(way, 2.0)
         errors = []

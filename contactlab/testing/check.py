@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
@@ -15,6 +16,10 @@ Function: TypeAlias = Callable[[Any], None]
 
 class CheckFailedError(AssertionError):
     """A law does not do what its contract says; the message is one sentence."""
+
+
+class NotApplicableError(Exception):
+    """A check has nothing to say of this law; the message says why."""
 
 
 @attrs.frozen
@@ -45,7 +50,12 @@ class Check:
         return str(self.function.__doc__).strip().splitlines()[0]
 
     def __call__(self, law: Law) -> None:
-        """Put ``law`` through it; NaN and infinity are given to it on purpose."""
+        """Put ``law`` through it, if it applies; NaN and infinity are given on purpose."""
+        with contextlib.suppress(NotApplicableError):
+            self.run(law)
+
+    def run(self, law: Law) -> None:
+        """Do the same; raise ``NotApplicableError`` if it does not apply."""
         with np.errstate(all="ignore"):
             self.function(law)
 
@@ -68,3 +78,9 @@ def hold(condition: object, sentence: str) -> None:
     """Raise ``CheckFailedError`` unless the condition is true."""
     if not condition:
         raise CheckFailedError(sentence)
+
+
+def apply_if(condition: object, sentence: str) -> None:
+    """Raise ``NotApplicableError`` unless the condition is true."""
+    if not condition:
+        raise NotApplicableError(sentence)

@@ -10,22 +10,23 @@ import attrs
 
 from contactlab.contracts import Law
 from contactlab.registry import REGISTRY
-from contactlab.testing.check import CHECKS, Check, CheckFailedError
+from contactlab.testing.check import CHECKS, Check, CheckFailedError, NotApplicableError
 
 
 class Verdict(Enum):
-    """How a check ended; the first three are as they should be."""
+    """How a check ended; the last two are not as they should be."""
 
     PASSED = "passed"
     EXPECTED_FAILURE = "expected failure"
     NOT_CLAIMED = "not claimed"
+    NOT_APPLICABLE = "not applicable"
     FAILED = "failed"
     UNEXPECTED_PASS = "unexpected pass"
 
     @property
     def good(self) -> bool:
         """Whether the law is as it says it is."""
-        return self in (Verdict.PASSED, Verdict.EXPECTED_FAILURE, Verdict.NOT_CLAIMED)
+        return self not in (Verdict.FAILED, Verdict.UNEXPECTED_PASS)
 
 
 @attrs.frozen
@@ -63,7 +64,9 @@ def outcome(law: Law, check: Check) -> Outcome:
         return Outcome(check.name, Verdict.NOT_CLAIMED, f"The law does not offer {check.claim!r}.")
     reason = expected(law).get(check.name)
     try:
-        check(law)
+        check.run(law)
+    except NotApplicableError as reason_why:
+        return Outcome(check.name, Verdict.NOT_APPLICABLE, str(reason_why))
     except CheckFailedError as failure:
         sentence = str(failure)
     except Exception as error:

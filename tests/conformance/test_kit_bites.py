@@ -32,7 +32,7 @@ def failed(law):
 
 def test_the_sound_law_passes_every_check():
     verdicts = {entry.verdict for entry in check_law(laws.Sound())}
-    assert verdicts == {Verdict.PASSED, Verdict.NOT_CLAIMED}
+    assert verdicts == {Verdict.PASSED, Verdict.NOT_CLAIMED, Verdict.NOT_APPLICABLE}
 
 
 @pytest.mark.parametrize(("broken", "name"), BROKEN.items(), ids=[law.__name__ for law in BROKEN])
