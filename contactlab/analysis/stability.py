@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import statistics
 import time
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -126,8 +127,8 @@ def stability(
         if spent[method.name] > allowance:
             done += len(mine)
             continue
-        regions.append(region(method, mine))
-        done += len(mine)
+        regions.append(region(method, mine, until=started + budget))
+        done += len(mine) if regions[-1].complete else 0
         if progress is not None:
             progress(done, total)
     return Stability(outcomes=tuple(outcomes), regions=tuple(regions), complete=done == total)
@@ -136,13 +137,16 @@ def stability(
 def _size(case: Case) -> float:
     """Return steps times what a part costs beside a step."""
     steps = float(case.options["integrator"].get("steps", 200))
-    parts = [value for name, value in case.options["tangential"].items() if name != "tolerance"]
+    parts = [
+        float(value) for name, value in case.options["tangential"].items() if name != "tolerance"
+    ]
     return steps * (1.0 + max([0.0, *parts]) ** 2 / 1e4)
 
 
 def _expected(case: Case, pace: Paces) -> float:
     seen = pace.get(case.method.name)
-    return _size(case) * (float(np.median(seen)) if seen else FIRST_PACE)
+    pace_now: float = statistics.median(seen) if seen else FIRST_PACE
+    return _size(case) * pace_now
 
 
 def _learn(case: Case, outcome: Outcome, pace: Paces) -> None:

@@ -76,13 +76,11 @@ def declared(
     growth = 1.0 + float(scene.chi) ** 0.5
     bound = ROUNDING
     for law in (tangential, integrator):
-        fineness = getattr(law, law.resolution) if law.resolution else None
         if law.resolution == "steps":
-            fineness = taken or fineness
-        if law.resolution == "steps":
-            bound += STEP * growth / fineness + PHASE * float(scene.chi) ** 1.5 / fineness**2
+            steps = taken or int(getattr(law, law.resolution))
+            bound += STEP * growth / steps + PHASE * float(scene.chi) ** 1.5 / steps**2
         elif law.resolution and law.resolution != "tolerance":
-            bound += PART * growth / fineness
+            bound += PART * growth / float(getattr(law, law.resolution))
     tolerance = _tolerance(integrator)
     within = range_of(scene)
     if tolerance and within.width > 0.0:
@@ -126,7 +124,7 @@ def broken_invariants(result: ImpactResult, bound: float, *, passive: bool = Tru
 def normal_error_allowed(integrator: Integrator, taken: int | None = None) -> float:
     """Return the largest |1 - e| of an elastic impact that the integrator may make."""
     if integrator.resolution == "steps":
-        steps: int = taken or getattr(integrator, "steps", 1)
+        steps = taken or int(getattr(integrator, integrator.resolution))
         return min(NORMAL / steps**2, LARGEST_NORMAL) + ROUNDING
     return TOLERANCE * (_tolerance(integrator) or 0.0) + ROUNDING
 

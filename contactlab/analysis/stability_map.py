@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import attrs
@@ -17,11 +18,14 @@ from contactlab.scene import Scene
 
 Array = NDArray[np.float64]
 
+NOT_TRIED = 3
+#: Seconds for a cell: at the same resolution a larger chi takes no less, and is not tried.
+LONGEST = 2.0
 #: psi1 of the impacts in each cell; the worst is shown.
 INCIDENCES = (0.3, 0.95, 1.2)
 CHIS = tuple(np.geomspace(0.05, 1e4, 17).tolist())
 STEPS = (1, 2, 3, 4, 6, 9, 14, 21, 32, 48, 72, 108, 162, 243, 365, 547, 820, 1230, 1845, 2768, 4152)
-TOLERANCES = tuple((10.0 ** -np.arange(0.0, 6.5, 0.5)).tolist())
+TOLERANCES = tuple((10.0 ** -np.arange(0.0, 6.1, 1.0)).tolist())
 QUICK_CHIS = (0.05, 0.5, 3.0, 30.0)
 QUICK_STEPS = (1, 5, 9, 30)
 QUICK_TOLERANCES = (0.1, 1e-3)
@@ -38,7 +42,10 @@ class Region:
     error : array, shape (rows, columns)
         NaN where every impact was refused.
     state : array of int
-        0 answered, 1 at least one impact refused, 2 at least one silently wrong.
+        0 answered, 1 at least one impact refused, 2 at least one silently wrong, 3 not tried:
+        a smaller chi took longer than ``LONGEST`` already, or the time was up.
+    complete : bool
+        False if the time was up.
     """
 
     method: str
@@ -49,6 +56,7 @@ class Region:
     state: NDArray[np.int8]
     tried: int
     wrong: int
+    complete: bool = True
 
 
 def region_cells(method: Method, *, quick: bool = False) -> list[tuple[float, float]]:
@@ -63,8 +71,11 @@ def region_cells(method: Method, *, quick: bool = False) -> list[tuple[float, fl
     return [(fine, chi) for fine in ladder for chi in (QUICK_CHIS if quick else CHIS)]
 
 
-def region(method: Method, cells: list[tuple[float, float]]) -> Region:
-    """Run the cells of a method."""
+def region(method: Method, cells: list[tuple[float, float]], *, until: float = np.inf) -> Region:
+    """Run the cells of a method, those of one resolution in order of chi.
+
+    ``until`` is the time (``time.perf_counter``) after which no cell is begun.
+    """
     word = _word(method)
     assert word is not None
     resolutions = tuple(dict.fromkeys(fine for fine, _ in cells))
@@ -72,8 +83,14 @@ def region(method: Method, cells: list[tuple[float, float]]) -> Region:
     error = np.full((len(resolutions), len(chis)), np.nan)
     state = np.zeros(error.shape, dtype=np.int8)
     tried = wrong = 0
+    complete = True
     for fine, chi in cells:
         place = resolutions.index(fine), chis.index(chi)
+        began = time.perf_counter()
+        complete = began < until
+        if not complete or state[place] == NOT_TRIED:
+            state[place] = NOT_TRIED
+            continue
         for psi1 in INCIDENCES:
             outcome = judge(_case(method, word, fine, psi1, chi))
             tried += 1
@@ -83,6 +100,8 @@ def region(method: Method, cells: list[tuple[float, float]]) -> Region:
             elif outcome.outcome != ANSWERED:
                 state[place] = max(state[place], 1)
             error[place] = np.fmax(error[place], outcome.error)
+        if time.perf_counter() - began > LONGEST:
+            state[place[0], place[1] + 1 :] = NOT_TRIED
     return Region(
         method=method.name,
         word=word,
@@ -92,6 +111,7 @@ def region(method: Method, cells: list[tuple[float, float]]) -> Region:
         state=state,
         tried=tried,
         wrong=wrong,
+        complete=complete,
     )
 
 

@@ -29,7 +29,7 @@ ACTIVE = {
 #: Closer than the default, so that the default can be judged.
 REFERENCE_TOLERANCES = (1e-11, 1e-9)
 #: Steps of a law's own reference: this many times the stability limit, and no fewer or more.
-FINE, FEWEST, MOST = 64, 4000, 100_000
+FINE, FEWEST, MOST = 16, 4000, 40_000
 
 #: Change of slip velocity in m/s, or None where there is nothing to judge by.
 Reference = Callable[[Scene, TangentialLaw], float | None]

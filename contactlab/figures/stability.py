@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from contactlab.analysis.stability_map import Region
@@ -21,37 +22,65 @@ from contactlab.figures.style import ORDERED_MAP, QUIET, RESOLUTION, styled
 #: Errors over the range at which the colour changes: whole decades.
 DECADES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 WRONG_COLOUR, REFUSED_COLOUR = "#D00000", "#E4E4E4"
-COLUMNS, PANEL_WIDTH, PANEL_HEIGHT = 4, 2.5, 2.2
+PANEL_WIDTH, PANEL_HEIGHT = 2.4, 2.0
+#: Steps at the stability limit over sqrt(chi).
+LIMIT = 2.85
+LIMIT_LOOK: Any = {"color": "black", "linestyle": (0, (4, 2)), "linewidth": 1.1}
 
 
 def draw_regions(path: Path, regions: Sequence[Region]) -> None:
     """Draw a panel a method and write a PNG."""
+    found = {tuple(region.method.split(" / ")): region for region in regions}
+    laws = list(dict.fromkeys(law for law, _ in found))
+    integrators = sorted({name for _, name in found}, key=_rank)
     with styled():
-        columns = min(COLUMNS, len(regions))
-        rows = math.ceil(len(regions) / columns)
-        size = (PANEL_WIDTH * columns + 1.0, PANEL_HEIGHT * rows + 0.9)
-        figure = Figure(figsize=size)
+        rows, columns = len(laws), len(integrators)
+        figure = Figure(figsize=(PANEL_WIDTH * columns + 1.3, PANEL_HEIGHT * rows + 1.0))
         FigureCanvasAgg(figure)
         panels = figure.subplots(rows, columns, squeeze=False, sharex=True)
         image = None
-        for place, axes in enumerate(panels.flat):
-            if place >= len(regions):
-                axes.set_visible(False)
-                continue
-            image = usable_region(axes, regions[place])
-            last = place + columns >= len(regions)
-            axes.tick_params(labelbottom=last)
-            if last:
-                axes.set_xlabel(r"inertia ratio $\chi$")
+        for row, law in enumerate(laws):
+            for column, integrator in enumerate(integrators):
+                axes, region = panels[row, column], found.get((law, integrator))
+                if region is None:
+                    _empty(axes)
+                else:
+                    image = usable_region(axes, region)
+                if row == 0:
+                    axes.set_title(integrator)
+                if row == rows - 1:
+                    axes.set_xlabel(r"inertia ratio $\chi$")
+            panels[row, 0].annotate(
+                law.replace("_", " "), (-0.42, 0.5), xycoords="axes fraction", rotation=90,
+                ha="center", va="center", fontsize=12.0,
+            )  # fmt: skip
         assert image is not None
-        bar = figure.colorbar(image, ax=panels, extend="both", ticks=DECADES, pad=0.015)
+        bar = figure.colorbar(
+            image, ax=panels, extend="both", ticks=DECADES, shrink=0.6, aspect=30, pad=0.02
+        )
+        bar.set_ticklabels([f"$10^{{{round(math.log10(error))}}}$" for error in DECADES])
         bar.set_label(r"worst error of $\psi_2$, over its possible range")
-        entries = [
-            Patch(facecolor=REFUSED_COLOUR, edgecolor=QUIET, hatch="////", label="refused"),
+        entries: list[Any] = [
+            Patch(facecolor=REFUSED_COLOUR, edgecolor=QUIET, hatch="////",
+                  label="refused (by default: refined)"),
             Patch(color=WRONG_COLOUR, label="silently wrong"),
-        ]
+            Patch(facecolor="white", edgecolor=QUIET, label="not tried, takes too long"),
+            Line2D([], [], label="stability limit", **LIMIT_LOOK),
+        ]  # fmt: skip
         figure.legend(handles=entries, loc="outside upper center", ncols=2)
         figure.savefig(path, dpi=RESOLUTION)
+
+
+def _rank(integrator: str) -> tuple[int, str]:
+    known = ("paper", "symplectic", "adaptive", "events")
+    return (known.index(integrator) if integrator in known else len(known)), integrator
+
+
+def _empty(axes: Axes) -> None:
+    """Say that law and integrator do not fit."""
+    axes.text(0.5, 0.5, "does not fit", transform=axes.transAxes, ha="center", color=QUIET)
+    axes.set_yticks([])
+    axes.spines[:].set_visible(False)
 
 
 def usable_region(axes: Axes, region: Region) -> Any:
@@ -66,6 +95,7 @@ def usable_region(axes: Axes, region: Region) -> Any:
     chi, fine = _edges(np.array(region.chis)), _edges(fineness)
     colours = mpl.colormaps[ORDERED_MAP + "_r"]
     norm = BoundaryNorm(DECADES, colours.N, extend="both")
+    axes.set_facecolor("white")
     answered = np.where(region.state == 0, region.error, np.nan)
     mesh = axes.pcolormesh(chi, fine, answered, cmap=colours, norm=norm)
     refused = np.ma.masked_where(region.state != 1, np.ones(region.state.shape))
@@ -85,7 +115,10 @@ def usable_region(axes: Axes, region: Region) -> Any:
     axes.set_yscale("log")
     if tolerance:
         axes.invert_yaxis()
-    axes.set_title(region.method, fontsize=10.0)
+    elif region.error.size and not region.method.startswith("coulomb"):
+        # omega dt = 2, theory §4; a rigid body has no stiffness.
+        axes.plot(chi, LIMIT * np.sqrt(chi), **LIMIT_LOOK)
+        axes.set_ylim(fine[0], fine[-1])
     axes.set_ylabel(region.word)
     return mesh
 

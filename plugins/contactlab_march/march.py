@@ -248,7 +248,8 @@ def march_at_once(
 ) -> Motion | None:
     """Follow the tangential motion with a law that takes all steps at once, if it will."""
     columns = table.columns
-    numbers = (*columns.contact[:2], columns.drift, columns.kick)
+    force, radius = columns.contact[:2]
+    numbers = (force, radius, columns.drift, columns.kick)
     mass, initial = problem.pair.tangential_mass, problem.slip_velocity
     response = law.run(problem, Run(*numbers, initial, mass))
     if response is None:

@@ -97,7 +97,7 @@ def test_a_law_that_is_wrong_is_found(factor):
 
 def test_a_wrong_law_nobody_knows_is_found_by_the_invariants():
     """Judged by itself, which agrees: friction that speeds the slip up is still found."""
-    outcome = judged(Spoiled(factor=-1.0), reference=lambda scene, law: None)
+    outcome = judged(Spoiled(factor=-1.0), reference=lambda *_: None)
     assert outcome.outcome == WRONG
     assert "speeds" in outcome.note
 
