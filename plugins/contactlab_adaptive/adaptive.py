@@ -25,6 +25,8 @@ from contactlab_adaptive.paths import ClosedPath, Leg, MarchedPath, NormalPath
 
 #: Attempts, accepted or not, after which the run ends with a status.
 MOST_ATTEMPTS = 200_000
+#: A contact that lasts longer than this many Hertz durations is given up.
+LONGEST_CONTACT = 10
 #: First step, longest step, and the step below which errors no longer matter, over the
 #: length of the impact. A law that jumps (annuli, rigid bodies) is stepped over at the last.
 FIRST, LONGEST, SHORTEST = 1e-3, 0.1, 1e-7
@@ -148,6 +150,9 @@ class _Run:
             if observer is not None:
                 for leg, taken in zip(trial.halves, (first, second), strict=True):
                     self._show(observer, leg, taken)
+            if self.path.end(place)[0] > LONGEST_CONTACT * float(self.problem.duration):
+                detail = f"After {LONGEST_CONTACT} durations of a Hertz impact."
+                break
             if trial.ended:
                 status, detail = Status.SUCCESS, ""
                 break

