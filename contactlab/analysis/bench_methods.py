@@ -24,7 +24,7 @@ NONDIMENSIONAL = (
 QUICK = ((0.5, 49 / 34), (1.2, 49 / 34), (3.0, 49 / 34), (1.2, 3.0))
 
 #: Ladders. A law's own resolution is the number of steps over ``STEPS_PER_PART``.
-STEPS = (25, 50, 100, 200, 400, 800)
+STEPS = (25, 50, 100, 200, 400)
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
 QUICK_RUNGS = 3
 STEPS_PER_PART = 4

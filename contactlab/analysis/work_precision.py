@@ -32,7 +32,7 @@ REPEATS, LONG = 5, 1.0
 #: less than ``SWEEP_BUDGET`` seconds.
 SWEEP, SWEEP_BUDGET = 500, 2.0
 #: A method slower than this an impact, in s, is not refined further.
-SLOW, SLOW_QUICK = 0.2, 0.05
+SLOW, SLOW_QUICK = 0.1, 0.05
 #: Errors below this are rounding: an order is fitted above it.
 ROUNDING = 1e-11
 #: A method whose log error falls by less than this over its ladder does not converge.
@@ -74,7 +74,8 @@ class Benchmark:
         """Return the Pareto front: rows that no other beats in both error and time."""
         best: list[Row] = []
         for row in sorted((row for row in self.rows if row.ok), key=lambda row: row.time_s):
-            if not best or row.error_rms < best[-1].error_rms:
+            # Below rounding nothing is better than anything else.
+            if not best or row.error_rms < max(best[-1].error_rms, ROUNDING):
                 best.append(row)
         return best
 
