@@ -25,8 +25,8 @@ from contactlab.analysis.stability_outcome import (
 
 #: A case expected to take longer than this is skipped, in s; much less in the quick set.
 LONGEST, QUICK_LONGEST = 20.0, 0.5
-#: Seconds that a method may take in the quick set; what is left then is skipped.
-QUICK_ALLOWANCE = 1.5
+#: Seconds that a method may take, the map apart; what is left then is skipped.
+ALLOWANCE, QUICK_ALLOWANCE = 40.0, 1.5
 #: Seconds that a step takes before a method has shown its own pace.
 FIRST_PACE = 2e-5
 #: Seconds a step of the runs so far, by method.
@@ -106,7 +106,7 @@ def stability(
     pace: Paces = {}
     spent: dict[str, float] = dict.fromkeys((method.name for method in methods), 0.0)
     longest = QUICK_LONGEST if quick else LONGEST
-    allowance = QUICK_ALLOWANCE if quick else np.inf
+    allowance = QUICK_ALLOWANCE if quick else ALLOWANCE
     done = 0
     # One family after another over all methods, so that a budget cuts all of them alike.
     for case in sorted((case for mine in listed for case in mine), key=lambda c: c.family):
@@ -124,7 +124,7 @@ def stability(
     for method, mine in zip(methods, cells, strict=True):
         if not mine or time.perf_counter() - started > budget:
             continue
-        if spent[method.name] > allowance:
+        if quick and spent[method.name] > allowance:
             done += len(mine)
             continue
         regions.append(region(method, mine, until=started + budget))

@@ -13,6 +13,7 @@ import argparse
 import csv
 import json
 import math
+import sys
 from pathlib import Path
 
 import attrs
@@ -62,7 +63,9 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     if arguments.csv:
         _write_csv(arguments.csv, found)
-    if arguments.figure:
+    if arguments.figure and not found.regions:
+        print("no map drawn: the budget ran out before it", file=sys.stderr)
+    elif arguments.figure:
         from contactlab.figures.stability import draw_regions  # matplotlib only when drawing
 
         draw_regions(arguments.figure, found.regions)
