@@ -1,0 +1,162 @@
+"""Edge slip of many impacts: panels, events, and how long the next panel is to be.
+
+The events of theory §5: slip stops (s psi falls to V), the front leaves its piece (or reaches
+the centre), the shrinking edge catches the front.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab_fronts.many.fronts import LaidFront, LockedFront
+from contactlab_fronts.many.hertz import contact
+from contactlab_fronts.many.impacts import DONE, UNSOLVED, Impacts
+from contactlab_fronts.many.nodes import NEVER, basis, first_crossing, lobatto, value
+from contactlab_fronts.many.panel import NODES, Panel, solve
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Rows = NDArray[np.intp]
+
+NO_EVENT, STOPS, LEAVES, CAUGHT = range(4)
+#: Radians of the fastest oscillation that one panel may hold: its square in x is 6 chi u at most.
+LONGEST_SWING = 2.0
+LONGEST = 0.8
+#: A piece is left this much beyond the guess of when, so that one panel sees it left.
+BEYOND, LEAST_REACH = 1.1, 1e-4
+#: A locked piece that ends this near the centre (in parts of zeta) is left like a square root.
+NEAR_CENTRE = 0.1
+#: An unfitted panel may hold this part of its length beyond the piece it was solved in.
+PART_INSIDE = 0.6
+#: Panels are refused this often in a row before an impact is given up, or an end is not fitted.
+MOST_ATTEMPTS, MOST_FITS = 40, 6
+#: Events this often in a row with no more progress than this are looked for later in the panel.
+MOST_IDLE, PROGRESS = 4, 1e-7
+#: psi1 below this is followed to the same absolute error.
+LEAST_SCALE = 1e-6
+#: Moves of psi, in parts of the tolerance, at which iteration stops and a panel is good.
+SETTLED, CONVERGED = 1e-3, 1e-2
+
+
+def advance(impacts: Impacts, who: Rows, tolerance: float, *, laid: bool, fitted: bool) -> None:
+    """Take one panel for impacts whose outermost piece was laid down, or locked.
+
+    Panels are refused, and come again shorter or fitted to an event, if they did not converge
+    or are not resolved.
+    """
+    pieces, rows, sign = impacts.pieces, impacts.outermost[who], impacts.sign[who]
+    inner_q = pieces["inner_q"][rows]
+    goal = inner_q + sign * pieces["inner_f"][rows]
+    if laid:
+        flat = (inner_q == 0.0) | (pieces["began"][rows] == sign)
+    else:
+        flat = inner_q < NEAR_CENTRE * np.sin(impacts.phase[who]) ** 2
+    free = _length(impacts, who)
+    reach = impacts.most[who] if fitted else _reach(impacts, who, goal)
+    held = reach < free
+    length = reach if fitted else np.minimum(free, reach)
+    front = (LaidFront if laid else LockedFront)(impacts, who)
+    limit = tolerance * np.clip(impacts.psi1[who], LEAST_SCALE, 1.0)
+    panel = solve(impacts, who, front, length, goal, SETTLED * limit, fitted=fitted)
+
+    converged = panel.update < CONVERGED * limit
+    growth = 0.9 * (limit / (panel.tail + 1e-300)) ** (1.0 / NODES)
+    good = converged & (panel.tail < limit)
+    shorter = np.where(converged, np.clip(growth, 0.2, 0.8), 0.5)
+
+    tau, event, leaves = _events(panel, goal, impacts.idle[who] > MOST_IDLE)
+    if fitted:
+        event = np.where(tau > 1.0, LEAVES, event)
+        again = np.zeros_like(good)
+    else:
+        # flat ends are fitted; far beyond a kink a panel is not to be trusted
+        near = leaves * panel.length
+        to_fit = (leaves <= 1.0) & flat & (impacts.attempts[who] < MOST_FITS) & (near > 1e-9)
+        cut = (leaves <= 1.0) & ~to_fit & (near > PROGRESS)
+        cut &= ~good | (laid & (leaves < PART_INSIDE))
+        impacts.fitted[who[to_fit]] = True
+        impacts.most[who[to_fit]] = near[to_fit]
+        part = np.minimum(1.02 * leaves, np.where(good, 1.0, shorter))
+        _refuse(impacts, who[cut], (part * panel.length)[cut])
+        again = to_fit | cut
+    refused = ~good & ~again
+    _refuse(impacts, who[refused], (shorter * panel.length)[refused])
+    done = np.flatnonzero(good & ~again)
+    if done.size:
+        wanted = panel.length * np.clip(growth, 0.5, 3.0)
+        # a panel kept short by its piece says nothing against longer ones
+        wanted = np.where(held, np.maximum(wanted, impacts.usual[who]), wanted)
+        _accept(impacts, who[done], panel, done, tau[done], event[done], wanted[done])
+
+
+def _length(impacts: Impacts, who: Rows) -> Array:
+    """Return the longest panel that the oscillation and the last error estimate allow."""
+    phase = impacts.phase[who]
+    swing = LONGEST_SWING / np.sqrt(6.0 * impacts.chi[who] * np.sin(phase) + 0.5)
+    length = np.minimum(np.minimum(np.pi - phase, LONGEST), swing)
+    return np.asarray(np.minimum(length, np.minimum(impacts.most[who], impacts.usual[who])))
+
+
+def _reach(impacts: Impacts, who: Rows, goal: Array) -> Array:
+    """Guess when the piece is left: zeta - s D falls to its goal after M = r t + a t²/2."""
+    sign = impacts.sign[who]
+    now = contact(impacts.phase[who])
+    margin = now.approach - sign * impacts.slip[who] - goal
+    fall = now.pace * (sign * impacts.velocity(who) - now.rate)
+    pull = 2.5 * impacts.chi[who] * sign * impacts.force[who]
+    gain = (1.25 * now.approach * now.radius - pull) * now.pace**2
+    inside = fall * fall + 2.0 * margin * gain
+    reach = 2.0 * margin / (fall + np.sqrt(np.maximum(inside, 0.0)) + 1e-300)
+    known = (inside > 0.0) & (reach > 0.0)
+    return np.where(known, np.maximum(BEYOND * reach, LEAST_REACH), np.inf)
+
+
+def _events(panel: Panel, goal: Array, idle: Flags) -> tuple[Array, Rows, Array]:
+    """Return (tau, which) of the first event, and the tau at which the piece is left."""
+    nodes = lobatto(NODES)
+    sign, now = panel.sign, panel.now
+    stops = first_crossing(nodes, sign * panel.velocity - now.rate)
+    caught = first_crossing(nodes, now.approach - panel.front)
+    leaves = np.full(stops.shape, NEVER)
+    if not panel.fitted:
+        leaves = first_crossing(nodes, now.approach - sign * panel.slip - goal)
+    for found in (stops, caught):
+        found[idle & (found < nodes.points[1])] = NEVER
+    tau = np.minimum(np.minimum(stops, caught), leaves)
+    event = np.where(tau == stops, STOPS, np.where(tau == caught, CAUGHT, LEAVES))
+    return np.minimum(tau, NEVER), np.where(tau > 1.0, NO_EVENT, event), leaves
+
+
+def _refuse(impacts: Impacts, who: Rows, length: Array) -> None:
+    impacts.fitted[who] = False
+    impacts.most[who] = length
+    impacts.attempts[who] += 1
+    impacts.doing[who[impacts.attempts[who] > MOST_ATTEMPTS]] = UNSOLVED
+
+
+def _accept(
+    impacts: Impacts, who: Rows, panel: Panel, columns: Rows, tau: Array, event: Rows, wanted: Array
+) -> None:
+    """Go to the event, or to the end of the panel, and on to the next phase."""
+    tau = np.minimum(tau, 1.0)
+    weights = basis(lobatto(NODES), tau)
+    phase = panel.phase(columns, tau)
+    progress = phase - impacts.phase[who]
+    impacts.phase[who] = phase
+    impacts.change[who] += value(weights, panel.change[:, columns])
+    impacts.slip[who] = value(weights, panel.slip[:, columns])
+    impacts.force[who] = value(weights, panel.force[:, columns])
+    impacts.usual[who] = wanted
+    impacts.most[who] = np.inf
+    impacts.fitted[who] = False
+    impacts.attempts[who] = 0
+    impacts.idle[who] = np.where(progress < PROGRESS, impacts.idle[who] + 1, 0)
+
+    impacts.doing[who[(event == NO_EVENT) & (phase >= np.pi - 1e-12)]] = DONE
+    stops = event == STOPS
+    front = np.maximum(value(weights, panel.front[:, columns])[stops], 0.0)
+    least = impacts.pieces["inner_q"][impacts.outermost[who[stops]]]
+    impacts.lock(who[stops], np.maximum(front, least))
+    impacts.leave_piece(who[event == LEAVES])
+    impacts.slip_back(who[event == CAUGHT])
