@@ -108,7 +108,7 @@ def exchange(response: Array, annulus: int) -> Array:
 @lru_cache(maxsize=8)
 def tables(annuli: int, mean: bool = False) -> Tables:
     """Return the tables for ``annuli`` annuli, made once."""
-    inverse_shape = np.linalg.inv(traction_shape(annuli))
+    inverse_shape = np.asarray(np.linalg.inv(traction_shape(annuli)), dtype=np.float64)
     ring = 0.5 * np.pi * (np.arange(1, annuli + 1) / annuli) ** 2
     weight: Array = ring @ inverse_shape
     midpoint = 0.5 * influence(annuli) @ inverse_shape
