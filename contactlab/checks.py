@@ -100,7 +100,9 @@ def whole(argument: str, value: object, *, least: int = 1, most: int = 10_000_00
 
 def _checked(value: object, _: object, field: attrs.Attribute[Any]) -> Real:
     meta = field.metadata
-    return real(field.name, value, rule=meta["rule"], remedy=f"give it in {meta['unit']}")
+    unit = meta["unit"]
+    remedy = "it has no unit" if unit == "1" else f"give it in {unit}"
+    return real(field.name, value, rule=meta["rule"], remedy=remedy)
 
 
 def _same(left: object, right: object) -> bool:

@@ -64,7 +64,7 @@ def write_json(result: ImpactResult, path: str | Path) -> None:
 def write_csv(result: ImpactResult, path: str | Path) -> None:
     """Write one row an impact, the unit in each heading."""
     table = [_spread(read(result), result.scene.shape) for _, _, read in COLUMNS]
-    headings = [f"{name} ({unit})" if unit else name for name, unit, _ in COLUMNS]
+    headings = [f"{name} ({_unit(unit, result)})" if unit else name for name, unit, _ in COLUMNS]
     _write_table(path, headings, list(zip(*table, strict=True)))
 
 
@@ -80,7 +80,7 @@ def write_history_csv(result: ImpactResult, path: str | Path) -> None:
     if history is None or result.scene.shape:
         raise ValueError("result: has no history of a single impact; run(scene, history=True)")
     columns = history.columns()
-    headings = [f"{name} ({history.unit(name)})" for name in columns]
+    headings = [f"{name} ({_unit(history.unit(name), result)})" for name in columns]
     _write_table(path, headings, list(zip(*columns.values(), strict=True)))
 
 
@@ -93,6 +93,11 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
         columns = result.history.columns() | result.history.fields
         arrays |= {f"history_{name}": column for name, column in columns.items()}
     np.savez_compressed(path, **arrays)  # type: ignore[arg-type]
+
+
+def _unit(unit: str, result: ImpactResult) -> str:
+    """Return the unit of a column; the paper's own scenes have none."""
+    return "1" if result.scene.sphere is None else unit
 
 
 def _spread(value: Any, shape: tuple[int, ...]) -> list[Any]:

@@ -122,8 +122,10 @@ class Registry:
         unknown = [option for option in options if option not in signature.parameters]
         if unknown:
             known = ", ".join(signature.parameters) or "no options"
+            near = difflib.get_close_matches(unknown[0], signature.parameters, n=1)
+            hint = f"did you mean {near[0]!r}? " if near else ""
             raise refuse(
-                unknown[0], options[unknown[0]], f"{name} does not know it", f"it has {known}"
+                unknown[0], options[unknown[0]], f"{name} does not know it", f"{hint}it has {known}"
             )
         try:
             return law(**options)

@@ -147,7 +147,12 @@ class Simulation:
         started = time.perf_counter()
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(list(scenes))
         if len(batch.shape) != 1:
-            raise refuse("scenes", batch.shape, "must be a sequence, or a one-dimensional batch")
+            raise refuse(
+                "scenes",
+                batch.shape,
+                "must be a sequence, or a one-dimensional batch",
+                "for one impact use run",
+            )
         size, step = batch.shape[0], whole("chunk", chunk)
         motions: list[Motion] = []
         done = 0
@@ -186,7 +191,9 @@ class Simulation:
 
     def _integrate(self, scene: Scene, recorder: Recorder | None) -> Motion:
         try:
-            return self.integrator.integrate(self.problem(scene), recorder)
+            # Where a user has asked for errors of underflow: small numbers may vanish here.
+            with np.errstate(under="ignore"):
+                return self.integrator.integrate(self.problem(scene), recorder)
         except Exception as error:
             where = traceback.extract_tb(error.__traceback__)[-1]
             detail = f"{type(error).__name__}: {error} ({where.name}, line {where.lineno})"

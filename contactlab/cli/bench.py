@@ -86,7 +86,7 @@ def _report(benchmark: Benchmark) -> str:
         lines.append([row.method, row.options, *errors, *times, note])
     headings = [
         "method", "resolution", "psi2 rms", "psi2 worst", "force rms", "books worst",
-        "one impact", "in a sweep", "",
+        "one impact", "in a sweep", "note",
     ]  # fmt: skip
     text = table(headings, lines, digits=2)
     orders = [[name, order] for name, order in benchmark.orders.items() if order == order]

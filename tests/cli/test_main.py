@@ -12,6 +12,7 @@ import pytest
 import contactlab
 from contactlab.cli import main as module
 from contactlab.cli import run as run_command
+from contactlab.simulation import CHUNK
 
 COMMAND = [sys.executable, "-m", "contactlab"]
 PSI = ["run", "--psi1", "6", "--chi", "1", "--tangential", "coulomb"]
@@ -87,7 +88,7 @@ def test_reader_that_has_gone_is_no_error():
 def test_interrupted_sweep_reports_what_is_done(tmp_path):
     path = tmp_path / "long.toml"
     path.write_text(
-        "[nondimensional]\nchi = 1\n[sweep]\npsi1 = {start = 0, stop = 3, count = 30000}\n"
+        "[nondimensional]\nchi = 1\n[sweep]\npsi1 = {start = 0, stop = 3, count = 60000}\n"
         "[simulation]\ntangential = 'coulomb'\nintegrator = 'symplectic'\n",
         encoding="utf-8",
     )
@@ -95,7 +96,7 @@ def test_interrupted_sweep_reports_what_is_done(tmp_path):
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as running:
-        assert running.stderr.readline().startswith("impacts: 1000/")
+        assert running.stderr.readline().startswith(f"impacts: {CHUNK}/")
         running.send_signal(signal.SIGINT)
         out, err = running.communicate()
     assert running.returncode == module.INTERRUPTED

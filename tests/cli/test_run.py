@@ -99,8 +99,8 @@ def test_out_files(run, short_sweep, tmp_path):
 def test_history_file(run, tmp_path):
     assert run("run", *PSI, "--history", tmp_path / "h.csv").status == 0
     rows = table(tmp_path / "h.csv")
-    force = np.array([float(row["tangential_force (N)"]) for row in rows])
-    normal = np.array([float(row["normal_force (N)"]) for row in rows])
+    force = np.array([float(row["tangential_force (1)"]) for row in rows])
+    normal = np.array([float(row["normal_force (1)"]) for row in rows])
     assert len(rows) > 100
     assert force == pytest.approx(normal, rel=1e-9, abs=1e-12)  # mu = 1, slips throughout
 

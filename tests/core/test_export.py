@@ -48,7 +48,7 @@ def test_history_csv(tmp_path):
     write_history_csv(result, tmp_path / "h.csv")
     rows = table(tmp_path / "h.csv")
     assert [
-        float(row["tangential_force (N)"]) for row in rows
+        float(row["tangential_force (1)"]) for row in rows
     ] == result.history.tangential_force.tolist()
     with pytest.raises(ValueError, match="history"):
         write_history_csv(SIM.run(SINGLE), tmp_path / "no.csv")

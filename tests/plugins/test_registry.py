@@ -29,7 +29,8 @@ def test_create_passes_options_and_checks_them():
     with pytest.raises(ValueError, match=r"integrator.paper: steps = 0: must be a whole number"):
         contactlab.create("integrator.paper", steps=0)
     with pytest.raises(
-        ValueError, match=r"step = 3: integrator.paper does not know it; it has steps"
+        ValueError,
+        match=r"step = 3: integrator.paper does not know it; did you mean 'steps'\? it has steps",
     ):
         contactlab.create("integrator.paper", step=3)
 
