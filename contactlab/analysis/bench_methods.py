@@ -78,7 +78,7 @@ class Method:
                 options["tangential"][law] = max(count // per_part, least)
             if _accepted(f"integrator.{self.integrator}", options["integrator"]):
                 ladder.append(options)
-        return ladder[1::2][:QUICK_RUNGS] if quick and len(ladder) > 1 else ladder
+        return ladder[::2][:QUICK_RUNGS] if quick and len(ladder) > 1 else ladder
 
     def simulation(self, options: dict[str, dict[str, Any]]) -> Simulation:
         """Return the composition at one rung."""

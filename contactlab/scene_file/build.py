@@ -78,7 +78,7 @@ def _target(root: Table) -> Sphere | HalfSpace:
     kind = raw.get("kind") if isinstance(raw, Mapping) else None
     if kind is None and isinstance(raw, Mapping):
         raise ValueError('target.kind: is missing; give "half-space" or "sphere"')
-    if kind is not None and kind not in kinds:
+    if kind is not None and not (isinstance(kind, str) and kind in kinds):
         raise refuse("target.kind", kind, 'must be "half-space" or "sphere"')
     table = Table(raw, "target", known=kinds.get(str(kind), ()))
     return HalfSpace(_material(table)) if kind == "half-space" else _sphere(table)

@@ -21,6 +21,8 @@ from contactlab.analysis.bench_methods import methods
 from contactlab.registry import REGISTRY
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
+#: chi above which the oscillations of one impact are counted in the hundreds.
+SLOW = 1e3
 FOLDER = Path(tempfile.mkdtemp(prefix="contactlab"))
 METHODS = methods()
 CHEAP = {"annuli": 5, "springs": 5, "rings": 5, "steps": 20}
@@ -67,7 +69,8 @@ def answered(result) -> None:
 def refused(make, names):
     """Return what ``make`` makes, or None if it refuses as it should."""
     try:
-        return make()
+        with np.errstate(all="ignore"):  # arrays that overflow on the way to a refusal
+            return make()
     except (ValueError, PluginError) as error:
         named(error, names)
         return None
@@ -117,8 +120,9 @@ def test_scenes_of_the_paper_of_anything(psi1, chi):
     scene = refused(
         lambda: Scene.nondimensional(psi1=psi1, chi=chi), ("psi1", "chi", "Scene", *PAIR)
     )
-    if scene is not None and np.size(scene.psi1) < 10:
-        with np.errstate(all="ignore"):
+    # Above, the exact solution takes seconds before it gives up.
+    with np.errstate(all="ignore"):
+        if scene is not None and np.size(scene.psi1) < 10 and np.max(scene.chi) < SLOW:
             answered(Simulation().run(scene))
 
 
