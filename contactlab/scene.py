@@ -197,7 +197,8 @@ class Scene:
     @property
     def maximum_approach(self) -> Real:
         """C² R, the largest approach of a Hertz impact, in m."""
-        return self.size_ratio**2 * self.pair.radius
+        ratio = self.size_ratio  # a product: a float squared raises OverflowError
+        return ratio * ratio * self.pair.radius
 
     @property
     def duration(self) -> Real:

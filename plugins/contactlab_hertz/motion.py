@@ -92,7 +92,7 @@ class HertzMotion(ClosedFormMotion):
     def of(cls, pair: Pair, speed: Real) -> HertzMotion:
         """Return the motion of ``pair`` meeting at ``speed`` (m/s), eqs (7)-(9)."""
         ratio = size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, speed)
-        approach = ratio**2 * pair.radius
+        approach = ratio * ratio * pair.radius
         # P_max follows from energy: ½ M v1² = (2/5) P_max C² R.
         force = 1.25 * pair.normal_mass * speed * speed / approach
         return cls(speed, approach, force, ratio * pair.radius)
