@@ -43,7 +43,7 @@ class State(NamedTuple):
 
 
 def _is_displacement(_: object, attribute: attrs.Attribute[str], value: object) -> None:
-    if value not in ("midpoint", "mean"):
+    if not isinstance(value, str) or value not in ("midpoint", "mean"):
         raise refuse(attribute.name, value, "must be 'midpoint' or 'mean'")
 
 

@@ -67,7 +67,7 @@ class MindlinCap(SteppedTangentialLaw):
 
     @form.validator
     def _known(self, _: Any, value: object) -> None:
-        if value not in FORMS:
+        if not isinstance(value, str) or value not in FORMS:
             raise ValueError(f"form = {value!r}: must be one of {', '.join(FORMS)}")
 
     def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
