@@ -104,7 +104,7 @@ def broken_invariants(result: ImpactResult, bound: float, *, passive: bool = Tru
     broken = []
     allowed = min(bound, LARGEST_GAIN)
     along = -change * np.sign(float(scene.slip_velocity))
-    if along < -allowed * width:
+    if along < -allowed * width and passive:
         broken.append("friction speeds the slip up")
     gripped = width < 2.0 * speed  # the range is that of slip throughout, 4 chi
     if along > (1.0 + allowed) * width and (passive or gripped):

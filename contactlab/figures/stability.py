@@ -80,6 +80,7 @@ def _empty(axes: Axes) -> None:
     """Say that law and integrator do not fit."""
     axes.text(0.5, 0.5, "does not fit", transform=axes.transAxes, ha="center", color=QUIET)
     axes.set_yticks([])
+    axes.tick_params(bottom=False)
     axes.spines[:].set_visible(False)
 
 
