@@ -106,7 +106,7 @@ def _scaled(problem: Problem) -> Impact:
     return Impact(
         motion=motion,
         velocity=slip_velocity / unit if unit else 0.0,
-        inertia=kappa * force * approach / (float(pair.tangential_mass) * speed**2),
+        inertia=kappa * (force / speed) * (approach / speed) / float(pair.tangential_mass),
         slip_velocity=slip_velocity,
         speed=speed,
         velocity_unit=unit,

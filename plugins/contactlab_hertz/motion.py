@@ -94,7 +94,7 @@ class HertzMotion(ClosedFormMotion):
         ratio = size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, speed)
         approach = ratio * ratio * pair.radius
         # P_max follows from energy: ½ M v1² = (2/5) P_max C² R.
-        force = 1.25 * pair.normal_mass * speed * speed / approach
+        force = 1.25 * pair.normal_mass * speed * (speed / approach)  # the square may underflow
         return cls(speed, approach, force, ratio * pair.radius)
 
     @property

@@ -75,3 +75,17 @@ def test_single_precision_and_integers_are_widened():
         wide = Simulation().run(Scene.nondimensional(psi1=float(psi1), chi=float(chi))).psi2
         assert narrow == wide
     assert contactlab.Status.SUCCESS
+
+
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.name)
+@pytest.mark.parametrize("speed", [1e-165, 1e-12, 1e4])
+def test_speeds_whose_squares_underflow(method, speed):
+    """psi2 depends on the ratio of speeds alone, at 1e-165 m/s too."""
+    ball = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
+    plain, other = (
+        simulation(method)
+        .run(Scene(Sphere(0.01, ball), HalfSpace(ball), 0.2, normal, 0.3 * normal))
+        .check()
+        for normal in (1.0, speed)
+    )
+    assert other.psi_change == pytest.approx(plain.psi_change, rel=1e-9, abs=1e-12)
