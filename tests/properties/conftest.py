@@ -23,6 +23,10 @@ settings.load_profile("long" if "CONTACTLAB_EXAMPLES" in os.environ else "quick"
 
 def pytest_terminal_summary(terminalreporter):
     """Say how many inputs the properties were tried on."""
+    for name, module in list(sys.modules.items()):
+        if "test_injected_nan" in name:
+            counts = ", ".join(f"{count} {what}" for what, count in module.TRIED.items())
+            terminalreporter.write_line(f"injected: {counts}")
     modules = [module for name, module in sys.modules.items() if "test_bad_input" in name]
     tried = {name: count for module in modules for name, count in module.TRIED.items()}
     if tried:

@@ -25,6 +25,8 @@ from contactlab.contracts import (
 from contactlab.registry import REGISTRY
 
 STEPS = 9
+#: Bad values that were met by a run, and those of them that it reported.
+TRIED = {"bad values met": 0, "of them reported": 0}
 NAN, INFINITY = math.nan, math.inf
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 #: Two impacts: one that sticks at first, in the paper's units, and one that slips, in SI.
@@ -233,7 +235,9 @@ def every_step(make, scene, value, most=400):
             found = answer(make(spoil), scene)
             if not spoil.struck:
                 break
+            TRIED["bad values met"] += 1
             if found is None:
+                TRIED["of them reported"] += 1
                 reported += 1
                 continue
             assert found == pytest.approx(clean, rel=close), (
