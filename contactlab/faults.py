@@ -6,7 +6,6 @@ that only where an answer is not a plain float.
 
 from __future__ import annotations
 
-import traceback
 from typing import Any
 
 import numpy as np
@@ -51,6 +50,8 @@ def told(law: Law, what: str, step: int, time: Any = None) -> str:
 
 def raised(error: Exception) -> str:
     """Say what was raised and where."""
+    import traceback  # only where there is something to tell
+
     where = traceback.extract_tb(error.__traceback__)[-1]
     return f"{type(error).__name__}: {error} ({where.name}, line {where.lineno})"
 

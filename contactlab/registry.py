@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import difflib
-import inspect
 import os
-from importlib import metadata
+from functools import cached_property
 from types import ModuleType
 from typing import Any
 
@@ -50,12 +48,18 @@ class Registry:
     """
 
     def __init__(self) -> None:
-        self._manager = pluggy.PluginManager(hookspecs.PROJECT)
-        self._manager.add_hookspecs(hookspecs)
         self._loaded: dict[str, tuple[type[Law], PluginInfo]] = {}
+
+    @cached_property
+    def _manager(self) -> pluggy.PluginManager:
+        manager = pluggy.PluginManager(hookspecs.PROJECT)
+        manager.add_hookspecs(hookspecs)
+        return manager
 
     def installed(self) -> list[PluginInfo]:
         """Return every law found, sorted by kind and name, without importing any."""
+        from importlib import metadata  # 20 ms that only those who look for laws pay
+
         infos = {
             PluginInfo(
                 name=point.name,
@@ -118,10 +122,14 @@ class Registry:
             If the plug-in cannot be imported or breaks the contract, with its traceback.
         """
         law = self.law_class(name)
+        import inspect
+
         signature = inspect.signature(law)
         unknown = [option for option in options if option not in signature.parameters]
         if unknown:
             known = ", ".join(signature.parameters) or "no options"
+            import difflib
+
             near = difflib.get_close_matches(unknown[0], signature.parameters, n=1)
             hint = f"did you mean {near[0]!r}? " if near else ""
             raise refuse(
@@ -142,6 +150,8 @@ class Registry:
     def _load(self, info: PluginInfo) -> type[Law]:
         source = f"{info.name!r} of {info.distribution} {info.version}"
         try:
+            from importlib import metadata
+
             module = metadata.EntryPoint(info.name, info.module, GROUP).load()
         except (Exception, SystemExit) as error:
             raise PluginError(f"{source} could not be imported: {_short(error)}") from error
@@ -173,6 +183,8 @@ class Registry:
 
     def _unknown(self, name: str) -> ValueError:
         names = self.names()
+        import difflib
+
         nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
         if not nearest and "." not in str(name):
             nearest = [known for known in names if known.endswith(f".{name}")][:1]
@@ -192,7 +204,7 @@ def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
         raise PluginError(f"{source} returned {law!r}, which is not the class of a law")
     if law.kind != info.kind:
         raise PluginError(f"{source} returned {law.__name__}, a {law.kind} law")
-    if inspect.isabstract(law):
+    if law.__abstractmethods__:
         missing = ", ".join(sorted(law.__abstractmethods__))
         raise PluginError(f"{source}: {law.__name__} does not define {missing}")
     version = getattr(law, "api_version", None)

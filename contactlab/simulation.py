@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-import traceback
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -195,6 +194,8 @@ class Simulation:
             with np.errstate(under="ignore"):
                 return self.integrator.integrate(self.problem(scene), recorder)
         except Exception as error:
+            import traceback  # only where there is something to tell
+
             where = traceback.extract_tb(error.__traceback__)[-1]
             detail = f"{type(error).__name__}: {error} ({where.name}, line {where.lineno})"
             return attrs.evolve(_undone(scene.shape, Status.LAW_RAISED), detail=detail)
