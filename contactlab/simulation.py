@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab import composition
+from contactlab import composition, faults
 from contactlab.checks import Real, refuse, whole
 from contactlab.contracts.integrator import (
     MOTION_ENTRIES,
@@ -194,11 +194,8 @@ class Simulation:
             with np.errstate(under="ignore"):
                 return self.integrator.integrate(self.problem(scene), recorder)
         except Exception as error:
-            import traceback  # only where there is something to tell
-
-            where = traceback.extract_tb(error.__traceback__)[-1]
-            detail = f"{type(error).__name__}: {error} ({where.name}, line {where.lineno})"
-            return attrs.evolve(_undone(scene.shape, Status.LAW_RAISED), detail=detail)
+            undone = _undone(scene.shape, Status.LAW_RAISED)
+            return attrs.evolve(undone, detail=faults.raised(error))
 
     def _closed_form(self, scene: Scene, plan: Plan, recorder: Recorder | None) -> Motion:
         """Return the motion of impacts with no tangential march: none, or eq. (45)."""

@@ -93,6 +93,34 @@ def add_progress(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_report(parser: argparse.ArgumentParser) -> None:
+    """Add what reports over all laws share: the laws, the size, the outputs."""
+    parser.add_argument(
+        "--law",
+        action="append",
+        metavar="NAME",
+        help="a tangential law, installed or of a plug-in; may be repeated (default: all)",
+    )
+    parser.add_argument("--quick", action="store_true", help="fewer scenes and resolutions")
+    parser.add_argument(
+        "--budget",
+        type=finite,
+        default=math.inf,
+        metavar="SECONDS",
+        help="begin no further run after this time",
+    )
+    parser.add_argument("--figure", type=file_of(".png"), metavar="FILE.png")
+    parser.add_argument("--csv", type=file_of(".csv"), metavar="FILE.csv")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
+    add_progress(parser)
+
+
+def check_budget(seconds: float) -> None:
+    """Refuse a budget that is not positive."""
+    if seconds <= 0.0:
+        raise ValueError(f"--budget {seconds:g}: must be positive, in seconds")
+
+
 def progress(asked: bool | None, what: str) -> Callable[[int, int], object] | None:
     """Return a function that shows progress on stderr, or None."""
     if asked is None:

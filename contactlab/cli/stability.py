@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import csv
 import json
-import math
 import sys
 from pathlib import Path
 
@@ -31,30 +30,12 @@ LISTED = 40
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the laws, the size, and the outputs."""
-    parser.add_argument(
-        "--law",
-        action="append",
-        metavar="NAME",
-        help="a tangential law, installed or of a plug-in; may be repeated (default: all)",
-    )
-    parser.add_argument("--quick", action="store_true", help="fewer scenes and resolutions")
-    parser.add_argument(
-        "--budget",
-        type=shared.finite,
-        default=math.inf,
-        metavar="SECONDS",
-        help="begin no further run after this time",
-    )
-    parser.add_argument("--figure", type=shared.file_of(".png"), metavar="FILE.png")
-    parser.add_argument("--csv", type=shared.file_of(".csv"), metavar="FILE.csv")
-    parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
-    shared.add_progress(parser)
+    shared.add_report(parser)
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the report; a single silently wrong answer makes it fail."""
-    if arguments.budget <= 0.0:
-        raise ValueError(f"--budget {arguments.budget:g}: must be positive, in seconds")
+    shared.check_budget(arguments.budget)
     found = stability(
         methods(arguments.law),
         quick=arguments.quick,
