@@ -33,6 +33,7 @@ COLUMNS: tuple[tuple[str, str, Callable[[ImpactResult], Any]], ...] = (
     ("rebound_angle", "rad", lambda result: result.rebound_angle),
     ("local_rebound_angle", "rad", lambda result: result.local_rebound_angle),
     ("contact_time", "s", lambda result: result.motion.duration),
+    ("normal_loss", "J", lambda result: result.energy.normal_loss),
     ("friction_work", "J", lambda result: result.energy.friction_work),
     ("energy_imbalance", "J", lambda result: result.energy.imbalance),
     ("status", "", lambda result: result.status),

@@ -81,6 +81,7 @@ def _energy(result: ImpactResult) -> list[Row]:
     return [
         ["start", energy.start, "J"],
         ["end", energy.end, "J"],
+        ["loss of the normal motion", energy.normal_loss, "J"],
         ["friction work, added up", energy.friction_work, "J"],
         ["imbalance", energy.imbalance, "J"],
         ["imbalance / start", energy.relative_imbalance, "1"],

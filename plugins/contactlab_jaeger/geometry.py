@@ -40,7 +40,8 @@ def of_one(places: Places, before: float, after: float, pressure: Real) -> Geome
     share = room[settled:]
     if settled < reach:
         share = np.minimum(share / (after - before), 1.0)
-    return Geometry(settled, share, pressure * room, places.weights_within(after, reach))
+    limit = (pressure * places.lift(after)) * room
+    return Geometry(settled, share, limit, places.weights_within(after, reach))
 
 
 def of_each(places: Places, before: Real, after: Array, pressure: Real) -> Geometry:
@@ -56,5 +57,5 @@ def of_each(places: Places, before: Real, after: Array, pressure: Real) -> Geome
     grows = growth > 0.0
     share = np.clip(room[settled:] / np.where(grows, growth, 1.0), 0.0, 1.0)
     weights = np.where(room > 0.0, places.weights(after)[:reach], places.measure[:reach, None])
-    limit = pressure * np.maximum(room, 0.0)
+    limit = (pressure * places.lift(after)) * np.maximum(room, 0.0)
     return Geometry(settled, np.where(grows, share, 1.0), limit, weights)

@@ -7,6 +7,8 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.checks import Real
+
 Array = NDArray[np.float64]
 
 
@@ -38,3 +40,7 @@ class Places(ABC):
     @abstractmethod
     def weights_within(self, square: float, reach: int) -> Array:
         """Return the same for one contact, of its ``reach`` places only."""
+
+    def lift(self, square: Real) -> Real:  # noqa: ARG002
+        """Return the factor on the limits for which gross slip gives b³: 1 if the weights do."""
+        return 1.0

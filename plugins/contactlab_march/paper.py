@@ -75,9 +75,11 @@ class PaperSteps(Integrator):
         for _ in range(LONGEST_CONTACT * steps):
             approach = approach + rate * step
             contact, state = normal.respond(state, approach, rate)
-            rate = rate - contact.force * step / mass
+            loss = contact.force * step / mass
+            middle = rate - 0.5 * loss  # at the sample, as the slip velocity in a history
+            rate = rate - loss
             time = time + step * touching
-            yield Step(contact, step, step, contact.force, time, approach, rate)
+            yield Step(contact, step, step, contact.force, time, approach, middle)
             touching = touching & (contact.overlap > 0.0)
             if not (touching.any() if problem.shape else touching):
                 end.duration, end.rate = time, rate

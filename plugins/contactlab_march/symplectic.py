@@ -104,8 +104,10 @@ class Symplectic(Integrator):
             inside = before / (before - contact.overlap + (contact.overlap == before))
             time = time + drift * np.where(ending, inside, np.where(touching, 1.0, 0.0))
             touching = touching & ~ending if problem.shape else bool(touching and not ending)
-            rate = rate - contact.force * step / mass
-            yield Step(contact, drift, step, contact.force, time, approach, rate)
+            loss = contact.force * step / mass
+            middle = rate - 0.5 * loss  # at the sample, to second order
+            rate = rate - loss
+            yield Step(contact, drift, step, contact.force, time, approach, middle)
             before, drift = contact.overlap, step
             if not np.any(touching):
                 end.duration, end.rate = time, rate

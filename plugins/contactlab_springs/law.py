@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from functools import lru_cache
 from typing import ClassVar
 
 import attrs
 import numpy as np
 
-from contactlab.checks import count
+from contactlab.checks import Real, count
 from contactlab_jaeger.law import ProfileLaw
 from contactlab_jaeger.places import Array, Places
 
@@ -17,7 +18,9 @@ class Midpoints(Places):
     """Springs in the middle of equal cells: F = mu P times the sum of w over that of l.
 
     With this rule, rather than 1.5/n times the sum, gross slip gives mu P to rounding and
-    abs(F) never exceeds it.
+    abs(F) never exceeds it. While the contact holds the first spring only, the factor would
+    fall from infinity to 9/8 of 1.5/n, and a stretched spring that becomes softer or stiffer
+    makes or loses energy: there 9/8 is kept, and the limit gives way instead.
     """
 
     def __init__(self, springs: int) -> None:
@@ -25,18 +28,31 @@ class Midpoints(Places):
         self.sums = np.concatenate(([0.0], np.cumsum(self.squares)))  # of s² over the first m
         self.sums_listed = self.sums.tolist()
         self.ones = np.ones(springs)
+        self.heaviest = 1.125 * 1.5 / springs
 
     def weights(self, square: Array) -> Array:
         """Return b³ over the sum of b² - s², for every place of a contact alike."""
-        reach = self.squares.searchsorted(square)
-        full = reach * square - self.sums[reach]
-        factor = np.where(reach > 0, square**1.5 / (full + (reach == 0)), self.measure[0])
+        factor = np.minimum(self._factor(square), self.heaviest)
         return np.broadcast_to(factor, (len(self.squares), len(square)))
 
     def weights_within(self, square: float, reach: int) -> Array:
         """Return the same for one contact."""
-        full = reach * square - self.sums_listed[reach]
-        return self.ones[:reach] * (square**1.5 / full if reach else 0.0)
+        return self.ones[:reach] * min(self._factor_of_one(square), self.heaviest)
+
+    def lift(self, square: Real) -> Real:
+        """Return 1 but where the contact holds one spring, whose weight is kept down."""
+        if isinstance(square, float):
+            return max(self._factor_of_one(square) / self.heaviest, 1.0)
+        return np.maximum(self._factor(square) / self.heaviest, 1.0)
+
+    def _factor(self, square: Array) -> Array:
+        reach = self.squares.searchsorted(square)
+        full = reach * square - self.sums[reach]
+        return np.where(reach > 0, square**1.5 / (full + (reach == 0)), 0.0)
+
+    def _factor_of_one(self, square: float) -> float:
+        reach = bisect_left(self.listed, square)
+        return square**1.5 / (reach * square - self.sums_listed[reach]) if reach else 0.0
 
 
 @lru_cache(maxsize=32)

@@ -1,0 +1,95 @@
+"""The energy books where the normal motion loses energy of its own, and where it makes some."""
+
+from typing import ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
+from contactlab.contracts import NormalContact, NormalLaw
+
+STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
+#: Damping per speed of approach, s/m: e = 0.93 at 0.5 m/s.
+DAMPING = 0.2
+
+
+@attrs.frozen(kw_only=True)
+class Damped(NormalLaw):
+    """Hertz with damping in proportion to force and rate (Hunt & Crossley 1975)."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"radius", "hertzian_pressure"})
+
+    damping: float = DAMPING
+
+    def start(self, pair):
+        return pair
+
+    def respond(self, state, approach, rate):
+        inside = np.maximum(approach, 0.0)
+        hertz = (4 / 3) * state.effective_modulus * state.radius**0.5 * inside**1.5
+        force = np.maximum(hertz * (1.0 + self.damping * rate), 0.0)
+        return NormalContact(force, np.sqrt(state.radius * inside), approach), state
+
+
+def scene(speed=0.5, slip=0.15):
+    return Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.2, speed, slip, 0.0)
+
+
+def restitution_of_hunt_and_crossley(damping, speed):
+    """Solve the law's own first integral, y + ln(1 - y) from -d e v to d v, for e.
+
+    With v dv/dz = -k z^1.5 (1 + d v)/m the energy of the spring is gone at both ends, so
+    the integral of v/(1 + d v) over v from -e v to v vanishes.
+    """
+    from scipy.optimize import brentq
+
+    def held(rate):
+        return damping * rate - np.log1p(damping * rate)
+
+    return brentq(lambda e: held(-e * speed) - held(speed), 0.1, 1.0)
+
+
+def test_damping_is_booked_as_a_loss_of_the_normal_motion():
+    speed = 0.5
+    result = Simulation(normal=Damped(), tangential="coulomb", integrator="symplectic").run(
+        scene(speed)
+    )
+    e = restitution_of_hunt_and_crossley(DAMPING, speed)
+    assert e == pytest.approx(0.935, abs=0.005)
+    lost = 0.5 * result.scene.pair.normal_mass * speed**2 * (1 - e**2)
+    assert result.check().energy.normal_loss == pytest.approx(lost, rel=1e-3)
+    assert abs(result.energy.relative_imbalance) < 1e-12
+
+
+@pytest.mark.parametrize("integrator", ["symplectic", "paper"])
+def test_the_loss_is_the_work_of_the_normal_force(integrator):
+    """So a history's normal velocity is that at the instant of its force."""
+    simulation = Simulation(normal=Damped(), tangential="springs", integrator=integrator)
+    result = simulation.run(scene(), history=True)
+    course = result.check().history
+    work = np.trapezoid(course.normal_force * course.normal_velocity, course.time)
+    assert result.energy.normal_loss == pytest.approx(work, rel=2e-3)
+
+
+@pytest.mark.parametrize("law", ["annulus", "springs", "sharp_annulus"])
+def test_a_damped_impact_is_no_breach_of_the_books(law):
+    """Laws that declare a bound declare it of friction alone."""
+    simulation = Simulation(normal=Damped(damping=1.0), tangential=law, integrator="symplectic")
+    result = simulation.run(scene()).check()
+    assert result.normal_restitution < 0.8
+    books = result.energy
+    lost = books.start - books.end
+    assert lost == pytest.approx(books.normal_loss + books.friction_work, rel=0.01)
+
+
+@pytest.mark.parametrize("batch", [False, True])
+def test_bodies_that_part_faster_than_they_met_are_a_status(batch):
+    given = scene(np.array([0.5, 0.6]), np.array([0.1, 0.2])) if batch else scene()
+    makes_energy = Simulation(
+        normal=Damped(damping=-0.3), tangential="coulomb", integrator="symplectic"
+    )
+    result = makes_energy.run(given)
+    assert np.all(np.array(result.status, dtype=object) == Status.UNBALANCED)
+    assert "times as fast as they met" in result.motion.detail
