@@ -78,16 +78,16 @@ def balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
     That is where the books miss by more than ``bound``, which the tangential law declares
     over the energy at the start; and where the bodies part faster than they met.
     """
-    fast: Any = abs(motion.normal_velocity) > LARGEST_RESTITUTION * scene.normal_speed
-    if fast.any() if scene.shape else fast:
+    fast: Any = np.abs(motion.normal_velocity) > LARGEST_RESTITUTION * scene.normal_speed
+    if fast.any():
         worst = np.max(np.abs(motion.normal_velocity) / scene.normal_speed, where=fast, initial=0)
         told = f"The bodies part {worst:.4g} times as fast as they met."
         motion = _unbalanced(motion, fast, told)
     if bound == np.inf:
         return motion
     books = ledger(scene, motion)
-    missing: Any = abs(books.imbalance) > bound * books.start
-    if not (missing.any() if scene.shape else missing):
+    missing: Any = np.abs(books.imbalance) > bound * books.start
+    if not missing.any():
         return motion
     worst = np.max(np.abs(books.relative_imbalance), where=missing, initial=0)
     told = f"Off by {worst:.2g} of the energy at the start; declared: {bound:.2g}."

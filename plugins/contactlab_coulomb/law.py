@@ -22,6 +22,9 @@ from contactlab.contracts import (
 )
 from contactlab_coulomb.phases import Rolling, Sliding
 
+#: Of the energy books, over the energy at the start.
+ROUNDING = 1e-9
+
 
 @attrs.frozen(kw_only=True)
 class Coulomb(SteppedTangentialLaw, PhasedTangentialLaw):
@@ -43,6 +46,11 @@ class Coulomb(SteppedTangentialLaw, PhasedTangentialLaw):
         "cattaneo_mindlin": "rigid bodies slip all over or not at all: there is no partial slip",
         "impact_reference": "the exact solution is that of bodies which deform tangentially",
     }
+
+    @property
+    def books_bound(self) -> float:
+        """Return the bound of rounding: the work is that of the force in every step."""
+        return ROUNDING
 
     def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
         """Return True for |psi1| >= 4 chi: friction cannot stop the slip."""
@@ -93,6 +101,11 @@ class Frictionless(SteppedTangentialLaw, PhasedTangentialLaw):
         "impact_reference": "the exact solution is that of bodies with friction",
         "non_finite": "the force is zero whatever the input; the normal motion reports the NaN",
     }
+
+    @property
+    def books_bound(self) -> float:
+        """Return the bound of rounding: there is no work."""
+        return ROUNDING
 
     def start(self, problem: Problem) -> Real:
         """Return a zero of the batch shape."""
