@@ -19,23 +19,12 @@ from contactlab.contracts.tangential import TangentialLaw
 from contactlab.registry import REGISTRY
 from contactlab.scene import Scene
 from contactlab.testing.check import hold
+from contactlab.testing.units import Units
 
 Array = NDArray[np.float64]
 
 #: A body so heavy that the machine, not friction, decides how it moves.
 HEAVY = 1e-4
-
-
-class Units(NamedTuple):
-    """What one metre, one second and one kilogram are called in other units."""
-
-    length: float = 1.0
-    time: float = 1.0
-    mass: float = 1.0
-
-
-#: No powers of two, nor of each other: rounding and forgotten dimensions both show.
-ODD_UNITS = Units(7.3, 0.0137, 41.1)
 
 
 def scene(psi1: Any, chi: Any, *, friction: Any = 0.3, units: Units | None = None) -> Scene:

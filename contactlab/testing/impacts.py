@@ -14,9 +14,10 @@ from contactlab.history import History, Recorder
 from contactlab.registry import REGISTRY
 from contactlab.simulation import Simulation
 from contactlab.status import Status
-from contactlab.testing.bench import ODD_UNITS, Units, scene, slack
+from contactlab.testing.bench import scene, slack
 from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.compare import same
+from contactlab.testing.units import ODD_UNITS, Units, in_units
 
 #: The angles of incidence from near the normal to grazing, and light to heavy bodies.
 PSI1 = (0.01, 0.3, 0.9, 1.2, 2.0, 3.5, 6.0, 40.0)
@@ -91,10 +92,10 @@ def impact_odd(law: Any) -> None:
 @check(TangentialLaw)
 def impact_units(law: Any) -> None:
     """An impact is the same in any units (theory §7)."""
-    for way in ways(law):
+    for way, converted in zip(ways(law), ways(in_units(law, ODD_UNITS)), strict=True):
         for chi, psi1 in itertools.product(CHI, PSI1):
             here, _, work = meet(way, psi1, chi)
-            there, _, other = meet(way, psi1, chi, units=ODD_UNITS)
+            there, _, other = meet(converted, psi1, chi, units=ODD_UNITS)
             gap = max(abs(here - there), abs(work - other)) / max(1.0, psi1)
             hold(gap <= 1e-8, f"psi1 = {psi1}, chi = {chi}: differs by {gap:.1e} ({_by(way)}).")
 

@@ -10,9 +10,10 @@ import numpy as np
 
 from contactlab.bodies import Pair
 from contactlab.contracts import NormalLaw
-from contactlab.testing.bench import ODD_UNITS, Units, scene
+from contactlab.testing.bench import scene
 from contactlab.testing.check import check, hold
 from contactlab.testing.compare import same, well_formed
+from contactlab.testing.units import ODD_UNITS, Units, in_units
 
 #: Deepest approach of these checks over C²R, and steps to it.
 STEPS = 60
@@ -90,7 +91,7 @@ def contacts_units(law: Any) -> None:
     """Metres, seconds and kilograms may be called anything (theory §7)."""
     length, time, mass = ODD_UNITS
     here = respond(law, *strokes())
-    there = respond(law, *strokes(ODD_UNITS))
+    there = respond(in_units(law, ODD_UNITS), *strokes(ODD_UNITS))
     for name, one, other, unit in zip(
         ("force", "radius", "overlap"), here, there, (mass * length / time**2, length, length),
         strict=True,
@@ -114,9 +115,13 @@ def presses(law: Any) -> None:
 
 @check(NormalLaw)
 def grows(law: Any) -> None:
-    """Deeper is not weaker nor narrower: force and radius do not fall in compression."""
+    """Deeper is not weaker nor narrower: force and radius do not fall in compression.
+
+    At a steady rate: in an impact a damped force is greatest before the approach is.
+    """
     pair, approach, rate = strokes()
-    force, radius, _ = respond(law, pair, approach[: STEPS + 1], rate[: STEPS + 1])
+    depths = np.linspace(float(approach[0]), float(approach[STEPS]), STEPS + 1)
+    force, radius, _ = respond(law, pair, depths, np.full_like(depths, 0.5 * float(rate.max())))
     for name, column in (("force", force), ("radius", radius)):
         fall = -float(np.min(np.diff(column))) / max(float(column.max()), 1e-300)
         hold(fall <= ROUNDING, f"The {name} falls by {fall:.2g} of its maximum in compression.")

@@ -1,36 +1,12 @@
 """The energy books where the normal motion loses energy of its own, and where it makes some."""
 
-from typing import ClassVar
-
-import attrs
 import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
-from contactlab.contracts import NormalContact, NormalLaw
+from tests.damped import Damped
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
-#: Damping per speed of approach, s/m: e = 0.93 at 0.5 m/s.
-DAMPING = 0.2
-
-
-@attrs.frozen(kw_only=True)
-class Damped(NormalLaw):
-    """Hertz with damping in proportion to force and rate (Hunt & Crossley 1975)."""
-
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset] = frozenset({"radius", "hertzian_pressure"})
-
-    damping: float = DAMPING
-
-    def start(self, pair):
-        return pair
-
-    def respond(self, state, approach, rate):
-        inside = np.maximum(approach, 0.0)
-        hertz = (4 / 3) * state.effective_modulus * state.radius**0.5 * inside**1.5
-        force = np.maximum(hertz * (1.0 + self.damping * rate), 0.0)
-        return NormalContact(force, np.sqrt(state.radius * inside), approach), state
 
 
 def scene(speed=0.5, slip=0.15):
@@ -53,10 +29,9 @@ def restitution_of_hunt_and_crossley(damping, speed):
 
 def test_damping_is_booked_as_a_loss_of_the_normal_motion():
     speed = 0.5
-    result = Simulation(normal=Damped(), tangential="coulomb", integrator="symplectic").run(
-        scene(speed)
-    )
-    e = restitution_of_hunt_and_crossley(DAMPING, speed)
+    law = Damped()
+    result = Simulation(normal=law, tangential="coulomb", integrator="symplectic").run(scene(speed))
+    e = restitution_of_hunt_and_crossley(law.damping, speed)
     assert e == pytest.approx(0.935, abs=0.005)
     lost = 0.5 * result.scene.pair.normal_mass * speed**2 * (1 - e**2)
     assert result.check().energy.normal_loss == pytest.approx(lost, rel=1e-3)

@@ -1,0 +1,63 @@
+"""A law in other units: its parameters that have a unit, converted with everything else."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, NamedTuple
+
+import attrs
+
+from contactlab.testing.check import hold
+
+
+class Units(NamedTuple):
+    """What one metre, one second and one kilogram are called in other units."""
+
+    length: float = 1.0
+    time: float = 1.0
+    mass: float = 1.0
+
+
+#: No powers of two, nor of each other: rounding and forgotten dimensions both show.
+ODD_UNITS = Units(7.3, 0.0137, 41.1)
+#: Powers of length, time and mass in the units that parameters are given in.
+POWERS = {
+    "1": (0, 0, 0), "rad": (0, 0, 0), "m": (1, 0, 0), "s": (0, 1, 0), "kg": (0, 0, 1),
+    "N": (1, -2, 1), "Pa": (-1, -2, 1), "J": (2, -2, 1), "W": (2, -3, 1), "Hz": (0, -1, 0),
+}  # fmt: skip
+_TOKEN = re.compile(r"([A-Za-z]+|1)(?:\^(-?\d+(?:\.\d+)?))?")
+
+
+def in_units(law: Any, units: Units) -> Any:
+    """Return ``law`` with its numbers in ``units``.
+
+    Units are those of the fields' metadata, as ``contactlab.checks.quantity`` writes them:
+    products by a space, one quotient, powers by ^, as in "N s/m", "m/s" or "N/m^1.5".
+
+    Raises
+    ------
+    CheckFailedError
+        If a unit is not known.
+    """
+    if not attrs.has(type(law)):
+        return law
+    changed = {}
+    for field in attrs.fields(type(law)):
+        value, unit = getattr(law, field.name), field.metadata.get("unit", "")
+        if field.init and unit not in ("", "1") and isinstance(value, float):
+            changed[field.name] = value * factor(unit, units)
+    return attrs.evolve(law, **changed) if changed else law
+
+
+def factor(unit: str, units: Units) -> float:
+    """Return the number that one ``unit`` is in ``units``."""
+    found = 1.0
+    for part, sense in zip(unit.split("/"), (1.0, -1.0), strict=False):
+        for token in part.split():
+            match = _TOKEN.fullmatch(token)
+            known = match is not None and match[1] in POWERS and unit.count("/") <= 1
+            hold(known, f"The unit {unit!r} is not understood: write SI, as in 'N s/m'.")
+            assert match is not None
+            for size, power in zip(units, POWERS[match[1]], strict=True):
+                found *= size ** (sense * power * float(match[2] or 1.0))
+    return found

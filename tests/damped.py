@@ -1,0 +1,28 @@
+"""A normal law that is not elastic, with a parameter that has a unit."""
+
+from typing import ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab.checks import quantity
+from contactlab.contracts import NormalContact, NormalLaw
+
+
+@attrs.frozen(kw_only=True)
+class Damped(NormalLaw):
+    """Hertz's force times 1 + damping times rate (Hunt & Crossley 1975)."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"radius", "hertzian_pressure"})
+
+    damping: float = quantity("s/m", default=0.2)
+
+    def start(self, pair):
+        return pair
+
+    def respond(self, state, approach, rate):
+        inside = np.maximum(approach, 0.0)
+        hertz = (4 / 3) * state.effective_modulus * state.radius**0.5 * inside**1.5
+        force = np.maximum(hertz * (1.0 + self.damping * rate), 0.0)
+        return NormalContact(force, np.sqrt(state.radius * inside), approach), state
