@@ -10,19 +10,23 @@ Examples
 from __future__ import annotations
 
 import argparse
+import difflib
+import inspect
 import json
+import sys
 from collections import Counter
+from typing import Any
 
 from contactlab.cli.arguments import FAILED, OK, add_progress, progress
 from contactlab.cli.table import table
-from contactlab.registry import REGISTRY, PluginInfo
+from contactlab.registry import BLOCK_VARIABLE, REGISTRY, PluginInfo, blocked_names
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add ``list``, ``show NAME`` and ``check NAME``."""
     actions = parser.add_subparsers(dest="action", metavar="list|show|check", required=True)
     listing = actions.add_parser("list", help="name, kind, distribution and version of every law")
-    show = actions.add_parser("show", help="the same of one law, and the module it comes from")
+    show = actions.add_parser("show", help="the same of one law, what it does and its options")
     check = actions.add_parser("check", help="put a law through its contract; exit 1 if it fails")
     for action in (show, check):
         action.add_argument("name", metavar="NAME", help="such as tangential.annulus")
@@ -36,11 +40,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.action == "check":
         return _check(arguments)
     if arguments.action == "show":
-        entry = _entry(REGISTRY.info(arguments.name))
-        width = max(map(len, entry))
-        text = "\n".join(f"{key.ljust(width)}  {value}" for key, value in entry.items())
-        print(json.dumps(entry, indent=2) if arguments.json else text)
-        return 0
+        return _show(arguments)
     entries = [_entry(info) for info in REGISTRY.installed()]
     if arguments.json:
         print(json.dumps(entries, indent=2))
@@ -50,6 +50,31 @@ def execute(arguments: argparse.Namespace) -> int:
     for row, entry in zip(rows, entries, strict=True):
         row[0] = f"{row[0]} (blocked)" if entry["blocked"] else row[0]
     print(table(keys, rows))
+    known = [entry["name"] for entry in entries]
+    for name in sorted(blocked_names().difference(known)):
+        nearest = difflib.get_close_matches(name, known, n=1)
+        hint = f"; did you mean {nearest[0]!r}?" if nearest else ""
+        print(f"{BLOCK_VARIABLE} names {name!r}, which is not installed{hint}", file=sys.stderr)
+    return 0
+
+
+def _show(arguments: argparse.Namespace) -> int:
+    """Print where a law comes from, what it is and what it takes; only here it is imported."""
+    entry: dict[str, Any] = _entry(REGISTRY.info(arguments.name))
+    law = REGISTRY.law_class(arguments.name)
+    entry["summary"] = (inspect.getdoc(law) or "").partition("\n")[0]
+    entry["options"] = [
+        str(option.replace(annotation=option.empty)).replace("=", " = ")
+        for option in inspect.signature(law).parameters.values()
+    ]
+    entry["needs"], entry["offers"] = sorted(law.needs), sorted(law.offers)
+    if arguments.json:
+        print(json.dumps(entry, indent=2))
+        return 0
+    width = max(map(len, entry))
+    for key, value in entry.items():
+        text = (", ".join(value) or "none") if isinstance(value, list) else value
+        print(f"{key.ljust(width)}  {text}")
     return 0
 
 
