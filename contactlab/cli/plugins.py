@@ -50,7 +50,7 @@ def execute(arguments: argparse.Namespace) -> int:
     for row, entry in zip(rows, entries, strict=True):
         row[0] = f"{row[0]} (blocked)" if entry["blocked"] else row[0]
     print(table(keys, rows))
-    known = [entry["name"] for entry in entries]
+    known = [info.name for info in REGISTRY.installed()]
     for name in sorted(blocked_names().difference(known)):
         nearest = difflib.get_close_matches(name, known, n=1)
         hint = f"; did you mean {nearest[0]!r}?" if nearest else ""
