@@ -155,6 +155,8 @@ class Integrator(Law):
     uses: ClassVar[frozenset[str]] = frozenset()
     #: False if each impact of a batch has instants of its own: no history of a batch then.
     common_instants: ClassVar[bool] = True
+    #: False if the impacts of a batch are followed one after another: a sweep hands over few.
+    together: ClassVar[bool] = True
 
     @property
     def accuracy(self) -> float | None:

@@ -75,6 +75,7 @@ class Adaptive(Integrator):
     needs: ClassVar[frozenset[str]] = frozenset({"advance"})
     uses: ClassVar[frozenset[str]] = frozenset({"closed_form_motion"})
     common_instants: ClassVar[bool] = False
+    together: ClassVar[bool] = False
 
     tolerance: float = quantity("1", rule=TOLERANCE, default=1e-4)
 

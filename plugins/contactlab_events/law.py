@@ -47,6 +47,7 @@ class Events(Integrator):
     offers: ClassVar[frozenset[str]] = frozenset({"events"})
     needs: ClassVar[frozenset[str]] = frozenset({"phases", "closed_form_motion"})
     uses: ClassVar[frozenset[str]] = frozenset({"closed_form_motion"})
+    together: ClassVar[bool] = False
 
     tolerance: float = quantity("1", rule=TOLERANCES, default=1e-9)
 

@@ -202,6 +202,20 @@ def test_sweep_reports_progress():
     assert seen == [(4, 10), (8, 10), (10, 10)]
 
 
+@pytest.mark.parametrize(("laws", "first"), [(RIGID, 1000), ({}, 20)])
+def test_a_sweep_hands_over_few_where_many_gain_nothing(laws, first):
+    """So that an interruption of slow laws loses little."""
+    seen = []
+
+    def stop(done, total):
+        seen.append(done)
+        raise KeyboardInterrupt
+
+    psi1 = np.linspace(6, 9, 1500)  # all in gross slip
+    Simulation(**laws).sweep(Scene.nondimensional(psi1=psi1, chi=CHI), progress=stop)
+    assert seen == [first]
+
+
 def test_interrupting_a_sweep_keeps_what_is_done():
     def stop(done, total):
         if done == 4:
