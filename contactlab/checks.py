@@ -105,8 +105,12 @@ def _checked(value: object, _: object, field: attrs.Attribute[Any]) -> Real:
     return real(field.name, value, rule=meta["rule"], remedy=remedy)
 
 
-def _same(left: object, right: object) -> bool:
-    return bool(np.array_equal(np.asarray(left), np.asarray(right)))
+def _key(value: Real) -> object:
+    """Return what equality and hash of a quantity go by; arrays have neither of their own."""
+    if isinstance(value, float):
+        return value
+    array = np.asarray(value) + 0.0  # -0.0 equals 0.0
+    return array.shape, array.tobytes()
 
 
 def quantity(unit: str, *, rule: Rule = FINITE, default: Any = attrs.NOTHING) -> Any:
@@ -114,7 +118,7 @@ def quantity(unit: str, *, rule: Rule = FINITE, default: Any = attrs.NOTHING) ->
     return attrs.field(
         default=default,
         converter=attrs.Converter(_checked, takes_self=True, takes_field=True),
-        eq=attrs.cmp_using(_same),
+        eq=_key,
         metadata={"unit": unit, "rule": rule},
     )
 
