@@ -80,27 +80,23 @@ def balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
     """
     fast: Any = np.abs(motion.normal_velocity) > LARGEST_RESTITUTION * scene.normal_speed
     if fast.any():
-        worst = np.max(np.abs(motion.normal_velocity) / scene.normal_speed, where=fast, initial=0)
-        told = f"The bodies part {worst:.4g} times as fast as they met."
-        motion = _unbalanced(motion, fast, told)
+        rebound = np.abs(motion.normal_velocity) / scene.normal_speed
+        told = _told("The bodies part {:.4g} times as fast as they met.", rebound)
+        motion = motion.failing(fast, Status.UNBALANCED, told)
     if bound == np.inf:
         return motion
     books = ledger(scene, motion)
     missing: Any = np.abs(books.imbalance) > bound * books.start
     if not missing.any():
         return motion
-    worst = np.max(np.abs(books.relative_imbalance), where=missing, initial=0)
-    told = f"Off by {worst:.2g} of the energy at the start; declared: {bound:.2g}."
-    return _unbalanced(motion, missing, told)
+    share = np.abs(books.relative_imbalance)
+    told = _told(f"Off by {{:.2g}} of the energy at the start; declared: {bound:.2g}.", share)
+    return motion.failing(missing, Status.UNBALANCED, told)
 
 
-def _unbalanced(motion: Motion, where: Any, told: str) -> Motion:
-    """Change the status of the impacts ``where`` that ended as successes."""
-    status: Any = np.array(motion.status, dtype=object)
-    where = where & (status == Status.SUCCESS)
-    if not np.any(where):
-        return motion
-    if not status.shape:
-        return attrs.evolve(motion, status=Status.UNBALANCED, detail=told)
-    status[where] = Status.UNBALANCED
-    return attrs.evolve(motion, status=status, detail=motion.detail or told)
+def _told(sentence: str, numbers: Any) -> Any:
+    """Return the sentence with its number in it, for each impact."""
+    if not np.ndim(numbers):
+        return sentence.format(float(numbers))
+    sentences = [sentence.format(number) for number in np.ravel(numbers).tolist()]
+    return np.array(sentences, dtype=object).reshape(np.shape(numbers))

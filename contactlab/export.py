@@ -44,7 +44,7 @@ def to_dict(result: ImpactResult) -> dict[str, Any]:
     """Return everything but the history as plain numbers, lists and text."""
     numbers = {name: plain(read(result)) for name, _, read in COLUMNS}
     return numbers | {
-        "detail": result.motion.detail,
+        "detail": plain(result.motion.detail),
         "run_time_s": result.run_time,
         "energy": result.energy.to_dict(),
         "counters": dict(result.counters),

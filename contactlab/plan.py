@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
@@ -15,6 +15,8 @@ from contactlab.scene import Scene
 
 #: Above this C the contact is so large that Hertz's half-space picture is doubtful (theory §8).
 HERTZ_DOUBTFUL_SIZE_RATIO = 0.1
+#: Why an impact of gross slip is not marched.
+SLIPS = "the impact slips from start to end"
 
 
 @attrs.frozen(kw_only=True, eq=False)
@@ -66,16 +68,8 @@ def make_plan(
     Shortcuts are taken only where the normal motion is Hertz's closed form, and only on the
     tangential law's own word (``inert``, ``slips_throughout``) or by symmetry.
     """
-    shape = scene.shape
     closed_form = "elastic_hertz" in normal.offers
-    nothing = np.zeros(shape, dtype=bool)
-    central = np.broadcast_to(np.asarray(scene.slip_velocity) == 0.0, shape)
-    without_friction = np.broadcast_to(np.asarray(scene.friction_coefficient) == 0.0, shape)
-    still = central | without_friction | tangential.inert if closed_form else nothing
-    slipping = nothing
-    if closed_form and history != "fields":
-        slipping = np.asarray(tangential.slips_throughout(scene.psi1, scene.chi)) & ~still
-    marched = ~(still | slipping)
+    needs = _needs(scene, tangential, closed_form=closed_form, history=history)
 
     computed, left_out = [], []
     kind = type(normal).__name__
@@ -83,8 +77,9 @@ def make_plan(
         computed.append(f"normal motion: {kind}, elastic, duration (7) in closed form")
     else:
         computed.append(f"normal motion: {kind}, integrated by {type(integrator).__name__}")
-    if marched.any():
-        computed.append(f"tangential motion: {integrator!r} over {tangential!r}{_share(marched)}")
+    if needs.marched.any():
+        share = _share(needs.marched)
+        computed.append(f"tangential motion: {integrator!r} over {tangential!r}{share}")
         if closed_form and tangential.exact and integrator.accuracy is not None:
             computed.append(
                 f"exact to {integrator.accuracy:.0e}: closed-form normal motion, a friction law "
@@ -92,15 +87,11 @@ def make_plan(
             )
         if closed_form and "closed_form_motion" not in integrator.uses:
             computed.append(f"normal motion again, by the steps of {type(integrator).__name__}")
-    if slipping.any():
-        computed.append(f"tangential velocity: eq. (45), slip throughout{_share(slipping)}")
-        left_out.append(f"tangential march{_share(slipping)}: the impact slips from start to end")
-    if tangential.inert:
-        left_out.append("tangential march: the law makes no force")
-    elif closed_form and central.any():
-        left_out.append(f"tangential march{_share(central)}: central impact, no slip velocity")
-    elif closed_form and without_friction.any():
-        left_out.append(f"tangential march{_share(without_friction)}: friction coefficient 0")
+    if needs.slipping.any():
+        computed.append(f"tangential velocity: eq. (45), slip throughout{_share(needs.slipping)}")
+    for why, mask in needs.left_out.items():
+        if mask.any():
+            left_out.append(f"tangential march{_share(mask)}: {why}")
     if not history:
         left_out.append("history: not asked for")
     elif history != "fields":
@@ -115,9 +106,43 @@ def make_plan(
         computed=tuple(computed),
         left_out=tuple(left_out),
         cautions=tuple(cautions),
-        marched=marched,
-        slipping=slipping,
+        marched=needs.marched,
+        slipping=needs.slipping,
     )
+
+
+class _Needs(NamedTuple):
+    """Masks of the scene's shape."""
+
+    marched: NDArray[np.bool_]
+    slipping: NDArray[np.bool_]
+    left_out: dict[str, NDArray[np.bool_]]  # by reason; each impact once
+
+
+def _needs(
+    scene: Scene, tangential: TangentialLaw, *, closed_form: bool, history: bool | str
+) -> _Needs:
+    """Return which impacts need a march, and why the others do not."""
+    shape = scene.shape
+    marched = np.ones(shape, dtype=bool)
+    if not closed_form:
+        return _Needs(marched, ~marched, {})
+    slips: Any = False
+    if history != "fields":
+        slips = tangential.slips_throughout(scene.psi1, scene.chi)
+    left_out = {}
+    for why, mask in (
+        ("the law makes no force", tangential.inert),
+        ("central impact, no slip velocity", np.asarray(scene.slip_velocity) == 0.0),
+        ("friction coefficient 0", np.asarray(scene.friction_coefficient) == 0.0),
+        (SLIPS, slips),
+    ):
+        left_out[why] = marched & mask
+        marched = marched & ~left_out[why]
+    if history and shape and marched.any():  # one time axis for the whole batch
+        marched = np.ones(shape, dtype=bool)
+        left_out = {SLIPS: ~marched}
+    return _Needs(marched, left_out[SLIPS], left_out)
 
 
 def _share(mask: NDArray[np.bool_]) -> str:

@@ -56,6 +56,19 @@ class ImpactResult:
         return self.motion.status
 
     @property
+    def failures(self) -> dict[int, str]:
+        """What went wrong: a sentence for each impact that failed, by its index in C order."""
+        statuses, details = (
+            np.ravel(np.asarray(entry, dtype=object))
+            for entry in (self.motion.status, self.motion.detail)
+        )
+        return {
+            index: f"{status.value} {detail}".strip()
+            for index, (status, detail) in enumerate(zip(statuses, details, strict=True))
+            if status is not Status.SUCCESS
+        }
+
+    @property
     def counters(self) -> Mapping[str, int]:
         """Work done: steps, evaluations, solves, rejected steps."""
         return self.motion.counters
@@ -66,12 +79,10 @@ class ImpactResult:
         Raises
         ------
         ImpactError
-            With the sentence of the first status that is not ``SUCCESS``.
+            With the sentence of the first impact that failed.
         """
-        for index, status in enumerate(np.ravel(np.asarray(self.status, dtype=object))):
-            if status is not Status.SUCCESS:
-                where = f"impact {index}: " if self.scene.shape else ""
-                raise ImpactError(f"{where}{status.value} {self.motion.detail}".strip())
+        for index, sentence in self.failures.items():
+            raise ImpactError(f"impact {index}: {sentence}" if self.scene.shape else sentence)
         return self
 
     # -- non-dimensional -----------------------------------------------------
@@ -180,7 +191,7 @@ class ImpactResult:
             raise IndexError(index)
 
         def pick(value: Any) -> Any:
-            if isinstance(value, float | int | str | Status) or value is None:
+            if isinstance(value, float | int) or value is None:
                 return value
             picked = np.broadcast_to(np.asarray(value), shape)[index]
             return picked.item() if isinstance(picked, np.generic) else picked

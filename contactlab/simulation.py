@@ -107,11 +107,11 @@ class Simulation:
             )
         recorder = Recorder(scene.shape, with_fields=history == "fields") if history else None
         if plan.marched.all():
-            motion = self._integrate(scene, recorder)
+            motion = self._integrate(self.problem(scene), recorder)
         elif not plan.marched.any():
             motion = self._closed_form(scene, plan, recorder)
         else:
-            motion = self._mixed(scene, plan, recorder)
+            motion = self._mixed(scene, plan)
         return ImpactResult(
             scene=scene,
             plan=plan,
@@ -169,7 +169,7 @@ class Simulation:
         except KeyboardInterrupt:
             done = sum(np.size(motion.duration) for motion in motions)
             if done < size:
-                motions.append(_undone((size - done,), Status.INTERRUPTED))
+                motions.append(Motion.nothing((size - done,), Status.INTERRUPTED))
         return ImpactResult(
             scene=batch,
             plan=self.plan(batch),
@@ -192,14 +192,20 @@ class Simulation:
             shape=scene.shape,
         )
 
-    def _integrate(self, scene: Scene, recorder: Recorder | None) -> Motion:
+    def _integrate(self, problem: Problem, recorder: Recorder | None) -> Motion:
+        """Return the motion; a failure within a batch is traced to the impacts that fail."""
+        shape, whole_batch = problem.shape, self.integrator.together
         try:
             # Where a user has asked for errors of underflow: small numbers may vanish here.
             with np.errstate(under="ignore"):
-                return self.integrator.integrate(self.problem(scene), recorder)
+                motion = self.integrator.integrate(problem, recorder)
         except Exception as error:
-            undone = _undone(scene.shape, Status.LAW_RAISED)
-            return attrs.evolve(undone, detail=faults.raised(error))
+            motion = Motion.nothing(shape, Status.LAW_RAISED, faults.raised(error))
+            whole_batch = True
+        if not shape or recorder or not whole_batch or np.all(motion.status):
+            return motion
+        alone = [self._integrate(impact, None) for impact in problem.impacts()]
+        return Motion.joined(alone, shape)
 
     def _closed_form(self, scene: Scene, plan: Plan, recorder: Recorder | None) -> Motion:
         """Return the motion of impacts with no tangential march: none, or eq. (45)."""
@@ -235,20 +241,16 @@ class Simulation:
             status=_statuses(scene.shape, Status.SUCCESS),
         )
 
-    def _mixed(self, scene: Scene, plan: Plan, recorder: Recorder | None) -> Motion:
+    def _mixed(self, scene: Scene, plan: Plan) -> Motion:
         """March the impacts that need it, do the rest in closed form, and merge."""
-        if recorder is not None:  # one time axis for the whole batch
-            return self._integrate(scene, recorder)
-        if len(scene.shape) != 1:
-            return self._integrate(scene, None)
         motion = self._closed_form(scene, plan, None)
-        marched = self._integrate(scene.take(plan.marched), None)
+        marched = self._integrate(self.problem(scene.take(plan.marched)), None)
         merged = {}
         for name in MOTION_ENTRIES:
             whole_column = np.array(getattr(motion, name))
             whole_column[plan.marched] = getattr(marched, name)
             merged[name] = whole_column
-        return Motion(**merged, detail=marched.detail, counters=marched.counters)
+        return Motion(**merged, counters=marched.counters)
 
 
 def _scene(scene: object) -> Scene:
@@ -269,14 +271,3 @@ def _full(value: Any, shape: tuple[int, ...]) -> Real:
 
 def _statuses(shape: tuple[int, ...], status: Status) -> Any:
     return np.full(shape, status, dtype=object) if shape else status
-
-
-def _undone(shape: tuple[int, ...], status: Status) -> Motion:
-    nothing = _full(np.nan, shape)
-    return Motion(
-        duration=nothing,
-        normal_velocity=nothing,
-        slip_velocity_change=nothing,
-        friction_work=nothing,
-        status=_statuses(shape, status),
-    )

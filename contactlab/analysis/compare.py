@@ -103,12 +103,11 @@ class Comparison:
         """Return one sentence for each law that did not follow every impact."""
         found = []
         for run in self.runs:
-            statuses = np.ravel(np.array(run.result.status, dtype=object))
-            bad = [status for status in statuses if not status]
+            bad = run.result.failures
             if bad:
                 share = f" ({len(bad)} of {run.result.scene.shape[0]})" if self.scene.shape else ""
-                found.append(f"{run.name}{share}: {bad[0].value} {run.result.motion.detail}")
-        return [sentence.strip() for sentence in found]
+                found.append(f"{run.name}{share}: {next(iter(bad.values()))}")
+        return found
 
 
 def compare(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,12 +12,16 @@ from contactlab.cli.table import number, table, time
 from contactlab.quantities import QUANTITIES
 from contactlab.result import ImpactResult
 from contactlab.scene_file.entries import entry_unit
+from contactlab.status import Status
 
 #: Columns of the table of a sweep; those that are undefined for every impact are left out.
 SWEEP_COLUMNS = (
     "psi1", "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg",
     "rebound_spin", "friction_work",
 )  # fmt: skip
+
+#: Different sentences about failed impacts that are shown.
+SENTENCES = 3
 
 Row = list[Any]
 
@@ -112,9 +117,13 @@ def _closing(result: ImpactResult) -> str:
     laws = [f"{name} [{kind}]" for kind, name in result.laws.items()]
     counters = ", ".join(f"{count} {key}" for key, count in result.counters.items()) or "none"
     impacts = f" for {len(result)} impacts" if result.scene.shape else ""
-    statuses = list(dict.fromkeys(np.ravel(np.array(result.status, dtype=object)).tolist()))
     lines = [f"laws:     {', '.join(laws)}", f"counters: {counters}"]
     lines += [f"run time: {time(result.run_time)}{impacts}"]
-    lines += [f"status:   {status.value}" for status in statuses]
-    lines += [f"detail:   {result.motion.detail}"] * bool(result.motion.detail)
+    failures = Counter(result.failures.values())
+    if failures.total() < np.size(result.status):
+        lines += [f"status:   {Status.SUCCESS.value}"]
+    for sentence, count in failures.most_common(SENTENCES):
+        lines += [f"status:   {sentence}" + (f" ({count} impacts)" if count > 1 else "")]
+    if len(failures) > SENTENCES:
+        lines += [f"status:   ... and {len(failures) - SENTENCES} more sentences"]
     return "\n".join(lines)

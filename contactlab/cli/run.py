@@ -103,13 +103,11 @@ def report(
     if as_json:
         swept = {name: plain(values) for name, values in (varied or {}).items()}
         print(json.dumps(export.to_dict(result) | {"varied": swept}, indent=2, allow_nan=False))
-    statuses = np.ravel(np.array(result.status, dtype=object)).tolist()
-    failed = [status for status in statuses if not status]
-    if not failed:
+    failures = result.failures
+    if not failures:
         return shared.OK
-    interrupted = Status.INTERRUPTED in failed
-    which = f"{len(failed)} of {len(statuses)} impacts: " if result.scene.shape else ""
-    sentence = f"{failed[0].value} {result.motion.detail}".strip()
+    interrupted = Status.INTERRUPTED in np.ravel(np.array(result.status, dtype=object))
+    which = f"{len(failures)} of {len(result)} impacts: " if result.scene.shape else ""
     word = "interrupted" if interrupted else "failed"
-    print(f"contactlab: {word}: {which}{sentence}", file=sys.stderr)
+    print(f"contactlab: {word}: {which}{next(iter(failures.values()))}", file=sys.stderr)
     return shared.INTERRUPTED if interrupted else shared.FAILED

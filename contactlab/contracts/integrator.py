@@ -12,7 +12,7 @@ import attrs
 import numpy as np
 
 from contactlab.bodies import Pair
-from contactlab.checks import Real
+from contactlab.checks import Mask, Real
 from contactlab.contracts.law import Law
 from contactlab.contracts.normal import NormalContact, NormalLaw
 from contactlab.contracts.tangential import TangentialLaw
@@ -98,8 +98,9 @@ class Motion:
     friction_work : float or array
         In J, added up by the tangential law.
     status : Status or array of Status
-    detail : str
-        What went wrong, where and when; empty on success.
+    detail : str or array of str
+        What went wrong, where and when; empty on success. Of a batch an integrator may give
+        one sentence: it goes to the impacts that failed.
     counters : mapping of str to int
         Work done: ``steps``, ``evaluations``, ``rejected``, ...
     """
@@ -109,14 +110,24 @@ class Motion:
     slip_velocity_change: Real
     friction_work: Real
     status: Any = Status.SUCCESS
-    detail: str = ""
+    detail: Any = ""
     counters: Mapping[str, int] = attrs.field(factory=dict)
+
+    def __attrs_post_init__(self) -> None:
+        if isinstance(self.detail, str) and np.ndim(self.status):
+            spread = np.where(self.status == Status.SUCCESS, "", self.detail).astype(object)
+            object.__setattr__(self, "detail", spread)
 
     @classmethod
     def joined(cls, motions: Sequence[Motion], shape: tuple[int, ...]) -> Motion:
         """Return one motion of ``shape`` from those of its impacts, or of parts of them."""
         entries = {
-            name: np.concatenate([np.ravel(getattr(motion, name)) for motion in motions])
+            name: np.concatenate(
+                [
+                    np.ravel(np.asarray(getattr(motion, name), dtype=MOTION_ENTRIES[name]))
+                    for motion in motions
+                ]
+            )
             for name in MOTION_ENTRIES
         }
         counters: Counter[str] = Counter()
@@ -124,15 +135,46 @@ class Motion:
             counters.update(motion.counters)
         return cls(
             **{name: entry.reshape(shape) for name, entry in entries.items()},
-            detail=next((motion.detail for motion in motions if motion.detail), ""),
             counters=dict(counters),
         )
 
+    @classmethod
+    def nothing(cls, shape: tuple[int, ...], status: Status, detail: str = "") -> Motion:
+        """Return the motion of impacts of which nothing is known: NaN throughout."""
+        unknown: Real = np.full(shape, math.nan) if shape else math.nan
+        return cls(
+            duration=unknown,
+            normal_velocity=unknown,
+            slip_velocity_change=unknown,
+            friction_work=unknown,
+            status=np.full(shape, status, dtype=object) if shape else status,
+            detail=detail,
+        )
 
-#: What a motion says of each impact; the rest is of the whole batch.
-MOTION_ENTRIES = (
-    "duration", "normal_velocity", "slip_velocity_change", "friction_work", "status",
-)  # fmt: skip
+    def failing(self, where: Mask, status: Status, detail: Any) -> Motion:
+        """Return this motion with ``status`` and ``detail`` on those successes ``where`` says.
+
+        ``detail`` is a sentence, or an array of one for each impact.
+        """
+        statuses: Any = np.array(self.status, dtype=object)
+        fallen = np.asarray(where) & (statuses == Status.SUCCESS)
+        if not fallen.any():
+            return self
+        if not statuses.shape:
+            return attrs.evolve(self, status=status, detail=detail)
+        statuses[fallen] = status
+        return attrs.evolve(
+            self, status=statuses, detail=np.where(fallen, detail, self.detail).astype(object)
+        )
+
+
+#: What a motion says of each impact, and of what type; the rest is of the whole batch.
+MOTION_ENTRIES: dict[str, type] = {
+    **dict.fromkeys(("duration", "normal_velocity", "slip_velocity_change"), float),
+    "friction_work": float, "status": object, "detail": object,
+}  # fmt: skip
+#: Its numbers.
+MOTION_NUMBERS = tuple(name for name, kind in MOTION_ENTRIES.items() if kind is float)
 
 
 class Integrator(Law):
@@ -146,7 +188,8 @@ class Integrator(Law):
     3. ``observer`` is None or is called at increasing times; having one changes no result.
     4. ``order`` is the order of convergence in the step that the class declares for smooth
        laws; None where there are no steps.
-    5. Batch shapes pass through: a batch gives what its impacts give one by one.
+    5. Batch shapes pass through: a batch gives what its impacts give one by one. Where one
+       fails the batch may be given up: a simulation then hands over each by itself.
     """
 
     kind: ClassVar[str] = "integrator"

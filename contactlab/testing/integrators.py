@@ -11,7 +11,7 @@ import numpy as np
 
 from contactlab import composition
 from contactlab.contracts import Integrator
-from contactlab.contracts.integrator import MOTION_ENTRIES
+from contactlab.contracts.integrator import MOTION_ENTRIES, MOTION_NUMBERS
 from contactlab.history import Recorder
 from contactlab.registry import REGISTRY
 from contactlab.simulation import Simulation
@@ -111,7 +111,7 @@ def impacts_batch(integrator: Any) -> None:
         for place in np.ndindex(psi1.shape):
             alone = run(way, float(psi1[place]), float(chi[place]))
             hold(together.status[place] is alone.status, "An impact of a batch ends otherwise.")
-            for name in MOTION_ENTRIES[:-1]:
+            for name in MOTION_NUMBERS:
                 one, other = getattr(alone, name), float(getattr(together, name)[place])
                 gap = abs(one - other) / max(abs(one), 1e-6 * scene(1.0, 1.0).normal_speed ** 2)
                 hold(gap <= 1e-9, f"The {name} of an impact of a batch is off by {gap:.1e}.")

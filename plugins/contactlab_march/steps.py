@@ -48,27 +48,13 @@ def remarks(steps: int, refine: bool, problem: Problem) -> tuple[str, ...]:
 def enough(
     steps: int, refine: bool, problem: Problem, follow: Callable[[Problem, int], Motion]
 ) -> Motion:
-    """Follow ``problem`` with enough steps: refine, or refuse with the number needed.
-
-    Where some impacts of a batch must be refused, they are followed one by one.
-    """
+    """Follow ``problem`` with enough steps: refine, or refuse with the number needed."""
     needed = needed_steps(problem)
     most = float(np.max(needed))
     if most <= steps or (refine and most <= MOST_STEPS):
         return follow(problem, max(steps, int(most)))
-    if problem.shape and float(np.min(needed)) <= (MOST_STEPS if refine else steps):
-        motions = [enough(steps, refine, impact, follow) for impact in problem.impacts()]
-        return Motion.joined(motions, problem.shape)
-    nothing = np.full(problem.shape, math.nan) if problem.shape else math.nan
-    status = Status.TOO_FEW_STEPS
-    return Motion(
-        duration=nothing,
-        normal_velocity=nothing,
-        slip_velocity_change=nothing,
-        friction_work=nothing,
-        status=np.full(problem.shape, status, dtype=object) if problem.shape else status,
-        detail=f"steps = {steps}; this scene needs at least {most:.6g}.",
-    )
+    detail = f"steps = {steps}; this scene needs at least {most:.6g}."
+    return Motion.nothing(problem.shape, Status.TOO_FEW_STEPS, detail)
 
 
 def _is_bool(_: object, attribute: attrs.Attribute[bool], value: object) -> None:

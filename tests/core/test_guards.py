@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Scene, Simulation, Status
+from contactlab import ImpactError, Scene, Simulation, Status
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 
 
@@ -71,6 +71,53 @@ def test_one_impossible_impact_does_not_spoil_a_batch():
 
 
 @attrs.frozen(kw_only=True)
+class FailsWhenFast(SteppedTangentialLaw):
+    """Coulomb's law, but for slip beyond psi = 2.5: there it does what it was made to do."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"advance"})
+
+    fault: str = "nan"
+
+    def start(self, problem):
+        return problem.friction_coefficient
+
+    def advance(self, state, increment, before, after):
+        force = np.clip(increment.arresting_force, -after.force, after.force) * state
+        fast = np.abs(increment.velocity) > 2.5
+        if self.fault == "raises" and np.any(fast):
+            raise ArithmeticError("too fast")
+        if self.fault == "unsettled":
+            return TangentialResponse(force, 0.0 * force, ~np.asarray(fast)), state
+        return TangentialResponse(force * np.where(fast, np.nan, 1.0), 0.0 * force), state
+
+
+@pytest.mark.parametrize("integrator", ["symplectic", "paper", "adaptive"])
+@pytest.mark.parametrize(
+    ("fault", "status"),
+    [("nan", "NON_FINITE"), ("raises", "LAW_RAISED"), ("unsettled", "UNSETTLED")],
+)
+@pytest.mark.parametrize("column", [False, True])
+def test_an_impact_that_fails_takes_no_other_of_its_batch_with_it(
+    integrator, fault, status, column
+):
+    simulation = Simulation(tangential=FailsWhenFast(fault=fault), integrator=integrator)
+    psi1 = np.array([1.0, 3.0, 2.0, 4.0])
+    batch = simulation.run(Scene.nondimensional(psi1=psi1[:, None] if column else psi1, chi=3.0))
+    alone = [simulation.run(Scene.nondimensional(psi1=value, chi=3.0)) for value in psi1.tolist()]
+    statuses = [item.status.name for item in alone]
+    assert statuses == ["SUCCESS", status, "SUCCESS", status]
+    assert [item.name for item in batch.status.ravel()] == statuses
+    assert batch.psi2.ravel()[[0, 2]].tolist() == [alone[0].psi2, alone[2].psi2]
+    assert batch.failures == {index: alone[index].failures[0] for index in (1, 3)}
+    if not column:
+        assert batch[0].motion.detail == ""
+        assert batch[1].motion.detail == alone[1].motion.detail
+    with pytest.raises(ImpactError, match="impact 1: "):
+        batch.check()
+
+
+@attrs.frozen(kw_only=True)
 class Creator(SteppedTangentialLaw):
     """Makes energy, and says that its books close to a thousandth."""
 
@@ -92,7 +139,7 @@ def test_books_beyond_what_the_law_declares_are_a_status(shape):
         Scene.nondimensional(psi1=psi1, chi=1.44)
     )
     assert np.all(np.asarray(result.status, dtype=object) == Status.UNBALANCED)
-    assert "declared: 0.001" in result.motion.detail
+    assert "declared: 0.001" in result.failures[0]
 
 
 @pytest.mark.parametrize("bad", [0, -1, 10**8, 1.5, "10", None, True])
