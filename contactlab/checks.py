@@ -98,11 +98,14 @@ def whole(argument: str, value: object, *, least: int = 1, most: int = 10_000_00
     return int(value)
 
 
+def unit_remedy(unit: str) -> str:
+    """Return what to do about a refused number that has, or lacks, a unit."""
+    return "it has no unit" if unit == "1" else f"give it in {unit}"
+
+
 def _checked(value: object, _: object, field: attrs.Attribute[Any]) -> Real:
     meta = field.metadata
-    unit = meta["unit"]
-    remedy = "it has no unit" if unit == "1" else f"give it in {unit}"
-    return real(field.name, value, rule=meta["rule"], remedy=remedy)
+    return real(field.name, value, rule=meta["rule"], remedy=unit_remedy(meta["unit"]))
 
 
 def _key(value: Real) -> object:

@@ -13,8 +13,6 @@ from contactlab.checks import Mask, Real
 
 #: 2.9432751843: duration of an elastic Hertz impact times v1/(C²R), eq. (7) unrounded.
 DURATION_CONSTANT = 4.0 * math.gamma(0.4) * math.sqrt(math.pi) / (5.0 * math.gamma(0.9))
-#: 3.6790939804: the constant of eqs (31) and (35), unrounded.
-FORCE_CONSTANT = 1.25 * DURATION_CONSTANT
 
 
 def size_ratio(
@@ -28,11 +26,6 @@ def size_ratio(
     stiffness = 15.0 * normal_mass / (16.0 * effective_modulus)
     ratio: Real = stiffness**0.2 * normal_speed**0.4 / radius**0.6
     return ratio
-
-
-def gross_slip_rebound(psi1: Real, chi: Real, restitution: Real = 1.0) -> Real:
-    """psi2 of an impact that slips throughout, eq. (45): psi1 - 2 chi (1+e) in psi1's sense."""
-    return psi1 - np.sign(psi1) * (2.0 * chi * (1.0 + restitution))
 
 
 def slips_throughout_elastic(psi1: Real, chi: Real) -> Mask:

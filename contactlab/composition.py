@@ -6,20 +6,25 @@ from typing import Any
 
 from contactlab.checks import refuse
 from contactlab.contracts.law import Law
+from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.registry import REGISTRY, PluginError
 
 #: Taken where none is named: exact where the laws allow it, else of second order.
 PREFERRED_INTEGRATORS = ("events", "symplectic")
+#: What only a ``ClosedFormNormalLaw`` may offer.
+CLOSED_FORM = frozenset({"closed_form_motion", "elastic_hertz"})
 
 
 def law(kind: str, value: object) -> Any:
     """Return the law of ``kind`` that ``value`` names or already is."""
     if isinstance(value, str):
         return REGISTRY.create(value if value.startswith(f"{kind}.") else f"{kind}.{value}")
-    if not isinstance(value, Law) or value.kind != kind:
-        known = ", ".join(REGISTRY.names(kind))
-        raise refuse(kind, value, f"must be a name or a {kind} law", f"installed: {known}")
-    return value
+    if isinstance(value, Law) and value.kind == kind:
+        return value
+    remedy = f"installed: {', '.join(REGISTRY.names(kind))}"
+    if isinstance(value, type) and issubclass(value, Law):
+        remedy = f"this is the class; make one: {value.__name__}()"
+    raise refuse(kind, value, f"must be a name or a {kind} law", remedy)
 
 
 def fitting_integrator(normal: Law, tangential: Law) -> str:
@@ -42,6 +47,12 @@ def check_fit(normal: Law, tangential: Law, integrator: Law) -> None:
         Naming both parties, the missing words and the installed laws that offer them.
     """
     parts = (normal, tangential, integrator)
+    claimed = sorted(CLOSED_FORM & normal.offers)
+    if claimed and not isinstance(normal, ClosedFormNormalLaw):
+        raise ValueError(
+            f"normal = {type(normal).__name__}: offers {claimed[0]!r}, and is no "
+            "ClosedFormNormalLaw; derive it from that class, or do not offer the word"
+        )
     for part in parts:
         others = [other for other in parts if other is not part]
         missing = part.needs.difference(*(other.offers for other in others))

@@ -17,7 +17,7 @@ def _column(unit: str) -> Any:
     return attrs.field(metadata={"unit": unit})
 
 
-@attrs.frozen(kw_only=True, eq=False)
+@attrs.frozen(kw_only=True, eq=False, repr=False)
 class History:
     """Arrays over the instants of an impact, shape (K, ...): instants first, then the batch.
 
@@ -32,6 +32,11 @@ class History:
     slip_velocity: Array = _column("m/s")
     tangential_force: Array = _column("N")
     fields: dict[str, NDArray[Any]] = attrs.field(factory=dict)
+
+    def __repr__(self) -> str:
+        """Return how many instants there are, and the fields."""
+        fields = ", ".join(self.fields) or "no fields"
+        return f"History({len(self.time)} instants to {np.max(self.time):.4g} s; {fields})"
 
     def columns(self) -> dict[str, Array]:
         """Return the one-number-an-instant columns by name."""

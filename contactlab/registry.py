@@ -121,20 +121,24 @@ class Registry:
         PluginError
             If the plug-in cannot be imported or breaks the contract, with its traceback.
         """
-        law = self.law_class(name)
         import inspect
 
-        signature = inspect.signature(law)
-        unknown = [option for option in options if option not in signature.parameters]
-        if unknown:
-            known = ", ".join(signature.parameters) or "no options"
-            import difflib
+        law = self.law_class(name)
+        known = inspect.signature(law).parameters
+        for option, value in options.items():
+            if option not in known:
+                import difflib  # only for those who misspell
 
-            near = difflib.get_close_matches(unknown[0], signature.parameters, n=1)
-            hint = f"did you mean {near[0]!r}? " if near else ""
-            raise refuse(
-                unknown[0], options[unknown[0]], f"{name} does not know it", f"{hint}it has {known}"
-            )
+                near = difflib.get_close_matches(option, known, n=1)
+                hint = f"did you mean {near[0]!r}? " if near else ""
+                has = ", ".join(known) or "no options"
+                raise refuse(option, value, f"{name} does not know it", f"{hint}it has {has}")
+        for option, parameter in known.items():
+            if parameter.default is parameter.empty and option not in options:
+                raise ValueError(
+                    f"{name}: {option} must be given; in Python create({name!r}, {option}=...), "
+                    f"on the command line --set {name.partition('.')[0]}.{option}=..."
+                )
         try:
             return law(**options)
         except ValueError as error:
@@ -182,13 +186,16 @@ class Registry:
             )
 
     def _unknown(self, name: str) -> ValueError:
-        names = self.names()
-        import difflib
+        import difflib  # only for those who misspell
 
-        nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-        if not nearest and "." not in str(name):
-            nearest = [known for known in names if known.endswith(f".{name}")][:1]
-        hint = f"did you mean {nearest[0]!r}? " if nearest else ""
+        kind, _, short = str(name).rpartition(".")
+        names = self.names(kind if kind in KINDS else None)
+        others = [known for known in self.names() if known.endswith(f".{short}")]
+        nearest = others or difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+        if kind in KINDS and others:
+            hint = f"{short!r} is a law of another kind, {others[0]!r}; "
+        else:
+            hint = f"did you mean {nearest[0]!r}? " if nearest else ""
         return refuse(
             "name", name, "no such law is installed", f"{hint}installed: {', '.join(names)}"
         )

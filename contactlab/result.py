@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -18,14 +19,21 @@ from contactlab.status import Status
 
 
 class ImpactError(RuntimeError):
-    """Raised by ``ImpactResult.check()`` for a run that did not succeed."""
+    """Raised by ``ImpactResult.check()`` for a run that did not succeed.
+
+    ``status`` is that of the impact it tells of.
+    """
+
+    def __init__(self, sentence: str, status: Status) -> None:
+        super().__init__(sentence)
+        self.status = status
 
 
-@attrs.frozen(kw_only=True, eq=False)
+@attrs.frozen(kw_only=True, eq=False, repr=False)
 class ImpactResult:
     """Outcome of one impact, or of a batch: every entry has the scene's shape.
 
-    A batch can be indexed and iterated; each item is the result of one impact.
+    A batch can be indexed, sliced and iterated; each item is the result of one impact.
 
     Attributes
     ----------
@@ -48,7 +56,19 @@ class ImpactResult:
     laws: Mapping[str, str]
     history: History | None = attrs.field(default=None, repr=False)
 
-    # -- how it went ---------------------------------------------------------
+    def __repr__(self) -> str:
+        """Return psi2, how it went and by what laws, on one line."""
+        shape, psi2 = self.scene.shape, np.asarray(self.psi2)
+        statuses = Counter(status.name for status in np.ravel(np.array(self.status, dtype=object)))
+        laws = ", ".join(name.partition(" ")[0] for name in self.laws.values())
+        if not shape:
+            found = f"psi1={self.psi1:.6g}, chi={self.scene.chi:.6g}, psi2={psi2:.6g}"
+        else:
+            known = psi2[np.isfinite(psi2)]
+            ends = f" from {known.min():.6g} to {known.max():.6g}" if known.size else " unknown"
+            found = f"{psi2.size} impacts, psi2{ends}"
+        told = ", ".join(f"{count} {name}" if shape else name for name, count in statuses.items())
+        return f"ImpactResult({found}; {told}; {laws})"
 
     @property
     def status(self) -> Any:
@@ -82,10 +102,10 @@ class ImpactResult:
             With the sentence of the first impact that failed.
         """
         for index, sentence in self.failures.items():
-            raise ImpactError(f"impact {index}: {sentence}" if self.scene.shape else sentence)
+            where = f"impact {index}: " if self.scene.shape else ""
+            status = np.ravel(np.asarray(self.status, dtype=object))[index]
+            raise ImpactError(where + sentence, status)
         return self
-
-    # -- non-dimensional -----------------------------------------------------
 
     @property
     def psi1(self) -> Real:
@@ -101,8 +121,6 @@ class ImpactResult:
     def psi2(self) -> Real:
         """Non-dimensional local angle of reflexion."""
         return self.scene.psi(self.rebound_slip_velocity)
-
-    # -- velocities, SI ------------------------------------------------------
 
     @property
     def rebound_slip_velocity(self) -> Real:
@@ -134,8 +152,6 @@ class ImpactResult:
         inertia = sphere.mass * sphere.gyration_ratio**2 * sphere.radius
         share = self.scene.pair.tangential_mass / inertia
         return self.scene.spin + share * self.motion.slip_velocity_change
-
-    # -- ratios and angles ---------------------------------------------------
 
     @property
     def normal_restitution(self) -> Real:
@@ -174,21 +190,21 @@ class ImpactResult:
         """Energy before and after, friction work, and what does not add up."""
         return ledger(self.scene, self.motion)
 
-    # -- batches -------------------------------------------------------------
-
     def __len__(self) -> int:
         """Return the number of impacts of a batch."""
         if not self.scene.shape:
             raise TypeError("the result of a single impact has no length")
         return self.scene.shape[0]
 
-    def __getitem__(self, index: int) -> ImpactResult:
-        """Return the result of one impact of a batch."""
+    def __getitem__(self, index: int | slice) -> ImpactResult:
+        """Return the result of one impact of a batch, or of those in a slice."""
         shape = self.scene.shape
         if not shape:
             raise TypeError("the result of a single impact cannot be indexed")
-        if not -shape[0] <= index < shape[0]:
-            raise IndexError(index)
+        if not isinstance(index, int | np.integer | slice):
+            raise TypeError(f"a result is indexed by a number or a slice, not {index!r}")
+        if not np.size(np.arange(shape[0])[_slice(index)]):
+            raise IndexError(f"{index}: there is no such impact, of {shape[0]}")
 
         def pick(value: Any) -> Any:
             if isinstance(value, float | int) or value is None:
@@ -218,6 +234,13 @@ class ImpactResult:
     def __iter__(self) -> Iterator[ImpactResult]:
         """Iterate over the impacts of a batch."""
         return (self[index] for index in range(len(self)))
+
+
+def _slice(index: int | slice) -> slice:
+    """Return a slice of what ``index`` stands for: empty where there is no such item."""
+    if isinstance(index, slice):
+        return index
+    return slice(index, index + 1 or None)
 
 
 def _ratio(after: Real, before: Real) -> Real:

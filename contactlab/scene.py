@@ -75,17 +75,18 @@ class Scene:
     )
 
     def __attrs_post_init__(self) -> None:
-        numbers = [self.friction_coefficient, self.normal_speed]
-        numbers += [self.tangential_velocity, self.spin]
-        numbers += list(attrs.astuple(self.pair))
+        numbers = attrs.asdict(self.pair)
+        for field in attrs.fields(Scene):
+            if "unit" in field.metadata:
+                numbers[field.name] = getattr(self, field.name)
+        shapes = {name: np.shape(number) for name, number in numbers.items() if np.shape(number)}
         try:
-            np.broadcast_shapes(*(np.shape(number) for number in numbers))
+            np.broadcast_shapes(*shapes.values())
         except ValueError:
-            raise refuse(
-                "Scene",
-                [np.shape(number) for number in numbers],
-                "arrays must broadcast to one shape",
-                "give numbers, or arrays of equal length",
+            told = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+            raise ValueError(
+                f"Scene: the shapes of {told} must broadcast to one; "
+                "give numbers, or arrays of equal length"
             ) from None
         real("tangential_velocity + spin * radius", self.slip_velocity)
 
@@ -103,7 +104,9 @@ class Scene:
             If psi1 is not finite, or chi is not positive and finite.
         """
         incidence = real("psi1", psi1, remedy="give the non-dimensional angle of incidence (29)")
-        inertia = real("chi", chi, rule=POSITIVE, remedy="chi of eq. (38); 1.4412 for steel")
+        inertia = real(
+            "chi", chi, rule=POSITIVE, remedy="chi of eq. (38); 1.4412 for a solid sphere, nu = 0.3"
+        )
         modulus = 15.0 / 16.0  # makes C = 1 in eq. (9)
         pair = Pair(
             radius=1.0,
@@ -124,6 +127,13 @@ class Scene:
                 raise refuse(f"scenes[{position}]", scene, "must be a Scene")
             if scene.shape:
                 raise refuse(f"scenes[{position}]", scene.shape, "must be a single impact")
+            if (scene.sphere is None) != (scenes[0].sphere is None):
+                raise refuse(
+                    f"scenes[{position}]",
+                    scene,
+                    "must have bodies if, and only if, scenes[0] has: else spin would be lost",
+                    "give all in SI, or all by psi1 and chi",
+                )
         stacked = _stacked(scenes)
         assert isinstance(stacked, cls)
         if stacked.shape:
@@ -204,11 +214,6 @@ class Scene:
     def duration(self) -> Real:
         """Duration of a Hertz impact t = 2.9432 C² R / v1 (7), in s."""
         return DURATION_CONSTANT * self.maximum_approach / self.normal_speed
-
-    @property
-    def time_scale(self) -> Real:
-        """C² R / v1, in s: the time in which the scaled time T advances by one (theory §1)."""
-        return self.maximum_approach / self.normal_speed
 
 
 def _stacked(items: Sequence[Any]) -> Any:

@@ -73,10 +73,12 @@ class Benchmark:
     def front(self) -> list[Row]:
         """Return the Pareto front: rows that no other beats in both error and time."""
         best: list[Row] = []
+        least = np.inf
         for row in sorted((row for row in self.rows if row.ok), key=lambda row: row.time_s):
-            # Below rounding nothing is better than anything else.
-            if not best or row.error_rms < max(best[-1].error_rms, ROUNDING):
+            if row.error_rms < least:
                 best.append(row)
+                # Below rounding nothing is better than anything else.
+                least = row.error_rms if row.error_rms > ROUNDING else 0.0
         return best
 
 

@@ -12,6 +12,7 @@ from typing import NoReturn
 
 import contactlab
 from contactlab.cli.arguments import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
+from contactlab.status import Status
 
 #: A new subcommand is a module of this package and its name here.
 COMMANDS = ("run", "sweep", "compare", "bench", "stability", "validate", "figures", "plugins")
@@ -56,6 +57,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if parsed.traceback:
             traceback.print_exc()
         print(f"contactlab {parsed.command}: error: {_one_line(error)}", file=sys.stderr)
+        if isinstance(error, contactlab.ImpactError) and error.status is Status.INTERRUPTED:
+            return INTERRUPTED
         return BAD_INPUT if isinstance(error, ValueError) else FAILED
     return status
 

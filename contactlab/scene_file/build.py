@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.bodies import HalfSpace, Material, Sphere
-from contactlab.checks import POSITIVE, Rule, refuse
+from contactlab.checks import POSITIVE, Rule, refuse, unit_remedy
 from contactlab.scene import Scene
 from contactlab.scene_file.entries import (
     BODY_SECTIONS,
@@ -43,7 +43,8 @@ def build_scene(document: Mapping[str, Any]) -> Scene:
 
 
 def _numbers(table: Table, keys: tuple[str, ...]) -> dict[str, Any]:
-    return {key: table.number(key, remedy=f"give it in {UNITS[key]}") for key in keys}
+    remedies = {key: unit_remedy(UNITS[key]) for key in keys}
+    return {key: table.number(key, remedy=remedies[key]) for key in keys}
 
 
 def _given(table: Table, keys: tuple[str, ...]) -> dict[str, Any]:

@@ -100,7 +100,7 @@ def _scene_with(tables: Mapping[str, Any], entries: Mapping[str, Any]) -> Scene:
 
 def _document(file: Path) -> dict[str, Any]:
     try:
-        text = file.read_text(encoding="utf-8")
+        text = file.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
     except FileNotFoundError:
         raise ValueError(f"{file}: no such file; give the path of a scene in TOML") from None
     except UnicodeDecodeError as error:

@@ -42,7 +42,8 @@ def test_no_command_and_an_unknown_one(run):
     [
         (ValueError("bad\n  input"), 2),
         (contactlab.PluginError("broken"), 1),
-        (contactlab.ImpactError("failed"), 1),
+        (contactlab.ImpactError("failed", contactlab.Status.NON_FINITE), 1),
+        (contactlab.ImpactError("stopped", contactlab.Status.INTERRUPTED), 130),
         (PermissionError(13, "Permission denied", "out.csv"), 1),
         (KeyboardInterrupt(), 130),
     ],

@@ -118,6 +118,28 @@ def test_stack_merges_what_differs():
     assert batch.take(slice(1, 2)).psi1 == pytest.approx(np.array([two.psi1]))
 
 
+def test_stack_refuses_bodies_beside_none():
+    """The spin of the one would be lost."""
+    with pytest.raises(ValueError, match=r"scenes\[1\].*must have bodies"):
+        Scene.stack([scene(), Scene.nondimensional(psi1=1.0, chi=1.0)])
+    with pytest.raises(ValueError, match=r"scenes\[1\].*must have bodies"):
+        Scene.stack([Scene.nondimensional(psi1=1.0, chi=1.0), scene()])
+
+
+def test_shapes_that_do_not_fit_are_named():
+    with pytest.raises(ValueError, match=r"friction_coefficient \(3,\), normal_speed \(2,\)"):
+        Scene(BALL, BALL, np.full(3, 0.1), np.ones(2))
+
+
+def test_scenes_that_are_equal_have_one_hash():
+    one, two = scene(), scene()
+    assert one == two
+    assert len({one, two}) == 1
+    batch = Scene.nondimensional(psi1=np.array([1.0, 0.0]), chi=1.0)
+    assert batch == Scene.nondimensional(psi1=np.array([1.0, -0.0]), chi=1.0)
+    assert len({batch, Scene.nondimensional(psi1=np.array([1.0, 2.0]), chi=1.0)}) == 2
+
+
 def test_stack_refuses_what_is_no_scene():
     with pytest.raises(ValueError, match=r"scenes\[1\]"):
         Scene.stack([scene(), 3.0])

@@ -108,6 +108,59 @@ def test_plan_says_what_is_left_out_and_why():
     )
 
 
+def test_plan_says_of_a_batch_what_is_done():
+    """Of several dimensions, and with a history, which has one time axis for all."""
+    psi1 = np.array([[0.0, 1.0], [3.0, 9.0]])
+    batch = Scene.nondimensional(psi1=psi1, chi=CHI)
+    sim = Simulation(**RIGID)
+    result = sim.run(batch)
+    assert result.plan.marched.tolist() == [[False, True], [True, False]]
+    assert "(2 of 4 impacts)" in str(result.plan)
+    alone = [[sim.run(scene(value)).psi2 for value in row] for row in psi1.tolist()]
+    assert result.psi2 == pytest.approx(np.array(alone), abs=1e-15)
+    watched = sim.run(batch, history=True)
+    assert watched.plan.marched.all()
+    assert "tangential march" not in " ".join(watched.plan.left_out)
+    assert watched.psi2 == pytest.approx(np.array(alone), abs=1e-12)
+    assert sim.run(Scene.nondimensional(psi1=[6.0, 9.0], chi=CHI), history=True).plan.slipping.all()
+
+
+def test_a_law_without_force_is_left_out_only_where_it_is():
+    frictionless = {"tangential": "frictionless", "integrator": "symplectic"}
+    left_out = Simulation(**frictionless).plan(scene())
+    assert "makes no force" in str(left_out)
+    assert not left_out.marched
+    marched = Simulation(normal=LinearSpring(), **frictionless).plan(scene())
+    assert "makes no force" not in str(marched)
+    assert marched.marched
+
+
+def test_a_word_that_only_a_closed_form_may_offer():
+    @attrs.frozen(kw_only=True)
+    class Boasting(LinearSpring):
+        offers: ClassVar[frozenset] = frozenset({"elastic_hertz"})
+
+    with pytest.raises(ValueError, match="ClosedFormNormalLaw"):
+        Simulation(normal=Boasting(), tangential="coulomb", integrator="symplectic")
+
+
+def test_results_are_told_on_a_line_and_can_be_sliced():
+    psi1 = np.array([0.5, 2.0, 3.0, 9.0])
+    result = Simulation(**RIGID).run(Scene.nondimensional(psi1=psi1, chi=CHI))
+    assert len(repr(result)) < 150
+    assert "4 SUCCESS" in repr(result)
+    assert "psi2=0;" in repr(result[0])
+    assert result[1:3].psi1.tolist() == [2.0, 3.0]
+    assert result[1:3].psi2.tolist() == result.psi2[1:3].tolist()
+    assert result[-1].psi2 == result.psi2[-1]
+    assert "instants" in repr(Simulation(**RIGID).run(scene(), history=True).history)
+    for bad in (4, -5, slice(4, 9)):
+        with pytest.raises(IndexError):
+            result[bad]
+    with pytest.raises(TypeError, match="number or a slice"):
+        result["psi2"]
+
+
 def test_plan_warns_where_hertz_is_doubtful():
     fast = Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.1, 1e4, 1.0)
     assert "doubtful above 0.1" in str(Simulation(**RIGID).plan(fast))

@@ -37,7 +37,7 @@ def test_create_passes_options_and_checks_them():
 
 def test_unknown_name_gives_the_nearest_and_the_list():
     with pytest.raises(
-        ValueError, match=r"did you mean 'tangential.coulomb'.*installed: .*normal.hertz"
+        ValueError, match=r"did you mean 'tangential.coulomb'.*installed: .*tangential.springs"
     ):
         contactlab.create("tangential.columb")
     with pytest.raises(ValueError, match=r"did you mean 'normal.hertz'"):
