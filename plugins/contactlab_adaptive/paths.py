@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab.contracts import ClosedFormMotion, NormalContact, NormalLaw, Problem
+from contactlab.contracts import ClosedFormMotion, NormalContact
 
 
 class Leg(NamedTuple):
@@ -26,6 +26,12 @@ class Leg(NamedTuple):
     time: float
     approach: float
     rate: float
+
+    @property
+    def sound(self) -> bool:
+        """Whether the law may be asked: under an infinite force one with a cap would have none."""
+        numbers = (self.contact.force, self.contact.overlap, self.lead, self.kick)
+        return all(map(math.isfinite, numbers)) and math.isfinite(self.normal_force)
 
 
 class Trial(NamedTuple):
@@ -89,6 +95,8 @@ class ClosedPath(NormalPath):
 
         def leg(first: int, middle: int, last: int) -> Leg:
             kick = times[last] - times[first]
+            if not kick > 0.0:  # time stands still, or is NaN
+                kick = math.nan
             return Leg(
                 NormalContact(*contacts[:, middle - 1].tolist()),
                 times[middle] - times[first],
@@ -106,57 +114,3 @@ class ClosedPath(NormalPath):
     def end(self, place: Any) -> tuple[float, float]:
         """Return (time, rate)."""
         return place[1], place[2]
-
-
-class Flight(NamedTuple):
-    """Place of a motion that is integrated."""
-
-    time: float
-    approach: float
-    rate: float
-    overlap: float
-    state: Any
-
-
-class MarchedPath(NormalPath):
-    """A normal law without closed form, by the same leapfrog; a step is one of time."""
-
-    length = None
-
-    def __init__(self, law: NormalLaw, problem: Problem) -> None:
-        self.law, self.mass = law, float(problem.pair.normal_mass)
-        self.start = law.start(problem.pair)
-        self.speed = float(problem.normal_speed)
-        self.depth = self.speed * float(problem.duration)
-
-    def begin(self) -> Flight:
-        """Return first touch."""
-        return Flight(0.0, 0.0, self.speed, 0.0, self.start)
-
-    def attempt(self, place: Any, step: float) -> Trial:
-        """Try a step of time, cut off where the overlap is about to vanish."""
-        separating = place.rate < 0.0 and place.overlap > 0.0
-        # The bodies part no slower than they do now: the end is at most this far.
-        step = min(step, place.overlap / -place.rate) if separating else step
-        whole, there = self._leg(place, step)
-        first, middle = self._leg(place, 0.5 * step)
-        second, place = self._leg(middle, 0.5 * step)
-        error = abs(place.rate - there.rate) / self.speed
-        error += abs(place.approach - there.approach) / self.depth
-        ended = place.rate < 0.0 and place.overlap <= 1e-9 * self.depth
-        return Trial(whole, (first, second), place, error, ended)
-
-    def _leg(self, place: Flight, step: float) -> tuple[Leg, Flight]:
-        lead = 0.5 * step
-        approach = place.approach + place.rate * lead
-        contact, state = self.law.respond(place.state, approach, place.rate)
-        rate = place.rate - float(contact.force) * step / self.mass
-        time = place.time + lead
-        leg = Leg(contact, lead, lead, step, float(contact.force), time, approach, rate)
-        after = approach + rate * lead
-        overlap = float(contact.overlap) + rate * lead
-        return leg, Flight(place.time + step, after, rate, overlap, state)
-
-    def end(self, place: Any) -> tuple[float, float]:
-        """Return (time, rate)."""
-        return place.time, place.rate
