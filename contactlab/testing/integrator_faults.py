@@ -23,6 +23,21 @@ def faults_reported(integrator: Any) -> None:
 
 
 @check(Integrator)
+def faults_named(integrator: Any) -> None:
+    """A law that raises, at the start or later, is named in the detail (Integrator, 1)."""
+    faulty = (
+        FailingSpring(raises=True),
+        FailingSpring(raises=True, at=0),
+        SlidingForEver(at_once=True),
+    )
+    ways = [*fitting(integrator, faulty, "normal.hertz")]
+    apply_if(ways, NEVER_ASKED)
+    for way in ways:
+        detail, name = run(way, 2.0).detail, type(way.tangential).__name__
+        hold(name in detail, f"{name} raised, and is not named: {detail!r}.")
+
+
+@check(Integrator)
 def normal_faults_reported(integrator: Any) -> None:
     """A normal law that answers NaN gives a status, never "no contact" (Integrator, 1)."""
     laws = (REGISTRY.create("tangential.coulomb"), PressedSpring(), SlidingForEver())

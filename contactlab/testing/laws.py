@@ -98,7 +98,10 @@ class PressedSpring(SteppedTangentialLaw):
 
 @attrs.frozen(kw_only=True)
 class FailingSpring(SteppedTangentialLaw):
-    """A spring that answers NaN, or raises, at one step; the state counts the steps."""
+    """A spring that answers NaN, or raises, at one step; the state counts the steps.
+
+    At the step 0, which is the start, it can only raise.
+    """
 
     api_version: ClassVar[int] = 1
     offers: ClassVar[frozenset[str]] = frozenset({"advance"})
@@ -107,6 +110,8 @@ class FailingSpring(SteppedTangentialLaw):
 
     def start(self, problem: Problem) -> tuple[int, Any]:  # noqa: ARG002
         """Return that no step was taken."""
+        if self.raises and self.at == 0:
+            raise ArithmeticError("as it was asked to")
         return 0, 0.0
 
     def advance(
@@ -144,15 +149,21 @@ class Sliding(Phase):
 
 @attrs.frozen(kw_only=True)
 class SlidingForEver(PhasedTangentialLaw):
-    """Slip in one direction from start to end; with ``fails`` it answers NaN from x = 1 on."""
+    """Slip in one direction from start to end.
+
+    With ``fails`` it answers NaN from x = 1 on; with ``at_once`` it raises as it begins.
+    """
 
     api_version: ClassVar[int] = 1
     offers: ClassVar[frozenset[str]] = frozenset({"phases"})
     exact: ClassVar[bool] = True
     fails: bool = False
+    at_once: bool = False
 
     def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:  # noqa: ARG002
         """Slide."""
+        if self.at_once:
+            raise ArithmeticError("as it was asked to")
         return Sliding(fails_at=1.0 if self.fails else math.inf)
 
 

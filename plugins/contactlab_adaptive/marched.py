@@ -74,10 +74,11 @@ def _plain(contact: NormalContact) -> NormalContact:
     LawFaultError
         If it is not made of real numbers.
     """
-    for part in contact:
+    parts = (contact.force, contact.radius, contact.overlap)
+    for part in parts:
         if type(part) is not float and faults.malformed(part, ()):
             raise faults.LawFaultError(Status.MALFORMED, f"the answer {faults.shown(part)}")
-    return NormalContact(*map(float, contact))
+    return NormalContact(*map(float, parts))
 
 
 def path_of(problem: Problem) -> NormalPath:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab import faults
 from contactlab.contracts import (
     ClosedFormMotion,
     ClosedPhase,
@@ -15,6 +16,7 @@ from contactlab.contracts import (
     PhasedTangentialLaw,
     PhaseState,
 )
+from contactlab.status import Status
 from contactlab_events.nodes import lobatto, row, rows
 from contactlab_events.panel import Overshot, PanelPath, Solved, newton
 from contactlab_events.search import first_event
@@ -64,6 +66,7 @@ class Followed(NamedTuple):
     state: PhaseState
     pieces: tuple[Piece, ...]
     solves: int
+    status: Status = Status.SUCCESS
 
 
 def follow(
@@ -74,14 +77,20 @@ def follow(
     tolerance: float,
 ) -> Followed:
     """Follow one impact of scaled velocity >= 0 to the end of contact."""
-    solves = 0
+    solves, status = 0, Status.SUCCESS
     for longest in LONGEST_PANELS:
         walk = _Walk(law, motion, inertia, velocity, tolerance, longest)
-        failure = walk.go() or walk.audit(velocity)
+        try:
+            failure = walk.go() or walk.audit(velocity)
+            status = Status.UNRESOLVED if failure else Status.SUCCESS
+        except Exception as error:
+            what = f"{faults.raised(error)}, at x = {walk.state.x:.6g}"
+            failure = faults.told(law, what, len(walk.pieces) + 1)
+            status = Status.LAW_RAISED
         solves += walk.solves
-        if not failure:
+        if status is not Status.UNRESOLVED:
             break
-    return Followed(failure, walk.state, tuple(walk.pieces), solves)
+    return Followed(failure, walk.state, tuple(walk.pieces), solves, status)
 
 
 class _Walk:
@@ -96,16 +105,16 @@ class _Walk:
         tolerance: float,
         longest: float,
     ) -> None:
-        self.motion, self.inertia, self.longest = motion, inertia, longest
+        self.law, self.motion, self.inertia, self.longest = law, motion, inertia, longest
         self.tail = TAIL_PER_TOLERANCE * tolerance
         self.nodes = lobatto(NODES)
         self.state = PhaseState(0.0, 0.0, 0.0, velocity, 0.0, 0.0, 0.0)
         self.pieces: list[Piece] = []
         self.solves = self.idle = self.rejects = 0
-        self._enter(law.begin(velocity, inertia, motion))
 
     def go(self) -> str:
         """Advance to the end of contact; return what went wrong, if anything did."""
+        self._enter(self.law.begin(self.state.velocity, self.inertia, self.motion))
         while self.state.x < math.pi:
             closed = self.phase.closed_form(self.state, self.motion, self.inertia)
             failure = self._panel() if closed is None else self._jump(closed)

@@ -66,8 +66,7 @@ class Impact(NamedTuple):
             status, failure = Status.SUCCESS, ""
         else:
             followed = follow(law, self.motion, self.inertia, speed, tolerance)
-            failure = followed.failure
-            status = Status.UNRESOLVED if failure else Status.SUCCESS
+            status, failure = followed.status, followed.failure
         state = followed.state
         usable = math.nan if status is not Status.SUCCESS else 1.0
         work_unit = self.velocity_unit * self.time_unit * self.force_unit

@@ -121,15 +121,15 @@ def march(
     change: Real = 0.0 if single else np.zeros(problem.shape)
     work: Real = 0.0 if single else np.zeros(problem.shape)
     nothing = 0.0 * change
-    before = NormalContact(nothing, nothing, nothing)
-    state = law.start(problem)
+    before = contact = NormalContact(nothing, nothing, nothing)
     status, detail, what, count = Status.SUCCESS, "", "", 0
     velocity: Real = initial
     blamed: Law = law
     time: Real = 0.0
     try:
+        state = law.start(problem)
         for step in steps:
-            time = step.time
+            time, contact = step.time, step.contact
             count += 1
             change_per_force = step.kick / mass  # once: often the same for a whole batch
             arresting = velocity / change_per_force
@@ -163,8 +163,8 @@ def march(
     except Exception as error:
         status, what = Status.LAW_RAISED, faults.raised(error)
     if status is not Status.SUCCESS and not detail:
-        if faults.unsound(step.contact, problem.shape):
-            blamed, what = problem.normal, faults.shown(tuple(step.contact))
+        if faults.unsound(contact, problem.shape):
+            blamed, what = problem.normal, faults.shown(tuple(contact))
         detail = faults.told(blamed, what, count, time)
     return _ended(problem, end, change, work, status, detail, count)
 

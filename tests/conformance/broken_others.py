@@ -147,6 +147,14 @@ class GivesUpOnNothing(Steps):
         )
 
 
+class NamesNobody(Steps):
+    """Says that something was raised, and not by whom."""
+
+    def alter(self, motion, problem, observer):
+        raised = motion.status is Status.LAW_RAISED
+        return attrs.evolve(motion, detail="Something was raised.") if raised else motion
+
+
 BROKEN = {
     Pulls: "presses",
     GivesMore: "normal_passive",
@@ -158,6 +166,7 @@ BROKEN = {
     NotItsMotion: "motion_agrees",
     Remembers: "contacts_pure",
     AlwaysSucceeds: "faults_reported",
+    NamesNobody: "faults_named",
     HeedsItsObserver: "observer_changes_nothing",
     KeepsItsObserverWaiting: "observer_changes_nothing",
     OneStatusForAll: "impacts_batch",

@@ -13,6 +13,9 @@ from contactlab import ImpactError, Scene, Simulation, Status
 from contactlab.contracts import (
     NormalContact,
     NormalLaw,
+    Phase,
+    PhasedTangentialLaw,
+    PhaseResponse,
     SteppedTangentialLaw,
     TangentialResponse,
 )
@@ -20,7 +23,8 @@ from contactlab.contracts import (
 AT = 7
 SCENE = Scene.nondimensional(psi1=1.2, chi=1.44)
 BATCH = Scene.nondimensional(psi1=np.array([0.5, 1.2, 3.0]), chi=1.44)
-STEPPING = ("paper", "symplectic")
+#: The step in which the law is asked for the AT-th time; adaptive steps are kept in halves.
+STEPPING = {"paper": AT, "symplectic": AT, "adaptive": (AT + 1) // 2}
 
 
 @attrs.frozen(kw_only=True)
@@ -109,6 +113,11 @@ NORMAL = {
 }
 
 
+def watchable(scene, integrator):
+    """Return whether there is a history: impacts of a batch may have instants of their own."""
+    return not scene.shape or contactlab.create(f"integrator.{integrator}").common_instants
+
+
 def one_status(result):
     statuses = {*np.ravel(np.asarray(result.status, dtype=object))}
     assert len(statuses) == 1
@@ -128,13 +137,16 @@ def test_a_tangential_law_is_named_with_step_and_time(fault, integrator, scene):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         result = Simulation(tangential=Friction(answer=answer), integrator=integrator).run(
-            scene, history=True
+            scene, history=watchable(scene, integrator)
         )
     assert one_status(result) is status
-    assert re.match(rf"At step {AT}, time \S+ s: .*Friction", told(result))
+    step = STEPPING[integrator]
+    assert re.match(rf"At step {step}, time \S+ s: .*Friction", told(result))
     assert words in told(result)
-    assert AT - 1 <= len(result.history.time) <= AT
-    with pytest.raises(ImpactError, match=f"At step {AT}"):
+    if result.history is not None:
+        assert AT - 1 <= len(result.history.time) <= AT
+        assert (np.asarray(result.history.time) > 0.0).all()
+    with pytest.raises(ImpactError, match=f"At step {step}"):
         result.check()
 
 
@@ -147,12 +159,94 @@ def test_a_normal_law_is_named(fault, tangential, integrator, scene):
     simulation = Simulation(
         normal=Press(answer=answer), tangential=tangential, integrator=integrator
     )
-    result = simulation.run(scene, history=True)
+    result = simulation.run(scene, history=watchable(scene, integrator))
     assert one_status(result) is status
     assert re.match(r"At step \d+, time \S+ s: ", told(result))
     assert re.search(f"{words}|nan", told(result))
     assert "Press" in told(result)
     assert one_status(simulation.run(scene)) is status  # unwatched, steps may be taken at once
+
+
+@pytest.mark.parametrize("fault", TANGENTIAL)
+def test_adaptive_motion_so_far_is_kept(fault):
+    """Three steps were kept before the fault: time, rate and velocity are those of that moment."""
+    answer, _, _ = TANGENTIAL[fault]
+    law = Friction(answer=answer)
+    result = Simulation(tangential=law, integrator="adaptive").run(SCENE, history=True)
+    motion, seen = result.motion, result.history
+    assert motion.counters["steps"] == 3
+    assert seen.time[-1] < motion.duration < 1.5 * seen.time[-1]
+    assert f"time {motion.duration:.6g} s" in motion.detail
+    assert 0.0 < motion.normal_velocity < SCENE.normal_speed
+    assert motion.slip_velocity_change < 0.0
+
+
+@attrs.frozen(kw_only=True)
+class Unready(Friction):
+    """Rigid friction that cannot even start."""
+
+    def start(self, problem):
+        raise KeyError("stiffness")
+
+
+@pytest.mark.parametrize("scene", [SCENE, BATCH], ids=["one", "batch"])
+@pytest.mark.parametrize("integrator", STEPPING)
+def test_a_law_that_raises_at_the_start_is_named(integrator, scene):
+    result = Simulation(tangential=Unready(), integrator=integrator).run(scene)
+    assert one_status(result) is Status.LAW_RAISED
+    assert re.match(
+        r"At step [01], time 0 s: KeyError: 'stiffness' \(start, .*Unready", told(result)
+    )
+
+
+@pytest.mark.parametrize("integrator", STEPPING)
+def test_a_normal_law_that_raises_at_the_start_is_named(integrator):
+    @attrs.frozen(kw_only=True)
+    class Limp(Press):
+        def start(self, pair):
+            raise KeyError("stiffness")
+
+    result = Simulation(normal=Limp(), tangential="coulomb", integrator=integrator).run(SCENE)
+    assert one_status(result) is Status.LAW_RAISED
+    assert re.match(r"At step 1.*: KeyError: 'stiffness' \(start, .*Limp", told(result))
+
+
+@attrs.frozen(kw_only=True)
+class Slippery(Phase):
+    """Slip that raises from some phase of the normal motion on."""
+
+    def respond(self, contact, slip, memo):
+        if contact.phase[-1] > 1.5:
+            raise KeyError("stiffness")
+        return PhaseResponse(contact.force, None, None, ())
+
+
+@attrs.frozen(kw_only=True)
+class Stumbling(PhasedTangentialLaw):
+    """A law of one phase, which raises as it begins or later."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"phases"})
+    at_once: bool = False
+
+    def begin(self, velocity, inertia, motion):
+        if self.at_once:
+            raise KeyError("stiffness")
+        return Slippery()
+
+
+@pytest.mark.parametrize("scene", [SCENE, BATCH], ids=["one", "batch"])
+@pytest.mark.parametrize(("at_once", "where"), [(True, "begin"), (False, "respond")])
+def test_a_law_of_phases_that_raises_is_named(at_once, where, scene):
+    law = Stumbling(at_once=at_once)
+    result = Simulation(tangential=law, integrator="events").run(scene, history=True)
+    assert one_status(result) is Status.LAW_RAISED
+    assert re.match(
+        rf"At step [12]: KeyError: 'stiffness' \({where}, .* at x = \S+ from Stumbling",
+        told(result),
+    )
+    assert np.all(np.asarray(result.history.time) >= 0.0)
+    assert at_once or len(result.history.time) > 1
 
 
 def test_plug_in_and_distribution_are_named():
