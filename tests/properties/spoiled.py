@@ -1,0 +1,180 @@
+"""Real laws with one of their answers spoiled: every law, under every contract."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+
+from contactlab.contracts import (
+    ClosedFormMotion,
+    ClosedFormNormalLaw,
+    NormalLaw,
+    PhasedTangentialLaw,
+    SteppedTangentialLaw,
+)
+
+
+class Spoiler:
+    """Counts the calls of a run and spoils one, or all from then on; 0 spoils none."""
+
+    def __init__(self, at: int, value: float, *, lasting: bool = False) -> None:
+        self.at, self.value, self.lasting, self.calls = at, value, lasting, 0
+
+    def __call__(self, entry):
+        """Return ``entry``, or the bad value if its turn has come."""
+        self.calls += 1
+        if self.calls != self.at and not (self.lasting and self.calls > self.at > 0):
+            return entry
+        return entry * 0.0 + self.value if isinstance(entry, np.ndarray) else self.value
+
+    @property
+    def struck(self) -> bool:
+        return self.calls >= self.at > 0
+
+
+def inert_copy(law, base):
+    """Return class attributes of a law for its wrapper."""
+    names = ("needs", "offers", "resolution", "inert", "exact", "linear_below")
+    found = {name: getattr(law, name) for name in names if hasattr(law, name)}
+    return found | {"api_version": 1}
+
+
+def spoiled_tangential(law, spoil, entry):
+    """Wrap a stepped law; ``entry`` names what of its response is spoiled."""
+
+    def advance(self, state, increment, before, after):
+        response, state = law.advance(state, increment, before, after)
+        return response._replace(**{entry: spoil(getattr(response, entry))}), state
+
+    body = inert_copy(law, SteppedTangentialLaw) | {
+        "start": lambda _, problem: law.start(problem),
+        "advance": advance,
+        "stiffness": lambda _, problem: law.stiffness(problem),
+    }
+    return attrs.frozen(type("Spoiled", (SteppedTangentialLaw,), body))()
+
+
+def spoiled_phases(law, spoil, entry):
+    """Wrap a phased law: one response of one phase is spoiled."""
+
+    def wrap(phase):
+        if type(phase).__name__.startswith("Spoiled"):
+            return phase
+        kind = type(phase)
+
+        def respond(self, contact, slip, memo):
+            response = kind.respond(self, contact, slip, memo)
+            return response._replace(**{entry: spoil(getattr(response, entry))})
+
+        def follow(self, *arguments):
+            return wrap(kind.follow(self, *arguments))
+
+        def carry_on(self, *arguments):
+            return wrap(kind.carry_on(self, *arguments))
+
+        def closed_form(self, *arguments):
+            closed = kind.closed_form(self, *arguments)
+            if closed is not None:
+                closed.end = closed.end._replace(change=spoil(closed.end.change))
+            return closed
+
+        body = {
+            "respond": respond,
+            "follow": follow,
+            "carry_on": carry_on,
+            "closed_form": closed_form,
+            "__slots__": (),
+        }
+        made = object.__new__(type(f"Spoiled{kind.__name__}", (kind,), body))
+        for name in {field.name for field in attrs.fields(kind)}:
+            object.__setattr__(made, name, getattr(phase, name))
+        return made
+
+    body = inert_copy(law, PhasedTangentialLaw) | {
+        "begin": lambda _, *arguments: wrap(law.begin(*arguments)),
+    }
+    return attrs.frozen(type("Spoiled", (PhasedTangentialLaw,), body))()
+
+
+class SpoiledMotion(ClosedFormMotion):
+    """Wraps a motion in closed form; ``name`` says which of its answers is spoiled."""
+
+    def __init__(self, motion, spoil, name):
+        self.motion, self.spoil, self.name = motion, spoil, name
+
+    def _told(self, name, value):
+        return self.spoil(value) if name == self.name else value
+
+    def _course(self, name, course):
+        if not self.name.startswith(name):
+            return course
+        entry = self.name.partition(".")[2]
+        return course._replace(**{entry: self.spoil(getattr(course, entry))})
+
+    duration = property(lambda self: self._told("duration", self.motion.duration))
+    maximum_radius = property(lambda self: self.motion.maximum_radius)
+    maximum_approach = property(lambda self: self.motion.maximum_approach)
+    maximum_force = property(lambda self: self._told("maximum_force", self.motion.maximum_force))
+    scaled_mass = property(lambda self: self.motion.scaled_mass)
+
+    def course(self, phase):
+        return self._course("course", self.motion.course(phase))
+
+    def instant(self, phase):
+        return self._course("instant", self.motion.instant(phase))
+
+    def phase_at_rate(self, rate):
+        return self.motion.phase_at_rate(rate)
+
+    def at(self, phase):
+        time, approach, rate, contact = self.motion.at(phase)
+        if self.name == "at.rate":
+            rate = self._one(rate)
+        if self.name == "at.force":
+            contact = contact._replace(force=self._one(contact.force))
+        if self.name == "at.radius":
+            contact = contact._replace(radius=self._one(contact.radius))
+        if self.name == "at.time":
+            time = self._one(time)
+        return time, approach, rate, contact
+
+    def _one(self, rows):
+        """Spoil one instant, whether they come one by one or all at once."""
+        rows = np.array(rows, dtype=float)
+        flat = rows.reshape(-1)
+        for place in range(flat.size):
+            flat[place] = self.spoil(float(flat[place]))
+        return rows
+
+    def phase(self, fraction):
+        return self.motion.phase(fraction)
+
+    def pace(self, phase):
+        return self.motion.pace(phase)
+
+
+def spoiled_closed_form(law, spoil, name):
+    """Wrap a normal law with a motion in closed form."""
+    body = inert_copy(law, ClosedFormNormalLaw) | {
+        # No short cut of the plan: the march is what is tested.
+        "offers": law.offers,
+        "start": lambda _, pair: law.start(pair),
+        "respond": lambda _, *arguments: law.respond(*arguments),
+        "motion": lambda _, pair, speed: SpoiledMotion(law.motion(pair, speed), spoil, name),
+    }
+    return attrs.frozen(type("SpoiledHertz", (ClosedFormNormalLaw,), body))()
+
+
+def spoiled_normal(law, spoil, entry):
+    """Wrap a normal law; without closed form, so that every integrator asks it step by step."""
+
+    def respond(self, state, approach, rate):
+        contact, state = law.respond(state, approach, rate)
+        return contact._replace(**{entry: spoil(getattr(contact, entry))}), state
+
+    body = inert_copy(law, NormalLaw) | {
+        "offers": law.offers - {"closed_form_motion", "elastic_hertz"},
+        "start": lambda _, pair: law.start(pair),
+        "respond": respond,
+    }
+    return attrs.frozen(type("SpoiledHertz", (NormalLaw,), body))()
