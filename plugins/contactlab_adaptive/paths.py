@@ -85,20 +85,22 @@ class ClosedPath(NormalPath):
         stop = min(x + step, math.pi)
         if math.pi - stop < 1e-12:
             stop = math.pi
-        phases = np.array([0.25, 0.5, 0.75, 1.0]) * (stop - x) + x
-        phases[-1] = stop
+        part = 0.25 * (stop - x)
+        phases = np.array([x + part, x + 2.0 * part, x + 3.0 * part, stop])
         *moving, contact = self.motion.at(phases)
-        found: list[Any] = [np.asarray(part).tolist() for part in moving]
-        contacts = np.array(contact)
-        times, rates = [start, *found[0]], [rate, *found[2]]
-        approaches = [math.nan, *found[1]]
+        # Plain floats, which are faster one by one; the start of the step goes before them.
+        befores = (start, math.nan, rate)
+        times, approaches, rates = (
+            [before, *_listed(column)] for before, column in zip(befores, moving, strict=True)
+        )
+        contacts = [NormalContact(*row) for row in zip(*map(_listed, contact), strict=True)]
 
         def leg(first: int, middle: int, last: int) -> Leg:
             kick = times[last] - times[first]
             if not kick > 0.0:  # time stands still, or is NaN
                 kick = math.nan
             return Leg(
-                NormalContact(*contacts[:, middle - 1].tolist()),
+                contacts[middle - 1],
                 times[middle] - times[first],
                 times[last] - times[middle],
                 kick,
@@ -114,3 +116,8 @@ class ClosedPath(NormalPath):
     def end(self, place: Any) -> tuple[float, float]:
         """Return (time, rate)."""
         return place[1], place[2]
+
+
+def _listed(column: Any) -> list[float]:
+    listed: list[float] = np.asarray(column).tolist()
+    return listed

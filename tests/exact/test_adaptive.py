@@ -86,6 +86,50 @@ def test_error_follows_the_tolerance():
     assert slope == pytest.approx(1.0, abs=0.3)
 
 
+def fine(law, psi1, chi):
+    """Return psi2 by many steps of fixed length, which are chosen by nobody."""
+    steps = contactlab.create("integrator.symplectic", steps=10_000)
+    return Simulation(tangential=law, integrator=steps).run(scene(psi1, chi)).check().psi2
+
+
+@pytest.mark.parametrize("chi", [0.5, CHI, 30.0])
+@pytest.mark.parametrize(("name", "options"), [("springs", {"springs": 12}), ("mindlin_cap", {})])
+def test_error_of_smooth_laws_is_below_the_tolerance(name, options, chi):
+    law = contactlab.create(f"tangential.{name}", **options)
+    for psi1 in (0.6, 1.2):
+        exact = fine(law, psi1, chi)
+        for tolerance in (1e-2, 1e-3):
+            sim = Simulation(tangential=law, integrator=adaptive(tolerance))
+            assert abs(sim.run(scene(psi1, chi)).check().psi2 - exact) < tolerance * max(1.0, psi1)
+
+
+@pytest.mark.parametrize("annuli", [10, 50])
+def test_error_of_annuli_falls_as_the_root_of_the_tolerance(annuli):
+    """A newcomer's reference is off by the part of the step before it came, in either way."""
+    law = contactlab.create("tangential.annulus", annuli=annuli)
+    for psi1 in (0.6, 1.2):
+        exact = fine(law, psi1, CHI)
+        for tolerance in (1e-2, 1e-3, 1e-4):
+            sim = Simulation(tangential=law, integrator=adaptive(tolerance))
+            error = abs(sim.run(scene(psi1)).check().psi2 - exact)
+            assert error < 0.5 * math.sqrt(tolerance)
+
+
+def test_cost_grows_as_the_inverse_root_of_the_tolerance():
+    """An upper bound for laws that jump too: what is rejected stays below what is kept."""
+    tolerances = [1e-2, 1e-3, 1e-4]
+    for name in ("springs", "annulus"):
+        kept = []
+        for tolerance in tolerances:
+            sim = Simulation(tangential=name, integrator=adaptive(tolerance))
+            counters = sim.run(scene()).check().counters
+            assert counters["rejected"] < counters["steps"]
+            assert counters["evaluations"] <= 3 * (counters["steps"] + counters["rejected"])
+            kept.append(counters["steps"])
+        slope = np.polyfit(np.log(tolerances), np.log(kept), 1)[0]
+        assert slope == pytest.approx(-0.5, abs=0.15), name
+
+
 def test_rejected_steps_change_nothing():
     """Steps are rejected, and no state given to the law was changed by a later attempt."""
     law = Elastic(stiffness_in_newton_per_metre=400.0)
