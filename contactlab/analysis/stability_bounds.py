@@ -29,8 +29,8 @@ from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 
 STEP, PHASE, PART = 1.0, 2.0, 0.5
-#: Tolerances are aims: of an adaptive scheme the error per unit of its path is held, and a law
-#: that is not smooth (annuli) is stepped over at a least step.
+#: Tolerances are aims: of an adaptive scheme the error per unit of its path is held, and what a
+#: law that is not smooth (annuli) does within a step is not all seen.
 TOLERANCE = 50.0
 #: Rounding, over the range.
 ROUNDING = 1e-9
