@@ -54,9 +54,10 @@ class MarchedPath(NormalPath):
         contact, state = self.law.respond(place.state, approach, place.rate)
         contact = _plain(contact)
         force, overlap = float(contact.force), float(contact.overlap)
-        rate = place.rate - force * step / self.mass
+        loss = force * step / self.mass
+        middle, rate = place.rate - 0.5 * loss, place.rate - loss
         time = place.time + lead
-        leg = Leg(contact, lead, lead, step, force, time, approach, rate)
+        leg = Leg(contact, lead, lead, step, force, time, approach, middle)
         after = approach + rate * lead
         overlap += rate * lead
         return leg, Flight(place.time + step, after, rate, overlap, state)

@@ -38,7 +38,7 @@ def test_damping_is_booked_as_a_loss_of_the_normal_motion():
     assert abs(result.energy.relative_imbalance) < 1e-12
 
 
-@pytest.mark.parametrize("integrator", ["symplectic", "paper"])
+@pytest.mark.parametrize("integrator", ["symplectic", "paper", "adaptive"])
 def test_the_loss_is_the_work_of_the_normal_force(integrator):
     """So a history's normal velocity is that at the instant of its force."""
     simulation = Simulation(normal=Damped(), tangential="springs", integrator=integrator)
