@@ -76,9 +76,13 @@ def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Refer
     taken = time.perf_counter() - before
     if result.status is not Status.SUCCESS:
         return _told(case, REFUSED, note=f"{result.status.name} {result.motion.detail}", time=taken)
-    with np.errstate(all="ignore"):
-        expected = reference(scene, simulation.tangential)
-        return _judged(case, simulation, result, expected, taken)
+    try:
+        with np.errstate(all="ignore"):
+            expected = reference(scene, simulation.tangential)
+            return _judged(case, simulation, result, expected, taken)
+    except Exception as error:
+        told = f"its reference: {type(error).__name__}: {error}"
+        return _told(case, RAISED, note=told, time=taken)
 
 
 def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
