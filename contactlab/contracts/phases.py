@@ -180,7 +180,8 @@ class PhasedTangentialLaw(TangentialLaw):
     --------
     1. ``begin`` returns the phase at first touch, for a velocity >= 0 (a law is odd).
     2. Below the velocity ``linear_below`` the response is proportional to the velocity, to
-       1e-8 of itself; an integrator may then solve for ``linear_below`` and scale.
+       1e-8 of itself, for an inertia above 1e-99; an integrator may then solve for
+       ``linear_below`` and scale.
     3. ``phase_fields`` names arrays in SI for the history; it changes nothing.
     """
 

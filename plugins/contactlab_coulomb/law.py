@@ -42,6 +42,8 @@ class Coulomb(SteppedTangentialLaw, PhasedTangentialLaw):
     api_version: ClassVar[int] = 1
     offers: ClassVar[frozenset[str]] = frozenset({"advance", "phases"})
     exact: ClassVar[bool] = True
+    #: Slip that friction can stop is stopped, however slow; its square must be a number.
+    linear_below: ClassVar[float] = 1e-100
     expected_failures: ClassVar[Mapping[str, str]] = {
         "cattaneo_mindlin": "rigid bodies slip all over or not at all: there is no partial slip",
         "impact_reference": "the exact solution is that of bodies which deform tangentially",

@@ -6,10 +6,53 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts import Course, Path, Phase, PhaseResponse, PhaseState
+from contactlab.contracts import (
+    ClosedFormMotion,
+    ClosedPhase,
+    Course,
+    Path,
+    Phase,
+    PhaseResponse,
+    PhaseState,
+)
 
 Array = NDArray[np.float64]
 Memo = tuple[Array, ...]
+
+
+class SlidingMotion(ClosedPhase):
+    """Force = P: the change of velocity is that of V, times inertia and mass (theory §1).
+
+    Where friction stops the slip it takes all of the velocity, to the last bit: the rate at
+    which that happens, a small difference from V_0 where the slip is slow, only tells when.
+    """
+
+    def __init__(self, state: PhaseState, motion: ClosedFormMotion, inertia: float) -> None:
+        first, last = motion.instant(state.x).rate, motion.instant(np.pi).rate
+        self.ratio, self.first, self.start = inertia * motion.scaled_mass, first, state
+        available = self.ratio * (first - last)
+        stops = state.velocity < available
+        self.event = 0 if stops else None
+        lost = state.velocity if stops else available
+        x = float(np.pi)
+        if stops:
+            x = max(motion.phase_at_rate(first - lost / self.ratio), state.x)
+        left = state.velocity - lost
+        self.end = PhaseState(
+            x=x,
+            slip=state.slip,
+            change=state.change - lost,
+            velocity=left,
+            force=0.0,
+            force_rate=0.0,
+            # Impulse times mean velocity.
+            work=state.work + (lost / inertia) * (left + 0.5 * lost),
+        )
+
+    def states(self, contact: Course) -> tuple[Array, Array]:
+        """Return (change of velocity, force)."""
+        lost = self.ratio * (self.first - contact.rate)
+        return self.start.change - np.minimum(lost, self.start.velocity), contact.force
 
 
 @attrs.frozen
@@ -57,3 +100,9 @@ class Sliding(Phase):
     ) -> Array:
         """Force times velocity."""
         return np.asarray(contact.force * velocity)
+
+    def closed_form(
+        self, state: PhaseState, motion: ClosedFormMotion, inertia: float
+    ) -> ClosedPhase:
+        """Return psi in proportion to V."""
+        return SlidingMotion(state, motion, inertia)

@@ -28,6 +28,8 @@ LONGEST_SWING = 9.0
 #: A fitted length is not moved for less than this, relative; nor by more than half.
 FIT_MOVE = 1e-10
 TINY = 1e-300
+#: The square of a change beyond this is no number; a shorter panel changes less.
+LARGEST_CHANGE = 1e150
 
 
 class Solved(NamedTuple):
@@ -118,6 +120,7 @@ def newton(
     placed = last = False
     peek = fit is None and bool(phase.rough) and not phase.linear
     guess_size = 0.0
+    square = start.velocity * start.velocity  # a float to the power of 2 raises OverflowError
     for step in range(NEWTON_CAP):
         if not placed:
             contact = motion.course(start.x + length * spot)
@@ -130,6 +133,8 @@ def newton(
         if change is None:  # force as it was, growing as it did
             change = time * (-inertia * start.force - (0.5 * inertia * start.force_rate) * time)
         if step == 0:
+            if not float(np.abs(change).max()) < LARGEST_CHANGE:
+                return None
             guess_size = float(change.dot(change)) / count
         slip = time_matrix.dot(change)
         slip += base
@@ -166,7 +171,7 @@ def newton(
             matrix += nodes.identity
             delta = dgesv(matrix, residual, 1, 1)[2]
         change = change - delta
-        size = float(change.dot(change)) / count + start.velocity**2 + guess_size + TINY
+        size = float(change.dot(change)) / count + square + guess_size + TINY
         update = (float(delta.dot(delta)) / size) ** 0.5
         if not update < 1e6:
             return None

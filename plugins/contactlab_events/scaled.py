@@ -20,6 +20,9 @@ from contactlab.contracts import (
 from contactlab.status import Status
 from contactlab_events.follow import Followed, follow
 
+#: Below this friction may stop no slip at all, however slow, and nothing is scaled.
+LEAST_INERTIA = 1e-99
+
 
 class Run(NamedTuple):
     """One impact followed, with its outcome in SI."""
@@ -54,7 +57,8 @@ class Impact(NamedTuple):
         """Follow the impact; a law is odd, so the velocity goes in without its sign."""
         speed = abs(self.velocity)
         factor = -1.0 if self.velocity < 0.0 else 1.0
-        if 0.0 < speed < law.linear_below:
+        works = not law.inert  # friction that does none has none, however large its unit
+        if 0.0 < speed < law.linear_below and self.inertia > LEAST_INERTIA:
             speed, factor = law.linear_below, factor * (speed / law.linear_below)
         if not (math.isfinite(speed) and math.isfinite(self.inertia) and self.inertia > 0.0):
             ended = PhaseState(0.0, 0.0, math.nan, math.nan, math.nan, math.nan, math.nan)
@@ -63,13 +67,15 @@ class Impact(NamedTuple):
         elif speed == 0.0 or self.force_unit == 0.0:  # nothing moves, or nothing resists
             ended = PhaseState(math.pi, 0.0, 0.0, speed, 0.0, 0.0, 0.0)
             followed = Followed("", ended, (), 0)
-            status, failure = Status.SUCCESS, ""
+            status, failure, works = Status.SUCCESS, "", False
         else:
             followed = follow(law, self.motion, self.inertia, speed, tolerance)
             status, failure = followed.status, followed.failure
         state = followed.state
         usable = math.nan if status is not Status.SUCCESS else 1.0
-        work_unit = self.velocity_unit * self.time_unit * self.force_unit
+        # A tiny factor stands for a huge friction coefficient: each unit takes its own.
+        velocity_unit, force_unit = factor * self.velocity_unit, factor * self.force_unit
+        work_unit = velocity_unit * self.time_unit * force_unit if works else 0.0
         return Run(
             impact=self,
             followed=followed,
@@ -77,7 +83,7 @@ class Impact(NamedTuple):
             duration=float(self.motion.duration),
             normal_velocity=self.motion.instant(math.pi).rate * self.speed,
             slip_velocity_change=usable * factor * state.change * self.velocity_unit,
-            friction_work=usable * factor * factor * state.work * work_unit,
+            friction_work=usable * state.work * work_unit,
             status=status,
             failure=failure,
         )
