@@ -13,7 +13,7 @@ from contactlab.analysis.stability import stability
 from contactlab.analysis.stability_bounds import broken_invariants, range_of
 from contactlab.analysis.stability_cases import Case, cases
 from contactlab.analysis.stability_outcome import ANSWERED, REFUSED, WRONG, judge, judge_run
-from contactlab.analysis.stability_references import continuum, rigid
+from contactlab.analysis.stability_references import continuum, itself, rigid
 from contactlab.analysis.stability_scenes import Extreme, extreme_scenes
 from contactlab.contracts import NormalContact, NormalLaw, SteppedTangentialLaw, TangentialResponse
 
@@ -55,6 +55,21 @@ class Spoiled(SteppedTangentialLaw):
             self.factor * response.force, response.friction_work, response.settled
         )
         return response, state
+
+
+@attrs.frozen(kw_only=True)
+class Restless(SteppedTangentialLaw):
+    """A force that depends on how fine the steps are."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"advance"})
+
+    def start(self, problem):
+        return problem.duration
+
+    def advance(self, state, increment, before, after):
+        share = np.cos(np.log(state / increment.duration))
+        return TangentialResponse(float(0.1 * share * increment.normal_force), 0.0), state
 
 
 @attrs.frozen(kw_only=True)
@@ -135,6 +150,32 @@ def test_a_rigid_body_is_judged_by_its_own_theory():
     for psi1, change in ((1.0, -1.0), (-3.0, 3.0), (5.0, -4.0), (1e16, -4.0)):
         scene = Scene.nondimensional(psi1=psi1, chi=1.0)
         assert rigid(scene, None) == pytest.approx(change, rel=1e-12)
+
+
+@pytest.mark.parametrize(("psi1", "chi"), [(0.3, 3.0), (0.98, 1e3), (1.2, 1e3)])
+def test_a_law_that_is_judged_by_itself_is_judged_by_its_limit(psi1, chi):
+    """Far finer steps agree; and so does the adaptive scheme, which takes other steps.
+
+    The fixed 4000 steps of before were 5e-3 of the range off at chi = 1e3: the adaptive scheme,
+    better than that, was called silently wrong.
+    """
+    scene, law = (
+        Scene.nondimensional(psi1=psi1, chi=chi),
+        contactlab.create("tangential.mindlin_cap"),
+    )
+
+    def change(name, **options):
+        integrator = contactlab.create(f"integrator.{name}", **options)
+        run = Simulation(tangential=law, integrator=integrator).run(scene).check()
+        return float(run.motion.slip_velocity_change)
+
+    width, found = range_of(scene).width, itself(scene, law)
+    assert found == pytest.approx(change("symplectic", steps=64_000), abs=5e-5 * width)
+    assert found == pytest.approx(change("adaptive", tolerance=1e-2), abs=1e-3 * width)
+
+
+def test_an_answer_that_does_not_stand_still_is_no_reference():
+    assert itself(Scene.nondimensional(psi1=1.2, chi=CHI), Restless()) is None
 
 
 def test_exact_answers_break_no_invariant():
