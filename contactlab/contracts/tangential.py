@@ -152,7 +152,11 @@ class SteppedTangentialLaw(TangentialLaw):
     5. ``fields(state)`` names arrays for the history; it changes nothing.
     6. ``stiffness(problem)`` is an upper bound of dF/dD in N/m, from which an integrator
        knows its largest stable step; 0 for a law whose force does not come from displacement.
+    7. ``rings`` says that the sticking contact is a spring without loss: its oscillation does
+       not die down, and the errors of phase of all its periods add up.
     """
+
+    rings: ClassVar[bool] = False
 
     @abstractmethod
     def start(self, problem: Problem) -> Any:

@@ -53,6 +53,21 @@ def test_the_limit_follows_the_law_and_the_scene():
     assert not rigid.plan(scene).cautions
 
 
+def test_a_law_that_rings_needs_steps_that_keep_its_phase():
+    """(omega t)³/(24 N²) <= 0.05: omega t = 2.9433 sqrt(3.75 chi) = 57.0 at chi = 100, N >= 393.
+
+    Where slip damps the oscillation, the lead of phase is forgotten: N >= 114 is enough there.
+    """
+    scene = Scene.nondimensional(psi1=1.2, chi=100.0)
+    for steps, cautions in ((393, 0), (392, 1)):
+        ringing = Simulation(
+            tangential="mindlin_cap",
+            integrator=contactlab.create("integrator.symplectic", steps=steps, refine=False),
+        )
+        assert len(ringing.plan(scene).cautions) == cautions
+        assert (ringing.run(scene).status is Status.SUCCESS) is (not cautions)
+
+
 def test_the_normal_motion_takes_steps_too():
     """In one explicit step a rigid sphere would rebound 18 times as fast as it came."""
     scene = Scene.nondimensional(psi1=1.2, chi=1.44)
