@@ -51,8 +51,10 @@ class MindlinCap(SteppedTangentialLaw):
         trial = held + stiffness * increment.displacement
         limit = state.friction_coefficient * increment.normal_force
         force = np.clip(trial, -limit, limit)
-        slip = np.abs(trial - force) * softness
-        return TangentialResponse(force, np.abs(force) * slip), state._replace(force=force)
+        slip = (trial - force) * softness
+        # The mean of the force before and after: as contact ends a spring lets go of all it holds.
+        work = np.maximum(0.5 * (held + force) * slip, 0.0)
+        return TangentialResponse(force, work), state._replace(force=force)
 
     def stiffness(self, problem):
         """Return the stiffness of the largest contact."""

@@ -152,11 +152,9 @@ class SteppedTangentialLaw(TangentialLaw):
     5. ``fields(state)`` names arrays for the history; it changes nothing.
     6. ``stiffness(problem)`` is an upper bound of dF/dD in N/m, from which an integrator
        knows its largest stable step; 0 for a law whose force does not come from displacement.
-    7. ``rings`` says that the sticking contact is a spring without loss: its oscillation does
-       not die down, and the errors of phase of all its periods add up.
+       Of a law that does not offer ``partial_slip``, whose microslip damps the oscillation,
+       the errors of phase of all periods are taken to add up, and more steps are needed.
     """
-
-    rings: ClassVar[bool] = False
 
     @abstractmethod
     def start(self, problem: Problem) -> Any:

@@ -18,8 +18,8 @@ from contactlab.status import Status
 #: phase is off by 1 % a radian.
 LARGEST_PHASE_STEP = 0.5
 #: The leapfrog's phase runs ahead by (omega dt)²/24 a radian. Where microslip damps the oscillation
-#: that is forgotten with it; where a law rings it adds up over the impact, to no more than this,
-#: in radians: an error of up to a third of it over the range, whatever chi.
+#: that is forgotten with it; where a law has none it adds up over the impact, to no more than
+#: this, in radians: an error of up to a third of it over the range, whatever chi.
 LARGEST_LEAD = 0.05
 #: The normal motion is half an oscillation, and is resolved alike whatever the tangential law:
 #: in 1 or 2 explicit steps the bodies part many times as fast as they met, in 7 e - 1 = 3e-3.
@@ -38,7 +38,7 @@ def needed_steps(problem: Problem) -> Any:
     omega = np.sqrt(law.stiffness(problem) / problem.pair.tangential_mass)
     swing = omega * problem.duration
     steps = swing / LARGEST_PHASE_STEP
-    if law.rings:
+    if "partial_slip" not in law.offers:
         steps = np.maximum(steps, swing * np.sqrt(swing / (24.0 * LARGEST_LEAD)))
     return np.maximum(np.ceil(steps), LEAST_STEPS)
 

@@ -52,7 +52,6 @@ class MindlinCap(SteppedTangentialLaw):
     api_version: ClassVar[int] = 1
     offers: ClassVar[frozenset[str]] = frozenset({"advance"})
     needs: ClassVar[frozenset[str]] = frozenset({"steps", "radius"})
-    rings: ClassVar[bool] = True
 
     #: Of the default form; each form is found out by another path.
     expected_failures: ClassVar[Mapping[str, str]] = {

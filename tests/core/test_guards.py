@@ -53,7 +53,7 @@ def test_the_limit_follows_the_law_and_the_scene():
     assert not rigid.plan(scene).cautions
 
 
-def test_a_law_that_rings_needs_steps_that_keep_its_phase():
+def test_without_partial_slip_steps_must_keep_the_phase():
     """(omega t)³/(24 N²) <= 0.05: omega t = 2.9433 sqrt(3.75 chi) = 57.0 at chi = 100, N >= 393.
 
     Where slip damps the oscillation, the lead of phase is forgotten: N >= 114 is enough there.

@@ -65,5 +65,7 @@ class CundallStrack(SteppedTangentialLaw):
         trial = state.force + state.stiffness * increment.displacement
         limit = state.friction_coefficient * increment.normal_force
         force = np.minimum(np.maximum(trial, -limit), limit)
-        slip = np.abs(trial - force) / state.stiffness
-        return TangentialResponse(force, np.abs(force) * slip), state._replace(force=force)
+        slip = (trial - force) / state.stiffness
+        # The mean of the force before and after: as contact ends a spring lets go of all it holds.
+        work = np.maximum(0.5 * (state.force + force) * slip, 0.0)
+        return TangentialResponse(force, work), state._replace(force=force)
