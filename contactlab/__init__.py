@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from contactlab.bodies import HalfSpace, Material, Pair, Sphere
 from contactlab.energy import EnergyLedger
 from contactlab.hookspecs import hookimpl
-from contactlab.rebound import rebound
+from contactlab.rebounds import rebound
 from contactlab.registry import REGISTRY, PluginError
 from contactlab.result import ImpactError, ImpactResult
 from contactlab.scene import Scene

@@ -14,6 +14,8 @@ from contactlab.closed_forms import slips_throughout_elastic
 from contactlab.contracts import ClosedFormMotion, Course, Phase, PhasedTangentialLaw, Problem
 from contactlab_fronts.phases import Balanced, FrontPhase, GrossSlip, Stuck
 
+Array = NDArray[np.float64]
+
 #: Rings in which stick and slip are shown; the solution itself knows no rings.
 RINGS = 200
 
@@ -60,6 +62,15 @@ class Fronts(PhasedTangentialLaw):
         if abs(ratio - 1.0) < BALANCE:
             return Balanced(velocity)
         return Stuck((), 0.0, 0.0, 0)
+
+    def rebound(self, psi1: Array, chi: Array, tolerance: float) -> tuple[Array, NDArray[np.bool_]]:
+        """Return psi2 of many elastic impacts at once, and where it was found.
+
+        See ``contactlab_fronts.rebound.rebound``.
+        """
+        from contactlab_fronts import rebound  # only for those who ask
+
+        return rebound.rebound(psi1, chi, tolerance)
 
     def phase_fields(
         self, problem: Problem, phase: Phase, contact: Course, slip: float, factor: float

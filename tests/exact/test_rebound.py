@@ -136,6 +136,12 @@ def test_refusals(arguments, word):
         rebound(**arguments)
 
 
+def test_a_blocked_law_is_not_used(monkeypatch):
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "tangential.fronts")
+    with pytest.raises(ValueError, match="blocked"):
+        rebound(1.2, 1.44)
+
+
 def test_no_law_is_loaded_before_it_is_called():
     probe = (
         "import sys, contactlab; contactlab.rebound; "

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.checks import POSITIVE, Real, Rule, real, refuse
 
+if TYPE_CHECKING:
+    from contactlab.result import ImpactResult
+
 Array = NDArray[np.float64]
 
 #: All impacts together reach 1e-6; below it each is solved on its own, which reaches 1e-9.
 TOGETHER = 1e-6
+#: So few are solved one by one whatever the tolerance: together they would take longer.
+FEW = 4
 #: Looser tolerances save no more time.
 LOOSEST = 1e-4
 TOLERANCE = Rule(
@@ -51,6 +58,8 @@ def rebound(psi1: object, chi: object, *, tolerance: float = 1e-5) -> Real:
     ------
     ValueError
         For bad input, with the argument, its value, the rule and the remedy.
+    ValueError, PluginError
+        If the law ``tangential.fronts`` is blocked or cannot be imported.
     ImpactError
         If an impact could not be solved at all; none is known.
 
@@ -77,24 +86,33 @@ def rebound(psi1: object, chi: object, *, tolerance: float = 1e-5) -> Real:
 
 def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
     """Return psi2, shape (impacts,)."""
-    if tolerance < TOGETHER:
-        return _one_by_one(psi1, chi, tolerance)
-    from contactlab_fronts.rebound import rebound as together  # no law before it is needed
+    from contactlab.registry import REGISTRY  # no law before it is needed
 
-    psi2, solved = together(psi1, chi, min(tolerance, LOOSEST))
+    law = REGISTRY.create("tangential.fronts")
+    if tolerance < TOGETHER:
+        return _signed(psi1, _one_by_one(psi1, chi, tolerance).check())
+    if psi1.size <= FEW:
+        result = _one_by_one(psi1, chi, tolerance)
+        if not result.failures:
+            return _signed(psi1, result)
+    psi2: Array
+    psi2, solved = law.rebound(psi1, chi, min(tolerance, LOOSEST))
     if not solved.all():
         left = ~solved
-        psi2[left] = _one_by_one(psi1[left], chi[left], tolerance)
+        psi2[left] = _signed(psi1[left], _one_by_one(psi1[left], chi[left], tolerance).check())
     return psi2
 
 
-def _one_by_one(psi1: Array, chi: Array, tolerance: float) -> Array:
-    """Return psi2 by the exact solution, event by event."""
+def _one_by_one(psi1: Array, chi: Array, tolerance: float) -> ImpactResult:
+    """Return the results of the exact solution for abs(psi1), event by event."""
     from contactlab.registry import REGISTRY
     from contactlab.scene import Scene
     from contactlab.simulation import Simulation
 
     integrator = REGISTRY.create("integrator.events", tolerance=tolerance)
     exact = Simulation(tangential="fronts", integrator=integrator)
-    result = exact.run(Scene.nondimensional(psi1=np.abs(psi1), chi=chi)).check()
+    return exact.run(Scene.nondimensional(psi1=np.abs(psi1), chi=chi))
+
+
+def _signed(psi1: Array, result: ImpactResult) -> Array:
     return np.asarray(np.copysign(1.0, psi1) * result.psi2)
