@@ -39,7 +39,12 @@ def execute(arguments: argparse.Namespace) -> int:
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )
     simulation = choice.set(dict(arguments.settings)).simulation()
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    try:
+        arguments.out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ValueError(
+            f"--out {arguments.out}: no folder can be made: {error.strerror}"
+        ) from None
     from contactlab.figures.files import save  # matplotlib only when drawing
     from contactlab.figures.paper import FIGURES as DRAWINGS
 

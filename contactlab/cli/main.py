@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import importlib
 import os
+import re
 import sys
 import traceback
 from collections.abc import Sequence
@@ -32,7 +34,11 @@ class Parser(argparse.ArgumentParser):
     """A parser that refuses in one line, and says where help is."""
 
     def error(self, message: str) -> NoReturn:
-        """Print the message and exit."""
+        """Print the message, with the nearest match to a wrong choice, and exit."""
+        wrong = re.search(r"invalid choice: '(.*?)' \(choose from (.*)\)", message)
+        if wrong:
+            near = difflib.get_close_matches(wrong[1], re.findall(r"[\w-]+", wrong[2]), n=1)
+            message += f"; did you mean {near[0]!r}?" if near else ""
         self.exit(BAD_INPUT, f"{self.prog}: error: {message} (see {self.prog} --help)\n")
 
 
@@ -40,7 +46,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        parsed = _parser().parse_args(_join_negative_numbers(words))
+        parsed, unknown = _parser().parse_known_args(_join_negative_numbers(words))
+        if unknown:
+            parsed.parser.error(f"unrecognized arguments: {' '.join(unknown)}")
     except SystemExit as stop:  # argparse has printed help, version or the error
         return stop.code if isinstance(stop.code, int) else BAD_INPUT
     try:
@@ -83,10 +91,15 @@ def _parser() -> argparse.ArgumentParser:
         summary, _, examples = str(module.__doc__).partition("\n\n")
         examples = examples.replace("Examples\n--------", "examples:")
         command = commands.add_parser(
-            name, help=summary, description=summary, epilog=examples, formatter_class=raw
+            name,
+            help=summary,
+            description=summary,
+            epilog=examples,
+            formatter_class=raw,
+            allow_abbrev=False,
         )
         module.add_arguments(command)
-        command.set_defaults(execute=module.execute)
+        command.set_defaults(execute=module.execute, parser=command)
     return parser
 
 

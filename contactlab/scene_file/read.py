@@ -102,7 +102,10 @@ def _document(file: Path) -> dict[str, Any]:
     try:
         text = file.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
     except FileNotFoundError:
-        raise ValueError(f"{file}: no such file; give the path of a scene in TOML") from None
+        remedy = "give the path of a scene in TOML"
+        if file.suffix in (".csv", ".json", ".npz", ".png"):
+            remedy += "; where to write is said by --out or --figure"
+        raise ValueError(f"{file}: no such file; {remedy}") from None
     except UnicodeDecodeError as error:
         raise ValueError(
             f"{file}: is not UTF-8 text ({error.reason} at byte {error.start})"

@@ -107,6 +107,22 @@ def test_interrupted_sweep_reports_what_is_done(tmp_path):
     assert (tmp_path / "part.npz").exists()
 
 
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["runn"], "did you mean 'run'?"),
+        (["plugins", "lst"], "did you mean 'list'?"),
+        (["run", "--psi", "1", "--chi", "1"], "contactlab run: error: unrecognized"),
+        (["sweep", "--psi1", "0:1:3", "--chi", "1", "--csv", "out.csv"], "--out"),
+        (["figures", "--out", __file__], "no folder can be made"),
+    ],
+)
+def test_slips_of_the_pen(words, told, run):
+    ran = run(*words)
+    assert ran.status == module.BAD_INPUT
+    assert told in ran.err
+
+
 def test_installed_command_runs():
     done = subprocess.run([*COMMAND, *PSI, "--json"], capture_output=True, text=True, check=False)
     assert done.returncode == 0
