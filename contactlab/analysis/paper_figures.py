@@ -26,8 +26,8 @@ FIGURE_3_GYRATION = (1.0, 0.4**0.5, 0.4, 0.25)
 #: psi1 of Figs 3 and 4.
 FIXED_PSI1 = 1.2
 #: Ranges of Figs 2 and 4, wide enough for the change of regime and every sign of psi2.
-FIGURE_2_PSI1 = np.linspace(0.0, 7.0, 141)
-FIGURE_4_CHI = np.geomspace(0.25, 16.0, 161)
+FIGURE_2_PSI1 = np.linspace(0.0, 7.0, 211)
+FIGURE_4_CHI = np.geomspace(0.25, 16.0, 321)
 
 
 class Curve(NamedTuple):

@@ -69,7 +69,7 @@ def figure_4(axes: Axes, data: FigureData) -> Axes:
     axes.text(
         np.sqrt(np.prod(SOLID_CHI_RANGE)),
         axes.get_ylim()[1],
-        "solid spheres,\n" r"$0\leq\nu\leq0.5$",
+        "solid\nspheres,\n" r"$\nu$ 0 to 0.5",
         ha="center",
         va="top",
         color="#555555",

@@ -90,7 +90,11 @@ def zero_line(axes: Axes) -> None:
 
 
 def friction_limit(axes: Axes, time: Any, normal_force: Any) -> None:
-    """Draw P/P_max and its mirror image: inside them |F| <= mu P."""
+    """Draw P/P_max and its mirror image, with a word: inside them |F| <= mu P."""
     look: Any = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.9, "zorder": 4}
-    axes.plot(time, normal_force, label=r"$\pm P/P_{\max}$", **look)
+    axes.plot(time, normal_force, **look)
     axes.plot(time, -normal_force, **look)
+    axes.annotate(
+        r"limit $\pm\mu P$", (0.5, -0.9), xycoords=("axes fraction", "data"), ha="center",
+        va="bottom", color="#555555", fontsize=9.5,
+    )  # fmt: skip
