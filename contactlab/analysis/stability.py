@@ -56,6 +56,10 @@ class Stability:
         done = sum(1 for item in self.outcomes if item.outcome != SKIPPED)
         return done + sum(item.tried for item in self.regions)
 
+    def skipped(self) -> int:
+        """Return the number of cases left out because they would take too long."""
+        return sum(item.outcome == SKIPPED for item in self.outcomes)
+
     def counts(self, method: str) -> Counter[str]:
         """Return how often each outcome came about; ``coarse`` answers are also answered."""
         mine = [item for item in self.outcomes if item.method == method]

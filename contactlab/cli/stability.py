@@ -26,6 +26,8 @@ from contactlab.plain import plain
 
 #: Failures listed one by one under the table; all of them are in the CSV and the JSON.
 LISTED = 40
+#: Outcomes, in the order of the table.
+WORDS = ("answered", "coarse", "refused", "skipped", "raised", "silently wrong")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -57,14 +59,10 @@ def execute(arguments: argparse.Namespace) -> int:
 def report(found: Stability) -> str:
     """Return the table, the failures and the totals."""
     families = list(dict.fromkeys(item.family for item in found.outcomes))
-    lines = []
-    for method in dict.fromkeys(item.method for item in found.outcomes):
-        counts = found.counts(method)
-        errors = [found.worst(method, family) for family in families]
-        words = ("answered", "coarse", "refused", "skipped", "raised", "silently wrong")
-        lines.append([method, *errors, *(counts[word] for word in words)])
-    headings = ["worst error", *families, "answers", "coarse", "refused", "skipped", "raised"]
-    parts = [table([*headings, "wrong"], lines, digits=2)]
+    names = list(dict.fromkeys(item.method for item in found.outcomes))
+    errors = [[name, *(found.worst(name, family) for family in families)] for name in names]
+    counts = [[name, *(found.counts(name)[word] for word in WORDS)] for name in names]
+    parts = [table(["worst error", *families], errors, digits=1), table(["runs", *WORDS], counts)]
     if found.regions:
         rows = [[item.method, item.word, item.tried, item.wrong] for item in found.regions]
         parts.append(table(["map", "against chi", "tried", "wrong"], rows))
@@ -73,9 +71,10 @@ def report(found: Stability) -> str:
         rows = [[item.method, item.case, item.outcome, item.note] for item in failures[:LISTED]]
         parts.append(table(["method", "case", "", ""], rows))
     parts.append(
-        f"{found.tried()} runs tried, {found.silently_wrong()} silently wrong. Errors are over "
-        "the range that physics leaves to psi2;\nof answers whose declared error is below a "
-        "quarter of it: the others are counted as coarse."
+        f"{found.tried()} runs tried, {found.silently_wrong()} silently wrong; "
+        f"{found.skipped()} more were skipped as too long.\nErrors are over the range that "
+        "physics leaves to psi2, of answers whose declared error is below a\nquarter of it: "
+        "the others are counted as coarse."
     )
     if not found.complete:
         parts.append("not complete: the budget ran out")

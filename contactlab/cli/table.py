@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+
+#: Columns of a terminal that a table keeps to, if it can, and the least for a text.
+WIDTH, LEAST_TEXT = 100, 30
 
 
 def number(value: Any, *, digits: int = 6) -> str:
@@ -27,15 +32,55 @@ def time(seconds: float) -> str:
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[Any]], *, digits: int = 6) -> str:
-    """Return rows under their headings, columns of text to the left, numbers to the right."""
+    """Return rows under their headings, columns of text to the left, numbers to the right.
+
+    A table that would be wider than ``WIDTH`` has headings of several lines, and a last
+    column of text that goes on below.
+    """
     texts = [all(isinstance(row[place], str) for row in rows) for place in range(len(headings))]
-    cells = [[number(item, digits=digits) for item in row] for row in rows]
-    widths = [max(map(len, column)) for column in zip(headings, *cells, strict=True)]
-    lines = []
-    for row in ([*headings], ["-" * width for width in widths], *cells):
-        parts = [
-            item.ljust(width) if text else item.rjust(width)
-            for item, width, text in zip(row, widths, texts, strict=True)
+    body = [[[number(item, digits=digits)] for item in row] for row in rows]
+    head = [[heading] for heading in headings]
+    if sum(_widths([head, *body])) + 2 * len(head) > WIDTH:
+        narrow = _widths(body) if body else [0] * len(head)
+        head = [_folded(heading, width) for heading, width in zip(headings, narrow, strict=True)]
+        if body and texts[-1]:
+            room = max(WIDTH - sum(_widths([head, *body])[:-1]) - 2 * len(head), LEAST_TEXT)
+            for row in body:
+                row[-1] = textwrap.wrap(row[-1][0], room) or [""]
+    widths = _widths([head, *body])
+    height = max(map(len, head))
+    head = [[""] * (height - len(cell)) + cell for cell in head]  # headings stand on the rule
+    rule = [["-" * width] for width in widths]
+    return "\n".join(line for row in (head, rule, *body) for line in _lines(row, widths, texts))
+
+
+def _lines(row: Sequence[Sequence[str]], widths: Sequence[int], texts: Sequence[bool]) -> list[str]:
+    """Return the lines of a row whose cells have one line or several."""
+    found = []
+    for level in range(max(map(len, row))):
+        cells = [cell[level] if level < len(cell) else "" for cell in row]
+        placed = [
+            cell.ljust(width) if text else cell.rjust(width)
+            for cell, width, text in zip(cells, widths, texts, strict=True)
         ]
-        lines.append("  ".join(parts).rstrip())
-    return "\n".join(lines)
+        found.append("  ".join(placed).rstrip())
+    return found
+
+
+def _widths(rows: Sequence[Sequence[Sequence[str]]]) -> list[int]:
+    return [
+        max(len(line) for cell in column for line in cell) for column in zip(*rows, strict=True)
+    ]
+
+
+def _folded(heading: str, width: int) -> list[str]:
+    """Break a heading after underscores and at blanks, in lines about as wide as its column."""
+    words = re.findall(r"[^_ ]+_?|_", heading)
+    lines: list[str] = []
+    for word, blank in zip(words, [" " + word in heading for word in words], strict=True):
+        joined = (lines[-1] + " " * blank + word) if lines else word
+        if lines and len(joined) <= max(width, *map(len, words)):
+            lines[-1] = joined
+        else:
+            lines.append(word)
+    return lines
