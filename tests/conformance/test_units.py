@@ -9,7 +9,7 @@ from contactlab.checks import POSITIVE, quantity
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from contactlab.testing import CheckFailedError, Verdict, check_law, checks_for, outcome
 from contactlab.testing.units import ODD_UNITS, Units, factor, in_units
-from tests.damped import Damped
+from tests.normal_laws import Damped
 
 
 @attrs.frozen(kw_only=True)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
-from tests.damped import Damped
+from tests.normal_laws import Damped
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
 

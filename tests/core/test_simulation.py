@@ -10,32 +10,15 @@ import pytest
 import contactlab
 from contactlab import HalfSpace, ImpactError, Material, Scene, Simulation, Sphere, Status
 from contactlab.contracts import (
-    NormalContact,
-    NormalLaw,
     SteppedTangentialLaw,
     TangentialLaw,
     TangentialResponse,
 )
+from tests.normal_laws import LinearSpring
 
 CHI = 1.4411764706
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 RIGID = {"tangential": "coulomb", "integrator": "symplectic"}
-
-
-@attrs.frozen(kw_only=True)
-class LinearSpring(NormalLaw):
-    """A normal law without radius or closed form: P = k u_z, duration pi sqrt(M/k)."""
-
-    api_version: ClassVar[int] = 1
-    stiffness: float = 1.0
-
-    def start(self, pair):
-        return None
-
-    def respond(self, state, approach, rate):
-        return NormalContact(
-            self.stiffness * approach * (approach > 0), 0.0 * approach, approach
-        ), state
 
 
 @attrs.frozen(kw_only=True)

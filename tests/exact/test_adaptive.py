@@ -11,28 +11,12 @@ import contactlab
 from contactlab import Scene, Simulation, Status
 from contactlab.closed_forms import rigid_body_rebound
 from contactlab.contracts import (
-    NormalContact,
-    NormalLaw,
     SteppedTangentialLaw,
     TangentialResponse,
 )
+from tests.normal_laws import LinearSpring
 
 CHI = 1.4411764706
-
-
-@attrs.frozen(kw_only=True)
-class LinearSpring(NormalLaw):
-    """P = k u_z with M = 1: the impact lasts pi/sqrt(k), and e = 1."""
-
-    api_version: ClassVar[int] = 1
-    stiffness: float = 1.0
-
-    def start(self, pair):
-        return None
-
-    def respond(self, state, approach, rate):
-        force = self.stiffness * approach * (approach > 0)
-        return NormalContact(force, 0.0 * approach, approach), state
 
 
 @attrs.frozen(kw_only=True)

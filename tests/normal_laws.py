@@ -1,4 +1,4 @@
-"""A normal law that is not elastic, with a parameter that has a unit."""
+"""Normal laws that are not Hertz's: a linear spring, and one that is not elastic."""
 
 from typing import ClassVar
 
@@ -7,6 +7,22 @@ import numpy as np
 
 from contactlab.checks import quantity
 from contactlab.contracts import NormalContact, NormalLaw
+
+
+@attrs.frozen(kw_only=True)
+class LinearSpring(NormalLaw):
+    """P = k u_z, without radius or closed form: the impact lasts pi sqrt(M/k), and e = 1."""
+
+    api_version: ClassVar[int] = 1
+
+    stiffness: float = 1.0
+
+    def start(self, pair):
+        return None
+
+    def respond(self, state, approach, rate):
+        force = self.stiffness * approach * (approach > 0)
+        return NormalContact(force, 0.0 * approach, approach), state
 
 
 @attrs.frozen(kw_only=True)
