@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 import time
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
 
 import attrs
@@ -25,8 +26,8 @@ from contactlab.analysis.stability_outcome import (
 
 #: A case expected to take longer than this is skipped, in s; much less in the quick set.
 LONGEST, QUICK_LONGEST = 20.0, 0.5
-#: Seconds that a method may take, the map apart; what is left then is skipped.
-ALLOWANCE, QUICK_ALLOWANCE = 40.0, 1.5
+#: Seconds that a method may take over a family of scenes; what is left of it then is skipped.
+ALLOWANCE, QUICK_ALLOWANCE = 40.0, 0.3
 #: Seconds that a step takes before a method has shown its own pace.
 FIRST_PACE = 2e-5
 #: Seconds a step of the runs so far, by method.
@@ -108,7 +109,7 @@ def stability(
     outcomes: list[Outcome] = []
     regions: list[Region] = []
     pace: Paces = {}
-    spent: dict[str, float] = dict.fromkeys((method.name for method in methods), 0.0)
+    spent: defaultdict[tuple[str, str], float] = defaultdict(float)
     longest = QUICK_LONGEST if quick else LONGEST
     allowance = QUICK_ALLOWANCE if quick else ALLOWANCE
     done = 0
@@ -116,20 +117,18 @@ def stability(
     for case in sorted((case for mine in listed for case in mine), key=lambda c: c.family):
         if time.perf_counter() - started > budget:
             break
-        if spent[case.method.name] > allowance or _expected(case, pace) > longest:
+        part = case.method.name, case.family
+        if spent[part] > allowance or _expected(case, pace) > longest:
             outcomes.append(_skipped(case))
         else:
             outcomes.append(judged(case))
             _learn(case, outcomes[-1], pace)
-            spent[case.method.name] += outcomes[-1].run_time_s
+            spent[part] += outcomes[-1].run_time_s
         done += 1
         if progress is not None:
             progress(done, total)
     for method, mine in zip(methods, cells, strict=True):
         if not mine or time.perf_counter() - started > budget:
-            continue
-        if quick and spent[method.name] > allowance:
-            done += len(mine)
             continue
         regions.append(region(method, mine, until=started + budget))
         done += len(mine) if regions[-1].complete else 0
@@ -139,8 +138,15 @@ def stability(
 
 
 def _size(case: Case) -> float:
-    """Return steps times what a part costs beside a step."""
-    steps = float(case.options["integrator"].get("steps", 200))
+    """Return steps times what a part costs beside a step.
+
+    Where steps are chosen on the way they grow with chi, and as the root of the tolerance.
+    """
+    options = case.options["integrator"]
+    steps: float = float(options.get("steps", 200))
+    if "steps" not in options and case.family == "chi":
+        steps *= math.pow(1.0 + float(case.scene.make().chi), 0.7)
+    steps *= math.sqrt(1e-4 / float(options.get("tolerance", 1e-4)))
     parts = [
         float(value) for name, value in case.options["tangential"].items() if name != "tolerance"
     ]
