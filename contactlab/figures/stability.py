@@ -21,7 +21,7 @@ from contactlab.figures.style import ORDERED_MAP, QUIET, RESOLUTION, styled
 
 #: Errors over the range at which the colour changes: whole decades.
 DECADES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
-WRONG_COLOUR, REFUSED_COLOUR = "#D00000", "#E4E4E4"
+WRONG_COLOUR, REFUSED_COLOUR, UNTRIED_COLOUR = "#D00000", "#E4E4E4", "#FBF3E4"
 PANEL_WIDTH, PANEL_HEIGHT = 2.4, 2.0
 #: Steps at the stability limit over sqrt(chi).
 LIMIT = 2.85
@@ -33,6 +33,7 @@ def draw_regions(path: Path, regions: Sequence[Region]) -> None:
     found = {tuple(region.method.split(" / ")): region for region in regions}
     laws = list(dict.fromkeys(law for law, _ in found))
     integrators = sorted({name for _, name in found}, key=_rank)
+    lowest = {name: law for law in laws for name in integrators if (law, name) in found}
     with styled():
         rows, columns = len(laws), len(integrators)
         figure = Figure(figsize=(PANEL_WIDTH * columns + 1.3, PANEL_HEIGHT * rows + 1.0))
@@ -48,8 +49,9 @@ def draw_regions(path: Path, regions: Sequence[Region]) -> None:
                     image = usable_region(axes, region)
                 if row == 0:
                     axes.set_title(integrator)
-                if row == rows - 1:
+                if law == lowest[integrator]:
                     axes.set_xlabel(r"inertia ratio $\chi$")
+                    axes.tick_params(labelbottom=True)
             panels[row, 0].annotate(
                 law.replace("_", " "), (-0.42, 0.5), xycoords="axes fraction", rotation=90,
                 ha="center", va="center", fontsize=12.0,
@@ -64,7 +66,7 @@ def draw_regions(path: Path, regions: Sequence[Region]) -> None:
             Patch(facecolor=REFUSED_COLOUR, edgecolor=QUIET, hatch="////",
                   label="refused (by default: refined)"),
             Patch(color=WRONG_COLOUR, label="silently wrong"),
-            Patch(facecolor="white", edgecolor=QUIET, label="not tried, takes too long"),
+            Patch(facecolor=UNTRIED_COLOUR, edgecolor=QUIET, label="not tried, takes too long"),
             Line2D([], [], label="stability limit", **LIMIT_LOOK),
         ]  # fmt: skip
         figure.legend(handles=entries, loc="outside upper center", ncols=2)
@@ -80,7 +82,7 @@ def _empty(axes: Axes) -> None:
     """Say that law and integrator do not fit."""
     axes.text(0.5, 0.5, "does not fit", transform=axes.transAxes, ha="center", color=QUIET)
     axes.set_yticks([])
-    axes.tick_params(bottom=False)
+    axes.tick_params(which="both", bottom=False, labelbottom=False)
     axes.spines[:].set_visible(False)
 
 
@@ -96,7 +98,7 @@ def usable_region(axes: Axes, region: Region) -> Any:
     chi, fine = _edges(np.array(region.chis)), _edges(fineness)
     colours = mpl.colormaps[ORDERED_MAP + "_r"]
     norm = BoundaryNorm(DECADES, colours.N, extend="both")
-    axes.set_facecolor("white")
+    axes.set_facecolor(UNTRIED_COLOUR)
     answered = np.where(region.state == 0, region.error, np.nan)
     mesh = axes.pcolormesh(chi, fine, answered, cmap=colours, norm=norm)
     refused = np.ma.masked_where(region.state != 1, np.ones(region.state.shape))
