@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from contactlab.analysis.work_precision import Benchmark
 from contactlab.figures.style import LAW_COLOURS, QUIET
@@ -19,17 +22,12 @@ def work_precision(axes: Axes, benchmark: Benchmark) -> Axes:
     for method in dict.fromkeys(row.method for row in benchmark.rows):
         law, _, integrator = method.partition(" / ")
         rows = [row for row in benchmark.rows if row.method == method]
-        order = benchmark.orders.get(method, np.nan)
-        place = laws.index(law)
         axes.plot(
             [row.time_s * 1e3 for row in rows],
             [max(row.error_rms, FLOOR) if row.ok else np.nan for row in rows],
-            color=LAW_COLOURS[place % len(LAW_COLOURS)],
-            linestyle=("-", "--")[place // len(LAW_COLOURS) % 2],
             linewidth=1.1,
-            marker=MARKERS.get(integrator, "^"),
-            markersize=9.0 if integrator == "events" else 4.5,
-            label=f"{law}, {integrator}" + (f"  (order {order:.1f})" if order == order else ""),
+            **_line(laws.index(law)),
+            **_mark(integrator),
         )
     front = benchmark.front()
     axes.plot(
@@ -40,11 +38,43 @@ def work_precision(axes: Axes, benchmark: Benchmark) -> Axes:
         alpha=0.35,
         solid_capstyle="round",
         zorder=0,
-        label="Pareto front",
     )
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlabel("run time of one impact (ms)")
     axes.set_ylabel(r"error of $\psi_2$, rms over the scenes")
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8.5)
+    axes.annotate(
+        f"≤ {FLOOR:.0e}: rounding", (0.01, FLOOR), xycoords=("axes fraction", "data"), va="center",
+        color="#555555", fontsize=8.5,
+    )  # fmt: skip
+    _legends(axes, laws, list(dict.fromkeys(row.method.split(" / ")[1] for row in benchmark.rows)))
     return axes
+
+
+def _legends(axes: Axes, laws: list[str], integrators: list[str]) -> None:
+    """Say what the colours are, and what the markers."""
+    colours: list[Any] = [
+        Line2D([], [], label=law.replace("_", " "), **_line(place))
+        for place, law in enumerate(laws)
+    ]
+    markers: list[Any] = [
+        Line2D([], [], color=QUIET, linestyle="", label=name, **_mark(name)) for name in integrators
+    ]
+    markers.append(Line2D([], [], color=QUIET, linewidth=6.0, alpha=0.35, label="Pareto front"))
+    beside: dict[str, Any] = {"bbox_to_anchor": (1.0, 0.5), "alignment": "left"}
+    # The last one is what the layout makes room for, so the wider.
+    first = axes.legend(handles=markers, title="integrator", loc="upper left", **beside)
+    axes.add_artist(first)
+    axes.legend(handles=colours, title="law", loc="lower left", **beside)
+
+
+def _line(place: int) -> dict[str, Any]:
+    """Return the look of the law listed at ``place``."""
+    dashes = ("-", "--")[place // len(LAW_COLOURS) % 2]
+    return {"color": LAW_COLOURS[place % len(LAW_COLOURS)], "linestyle": dashes}
+
+
+def _mark(integrator: str) -> dict[str, Any]:
+    """Return the look of an integrator."""
+    size = 9.0 if integrator == "events" else 4.5
+    return {"marker": MARKERS.get(integrator, "^"), "markersize": size}
