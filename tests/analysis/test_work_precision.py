@@ -53,6 +53,13 @@ def test_front_holds_what_nothing_beats():
     assert benchmark.front() == [rows[0], rows[1]]
 
 
+def test_below_rounding_only_time_counts():
+    rows = tuple(row(error=error, time=time) for error, time in ((3e-14, 1.0), (1e-16, 2.0)))
+    assert Benchmark(rows=rows, orders={}, complete=True).front() == [rows[0]]
+    equal = tuple(row(error=0.5, time=time) for time in (1.0, 2.0))
+    assert Benchmark(rows=equal, orders={}, complete=True).front() == [equal[0]]
+
+
 def test_an_order_is_a_slope_and_a_flat_ladder_has_none():
     falling = [row(error=h**-2.0, options=f"steps={h}") for h in (10, 20, 40)]
     assert work_precision._order(falling) == pytest.approx(2.0)
