@@ -75,8 +75,8 @@ def ledger(scene: Scene, motion: Motion) -> EnergyLedger:
 def balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
     """Return ``motion``, its status ``UNBALANCED`` where energy came from nothing, or went.
 
-    That is where the books miss by more than ``bound``, which the tangential law declares
-    over the energy at the start; and where the bodies part faster than they met.
+    That is where the books miss by more than ``bound``, over the energy at the start; and
+    where the bodies part faster than they met.
     """
     fast: Any = np.abs(motion.normal_velocity) > LARGEST_RESTITUTION * scene.normal_speed
     if fast.any():

@@ -92,7 +92,8 @@ class TangentialLaw(Law):
     def books_bound(self) -> float:
         """Imbalance of the energy books, over the energy at the start, that still is success.
 
-        Infinite unless the law declares one.
+        Infinite unless the law declares one. What an integrator that controls its error adds
+        comes on top.
         """
         return math.inf
 

@@ -107,6 +107,19 @@ def test_energy_books(chi):
         assert abs(energy.relative_imbalance) < 1e-6
 
 
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5, 1e-9])
+def test_books_stay_within_what_is_declared(tolerance):
+    """Where they are worst, too: psi1 next to 1; and of friction work that is next to nothing."""
+    draw = np.random.default_rng(5)
+    near = 1.0 + draw.choice([-1.0, 1.0], 40) * 10.0 ** draw.uniform(-14, -1, 40)
+    psi1 = np.concatenate((10.0 ** draw.uniform(-12, 1.5, 40), near))
+    chi = 10.0 ** draw.uniform(-1, 1.5, 80)
+    law = contactlab.create("tangential.fronts")
+    result = exact(tolerance=tolerance).run(Scene.nondimensional(psi1=psi1, chi=chi)).check()
+    found = np.abs(result.energy.relative_imbalance).max()
+    assert found < 0.5 * (law.books_bound + 10.0 * tolerance)
+
+
 @pytest.mark.parametrize("chi", [0.45, CHI, 3.0, 8.0])
 @pytest.mark.parametrize("psi1", [-0.7, 0.3, 1.2, 2.5])
 def test_history_keeps_coulombs_law_and_agrees_with_springs(chi, psi1):
