@@ -18,6 +18,10 @@ from contactlab.status import Status
 LARGEST_RESTITUTION = 1.02
 
 
+def _energy() -> Any:
+    return attrs.field(metadata={"unit": "J"})
+
+
 @attrs.frozen(kw_only=True, eq=False)
 class EnergyLedger:
     """Kinetic energy of the relative motion at the contact, in J.
@@ -35,11 +39,11 @@ class EnergyLedger:
         does no work in slip, nor friction in approach, so the two losses are apart.
     """
 
-    start: Real
-    end: Real
-    normal_loss: Real
-    friction_work: Real
-    imbalance: Real
+    start: Real = _energy()
+    end: Real = _energy()
+    normal_loss: Real = _energy()
+    friction_work: Real = _energy()
+    imbalance: Real = _energy()
 
     @property
     def relative_imbalance(self) -> Real:

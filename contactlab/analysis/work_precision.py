@@ -41,9 +41,25 @@ LEAST_GAIN = 0.5
 
 @attrs.frozen(kw_only=True)
 class Row:
-    """One method at one resolution. Errors are in psi, forces over mu P_max, books over the
-    energy at the start; NaN where a run failed.
-    """  # noqa: D205
+    """One method at one resolution.
+
+    Attributes
+    ----------
+    method, options : str
+        Law and integrator, and their options in words.
+    error_rms, error_worst : float
+        Of psi2 over the scenes; NaN where a run failed, as are the next two.
+    force_error_rms : float
+        Of F over mu P_max along the impact, against the exact history.
+    books_worst : float
+        Largest imbalance over the energy at the start.
+    time_s, sweep_time_s : float
+        Run time of one impact, by itself and in a sweep, in s.
+    failed : int
+        Scenes without an answer.
+    status : str
+        ``SUCCESS``, the first failure's name, or ``NOT_RUN``.
+    """
 
     method: str
     options: str
