@@ -178,22 +178,22 @@ def watched(problem: Problem, steps: Iterable[Step]) -> Iterator[Step]:
         If the normal law raises, or answers with other than real numbers.
     """
     law, shape, count, time = problem.normal, problem.shape, 0, None
-    iterator = iter(steps)
-    while True:
-        count += 1
-        try:
-            step = next(iterator)
-        except StopIteration:
-            return
-        except Exception as error:
-            detail = faults.told(law, faults.raised(error), count, time)
-            raise faults.LawFaultError(Status.LAW_RAISED, detail) from error
-        time = step.time
-        for part in step.contact:
-            if type(part) is not float and faults.malformed(part, shape):
-                detail = faults.told(law, f"the answer {faults.shown(part)}", count, time)
-                raise faults.LawFaultError(Status.MALFORMED, detail)
-        yield step
+    try:
+        for count, step in enumerate(steps, start=1):
+            force, radius, overlap = step.contact
+            time = step.time
+            # One comparison a step where all is well: this runs in every step.
+            if not (type(force) is type(radius) is type(overlap) is float):
+                for part in step.contact:
+                    if faults.malformed(part, shape):
+                        detail = faults.told(law, f"the answer {faults.shown(part)}", count, time)
+                        raise faults.LawFaultError(Status.MALFORMED, detail)
+            yield step
+    except faults.LawFaultError:
+        raise
+    except Exception as error:
+        detail = faults.told(law, faults.raised(error), count + 1, time)
+        raise faults.LawFaultError(Status.LAW_RAISED, detail) from error
 
 
 def _ended(
