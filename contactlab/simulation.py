@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -31,6 +32,8 @@ from contactlab.status import Status
 #: Impacts of a sweep advanced together: enough to hide the cost of a call, few enough that
 #: an interruption loses little. Without a gain, where they are followed one by one, fewer.
 CHUNK, CHUNK_ONE_BY_ONE = 1000, 20
+#: So many impacts of a batch that failed are tried one by one; more are halved first.
+FEW = 8
 #: Friction work over the energy at the start is this many times less accurate than psi2.
 WORK_ACCURACY = 10.0
 #: Instants in the history of an impact that is done in closed form.
@@ -109,7 +112,7 @@ class Simulation:
             )
         recorder = Recorder(scene.shape, with_fields=history == "fields") if history else None
         if plan.marched.all():
-            motion = self._integrate(self.problem(scene), recorder)
+            motion = self._integrate(scene, recorder)
         elif not plan.marched.any():
             motion = self._closed_form(scene, plan, recorder)
         else:
@@ -198,20 +201,31 @@ class Simulation:
         """Return what the books may miss by: the law's own bound, and the integrator's share."""
         return self.tangential.books_bound + WORK_ACCURACY * (self.integrator.accuracy or 0.0)
 
-    def _integrate(self, problem: Problem, recorder: Recorder | None) -> Motion:
-        """Return the motion; a failure within a batch is traced to the impacts that fail."""
-        shape, whole_batch = problem.shape, self.integrator.together
+    def _integrate(self, scene: Scene, recorder: Recorder | None) -> Motion:
+        """Return the motion; a failure within a batch is traced, by halves, to those that fail."""
+        problem, shape = self.problem(scene), scene.shape
+        motion, raised = self._attempt(problem, recorder)
+        if not shape or recorder or np.all(motion.status):
+            return motion
+        if not (raised or self.integrator.together):  # each was followed by itself
+            return motion
+        size = math.prod(shape)
+        if size <= FEW:
+            alone = [self._attempt(impact, None)[0] for impact in problem.impacts()]
+            return Motion.joined(alone, shape)
+        first = np.arange(size).reshape(shape) < size // 2
+        halves = [self._integrate(scene.take(part), None) for part in (first, ~first)]
+        return Motion.joined(halves, shape)
+
+    def _attempt(self, problem: Problem, recorder: Recorder | None) -> tuple[Motion, bool]:
+        """Return the motion, and whether the integrator raised instead of returning one."""
         try:
             # Where a user has asked for errors of underflow: small numbers may vanish here.
             with np.errstate(under="ignore"):
-                motion = self.integrator.integrate(problem, recorder)
+                return self.integrator.integrate(problem, recorder), False
         except Exception as error:
-            motion = Motion.nothing(shape, Status.LAW_RAISED, faults.raised(error))
-            whole_batch = True
-        if not shape or recorder or not whole_batch or np.all(motion.status):
-            return motion
-        alone = [self._integrate(impact, None) for impact in problem.impacts()]
-        return Motion.joined(alone, shape)
+            told = faults.raised(error)
+            return Motion.nothing(problem.shape, Status.LAW_RAISED, told), True
 
     def _closed_form(self, scene: Scene, plan: Plan, recorder: Recorder | None) -> Motion:
         """Return the motion of impacts with no tangential march: none, or eq. (45)."""
@@ -250,7 +264,7 @@ class Simulation:
     def _mixed(self, scene: Scene, plan: Plan) -> Motion:
         """March the impacts that need it, do the rest in closed form, and merge."""
         motion = self._closed_form(scene, plan, None)
-        marched = self._integrate(self.problem(scene.take(plan.marched)), None)
+        marched = self._integrate(scene.take(plan.marched), None)
         merged = {}
         for name in MOTION_ENTRIES:
             whole_column = np.array(getattr(motion, name))

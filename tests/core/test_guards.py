@@ -132,6 +132,17 @@ def test_an_impact_that_fails_takes_no_other_of_its_batch_with_it(
         batch.check()
 
 
+@pytest.mark.parametrize("shape", [(100,), (10, 10)])
+def test_a_few_failures_in_a_large_batch_are_found(shape):
+    psi1 = np.linspace(0.1, 2.0, 100)
+    psi1[[3, 70, 71]] = 3.5
+    simulation = Simulation(tangential=FailsWhenFast(), integrator="symplectic")
+    result = simulation.run(Scene.nondimensional(psi1=psi1.reshape(shape), chi=3.0))
+    assert list(result.failures) == [3, 70, 71]
+    good = simulation.run(Scene.nondimensional(psi1=np.delete(psi1, [3, 70, 71]), chi=3.0)).check()
+    assert np.delete(result.psi2.ravel(), [3, 70, 71]).tolist() == good.psi2.tolist()
+
+
 @attrs.frozen(kw_only=True)
 class Creator(SteppedTangentialLaw):
     """Makes energy, and says that its books close to a thousandth."""
