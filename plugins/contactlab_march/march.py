@@ -63,10 +63,25 @@ class Table:
         self.columns: Any = columns
 
     @classmethod
-    def of(cls, steps: Iterable[Step]) -> Table:
-        """Gather the steps of one impact."""
-        rows = [(*step.contact, *step[1:]) for step in steps]
-        columns = np.array(rows, dtype=np.float64).reshape(-1, 9).T
+    def of(cls, problem: Problem, steps: Iterable[Step]) -> Table:
+        """Gather the steps of one impact; name the normal law if it fails.
+
+        Raises
+        ------
+        LawFaultError
+            If the law raises, or answers with other than real numbers: then the rows make no
+            array of floats, which takes no time to see where all is well.
+        """
+        rows: list[tuple[Any, ...]] = []
+        try:
+            for step in steps:
+                rows.append((*step.contact, *step[1:]))  # noqa: PERF401
+            table = np.array(rows)
+        except Exception as error:
+            raise _blamed(problem, rows, faults.raised(error)) from error
+        if table.dtype != np.float64 or table.shape != (len(rows), 9):
+            raise _blamed(problem, rows, "no table of numbers")
+        columns = table.T
         return cls(Step(NormalContact(*columns[:3]), *columns[3:]))
 
     def __iter__(self) -> Iterator[Step]:
@@ -95,14 +110,17 @@ def march(
     """
     law, single = problem.tangential, not problem.shape
     assert isinstance(law, SteppedTangentialLaw)
-    if not isinstance(steps, Table):
+    at_once = observer is None and isinstance(law, RunningTangentialLaw)
+    if isinstance(steps, Table):
+        if (motion := _unsound(problem, steps, end)) is not None:
+            return motion
+    elif not (at_once and single):
         steps = watched(problem, steps)
-    elif (motion := _unsound(problem, steps, end)) is not None:
-        return motion
-    if observer is None and isinstance(law, RunningTangentialLaw):
+    if at_once:
+        assert isinstance(law, RunningTangentialLaw)
         try:
             if single and not isinstance(steps, Table):
-                steps = Table.of(steps)
+                steps = Table.of(problem, steps)
                 if (motion := _unsound(problem, steps, end)) is not None:
                     return motion
             if isinstance(steps, Table) and (
@@ -167,6 +185,19 @@ def march(
             blamed, what = problem.normal, faults.shown(tuple(contact))
         detail = faults.told(blamed, what, count, time)
     return _ended(problem, end, change, work, status, detail, count)
+
+
+def _blamed(problem: Problem, rows: list[tuple[Any, ...]], otherwise: str) -> faults.LawFaultError:
+    """Return the fault of the normal law: its first answer that is not real numbers, if any is."""
+    law, time = problem.normal, None
+    for count, row in enumerate(rows, start=1):
+        time = row[6]
+        for part in row[:3]:
+            if faults.malformed(part, problem.shape):
+                detail = faults.told(law, f"the answer {faults.shown(part)}", count, time)
+                return faults.LawFaultError(Status.MALFORMED, detail)
+    detail = faults.told(law, otherwise, len(rows) + 1, time)
+    return faults.LawFaultError(Status.LAW_RAISED, detail)
 
 
 def watched(problem: Problem, steps: Iterable[Step]) -> Iterator[Step]:
