@@ -10,7 +10,8 @@ import numpy as np
 
 from contactlab.checks import Real, count
 from contactlab.contracts import Integrator, Motion, Observer, Problem
-from contactlab_march.march import NormalEnd, Step, march
+from contactlab_march.march import march
+from contactlab_march.normal_steps import NormalEnd, Step
 from contactlab_march.steps import MOST_STEPS, enough, refine_field, remarks
 
 #: A contact that lasts longer than this many Hertz durations is given up.

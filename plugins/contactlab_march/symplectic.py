@@ -17,7 +17,8 @@ from contactlab.contracts import (
     Observer,
     Problem,
 )
-from contactlab_march.march import NormalEnd, Step, Table, march
+from contactlab_march.march import march
+from contactlab_march.normal_steps import NormalEnd, Step, Table
 from contactlab_march.steps import MOST_STEPS, enough, refine_field, remarks
 
 #: A contact that lasts longer than this many Hertz durations is given up.
