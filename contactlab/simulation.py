@@ -148,7 +148,12 @@ class Simulation:
         -------
         ImpactResult
             A batch. Interrupting (Ctrl-C) keeps what is done; the rest has the status
-            ``INTERRUPTED``.
+            ``INTERRUPTED``, which ``.check()`` raises.
+
+        Raises
+        ------
+        ValueError
+            If the scenes are none, not alike (bodies beside psi1 and chi) or no scenes.
         """
         started = time.perf_counter()
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(list(scenes))
