@@ -255,9 +255,10 @@ class _Walk:
 
     def _accept(self, solved: Solved, event: int | None, stop: float, *, rooted: bool) -> None:
         """Move to tau = ``stop`` of a solved panel."""
-        self.idle = self.rejects = 0
+        self.rejects = 0
         start, motion = self.state, self.motion
         x = min(start.x + solved.length * stop, math.pi)
+        self.idle = self.idle + 1 if x == start.x else 0
         path = PanelPath(solved, self.nodes, start.x, rooted)
         self.pieces.append(Piece(self.phase, start, path, x))
         self.state = self._arrive(solved, stop, x)

@@ -9,6 +9,8 @@ PANEL_CAP = 3000
 #: forecast to need more than HOPELESS times ``PANEL_CAP`` is given up: those that came to
 #: the end, at chi from 1e4 to 1e6, had been forecast to need 1.2 times the cap at most.
 FORECAST_EVERY, HOPELESS = 500, 1.5
+#: Below this chi it is not oscillation that takes so many.
+OFTEN = 1e3
 TINY = 1e-300
 
 
@@ -31,8 +33,10 @@ def too_many(solves: int, begun: float, x: float, chi: float) -> str:
     needed = solves * (1.0 + left / max(done, TINY))
     if solves < PANEL_CAP and needed <= HOPELESS * PANEL_CAP:
         return ""
+    why = f"at chi = {chi:.3g} the contact oscillates too often, about sqrt(chi) times"
+    if chi < OFTEN:
+        why = "slip changes too often, or stick is lost within too short a time, to be followed"
     return (
-        f"About {needed:.2g} panels would be needed, {PANEL_CAP} are allowed: at chi = {chi:.3g} "
-        "the contact oscillates too often, about sqrt(chi) times. A law of steps, such as springs "
-        "under symplectic, can go on, with the error of its steps."
+        f"About {needed:.2g} panels would be needed, {PANEL_CAP} are allowed: {why}. A law of "
+        "steps, such as springs under symplectic, can go on, with the error of its steps."
     )

@@ -11,9 +11,9 @@ from contactlab_events.panel import Solved
 
 Array = NDArray[np.float64]
 
-#: A margin starts at zero if it is this small, or this much smaller than at the next node.
+#: A margin starts at zero if it is this small, or this part of its largest.
 ZERO = 1e-14
-NEXT_TO_ZERO = 1e-9
+ZERO_PART = 1e-9
 #: A quotient of a margin that starts at zero is negative if below this part of its size.
 NOISE = 1e-12
 #: A margin that stays zero is no event: its size is taken to be at least this many velocities.
@@ -36,11 +36,11 @@ def first_event(nodes: Nodes, phase: Phase, solved: Solved) -> tuple[int, float]
     )
     finer = table @ nodes.to_fine
     lowest = finer.min(axis=1).tolist()
-    firsts = table[:, :2].tolist()
+    firsts, largest = table[:, 0].tolist(), np.abs(table).max(axis=1).tolist()
     best: tuple[int, float] | None = None
     for event in range(count):
-        first, second = firsts[event]
-        if first > ZERO and (lowest[event] > 0.0 or first > NEXT_TO_ZERO * abs(second)):
+        first = firsts[event]
+        if first > ZERO and (lowest[event] > 0.0 or first > ZERO_PART * largest[event]):
             if lowest[event] > 0.0:
                 continue
             margin, fine, noise, begin = table[event], finer[event], 0.0, 0

@@ -34,7 +34,11 @@ class GrossMotion(ClosedPhase):
             if stop > last:
                 last, self.event = stop, 0
                 x = max(motion.phase_at_rate(last), state.x)
-        gained = share * ratio * (last - first.rate)
+        fall = first.rate - last
+        if self.event is None and first.rate < 0.0:
+            # to the end, V = -1: from the energy 1 - V², as the difference would cancel
+            fall = first.approach * first.force / (1.0 - first.rate)
+        gained = -share * ratio * fall
         normal, before = motion.instant(x), motion.instant(x - RATE_STEP)
         rate = (normal.force - before.force) / (RATE_STEP * before.pace)
         # Work is the integral of (s psi - V) P over T, and P dT = -mass dV.
@@ -46,7 +50,7 @@ class GrossMotion(ClosedPhase):
             velocity=state.velocity + gained,
             force=share * normal.force,
             force_rate=share * rate,
-            work=state.work + motion.scaled_mass * (first.rate - last) * mean,
+            work=state.work + motion.scaled_mass * fall * mean,
         )
 
     def states(self, contact: Course) -> tuple[Array, Array]:

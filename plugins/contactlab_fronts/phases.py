@@ -128,16 +128,18 @@ class EdgeSlip(FrontPhase):
         return front.radius.item(), self.sign
 
     def friction_power(
-        self,
-        contact: Course,
-        slip: Array,  # noqa: ARG002
-        velocity: Array,
-        response: PhaseResponse,
+        self, contact: Course, slip: Array, velocity: Array, response: PhaseResponse
     ) -> Array:
-        """1.5 (s psi - V) times the integral of zeta - s² over the slip zone."""
-        assert response.stiffness is not None
-        b, c = contact.radius, response.stiffness / 1.5
-        zone = (b - c) ** 2 * (2.0 * b + c) * 0.5
+        """1.5 (s psi - V) times the integral of zeta - s² over the slip zone.
+
+        The zone comes from how deep it is, zeta - q at the front: of the front itself only the
+        force is known to rounding.
+        """
+        depth = self.profile[-1].depth(self.sign, contact, slip, response.memo)
+        b = contact.radius
+        c = np.sqrt(np.maximum(contact.approach - depth, 0.0))
+        width = depth / (b + c)
+        zone = 0.5 * width * width * (2.0 * b + c)
         return np.asarray((self.sign * velocity - contact.rate) * zone)
 
 
