@@ -9,6 +9,7 @@ import pytest
 import contactlab
 from contactlab import ImpactError, Scene, Simulation, Status
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
+from tests.guards import cost, without
 
 
 def annulus(integrator, **options):
@@ -166,6 +167,16 @@ def test_books_beyond_what_the_law_declares_are_a_status(shape):
     )
     assert np.all(np.asarray(result.status, dtype=object) == Status.UNBALANCED)
     assert "declared: 0.001" in result.failures[0]
+
+
+def test_the_cost_of_the_guards_is_measured_against_none():
+    """Without them energy from nothing is no matter: ``python tests/guards.py`` times both."""
+    scene = Scene.nondimensional(psi1=1.2, chi=1.44)
+    creator = Simulation(tangential=Creator(), integrator="symplectic")
+    with without():
+        assert creator.run(scene).status is Status.SUCCESS
+    assert creator.run(scene).status is Status.UNBALANCED
+    assert all(seconds > 0.0 for seconds in cost(lambda: creator.run(scene), repeats=1))
 
 
 @pytest.mark.parametrize("bad", [0, -1, 10**8, 1.5, "10", None, True])
