@@ -20,14 +20,26 @@ SCHEMES = {"paper": 500, "symplectic": 200}
 INCIDENCES = (0.5, 1.2, 2.0, 3.0)
 
 
+def _first(first, *_):
+    return first
+
+
+def _second(_, second):
+    return second
+
+
+def _nothing(*_):
+    return None
+
+
 @contextlib.contextmanager
 def without():
     """Replace every guard on the way of an annulus run by nothing."""
     with (
-        mock.patch.object(simulation, "sound", lambda motion: motion),
-        mock.patch.object(simulation, "balanced", lambda motion, scene, bound: motion),
-        mock.patch.object(march, "watched", lambda problem, steps: steps),
-        mock.patch.object(march, "_unsound", lambda problem, table, end: None),
+        mock.patch.object(simulation, "sound", _first),
+        mock.patch.object(simulation, "balanced", _first),
+        mock.patch.object(march, "watched", _second),
+        mock.patch.object(march, "_unsound", _nothing),
     ):
         yield
 
