@@ -28,46 +28,73 @@ from contactlab_march.normal_steps import NormalEnd, Step, Table, watched
 def march(
     problem: Problem, steps: Iterable[Step], end: NormalEnd, observer: Observer | None
 ) -> Motion:
-    """Follow the tangential motion along ``steps``.
+    """Follow the tangential motion along ``steps``: all at once if the law can, else one by one."""
+    law, single = problem.tangential, not problem.shape
+    assert isinstance(law, SteppedTangentialLaw)
+    at_once = law if observer is None and isinstance(law, RunningTangentialLaw) else None
+    if at_once and single and not isinstance(steps, Table):
+        try:
+            steps = Table.of(problem, steps)
+        except faults.LawFaultError as fault:
+            return _ended(problem, end, math.nan, math.nan, fault.status, fault.detail, 0)
+    if isinstance(steps, Table):
+        if (motion := _unsound(problem, steps, end)) is not None:
+            return motion
+        fits = at_once and (single or (at_once.runs_batches and len(problem.shape) == 1))
+        motion = _all_at_once(problem, at_once, steps, end) if at_once and fits else None
+        if motion is not None:
+            return motion
+    else:
+        steps = watched(problem, steps)
+    return _one_by_one(problem, law, steps, end, observer)
+
+
+def _all_at_once(
+    problem: Problem, law: RunningTangentialLaw, table: Table, end: NormalEnd
+) -> Motion | None:
+    """Follow the tangential motion with a law that takes all steps at once, if it will."""
+    columns = table.columns
+    force, radius = columns.contact[:2]
+    mass, initial = problem.pair.tangential_mass, problem.slip_velocity
+    try:
+        response = law.run(problem, Run(force, radius, columns.drift, columns.kick, initial, mass))
+        if response is None:
+            return None
+        count = len(response.force)
+        change = -np.sum(response.force * (columns.kick[:count] / mass), axis=0)
+    except Exception as error:
+        detail = faults.told(law, f"{faults.raised(error)}, all steps at once", 1)
+        return _ended(problem, end, math.nan, math.nan, Status.LAW_RAISED, detail, 0)
+    status, detail = Status.SUCCESS, ""
+    if not response.settled:
+        status, detail = Status.UNSETTLED, faults.told(law, "no division found", count + 1)
+    elif not np.isfinite(change).all():
+        bad = ~np.isfinite(response.force).reshape(count, -1).all(axis=1)
+        step = int(bad.argmax())
+        detail = faults.told(law, f"force {faults.shown(response.force[step])}", step + 1)
+        status = Status.NON_FINITE
+    return _ended(problem, end, change, response.friction_work, status, detail, count)
+
+
+def _one_by_one(
+    problem: Problem,
+    law: SteppedTangentialLaw,
+    steps: Iterable[Step],
+    end: NormalEnd,
+    observer: Observer | None,
+) -> Motion:
+    """Ask the law in every step.
 
     The change of velocity is summed apart from the velocity, which may be so large
     that it would swallow the change (theory §8).
     """
-    law, single = problem.tangential, not problem.shape
-    assert isinstance(law, SteppedTangentialLaw)
-    at_once = observer is None and isinstance(law, RunningTangentialLaw)
-    if isinstance(steps, Table):
-        if (motion := _unsound(problem, steps, end)) is not None:
-            return motion
-    elif not (at_once and single):
-        steps = watched(problem, steps)
-    if at_once:
-        assert isinstance(law, RunningTangentialLaw)
-        try:
-            if single and not isinstance(steps, Table):
-                steps = Table.of(problem, steps)
-                if (motion := _unsound(problem, steps, end)) is not None:
-                    return motion
-            if isinstance(steps, Table) and (
-                single or (law.runs_batches and len(problem.shape) == 1)
-            ):
-                motion = march_at_once(problem, law, steps, end)
-                if motion is not None:
-                    return motion
-        except faults.LawFaultError as fault:
-            return _ended(problem, end, math.nan, math.nan, fault.status, fault.detail, 0)
-        except Exception as error:
-            detail = faults.told(law, f"{faults.raised(error)}, all steps at once", 1)
-            return _ended(problem, end, math.nan, math.nan, Status.LAW_RAISED, detail, 0)
-    initial = problem.slip_velocity
-    mass = problem.pair.tangential_mass
+    single, initial, mass = not problem.shape, problem.slip_velocity, problem.pair.tangential_mass
     change: Real = 0.0 if single else np.zeros(problem.shape)
     work: Real = 0.0 if single else np.zeros(problem.shape)
     nothing = 0.0 * change
     before = contact = NormalContact(nothing, nothing, nothing)
-    status, detail, what, count = Status.SUCCESS, "", "", 0
+    status, what, count = Status.SUCCESS, "", 0
     velocity: Real = initial
-    blamed: Law = law
     time: Real = 0.0
     try:
         state = law.start(problem)
@@ -79,18 +106,15 @@ def march(
             increment = Increment(
                 velocity * step.drift, velocity, arresting, step.normal_force, step.kick
             )
-            response, state = law.advance(state, increment, before, step.contact)
+            response, state = law.advance(state, increment, before, contact)
             force, lost = response.force, response.friction_work
             if not (single and isinstance(force, float) and isinstance(lost, float)):
-                for number in (force, lost):
-                    if faults.malformed(number, problem.shape):
-                        status, what = Status.MALFORMED, f"the answer {faults.shown(number)}"
-                        break
+                status, what = _checked(problem, force, lost)
                 if status is not Status.SUCCESS:
                     break
             change = change - force * change_per_force
             work = work + lost
-            before = step.contact
+            before = contact
             if observer is not None:
                 middle = velocity - 0.5 * force * change_per_force
                 observer(_sample(step, middle, force, law, state))
@@ -102,14 +126,24 @@ def march(
             if status is not Status.SUCCESS:
                 break
     except faults.LawFaultError as fault:
-        status, detail = fault.status, fault.detail
+        return _ended(problem, end, change, work, fault.status, fault.detail, count)
     except Exception as error:
         status, what = Status.LAW_RAISED, faults.raised(error)
-    if status is not Status.SUCCESS and not detail:
-        if faults.unsound(contact, problem.shape):
-            blamed, what = problem.normal, faults.shown(tuple(contact))
-        detail = faults.told(blamed, what, count, time)
+    if status is Status.SUCCESS:
+        return _ended(problem, end, change, work, status, "", count)
+    blamed: Law = law
+    if faults.unsound(contact, problem.shape):
+        blamed, what = problem.normal, faults.shown(tuple(contact))
+    detail = faults.told(blamed, what, count, time)
     return _ended(problem, end, change, work, status, detail, count)
+
+
+def _checked(problem: Problem, *answers: Real) -> tuple[Status, str]:
+    """Return what is wrong with a law's answers if they are not real numbers of the right shape."""
+    for answer in answers:
+        if faults.malformed(answer, problem.shape):
+            return Status.MALFORMED, f"the answer {faults.shown(answer)}"
+    return Status.SUCCESS, ""
 
 
 def _ended(
@@ -157,30 +191,6 @@ def _unsound(problem: Problem, table: Table, end: NormalEnd) -> Motion | None:
             detail = faults.told(problem.normal, what, count + 1, time)
             return _ended(problem, end, nothing, nothing, Status.NON_FINITE, detail, count)
     return None
-
-
-def march_at_once(
-    problem: Problem, law: RunningTangentialLaw, table: Table, end: NormalEnd
-) -> Motion | None:
-    """Follow the tangential motion with a law that takes all steps at once, if it will."""
-    columns = table.columns
-    force, radius = columns.contact[:2]
-    numbers = (force, radius, columns.drift, columns.kick)
-    mass, initial = problem.pair.tangential_mass, problem.slip_velocity
-    response = law.run(problem, Run(*numbers, initial, mass))
-    if response is None:
-        return None
-    count = len(response.force)
-    change = -np.sum(response.force * (columns.kick[:count] / mass), axis=0)
-    status, detail = Status.SUCCESS, ""
-    if not response.settled:
-        status, detail = Status.UNSETTLED, faults.told(law, "no division found", count + 1)
-    elif not np.isfinite(change).all():
-        bad = ~np.isfinite(response.force).reshape(count, -1).all(axis=1)
-        step = int(bad.argmax())
-        detail = faults.told(law, f"force {faults.shown(response.force[step])}", step + 1)
-        status = Status.NON_FINITE
-    return _ended(problem, end, change, response.friction_work, status, detail, count)
 
 
 def _sample(
