@@ -98,6 +98,37 @@ class PanelPath:
         return basis @ solved.change, basis @ solved.force, basis @ solved.slip
 
 
+class _Grid(NamedTuple):
+    """A panel of one length: contact and dT/dtau at its nodes, integration over T, and T.
+
+    ``drift`` is the slip if the velocity stayed as it was.
+    """
+
+    contact: Course
+    rate: Array
+    time_matrix: Array
+    time: Array
+    drift: Array
+
+    @classmethod
+    def of(
+        cls,
+        motion: ClosedFormMotion,
+        nodes: Nodes,
+        spacing: tuple[Array, Array],
+        start: PhaseState,
+        length: float,
+    ) -> _Grid:
+        """Lay ``nodes`` out from ``start``, spaced evenly or with ``nodes.rooted``."""
+        spot, spread = spacing
+        contact = motion.course(start.x + length * spot)
+        rate = contact.pace * (length * spread)
+        time = nodes.integral.dot(rate)
+        drift = start.velocity * time
+        drift += start.slip
+        return cls(contact, rate, nodes.integral * rate, time, drift)
+
+
 def newton(
     phase: Phase,
     motion: ClosedFormMotion,
@@ -113,86 +144,89 @@ def newton(
 
     Returns None if Newton's method does not converge or the panel is too long for its nodes.
     """
-    spot, spread = nodes.plain if fit is None else nodes.rooted
-    count = len(spot)
-    memo: tuple[Array, ...] = ()
+    spacing = nodes.plain if fit is None else nodes.rooted
+    grid = _Grid.of(motion, nodes, spacing, start, length)
     change = guess
-    placed = last = False
+    if change is None:  # force as it was, growing as it did
+        half_growth = 0.5 * inertia * start.force_rate
+        change = grid.time * (-inertia * start.force - half_growth * grid.time)
+    if not float(np.abs(change).max()) < LARGEST_CHANGE:
+        return None
+    count = len(change)
+    # a float to the power of 2 raises OverflowError
+    first_size = float(change.dot(change)) / count + start.velocity * start.velocity + TINY
+    memo: tuple[Array, ...] = ()
     peek = fit is None and bool(phase.rough) and not phase.linear
-    guess_size = 0.0
-    square = start.velocity * start.velocity  # a float to the power of 2 raises OverflowError
+    last = False
     for step in range(NEWTON_CAP):
-        if not placed:
-            contact = motion.course(start.x + length * spot)
-            rate = contact.pace * (length * spread)
-            time_matrix = nodes.integral * rate
-            time = nodes.integral.dot(rate)
-            base = start.velocity * time
-            base += start.slip
-            placed = True
-        if change is None:  # force as it was, growing as it did
-            change = time * (-inertia * start.force - (0.5 * inertia * start.force_rate) * time)
-        if step == 0:
-            if not float(np.abs(change).max()) < LARGEST_CHANGE:
-                return None
-            guess_size = float(change.dot(change)) / count
+        time_matrix = grid.time_matrix
         slip = time_matrix.dot(change)
-        slip += base
-        response = phase.respond(contact, slip, memo)
-        memo, force = response.memo, response.force
-        gathered, stiffness = response.gathered, response.stiffness
+        slip += grid.drift
+        response = phase.respond(grid.contact, slip, memo)
+        memo, force, gathered = response.memo, response.force, response.gathered
         if gathered is not None:
             force = force + time_matrix.dot(gathered * (start.velocity + change))
         residual = time_matrix.dot(force)
         residual *= inertia
         if last:
             np.negative(residual, out=residual)
+            velocity = start.velocity + residual
             return Solved(
-                contact,
-                response,
-                slip,
-                residual,
-                start.velocity + residual,
-                force,
-                time_matrix,
-                length,
+                grid.contact, response, slip, residual, velocity, force, time_matrix, length
             )
         residual += change
-        slope = gathered if stiffness is None else stiffness
-        if slope is None:
-            delta = residual
-        else:
-            if step == 0 and not inertia * float((slope * rate * rate).max()) < LONGEST_SWING**2:
-                return None
-            left = time_matrix if stiffness is None else time_matrix * slope
-            right = time_matrix * slope if stiffness is None else time_matrix
-            matrix = left.dot(right)
-            matrix *= inertia
-            matrix += nodes.identity
-            delta = dgesv(matrix, residual, 1, 1)[2]
+        slope = gathered if response.stiffness is None else response.stiffness
+        if (
+            step == 0
+            and slope is not None
+            and not inertia * float((slope * grid.rate * grid.rate).max()) < LONGEST_SWING**2
+        ):
+            return None
+        delta = _update(residual, response, inertia, time_matrix, nodes)
         change = change - delta
-        size = float(change.dot(change)) / count + square + guess_size + TINY
+        size = float(change.dot(change)) / count + first_size
         update = (float(delta.dot(delta)) / size) ** 0.5
         if not update < 1e6:
             return None
         if fit is not None:
-            margin = phase.margin(fit, contact, slip, start.velocity + change, response)
-            one, two = margin[-2:].tolist()
-            shift = two * (1.0 - spot[-2].item()) * length / (one - two) if one != two else np.inf
+            margin = phase.margin(fit, grid.contact, slip, start.velocity + change, response)
+            shift = _shift(margin, spacing[0], length)
             if not abs(shift) < 0.5 * length:
                 return None
             if abs(shift) > FIT_MOVE * length:
-                change -= (inertia * shift) * (force * contact.pace * spot)
+                change -= (inertia * shift) * (force * grid.contact.pace * spacing[0])
                 length += shift
-                placed = False
+                grid = _Grid.of(motion, nodes, spacing, start, length)
                 update = max(update, 1e-3 * abs(shift) / length)
         elif peek and update < PEEK_UPDATE and step:
             peek = False
-            found = glance(phase, contact, slip, start.velocity + change, response, nodes)
+            found = glance(phase, grid.contact, slip, start.velocity + change, response, nodes)
             if found is not None:
                 return Overshot(found[0], found[1], change)
         last = update < LAST_UPDATE or phase.linear
     return None
+
+
+def _update(
+    residual: Array, response: PhaseResponse, inertia: float, time_matrix: Array, nodes: Nodes
+) -> Array:
+    """Solve the linear system of Newton's method; the residual is overwritten."""
+    stiffness, gathered = response.stiffness, response.gathered
+    if stiffness is not None:
+        matrix = (time_matrix * stiffness).dot(time_matrix)
+    elif gathered is not None:
+        matrix = time_matrix.dot(time_matrix * gathered)
+    else:
+        return residual
+    matrix *= inertia
+    matrix += nodes.identity
+    return np.asarray(dgesv(matrix, residual, 1, 1)[2])
+
+
+def _shift(margin: Array, spot: Array, length: float) -> float:
+    """Return how much longer a panel must be for ``margin`` to end at zero, by a secant."""
+    one, two = margin[-2:].tolist()
+    return float(two * (1.0 - spot[-2].item()) * length / (one - two)) if one != two else np.inf
 
 
 def glance(
