@@ -43,7 +43,7 @@ class Material:
 
     shear_modulus: Real = quantity("Pa", rule=POSITIVE)
     poisson_ratio: Real = quantity("1", rule=POISSON)
-    density: Real | None = attrs.field(default=None, metadata={"unit": "kg/m³"})
+    density: Real | None = quantity("kg/m³", rule=POSITIVE, default=None)
 
     def __init__(
         self,
@@ -51,7 +51,7 @@ class Material:
         shear_modulus: object = None,
         young_modulus: object = None,
         poisson_ratio: object,
-        density: object = None,
+        density: Any = None,
     ) -> None:
         if (shear_modulus is None) == (young_modulus is None):
             raise refuse(
@@ -71,8 +71,6 @@ class Material:
                     "give shear_modulus instead",
                 )
             shear_modulus = young / (2.0 * (1.0 + ratio))
-        if density is not None:
-            density = real("density", density, rule=POSITIVE, remedy="give it in kg/m³")
         shear = real("shear_modulus", shear_modulus, rule=POSITIVE, remedy="give it in Pa")
         self.__attrs_init__(shear_modulus=shear, poisson_ratio=ratio, density=density)
 
@@ -89,12 +87,6 @@ def _is_material(_: object, attribute: attrs.Attribute[Material], value: object)
 
 def _material() -> Any:
     return attrs.field(validator=_is_material)
-
-
-def _mass_or_none(value: object) -> Real | None:
-    if value is None:
-        return None
-    return real("mass", value, rule=POSITIVE, remedy="give it in kg")
 
 
 @attrs.frozen
@@ -119,17 +111,12 @@ class Sphere:
 
     radius: Real = quantity("m", rule=POSITIVE)
     material: Material = _material()
-    mass: Real = attrs.field(
-        default=None,
-        converter=_mass_or_none,
-        kw_only=True,
-        metadata={"unit": "kg"},
+    mass: Real = quantity("kg", rule=POSITIVE, default=None, kw_only=True)
+    gyration_ratio: Real = quantity(
+        "1", rule=GYRATION, default=SOLID_SPHERE_GYRATION_RATIO, kw_only=True
     )
-    gyration_ratio: Real = attrs.field(kw_only=True, default=SOLID_SPHERE_GYRATION_RATIO)
 
     def __attrs_post_init__(self) -> None:
-        ratio = real("gyration_ratio", self.gyration_ratio, rule=GYRATION)
-        object.__setattr__(self, "gyration_ratio", ratio)
         if self.mass is not None:
             return
         density = self.material.density

@@ -103,24 +103,32 @@ def unit_remedy(unit: str) -> str:
     return "it has no unit" if unit == "1" else f"give it in {unit}"
 
 
-def _checked(value: object, _: object, field: attrs.Attribute[Any]) -> Real:
+def _checked(value: object, field: attrs.Attribute[Any]) -> Real | None:
+    if value is None and field.default is None:
+        return None
     meta = field.metadata
     return real(field.name, value, rule=meta["rule"], remedy=unit_remedy(meta["unit"]))
 
 
-def _key(value: Real) -> object:
+def _key(value: Real | None) -> object:
     """Return what equality and hash of a quantity go by; arrays have neither of their own."""
-    if isinstance(value, float):
+    if value is None or isinstance(value, float):
         return value
     array = np.asarray(value) + 0.0  # -0.0 equals 0.0
     return array.shape, array.tobytes()
 
 
-def quantity(unit: str, *, rule: Rule = FINITE, default: Any = attrs.NOTHING) -> Any:
-    """Return an attrs field for a checked real quantity with its unit in the metadata."""
+def quantity(
+    unit: str, *, rule: Rule = FINITE, default: Any = attrs.NOTHING, kw_only: bool = False
+) -> Any:
+    """Return an attrs field for a checked real quantity with its unit in the metadata.
+
+    A default of None makes it optional: None may be given too.
+    """
     return attrs.field(
         default=default,
-        converter=attrs.Converter(_checked, takes_self=True, takes_field=True),
+        kw_only=kw_only,
+        converter=attrs.Converter(_checked, takes_field=True),
         eq=_key,
         metadata={"unit": unit, "rule": rule},
     )

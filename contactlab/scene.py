@@ -23,18 +23,9 @@ def _is_target(_: object, attribute: attrs.Attribute[Any], value: object) -> Non
         raise refuse(attribute.name, value, "must be a HalfSpace or a Sphere")
 
 
-def _reduced(scene: Any) -> Pair:
-    if scene.sphere is None or scene.target is None:
-        raise refuse(
-            "sphere, target",
-            (scene.sphere, scene.target),
-            "both bodies must be given",
-            "or use Scene.nondimensional(psi1=, chi=)",
-        )
-    # The pair is formed before attrs runs the validators, so the kinds are looked at here.
-    _is_sphere(scene, attrs.fields(Scene).sphere, scene.sphere)
-    _is_target(scene, attrs.fields(Scene).target, scene.target)
-    return Pair.of(scene.sphere, scene.target)
+def _is_pair(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
+    if value is not None and not isinstance(value, Pair):
+        raise refuse(attribute.name, value, "must be a Pair", "or leave it out")
 
 
 @attrs.frozen
@@ -57,6 +48,9 @@ class Scene:
     spin : float or array
         omega, in rad/s, positive where it adds to the tangential velocity at the
         contact: v_x = v + omega R, eq. (20).
+    pair : Pair
+        What the laws need of the two bodies, formed from them; to be given only where a
+        body is not known, as in ``nondimensional``.
 
     Raises
     ------
@@ -70,11 +64,20 @@ class Scene:
     normal_speed: Real = quantity("m/s", rule=POSITIVE)
     tangential_velocity: Real = quantity("m/s", default=0.0)
     spin: Real = quantity("rad/s", default=0.0)
-    pair: Pair = attrs.field(
-        default=attrs.Factory(_reduced, takes_self=True), kw_only=True, repr=False
-    )
+    # None only until the bodies are looked at, below.
+    pair: Pair = attrs.field(default=None, validator=_is_pair, kw_only=True, repr=False)
 
     def __attrs_post_init__(self) -> None:
+        if self.sphere is not None and self.target is not None:
+            # A pair that is handed over, as by attrs.evolve, may be that of other bodies.
+            object.__setattr__(self, "pair", Pair.of(self.sphere, self.target))
+        elif self.pair is None:
+            raise refuse(
+                "sphere, target",
+                (self.sphere, self.target),
+                "both bodies must be given",
+                "or use Scene.nondimensional(psi1=, chi=)",
+            )
         numbers = attrs.asdict(self.pair)
         for field in attrs.fields(Scene):
             if "unit" in field.metadata:

@@ -107,3 +107,14 @@ def test_bodies_are_values():
     assert Sphere(np.float32(0.5), STEEL) == Sphere(0.5, STEEL)
     assert Sphere(1, STEEL).radius == 1.0
     assert Sphere([0.01, 0.02], STEEL) != sphere
+
+
+def test_batch_bodies_are_values_too():
+    """Mass, gyration and density hold arrays as radius does."""
+    ratio = [0.6, 0.7]
+    light = Material(young_modulus=1e9, poisson_ratio=0.3, density=[1e3, 2e3])
+    same = Material(young_modulus=1e9, poisson_ratio=0.3, density=[1e3, 2e3])
+    one, two = (Sphere([0.01, 0.02], of, gyration_ratio=ratio) for of in (light, same))
+    assert one == two
+    assert len({one, two, Sphere([0.01, 0.03], light, gyration_ratio=ratio)}) == 2
+    assert one != Sphere([0.01, 0.02], light, gyration_ratio=ratio, mass=[1.0, 2.0])

@@ -2,6 +2,7 @@
 
 import math
 
+import attrs
 import numpy as np
 import pytest
 
@@ -92,6 +93,18 @@ def test_bodies_are_checked():
         Scene(BALL, STEEL, 0.1, 1.0)
     with pytest.raises(ValueError, match="both bodies"):
         Scene(None, PLATE, 0.1, 1.0)
+
+
+def test_other_bodies_make_another_pair():
+    """A scene derived from one with other bodies must not keep the masses of the old ones."""
+    steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+    numbers = {"friction_coefficient": 0.2, "normal_speed": 1.0, "tangential_velocity": 0.3}
+    small = Scene(Sphere(0.01, steel), HalfSpace(steel), **numbers)
+    large = Scene(Sphere(0.1, steel), HalfSpace(steel), **numbers)
+    assert attrs.evolve(small, sphere=large.sphere) == large
+    assert Scene(small.sphere, small.target, **numbers, pair=large.pair) == small
+    with pytest.raises(ValueError, match="pair"):
+        Scene(None, None, **numbers, pair=3.0)
 
 
 def test_velocities_that_overflow_together_are_refused():
