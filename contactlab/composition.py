@@ -31,10 +31,11 @@ def fitting_integrator(normal: Law, tangential: Law) -> str:
     """Return the name of the first of ``PREFERRED_INTEGRATORS`` that fits, or else the first."""
     for name in PREFERRED_INTEGRATORS:
         try:
-            check_fit(normal, tangential, law("integrator", name))
+            integrator = law("integrator", name)
         except ValueError:
             continue
-        return name
+        if _unmet(normal, tangential, integrator) is None:
+            return name
     return PREFERRED_INTEGRATORS[0]
 
 
@@ -46,25 +47,33 @@ def check_fit(normal: Law, tangential: Law, integrator: Law) -> None:
     ValueError
         Naming both parties, the missing words and the installed laws that offer them.
     """
-    parts = (normal, tangential, integrator)
     claimed = sorted(CLOSED_FORM & normal.offers)
     if claimed and not isinstance(normal, ClosedFormNormalLaw):
         raise ValueError(
             f"normal = {type(normal).__name__}: offers {claimed[0]!r}, and is no "
             "ClosedFormNormalLaw; derive it from that class, or do not offer the word"
         )
+    parts = (normal, tangential, integrator)
+    unmet = _unmet(*parts)
+    if unmet is None:
+        return
+    part, word = unmet
+    others = [other for other in parts if other is not part]
+    fitting = [name for name in _offering(word) if name.partition(".")[0] != part.kind]
+    would = f"these would fit: {', '.join(fitting)}" if fitting else "no installed law does"
+    raise ValueError(
+        f"{part.kind} = {type(part).__name__}: needs {word!r}, which neither "
+        f"{type(others[0]).__name__} nor {type(others[1]).__name__} offers; {would}"
+    )
+
+
+def _unmet(*parts: Law) -> tuple[Law, str] | None:
+    """Return the first law that needs a word which none of the others offers, and the word."""
     for part in parts:
-        others = [other for other in parts if other is not part]
-        missing = part.needs.difference(*(other.offers for other in others))
-        if not missing:
-            continue
-        word = sorted(missing)[0]
-        fitting = [name for name in _offering(word) if name.partition(".")[0] != part.kind]
-        would = f"these would fit: {', '.join(fitting)}" if fitting else "no installed law does"
-        raise ValueError(
-            f"{part.kind} = {type(part).__name__}: needs {word!r}, which neither "
-            f"{type(others[0]).__name__} nor {type(others[1]).__name__} offers; {would}"
-        )
+        offered = frozenset[str]().union(*(other.offers for other in parts if other is not part))
+        if missing := part.needs - offered:
+            return part, min(missing)
+    return None
 
 
 def versions(*laws: Law) -> dict[str, str]:

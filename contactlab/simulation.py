@@ -49,7 +49,8 @@ class Simulation:
     normal, tangential, integrator : str or law
         A name (``"hertz"``), or an object made by ``contactlab.create`` or by your own class.
         The default is exact: Hertz's closed form and the slip front followed event by event.
-        Where no integrator is named, the best that fits the two laws is taken.
+        Where no integrator is named ``events`` is taken, or ``symplectic`` where that does not
+        fit the two laws.
 
     Raises
     ------

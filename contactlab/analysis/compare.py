@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.checks import refuse
 from contactlab.quantities import quantity_named
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
@@ -49,12 +50,18 @@ class Agreement:
     Attributes
     ----------
     measured : Measured
-    predicted : mapping of str to array
-        Law to values, shape (n,), in the quantity's unit.
+    results : mapping of str to ImpactResult
+        Law to its batch of n impacts at the measured points.
     """
 
     measured: Measured
-    predicted: Mapping[str, Array]
+    results: Mapping[str, ImpactResult]
+
+    @property
+    def predicted(self) -> dict[str, Array]:
+        """Law to values, shape (n,), in the quantity's unit; NaN where an impact failed."""
+        quantity = self.measured.quantity
+        return {law: _values(quantity, result) for law, result in self.results.items()}
 
     def difference(self, law: str) -> Array:
         """Return predicted - measured, shape (n,)."""
@@ -91,23 +98,22 @@ class Comparison:
         return [run.name for run in self.runs]
 
     def values(self, quantity: str, law: str) -> Array:
-        """Return a quantity over the scene or sweep as one law has it."""
-        result = next(run.result for run in self.runs if run.name == law)
-        return quantity_named(quantity).of(result)
+        """Return a quantity over the scene or sweep as one law has it; NaN where it failed."""
+        return _values(quantity, next(run.result for run in self.runs if run.name == law))
 
     def difference(self, quantity: str, law: str) -> Array:
         """Return a law's value less that of the first law."""
         return self.values(quantity, law) - self.values(quantity, self.names[0])
 
     def failures(self) -> list[str]:
-        """Return one sentence for each law that did not follow every impact."""
-        found = []
-        for run in self.runs:
-            bad = run.result.failures
-            if bad:
-                share = f" ({len(bad)} of {run.result.scene.shape[0]})" if self.scene.shape else ""
-                found.append(f"{run.name}{share}: {next(iter(bad.values()))}")
-        return found
+        """Return one sentence for each law that did not follow every impact, measured or not."""
+        found = [_failure(run.name, run.result) for run in self.runs]
+        for agreement in self.agreements:
+            where = f"at the measured values of {agreement.measured.quantity}"
+            found += [
+                _failure(f"{law}, {where}", result) for law, result in agreement.results.items()
+            ]
+        return [sentence for sentence in found if sentence]
 
 
 def compare(
@@ -134,14 +140,20 @@ def compare(
     -------
     Comparison
         Failed impacts are NaN in its numbers; ``failures()`` says why.
+
+    Raises
+    ------
+    ValueError
+        If ``scene`` is neither a scene nor a scene file.
     """
     file = scene if isinstance(scene, SceneFile) else None
     single = file.scene if file else scene
-    assert isinstance(single, Scene)
+    if not isinstance(single, Scene):
+        raise refuse("scene", scene, "must be a Scene or a SceneFile")
     series = file.measured if file else ()
     total, done = len(simulations) * (1 + len(series)), 0
     runs: list[LawRun] = []
-    predicted: list[dict[str, Array]] = [{} for _ in series]
+    predicted: list[dict[str, ImpactResult]] = [{} for _ in series]
     for name, simulation in simulations.items():
         jobs: list[Measured | None] = [None, *series]
         for number, job in enumerate(jobs):
@@ -149,14 +161,14 @@ def compare(
                 runs.append(_timed(name, simulation, single, history=history and not single.shape))
             else:
                 assert file is not None
-                result = _run(simulation, file.scene_at(**{job.against: job.x}))
-                predicted[number - 1][name] = quantity_named(job.quantity).of(result)
+                there = file.scene_at(**{job.against: job.x})
+                predicted[number - 1][name] = _run(simulation, there)
             done += 1
             if progress is not None:
                 progress(done, total)
     agreements = tuple(
-        Agreement(measured=measured, predicted=values)
-        for measured, values in zip(series, predicted, strict=True)
+        Agreement(measured=measured, results=results)
+        for measured, results in zip(series, predicted, strict=True)
     )
     return Comparison(
         scene=single,
@@ -164,6 +176,21 @@ def compare(
         runs=tuple(runs),
         agreements=agreements,
     )
+
+
+def _values(quantity: str, result: ImpactResult) -> Array:
+    """Return a quantity of a result, with NaN for impacts that failed."""
+    good = np.asarray(result.status, dtype=object) == Status.SUCCESS
+    return np.where(good, quantity_named(quantity).of(result), np.nan)
+
+
+def _failure(name: str, result: ImpactResult) -> str:
+    """Return a sentence on the impacts of a result that failed, or none."""
+    bad, shape = result.failures, result.scene.shape
+    if not bad:
+        return ""
+    share = f" ({len(bad)} of {shape[0]})" if shape else ""
+    return f"{name}{share}: {next(iter(bad.values()))}"
 
 
 def _run(simulation: Simulation, scene: Scene) -> ImpactResult:

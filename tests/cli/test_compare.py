@@ -7,10 +7,12 @@ import io
 import json
 import math
 
+import numpy as np
 import pytest
 
-from contactlab import read_scene
+from contactlab import Simulation, read_scene
 from contactlab.analysis.compare import compare
+from tests.tangential_laws import Creator
 
 BOTH = ("--tangential", "coulomb,frictionless")
 
@@ -122,6 +124,29 @@ def test_failed_law_is_a_gap_and_status_1(run, tmp_path):
     assert content["laws"]["annulus"]["values"]["psi2"] is None
     assert content["laws"]["annulus"]["status"] == "TOO_FEW_STEPS"
     assert "annulus" in ran.err
+
+
+def test_failure_at_a_measured_point_is_told_too(run, tmp_path):
+    path = tmp_path / "stiff.toml"
+    path.write_text(
+        "[nondimensional]\npsi1 = 1.0\nchi = 1.0\n[[measured]]\nquantity = 'psi2'\n"
+        "against = 'chi'\nsource = 'made up'\nx = [1.0, 1000.0]\nvalues = [0.1, 0.2]\n",
+        encoding="utf-8",
+    )
+    settings = ("--set", "integrator.steps=40", "--set", "integrator.refine=false")
+    ran = run("compare", path, "--integrator", "symplectic", "--tangential", "springs", *settings)
+    assert ran.status == 1
+    assert "springs, at the measured values of psi2 (1 of 2): The steps are too few" in ran.err
+
+
+def test_an_answer_that_is_not_sound_is_no_number(short_sweep):
+    """Energy from nothing ends UNBALANCED, with a psi2 that must not get into a table."""
+    scene = read_scene(short_sweep).scene
+    comparison = compare(scene, {"creator": Simulation(tangential=Creator())})
+    assert np.isnan(comparison.values("psi2", "creator")).tolist() == [False, True, True]
+    assert "creator (2 of 3)" in comparison.failures()[0]
+    with pytest.raises(ValueError, match=r"scene = 3\.0"):
+        compare(3.0, {})
 
 
 def test_single_scene_object_can_be_compared(short_sweep):

@@ -10,6 +10,7 @@ import contactlab
 from contactlab import ImpactError, Scene, Simulation, Status
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from tests.guards import cost, without
+from tests.tangential_laws import Creator
 
 
 def annulus(integrator, **options):
@@ -142,21 +143,6 @@ def test_a_few_failures_in_a_large_batch_are_found(shape):
     assert list(result.failures) == [3, 70, 71]
     good = simulation.run(Scene.nondimensional(psi1=np.delete(psi1, [3, 70, 71]), chi=3.0)).check()
     assert np.delete(result.psi2.ravel(), [3, 70, 71]).tolist() == good.psi2.tolist()
-
-
-@attrs.frozen(kw_only=True)
-class Creator(SteppedTangentialLaw):
-    """Makes energy, and says that its books close to a thousandth."""
-
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset] = frozenset({"advance"})
-    books_bound: ClassVar[float] = 1e-3
-
-    def start(self, problem):
-        return problem.friction_coefficient
-
-    def advance(self, state, increment, before, after):
-        return TangentialResponse(-0.1 * state * increment.normal_force, 0.0), state
 
 
 @pytest.mark.parametrize("shape", [(), (3,)])

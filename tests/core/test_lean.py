@@ -35,6 +35,17 @@ def test_listing_the_laws_imports_none():
     assert laws == []
 
 
+def test_choosing_an_integrator_imports_no_other_law():
+    _, laws = loaded(
+        PROBE.replace(
+            "import contactlab\n",
+            "import contactlab\ncontactlab.Simulation(tangential='springs')\n",
+        )
+    )
+    needed = {"hertz", "springs", "jaeger", "events", "march"}
+    assert {name.split(".")[0] for name in laws} == {f"contactlab_{name}" for name in needed}
+
+
 def test_only_the_named_law_is_imported():
     _, laws = loaded(
         PROBE.replace(

@@ -1,0 +1,22 @@
+"""Tangential laws that several tests need, and that no one should use."""
+
+from typing import ClassVar
+
+import attrs
+
+from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
+
+
+@attrs.frozen(kw_only=True)
+class Creator(SteppedTangentialLaw):
+    """Makes energy, and says that its books close to a thousandth."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"advance"})
+    books_bound: ClassVar[float] = 1e-3
+
+    def start(self, problem):
+        return problem.friction_coefficient
+
+    def advance(self, state, increment, before, after):
+        return TangentialResponse(-0.1 * state * increment.normal_force, 0.0), state
