@@ -35,6 +35,8 @@ class History:
 
     def __repr__(self) -> str:
         """Return how many instants there are, and the fields."""
+        if not self.time.size:
+            return "History(no instants)"
         fields = ", ".join(self.fields) or "no fields"
         return f"History({len(self.time)} instants to {np.max(self.time):.4g} s; {fields})"
 

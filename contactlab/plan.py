@@ -96,6 +96,8 @@ def make_plan(
         left_out.append("history: not asked for")
     elif history != "fields":
         left_out.append("traction and stick/slip fields: not asked for (history='fields')")
+    elif not needs.marched.any():
+        left_out.append("traction and stick/slip fields: there is no march to take them from")
     cautions = []
     if np.any(np.asarray(scene.size_ratio) > HERTZ_DOUBTFUL_SIZE_RATIO) and scene.sphere:
         cautions.append(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from functools import cached_property
 from types import ModuleType
@@ -49,6 +50,7 @@ class Registry:
 
     def __init__(self) -> None:
         self._loaded: dict[str, tuple[type[Law], PluginInfo]] = {}
+        self._origins: dict[type[Law], PluginInfo | None] = {}
 
     @cached_property
     def _manager(self) -> pluggy.PluginManager:
@@ -146,10 +148,21 @@ class Registry:
 
     def describe(self, law: Law) -> str:
         """Return a law's name and version: of its distribution, or its class if unregistered."""
-        for name, (known, info) in self._loaded.items():
-            if type(law) is known:
-                return f"{name.partition('.')[2]} ({info.distribution} {info.version})"
-        return f"{type(law).__module__}.{type(law).__qualname__} (not registered)"
+        kind = type(law)
+        if kind not in self._origins:
+            self._origins[kind] = self._origin(kind)
+        info = self._origins[kind]
+        if info is None:
+            return f"{kind.__module__}.{kind.__qualname__} (not registered)"
+        return f"{info.name.partition('.')[2]} ({info.distribution} {info.version})"
+
+    def _origin(self, kind: type[Law]) -> PluginInfo | None:
+        """Return the plug-in that offers this class, asked for by name or not, if any does."""
+        for info in self.installed():
+            if f"{kind.__module__}.".startswith(f"{info.module}."):
+                with contextlib.suppress(ValueError, PluginError):
+                    self.law_class(info.name)
+        return next((info for known, info in self._loaded.values() if known is kind), None)
 
     def _load(self, info: PluginInfo) -> type[Law]:
         source = f"{info.name!r} of {info.distribution} {info.version}"

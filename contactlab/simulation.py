@@ -13,7 +13,6 @@ import numpy as np
 from contactlab import composition, faults
 from contactlab.checks import Real, refuse, whole
 from contactlab.contracts.integrator import (
-    MOTION_ENTRIES,
     Integrator,
     Motion,
     Problem,
@@ -101,6 +100,12 @@ class Simulation:
         -------
         ImpactResult
             A numerical failure is a status, with the history so far; ``.check()`` raises it.
+
+        Raises
+        ------
+        ValueError
+            If ``scene`` is no scene, ``history`` none of its three values, or a history is asked
+            of a batch whose impacts have instants of their own.
         """
         started = time.perf_counter()
         plan = self.plan(scene, history=history)
@@ -269,14 +274,10 @@ class Simulation:
 
     def _mixed(self, scene: Scene, plan: Plan) -> Motion:
         """March the impacts that need it, do the rest in closed form, and merge."""
-        motion = self._closed_form(scene, plan, None)
+        closed = self._closed_form(scene, plan, None)
         marched = self._integrate(scene.take(plan.marched), None)
-        merged = {}
-        for name in MOTION_ENTRIES:
-            whole_column = np.array(getattr(motion, name))
-            whole_column[plan.marched] = getattr(marched, name)
-            merged[name] = whole_column
-        return Motion(**merged, counters=marched.counters)
+        everywhere = np.ones(scene.shape, dtype=bool)
+        return Motion.merged(((everywhere, closed), (plan.marched, marched)), scene.shape)
 
 
 def _scene(scene: object) -> Scene:

@@ -10,6 +10,7 @@ from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.bodies import Pair
 from contactlab.checks import Mask, Real
@@ -52,8 +53,7 @@ class Problem:
 
     def impacts(self) -> Iterator[Problem]:
         """Iterate over the impacts of a batch, each a problem of shape (), in C order."""
-        numbers = ("friction_coefficient", "normal_speed", "slip_velocity", "maximum_radius")
-        whole = {name: self._spread(getattr(self, name)) for name in (*numbers, "duration")}
+        whole = {name: self._spread(getattr(self, name)) for name in PROBLEM_NUMBERS}
         fields = [field.name for field in attrs.fields(Pair)]
         pairs = {name: self._spread(getattr(self.pair, name)) for name in fields}
         for index in range(math.prod(self.shape)):
@@ -61,9 +61,28 @@ class Problem:
             one: dict[str, Any] = {name: column[index] for name, column in whole.items()}
             yield attrs.evolve(self, pair=pair, shape=(), **one)
 
+    def take(self, where: NDArray[np.bool_]) -> Problem:
+        """Return the problem of those impacts of a batch that ``where`` says, of shape (n,).
+
+        What all impacts share stays a plain number: laws are faster then.
+        """
+
+        def some(number: Any) -> Any:
+            return np.broadcast_to(number, self.shape)[where] if np.ndim(number) else number
+
+        pair = Pair(**{f.name: some(getattr(self.pair, f.name)) for f in attrs.fields(Pair)})
+        numbers = {name: some(getattr(self, name)) for name in PROBLEM_NUMBERS}
+        return attrs.evolve(self, pair=pair, shape=(int(where.sum()),), **numbers)
+
     def _spread(self, number: Real) -> list[float]:
         spread: list[float] = np.broadcast_to(np.asarray(number), self.shape).ravel().tolist()
         return spread
+
+
+#: The numbers of a problem besides those of its pair.
+PROBLEM_NUMBERS = (
+    "friction_coefficient", "normal_speed", "slip_velocity", "maximum_radius", "duration",
+)  # fmt: skip
 
 
 class Sample(NamedTuple):
@@ -139,7 +158,27 @@ class Motion:
         )
 
     @classmethod
-    def nothing(cls, shape: tuple[int, ...], status: Status, detail: str = "") -> Motion:
+    def merged(
+        cls, parts: Sequence[tuple[NDArray[np.bool_], Motion]], shape: tuple[int, ...]
+    ) -> Motion:
+        """Return one motion of ``shape`` from motions of those impacts that a mask says of each.
+
+        Of an impact in several parts the last has the word.
+        """
+        entries: dict[str, Any] = {
+            name: np.empty(shape, dtype=kind) for name, kind in MOTION_ENTRIES.items()
+        }
+        counters: Counter[str] = Counter()
+        for where, motion in parts:
+            counters.update(motion.counters)
+            for name, entry in entries.items():
+                entry[where] = np.ravel(np.asarray(getattr(motion, name)))
+        return cls(**entries, counters=dict(counters))
+
+    @classmethod
+    def nothing(
+        cls, shape: tuple[int, ...], status: Status, detail: str | Sequence[str] = ""
+    ) -> Motion:
         """Return the motion of impacts of which nothing is known: NaN throughout."""
         unknown: Real = np.full(shape, math.nan) if shape else math.nan
         return cls(
@@ -148,7 +187,7 @@ class Motion:
             slip_velocity_change=unknown,
             friction_work=unknown,
             status=np.full(shape, status, dtype=object) if shape else status,
-            detail=detail,
+            detail=detail if isinstance(detail, str) else np.array(detail, dtype=object),
         )
 
     def failing(self, where: Mask, status: Status, detail: Any) -> Motion:

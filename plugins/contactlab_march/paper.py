@@ -63,7 +63,8 @@ class PaperSteps(Integrator):
             end = NormalEnd()
             return march(problem, self._steps(problem, steps, end), end, observer)
 
-        return enough(self.steps, self.refine, problem, follow)
+        watched = observer is not None
+        return enough(self.steps, self.refine, problem, follow, one_time_axis=watched)
 
     def _steps(self, problem: Problem, steps: int, end: NormalEnd) -> Iterator[Step]:
         """Yield the normal motion, (30)-(32), until every impact of the batch has ended."""

@@ -26,6 +26,8 @@ LARGEST_LEAD = 0.05
 LEAST_STEPS = math.ceil(math.pi / LARGEST_PHASE_STEP)
 #: More steps than this are refused, whoever asks for them.
 MOST_STEPS = 2_000_000
+#: Where steps are raised, from one number to the next.
+RUNG = 1.25
 
 
 def needed_steps(problem: Problem) -> Any:
@@ -40,29 +42,73 @@ def needed_steps(problem: Problem) -> Any:
     steps = swing / LARGEST_PHASE_STEP
     if "partial_slip" not in law.offers:
         steps = np.maximum(steps, swing * np.sqrt(swing / (24.0 * LARGEST_LEAD)))
-    return np.maximum(np.ceil(steps), LEAST_STEPS)
+    return np.maximum(np.ceil(steps), float(LEAST_STEPS))
 
 
 def remarks(steps: int, refine: bool, problem: Problem) -> tuple[str, ...]:
     """Return what the plan should say of the number of steps."""
-    needed = float(np.max(needed_steps(problem)))
-    if needed <= steps:
+    needed = needed_steps(problem)
+    most = float(np.max(needed))
+    if most <= steps:
         return ()
-    if refine and needed <= MOST_STEPS:
-        return (f"steps raised from {steps} to {needed:.0f}: fewer do not resolve the stiffness",)
-    return (f"{steps} steps are too few: this scene needs {needed:.6g}",)
+    few = np.broadcast_to(needed > steps, problem.shape)
+    share = f" for {int(few.sum())} of {few.size} impacts" if few.ndim else ""
+    if refine and most <= MOST_STEPS:
+        to = int(np.max(_refined(steps, needed)))
+        return (f"steps raised from {steps} to {to}{share}: fewer do not resolve the stiffness",)
+    return (f"{steps} steps are too few{share}: this scene needs {most:.6g}",)
 
 
 def enough(
-    steps: int, refine: bool, problem: Problem, follow: Callable[[Problem, int], Motion]
+    steps: int,
+    refine: bool,
+    problem: Problem,
+    follow: Callable[[Problem, int], Motion],
+    *,
+    one_time_axis: bool,
 ) -> Motion:
-    """Follow ``problem`` with enough steps: refine, or refuse with the number needed."""
-    needed = needed_steps(problem)
-    most = float(np.max(needed))
-    if most <= steps or (refine and most <= MOST_STEPS):
-        return follow(problem, max(steps, int(most)))
-    detail = f"steps = {steps}; this scene needs at least {most:.6g}."
-    return Motion.nothing(problem.shape, Status.TOO_FEW_STEPS, detail)
+    """Follow ``problem`` with enough steps: refine, or refuse with the number needed.
+
+    Each impact of a batch takes the steps that it would take alone, unless a history asks
+    for ``one_time_axis``.
+    """
+    needed, shape = needed_steps(problem), problem.shape
+    taken = np.full_like(needed, steps)
+    if refine:
+        taken = _refined(steps, needed)
+    followed = (needed <= taken) & (taken <= MOST_STEPS)
+    if np.all(followed) and (one_time_axis or np.min(taken) == np.max(taken)):
+        return follow(problem, int(np.max(taken)))
+    if not shape or one_time_axis:
+        return Motion.nothing(shape, Status.TOO_FEW_STEPS, _refusal(steps, np.max(needed)))
+    taken = np.broadcast_to(np.where(followed, taken, 0), shape)
+    needed = np.broadcast_to(needed, shape)
+    parts = []
+    for count in np.unique(taken).tolist():
+        where = taken == count
+        if count:
+            motion = follow(problem.take(where), int(count))
+        else:
+            detail = [_refusal(steps, number) for number in needed[where].tolist()]
+            motion = Motion.nothing((len(detail),), Status.TOO_FEW_STEPS, detail)
+        parts.append((where, motion))
+    return Motion.merged(parts, shape)
+
+
+def _refined(steps: int, needed: Any) -> Any:
+    """Return ``steps``, or the first rung of a ladder up from there that is enough.
+
+    With rungs the impacts of a batch fall into a few groups of equal steps.
+    """
+    ladder = [float(steps)]
+    while ladder[-1] < min(float(np.max(needed)), MOST_STEPS):
+        ladder.append(min(math.ceil(ladder[-1] * RUNG), MOST_STEPS))
+    ladder.append(np.inf)
+    return np.array(ladder)[np.searchsorted(ladder, needed)]
+
+
+def _refusal(steps: int, needed: float) -> str:
+    return f"steps = {steps}; this scene needs at least {needed:.6g}."
 
 
 def _is_bool(_: object, attribute: attrs.Attribute[bool], value: object) -> None:

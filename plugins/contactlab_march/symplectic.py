@@ -66,7 +66,8 @@ class Symplectic(Integrator):
             steps = self._along if closed else self._through
             return march(problem, steps(problem, count, end), end, observer)
 
-        return enough(self.steps, self.refine, problem, follow)
+        watched = observer is not None
+        return enough(self.steps, self.refine, problem, follow, one_time_axis=watched)
 
     def _along(self, problem: Problem, count: int, end: NormalEnd) -> Table:
         """Return the steps of a motion in closed form."""

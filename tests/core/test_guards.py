@@ -25,11 +25,24 @@ def test_too_few_steps_are_raised_and_the_plan_says_so(integrator):
     """Five steps at chi = 30: psi2 would be off by more than 1 (theory §4)."""
     scene = Scene.nondimensional(psi1=1.2, chi=30.0)
     sim = annulus(integrator, steps=5)
-    assert "steps raised from 5 to 63" in str(sim.plan(scene))
+    assert "steps raised from 5 to 75" in str(sim.plan(scene))  # 63 would do; see RUNG
     result = sim.run(scene).check()
     assert result.counters["steps"] >= 63
     fine = annulus(integrator, steps=2000).run(scene)
     assert result.psi2 == pytest.approx(fine.psi2, abs=0.25)
+
+
+@pytest.mark.parametrize("integrator", ["paper", "symplectic"])
+@pytest.mark.parametrize("refine", [True, False])
+def test_a_stiff_impact_costs_no_other_of_its_batch_anything(integrator, refine):
+    sim = annulus(integrator, steps=50, refine=refine)
+    chi = np.array([[1.4, 300.0], [30.0, 3000.0]])
+    batch = sim.run(Scene.nondimensional(psi1=1.2, chi=chi))
+    alone = [sim.run(Scene.nondimensional(psi1=1.2, chi=value)) for value in chi.ravel().tolist()]
+    assert batch.status.ravel().tolist() == [one.status for one in alone]
+    assert batch.motion.detail.ravel().tolist() == [one.motion.detail for one in alone]
+    assert batch.psi2.ravel() == pytest.approx([one.psi2 for one in alone], abs=1e-12, nan_ok=True)
+    assert str(sim.plan(batch.scene)).count("3 of 4 impacts") == 1
 
 
 @pytest.mark.parametrize("integrator", ["paper", "symplectic"])

@@ -86,6 +86,7 @@ def test_plan_says_what_is_left_out_and_why():
     assert "slips from start to end" in str(sim.plan(scene(7.0)))
     assert "history: not asked for" in str(sim.plan(scene()))
     assert "history" not in str(sim.plan(scene(), history="fields"))
+    assert "no march to take them from" in str(sim.plan(scene(0.0), history="fields"))
     assert "makes no force" in str(
         Simulation(tangential="frictionless", integrator="paper").plan(scene())
     )
@@ -280,6 +281,13 @@ def test_bad_arguments_of_run_and_sweep():
         sim.sweep(scene())
     with pytest.raises(ValueError, match="scenes"):
         sim.sweep([])
+
+
+def test_a_history_of_a_run_that_failed_at_once_has_no_instants():
+    refusing = contactlab.create("integrator.symplectic", steps=5, refine=False)
+    result = Simulation(tangential="springs", integrator=refusing).run(scene(), history=True)
+    assert not result.status
+    assert repr(result.history) == "History(no instants)"
 
 
 def test_a_history_changes_nothing_and_spans_the_contact():

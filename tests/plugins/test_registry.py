@@ -53,6 +53,14 @@ def test_a_third_party_law_is_made_like_any_other(registry, install, law_source)
     assert registry.describe(law) == "mine (thirdparty 1.5)"
 
 
+def test_where_a_law_comes_from_does_not_hang_on_how_it_was_made(registry):
+    from contactlab_springs.law import Springs
+
+    origin = registry.describe(Springs())
+    assert origin.startswith("springs (contactlab ")
+    assert registry.describe(registry.create("tangential.springs")) == origin
+
+
 def test_two_distributions_with_one_name_are_refused_naming_both(registry, install, law_source):
     install("first", "first_law", law_source, MINE)
     install("second", "second_law", law_source, MINE)
