@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.checks import Real
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.tangential import TangentialLaw
+from contactlab.plain import plain
 from contactlab.scene import Scene
 
 #: Above this C the contact is so large that Hertz's half-space picture is doubtful (theory §8).
@@ -31,6 +34,9 @@ class Plan:
         Impacts whose tangential force is followed step by step.
     slipping : bool or array of bool
         Impacts done by the closed form of gross slip throughout, eq. (45).
+    psi2_error : float or array
+        What psi2 may be off by, as the law and the integrator declare it (``contactlab.declared``);
+        NaN where none is declared.
     """
 
     computed: tuple[str, ...]
@@ -38,6 +44,7 @@ class Plan:
     cautions: tuple[str, ...] = ()
     marched: NDArray[np.bool_]
     slipping: NDArray[np.bool_]
+    psi2_error: Real = math.nan
 
     def __str__(self) -> str:
         """Return the plan in words, a line a sentence."""
@@ -47,11 +54,12 @@ class Plan:
         return "\n".join(lines)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the sentences as plain lists."""
+        """Return the sentences as plain lists, and the declared error."""
         return {
             "computed": list(self.computed),
             "left_out": list(self.left_out),
             "cautions": list(self.cautions),
+            "psi2_error": plain(self.psi2_error),
         }
 
 

@@ -20,6 +20,7 @@ from contactlab.contracts.integrator import (
 )
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.tangential import TangentialLaw
+from contactlab.declared import psi2_error, told
 from contactlab.energy import balanced
 from contactlab.history import Recorder
 from contactlab.plan import Plan, make_plan
@@ -82,10 +83,17 @@ class Simulation:
         plan = make_plan(
             _scene(scene), self.normal, self.tangential, self.integrator, history=_asked(history)
         )
+        problem = self.problem(scene)
+        error, share = psi2_error(scene, problem, self.integrator, plan.marched)
         if not plan.marched.any():
-            return plan
-        remarks = self.integrator.remarks(self.problem(scene))
-        return attrs.evolve(plan, cautions=plan.cautions + remarks) if remarks else plan
+            return attrs.evolve(plan, psi2_error=error)
+        said, remarks = told(error, share, problem, self.integrator)
+        return attrs.evolve(
+            plan,
+            computed=plan.computed + said,
+            cautions=plan.cautions + self.integrator.remarks(problem) + remarks,
+            psi2_error=error,
+        )
 
     def run(self, scene: Scene, *, history: bool | str = False) -> ImpactResult:
         """Run one impact, or a batch scene at once.

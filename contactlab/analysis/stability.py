@@ -12,7 +12,6 @@ import attrs
 import numpy as np
 
 from contactlab.analysis.bench_methods import Method
-from contactlab.analysis.stability_bounds import COARSE
 from contactlab.analysis.stability_cases import Case, cases
 from contactlab.analysis.stability_map import Region, region, region_cells
 from contactlab.analysis.stability_outcome import (
@@ -23,6 +22,7 @@ from contactlab.analysis.stability_outcome import (
     Outcome,
     judge,
 )
+from contactlab.declared import COARSE
 
 #: A case expected to take longer than this is skipped, in s; much less in the quick set.
 LONGEST, QUICK_LONGEST = 20.0, 0.5

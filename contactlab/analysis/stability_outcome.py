@@ -8,14 +8,10 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.analysis.stability_bounds import (
-    broken_invariants,
-    declared,
-    normal_error_allowed,
-    range_of,
-)
+from contactlab.analysis.stability_bounds import broken_invariants, normal_error_allowed
 from contactlab.analysis.stability_cases import Case
 from contactlab.analysis.stability_references import ACTIVE, Reference, reference_for
+from contactlab.declared import declared, range_of
 from contactlab.plan import make_plan
 from contactlab.registry import PluginError
 from contactlab.result import ImpactResult

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.analysis.stability_bounds import range_of
 from contactlab.closed_forms import rigid_body_rebound
 from contactlab.contracts import SteppedTangentialLaw, TangentialLaw
+from contactlab.declared import range_of
 from contactlab.registry import REGISTRY
 from contactlab.scene import Scene
 from contactlab.simulation import Simulation
@@ -55,7 +55,7 @@ def rigid(scene: Scene, law: TangentialLaw) -> float:  # noqa: ARG001
     unit, width, speed = range_of(scene)
     if speed * 1e-6 > width:  # far inside gross slip, where psi2 would swallow the change
         return -float(np.copysign(width, scene.slip_velocity))
-    scale = speed if unit * float(scene.chi) == 0.0 else unit
+    scale: float = speed if unit * float(scene.chi) == 0.0 else unit
     if scale == 0.0:
         return 0.0
     psi1 = float(scene.slip_velocity) / scale

@@ -248,6 +248,10 @@ class Integrator(Law):
         """
         return None
 
+    def steps_for(self, problem: Problem) -> Any:  # noqa: ARG002
+        """Return how many steps of fixed length each impact takes; None if there are none."""
+        return None
+
     def remarks(self, problem: Problem) -> tuple[str, ...]:  # noqa: ARG002
         """Return what a plan should say of this problem: sentences, none by default."""
         return ()

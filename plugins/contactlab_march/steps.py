@@ -45,6 +45,11 @@ def needed_steps(problem: Problem) -> Any:
     return np.maximum(np.ceil(steps), float(LEAST_STEPS))
 
 
+def steps_for(steps: int, refine: bool, problem: Problem) -> Any:
+    """Return how many steps each impact takes, more than ``steps`` where those are too few."""
+    return _refined(steps, needed_steps(problem)) if refine else float(steps)
+
+
 def remarks(steps: int, refine: bool, problem: Problem) -> tuple[str, ...]:
     """Return what the plan should say of the number of steps."""
     needed = needed_steps(problem)
@@ -73,9 +78,7 @@ def enough(
     for ``one_time_axis``.
     """
     needed, shape = needed_steps(problem), problem.shape
-    taken = np.full_like(needed, steps)
-    if refine:
-        taken = _refined(steps, needed)
+    taken = np.broadcast_to(steps_for(steps, refine, problem), np.shape(needed))
     followed = (needed <= taken) & (taken <= MOST_STEPS)
     if np.all(followed) and (one_time_axis or np.min(taken) == np.max(taken)):
         return follow(problem, int(np.max(taken)))

@@ -19,7 +19,7 @@ from contactlab.contracts import (
 )
 from contactlab_march.march import march
 from contactlab_march.normal_steps import NormalEnd, Step, Table
-from contactlab_march.steps import MOST_STEPS, enough, refine_field, remarks
+from contactlab_march.steps import MOST_STEPS, enough, refine_field, remarks, steps_for
 
 #: A contact that lasts longer than this many Hertz durations is given up.
 LONGEST_CONTACT = 10
@@ -52,6 +52,10 @@ class Symplectic(Integrator):
 
     steps: int = count(default=200, most=MOST_STEPS)
     refine: bool = refine_field()
+
+    def steps_for(self, problem: Problem) -> Any:
+        """Return ``steps``, or more for those impacts of a batch for which they are too few."""
+        return steps_for(self.steps, self.refine, problem)
 
     def remarks(self, problem: Problem) -> tuple[str, ...]:
         """Say whether the steps are enough for ``problem``."""

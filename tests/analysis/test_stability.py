@@ -10,12 +10,13 @@ import contactlab
 from contactlab import Scene, Simulation
 from contactlab.analysis.bench_methods import Method, methods
 from contactlab.analysis.stability import stability
-from contactlab.analysis.stability_bounds import broken_invariants, range_of
+from contactlab.analysis.stability_bounds import broken_invariants
 from contactlab.analysis.stability_cases import Case, cases
 from contactlab.analysis.stability_outcome import ANSWERED, REFUSED, WRONG, judge, judge_run
 from contactlab.analysis.stability_references import continuum, itself, rigid
 from contactlab.analysis.stability_scenes import Extreme, extreme_scenes
 from contactlab.contracts import NormalContact, NormalLaw, SteppedTangentialLaw, TangentialResponse
+from contactlab.declared import range_of
 
 CHI = 49 / 34
 

@@ -1,5 +1,6 @@
 """No silent wrong answer: steps, energy books, limits."""
 
+import re
 from typing import ClassVar
 
 import attrs
@@ -42,7 +43,8 @@ def test_a_stiff_impact_costs_no_other_of_its_batch_anything(integrator, refine)
     assert batch.status.ravel().tolist() == [one.status for one in alone]
     assert batch.motion.detail.ravel().tolist() == [one.motion.detail for one in alone]
     assert batch.psi2.ravel() == pytest.approx([one.psi2 for one in alone], abs=1e-12, nan_ok=True)
-    assert str(sim.plan(batch.scene)).count("3 of 4 impacts") == 1
+    said = r"raised from 50 to \d+ for 3 of 4" if refine else "50 steps are too few for 3 of 4"
+    assert re.search(said, str(sim.plan(batch.scene)))
 
 
 @pytest.mark.parametrize("integrator", ["paper", "symplectic"])
@@ -60,8 +62,8 @@ def test_the_limit_follows_the_law_and_the_scene():
     A rigid law has no stiffness: the half oscillation of the normal motion remains, N >= 2 pi.
     """
     scene = Scene.nondimensional(psi1=1.2, chi=100.0)
-    assert not annulus("symplectic", steps=114).plan(scene).cautions
-    assert annulus("symplectic", steps=113).plan(scene).cautions
+    assert "raised" not in str(annulus("symplectic", steps=114).plan(scene))
+    assert "raised from 113 to 142" in str(annulus("symplectic", steps=113).plan(scene))
     rigid = Simulation(
         tangential="coulomb", integrator=contactlab.create("integrator.paper", steps=7)
     )

@@ -5,9 +5,9 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation, Status
-from contactlab.analysis.stability_bounds import declared, range_of
 from contactlab.analysis.stability_references import itself
 from contactlab.contracts import Increment, NormalContact
+from contactlab.declared import declared, range_of
 from contactlab_march.steps import needed_steps
 from tests.exact.laws import CHI, simulation
 
