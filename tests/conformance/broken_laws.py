@@ -7,7 +7,7 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.checks import POSITIVE, quantity
+from contactlab.checks import POSITIVE, count, quantity
 from contactlab.contracts import (
     Increment,
     NormalContact,
@@ -369,6 +369,19 @@ class TakesAnything(Sound):
     extra: float = 1.0
 
 
+@attrs.frozen(kw_only=True)
+class TakesAnyFlag(Sound):
+    flag: bool = False
+
+
+@attrs.frozen(kw_only=True)
+class TwoRequired(Sound):
+    """Sound, with parameters that have no defaults."""
+
+    stretch: float = quantity("m", rule=POSITIVE)
+    count: int = count()
+
+
 @attrs.frozen
 class Slide(Phase):
     """Gross slip with a factor on the force and one on its power."""
@@ -479,6 +492,7 @@ BROKEN = [
     (Mutable, "immutable", "ratio can be set"),
     (CannotBePickled, "copies", "Can't pickle local object"),
     (TakesAnything, "parameters", "extra = nan: taken without a word"),
+    (TakesAnyFlag, "parameters", "flag = nan: taken without a word"),
     (TooStrong, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.2"),
     (TooWeakInTheBooks, "impact_books", "UNRESOLVED The energy books miss"),
     (PhaseOfNan, "impact_odd", "UNRESOLVED Newton's method fails"),

@@ -32,7 +32,11 @@ def failed(law):
     return [check.name for check in checks if outcome(law, check).verdict is Verdict.FAILED]
 
 
-@pytest.mark.parametrize("law", [laws.Sound(), laws.Running()], ids=["Sound", "Running"])
+@pytest.mark.parametrize(
+    "law",
+    [laws.Sound(), laws.Running(), laws.TwoRequired(stretch=1e-3, count=3)],
+    ids=["Sound", "Running", "TwoRequired"],
+)
 def test_a_sound_law_passes_every_check(law):
     verdicts = {entry.verdict for entry in check_law(law)}
     assert verdicts == {Verdict.PASSED, Verdict.NOT_CLAIMED, Verdict.NOT_APPLICABLE}
