@@ -43,14 +43,13 @@ class Stability:
     complete: bool
 
     def failures(self) -> list[Outcome]:
-        """Return the cases that are silently wrong, or raised."""
-        return [item for item in self.outcomes if item.outcome in (WRONG, RAISED)]
+        """Return the cases that are silently wrong, or raised, those of the map included."""
+        listed = [item for item in self.outcomes if item.outcome in (WRONG, RAISED)]
+        return listed + [item for region in self.regions for item in region.failures]
 
     def silently_wrong(self) -> int:
         """Return how many answers are wrong without a word, those of the map included."""
-        return len([item for item in self.outcomes if item.outcome == WRONG]) + sum(
-            item.wrong for item in self.regions
-        )
+        return sum(item.outcome == WRONG for item in self.failures())
 
     def tried(self) -> int:
         """Return the number of runs judged, those of the map included."""
@@ -100,7 +99,7 @@ def stability(
     progress : callable, optional
         Called as ``progress(done, total)``.
     judged : callable
-        What runs a case.
+        What runs a case, of the map too.
     """
     started = time.perf_counter()
     listed = [list(cases(method, quick=quick)) for method in methods]
@@ -132,7 +131,7 @@ def stability(
     for method, mine in zip(methods, cells, strict=True):
         if not mine or time.perf_counter() - started > budget:
             continue
-        regions.append(region(method, mine, until=started + budget))
+        regions.append(region(method, mine, until=started + budget, judged=judged))
         done += len(mine) if regions[-1].complete else 0
         if progress is not None:
             progress(done, total)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import Any
 
 import attrs
@@ -11,14 +12,16 @@ from numpy.typing import NDArray
 
 from contactlab.analysis.bench_methods import Method
 from contactlab.analysis.stability_cases import Case
-from contactlab.analysis.stability_outcome import ANSWERED, RAISED, WRONG, judge
+from contactlab.analysis.stability_outcome import ANSWERED, RAISED, WRONG, Outcome, judge
 from contactlab.analysis.stability_scenes import Extreme
 from contactlab.registry import REGISTRY
 from contactlab.scene import Scene
 
 Array = NDArray[np.float64]
 
-NOT_TRIED = 3
+#: States of a cell. Of its impacts the worst counts.
+ALL_ANSWERED, ONE_REFUSED, ONE_RAISED, ONE_WRONG, NOT_TRIED = range(5)
+STATES = {ANSWERED: ALL_ANSWERED, RAISED: ONE_RAISED, WRONG: ONE_WRONG}
 #: Seconds for a cell: at the same resolution a larger chi takes no less, and is not tried.
 LONGEST = 2.0
 #: psi1 of the impacts in each cell; the worst is shown.
@@ -42,8 +45,11 @@ class Region:
     error : array, shape (rows, columns)
         NaN where every impact was refused.
     state : array of int
-        0 answered, 1 at least one impact refused, 2 at least one silently wrong, 3 not tried:
-        a smaller chi took longer than ``LONGEST`` already, or the time was up.
+        ``ALL_ANSWERED``; ``ONE_REFUSED``, ``ONE_RAISED`` or ``ONE_WRONG`` where at least one
+        impact was refused, raised or is silently wrong; ``NOT_TRIED``: a smaller chi took longer
+        than ``LONGEST`` already, or the time was up.
+    failures : tuple of Outcome
+        The impacts that are silently wrong, or raised.
     complete : bool
         False if the time was up.
     """
@@ -55,8 +61,12 @@ class Region:
     error: Array
     state: NDArray[np.int8]
     tried: int
-    wrong: int
+    failures: tuple[Outcome, ...] = ()
     complete: bool = True
+
+    def count(self, outcome: str) -> int:
+        """Return how many impacts were ``WRONG``, or ``RAISED``."""
+        return sum(item.outcome == outcome for item in self.failures)
 
 
 def region_cells(method: Method, *, quick: bool = False) -> list[tuple[float, float]]:
@@ -71,18 +81,26 @@ def region_cells(method: Method, *, quick: bool = False) -> list[tuple[float, fl
     return [(fine, chi) for fine in ladder for chi in (QUICK_CHIS if quick else CHIS)]
 
 
-def region(method: Method, cells: list[tuple[float, float]], *, until: float = np.inf) -> Region:
+def region(
+    method: Method,
+    cells: list[tuple[float, float]],
+    *,
+    until: float = np.inf,
+    judged: Callable[[Case], Outcome] = judge,
+) -> Region:
     """Run the cells of a method, those of one resolution in order of chi.
 
-    ``until`` is the time (``time.perf_counter``) after which no cell is begun.
+    ``until`` is the time (``time.perf_counter``) after which no cell is begun, ``judged`` what
+    runs a case.
     """
     word = _word(method)
     assert word is not None
     resolutions = tuple(dict.fromkeys(fine for fine, _ in cells))
     chis = tuple(dict.fromkeys(chi for _, chi in cells))
     error = np.full((len(resolutions), len(chis)), np.nan)
-    state = np.zeros(error.shape, dtype=np.int8)
-    tried = wrong = 0
+    state = np.full(error.shape, ALL_ANSWERED, dtype=np.int8)
+    failures: list[Outcome] = []
+    tried = 0
     complete = True
     for fine, chi in cells:
         place = resolutions.index(fine), chis.index(chi)
@@ -92,13 +110,11 @@ def region(method: Method, cells: list[tuple[float, float]], *, until: float = n
             state[place] = NOT_TRIED
             continue
         for psi1 in INCIDENCES:
-            outcome = judge(_case(method, word, fine, psi1, chi))
+            outcome = judged(_case(method, word, fine, psi1, chi))
             tried += 1
+            state[place] = max(state[place], STATES.get(outcome.outcome, ONE_REFUSED))
             if outcome.outcome in (WRONG, RAISED):
-                state[place] = 2
-                wrong += 1
-            elif outcome.outcome != ANSWERED:
-                state[place] = max(state[place], 1)
+                failures.append(outcome)
             error[place] = np.fmax(error[place], outcome.error)
         if time.perf_counter() - began > LONGEST:
             state[place[0], place[1] + 1 :] = NOT_TRIED
@@ -110,7 +126,7 @@ def region(method: Method, cells: list[tuple[float, float]], *, until: float = n
         error=error,
         state=state,
         tried=tried,
-        wrong=wrong,
+        failures=tuple(failures),
         complete=complete,
     )
 

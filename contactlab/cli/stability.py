@@ -19,7 +19,8 @@ import attrs
 
 from contactlab.analysis.bench_methods import methods
 from contactlab.analysis.stability import Stability, stability
-from contactlab.analysis.stability_outcome import Outcome
+from contactlab.analysis.stability_map import Region
+from contactlab.analysis.stability_outcome import RAISED, WRONG, Outcome
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
 from contactlab.plain import plain
@@ -27,7 +28,7 @@ from contactlab.plain import plain
 #: Failures listed one by one under the table; all of them are in the CSV and the JSON.
 LISTED = 40
 #: Outcomes, in the order of the table.
-WORDS = ("answered", "coarse", "refused", "skipped", "raised", "silently wrong")
+WORDS = ("answered", "coarse", "refused", "skipped", RAISED, WRONG)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -53,7 +54,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
         draw_regions(arguments.figure, found.regions)
     print(json.dumps(_content(found), indent=2) if arguments.json else report(found))
-    return shared.FAILED if found.failures() or found.silently_wrong() else shared.OK
+    return shared.FAILED if found.failures() else shared.OK
 
 
 def report(found: Stability) -> str:
@@ -64,8 +65,11 @@ def report(found: Stability) -> str:
     counts = [[name, *(found.counts(name)[word] for word in WORDS)] for name in names]
     parts = [table(["worst error", *families], errors, digits=1), table(["runs", *WORDS], counts)]
     if found.regions:
-        rows = [[item.method, item.word, item.tried, item.wrong] for item in found.regions]
-        parts.append(table(["map", "against chi", "tried", "wrong"], rows))
+        rows = [
+            [item.method, item.word, item.tried, item.count(RAISED), item.count(WRONG)]
+            for item in found.regions
+        ]
+        parts.append(table(["map", "against chi", "tried", *WORDS[-2:]], rows))
     failures = found.failures()
     if failures:
         rows = [[item.method, item.case, item.outcome, item.note] for item in failures[:LISTED]]
@@ -82,14 +86,12 @@ def report(found: Stability) -> str:
 
 
 def _content(found: Stability) -> dict[str, object]:
-    rows = [
-        {key: plain(value) for key, value in attrs.asdict(item).items()} for item in found.outcomes
-    ]
     regions = [
-        {key: plain(value) for key, value in attrs.asdict(item).items()} for item in found.regions
+        {**_plain(item), "failures": [_plain(failed) for failed in item.failures]}
+        for item in found.regions
     ]
     return {
-        "outcomes": rows,
+        "outcomes": [_plain(item) for item in found.outcomes],
         "map": regions,
         "tried": found.tried(),
         "silently_wrong": found.silently_wrong(),
@@ -97,9 +99,15 @@ def _content(found: Stability) -> dict[str, object]:
     }
 
 
+def _plain(item: Outcome | Region) -> dict[str, object]:
+    return {key: plain(value) for key, value in attrs.asdict(item, recurse=False).items()}
+
+
 def _write_csv(path: Path, found: Stability) -> None:
+    """Write a row for each outcome; of the map, for what is wrong or raised."""
+    listed = [*found.outcomes, *(item for region in found.regions for item in region.failures)]
     names = [field.name for field in attrs.fields(Outcome)]
     with path.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(names)
-        writer.writerows([getattr(item, name) for name in names] for item in found.outcomes)
+        writer.writerows([getattr(item, name) for name in names] for item in listed)

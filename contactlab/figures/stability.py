@@ -16,12 +16,19 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from contactlab.analysis.stability_map import Region
+from contactlab.analysis.stability_map import (
+    ALL_ANSWERED,
+    ONE_RAISED,
+    ONE_REFUSED,
+    ONE_WRONG,
+    Region,
+)
 from contactlab.figures.style import ORDERED_MAP, QUIET, RESOLUTION, styled
 
 #: Errors over the range at which the colour changes: whole decades.
 DECADES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
-WRONG_COLOUR, REFUSED_COLOUR, UNTRIED_COLOUR = "#D00000", "#E4E4E4", "#FBF3E4"
+WRONG_COLOUR, RAISED_COLOUR = "#D00000", "#F08000"
+REFUSED_COLOUR, UNTRIED_COLOUR = "#E4E4E4", "#FBF3E4"
 PANEL_WIDTH, PANEL_HEIGHT = 2.4, 2.0
 #: Steps at the stability limit over sqrt(chi).
 LIMIT = 2.85
@@ -69,6 +76,8 @@ def draw_regions(path: Path, regions: Sequence[Region]) -> None:
             Patch(facecolor=UNTRIED_COLOUR, edgecolor=QUIET, label="not tried, takes too long"),
             Line2D([], [], label="stability limit", **LIMIT_LOOK),
         ]  # fmt: skip
+        if any(np.any(region.state == ONE_RAISED) for region in regions):
+            entries.insert(2, Patch(color=RAISED_COLOUR, label="raised"))
         figure.legend(handles=entries, loc="outside upper center", ncols=2)
         figure.savefig(path, dpi=RESOLUTION)
 
@@ -87,7 +96,7 @@ def _empty(axes: Axes) -> None:
 
 
 def usable_region(axes: Axes, region: Region) -> Any:
-    """Draw one method's region: colour is error, hatching refusal, red a silent wrong.
+    """Draw one method's region: error in colour, refusal hatched, silent wrong red, raise orange.
 
     Returns
     -------
@@ -99,9 +108,9 @@ def usable_region(axes: Axes, region: Region) -> Any:
     colours = mpl.colormaps[ORDERED_MAP + "_r"]
     norm = BoundaryNorm(DECADES, colours.N, extend="both")
     axes.set_facecolor(UNTRIED_COLOUR)
-    answered = np.where(region.state == 0, region.error, np.nan)
+    answered = np.where(region.state == ALL_ANSWERED, region.error, np.nan)
     mesh = axes.pcolormesh(chi, fine, answered, cmap=colours, norm=norm)
-    refused = np.ma.masked_where(region.state != 1, np.ones(region.state.shape))
+    refused = np.ma.masked_where(region.state != ONE_REFUSED, np.ones(region.state.shape))
     axes.pcolor(
         chi,
         fine,
@@ -112,8 +121,9 @@ def usable_region(axes: Axes, region: Region) -> Any:
         linewidth=0.0,
         cmap=mpl.colors.ListedColormap([REFUSED_COLOUR]),
     )
-    wrong = np.ma.masked_where(region.state != 2, np.ones(region.state.shape))
-    axes.pcolormesh(chi, fine, wrong, cmap=mpl.colors.ListedColormap([WRONG_COLOUR]))
+    for state, colour in ((ONE_WRONG, WRONG_COLOUR), (ONE_RAISED, RAISED_COLOUR)):
+        failed = np.ma.masked_where(region.state != state, np.ones(region.state.shape))
+        axes.pcolormesh(chi, fine, failed, cmap=mpl.colors.ListedColormap([colour]))
     axes.set_xscale("log")
     axes.set_yscale("log")
     if tolerance:

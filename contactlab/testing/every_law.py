@@ -8,6 +8,8 @@ import pickle
 from collections.abc import Iterator
 from typing import Any
 
+import attrs
+
 from contactlab.contracts import (
     API_VERSION,
     Integrator,
@@ -23,8 +25,8 @@ from contactlab.testing.compare import same
 
 #: What no numerical parameter may be.
 BAD_NUMBERS = (float("nan"), float("inf"), float("-inf"), "seven", 1j)
-#: What no parameter that is a word may be.
-BAD_WORDS = ("no such word", 3.5)
+#: What no parameter that is a word may be, and none that is True or False.
+BAD_WORDS, BAD_FLAGS = ("no such word", 3.5), (float("nan"), "yes", 2)
 
 
 @check(Law)
@@ -87,10 +89,9 @@ def expected_failures(law: Law) -> None:
 def parameters(law: Law) -> None:
     """Each parameter refuses what is not finite or of another kind, by its name (Law, 5)."""
     for name, value in _parameters(law):
-        bad = BAD_WORDS if isinstance(value, str) else BAD_NUMBERS
-        for wrong in bad:
+        for wrong in _wrong(value):
             try:
-                type(law)(**{name: wrong})
+                attrs.evolve(law, **{name: wrong})  # type: ignore[misc]
             except ValueError as error:
                 hold(name in str(error), f"{name} = {wrong!r}: refused without its name: {error}")
             else:
@@ -119,8 +120,15 @@ def copies(law: Law) -> None:
 
 
 def _parameters(law: Law) -> Iterator[tuple[str, Any]]:
-    """Iterate over the names and values of parameters that are numbers or words."""
+    """Iterate over the names and values of parameters that are numbers, words or flags."""
     for name in inspect.signature(type(law)).parameters:
         value = getattr(law, name, None)
-        if isinstance(value, int | float | str) and not isinstance(value, bool):
+        if isinstance(value, int | float | str):
             yield name, value
+
+
+def _wrong(value: float | str) -> tuple[object, ...]:
+    """Return what a parameter must not be that now is ``value``."""
+    if isinstance(value, bool):
+        return BAD_FLAGS
+    return BAD_WORDS if isinstance(value, str) else BAD_NUMBERS

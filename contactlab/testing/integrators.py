@@ -1,4 +1,4 @@
-"""Checks of an integrator: batches, observers, faults, bounds, order."""
+"""Checks of an integrator under sound laws: its answers, observers, purity, batches."""
 
 from __future__ import annotations
 

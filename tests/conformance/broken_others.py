@@ -9,10 +9,11 @@ import attrs
 import numpy as np
 
 import contactlab
-from contactlab import Status
-from contactlab.contracts import Motion, NormalContact, NormalLaw
+from contactlab import Scene, Status
+from contactlab.contracts import ClosedFormNormalLaw, Motion, NormalContact, NormalLaw
 
 HERTZ = contactlab.registry.REGISTRY.law_class("normal.hertz")
+MOTION = type(HERTZ().motion(Scene.nondimensional(psi1=0.0, chi=1.0).pair, 1.0))
 STEPS = contactlab.registry.REGISTRY.law_class("integrator.symplectic")
 
 
@@ -87,6 +88,34 @@ class Remembers(NormalLaw):
         return NormalContact(1e6 * state[0] * (deep > 0.0), deep, approach), state
 
 
+class Moving(HERTZ):
+    """Hertz's law with something done to its motion in closed form."""
+
+    moving: ClassVar[type] = MOTION
+
+    def motion(self, pair, speed):
+        return self.moving.of(pair, speed)
+
+
+class MovesAsIfHeavier(Moving):
+    """A Hertz impact, of a mass that is not the pair's."""
+
+    def motion(self, pair, speed):
+        return super().motion(attrs.evolve(pair, normal_mass=1.1 * pair.normal_mass), speed)
+
+
+class Hurried(MOTION):
+    """A pace in plain floats that is not that of the arrays."""
+
+    def instant(self, phase):
+        here = super().instant(phase)
+        return here._replace(pace=1.01 * here.pace)
+
+
+class InstantOffCourse(Moving):
+    moving: ClassVar[type] = Hurried
+
+
 class Steps(STEPS):
     """The symplectic scheme with something done to its motion."""
 
@@ -108,7 +137,7 @@ class HeedsItsObserver(Steps):
         return motion if observer is None else attrs.evolve(motion, duration=0.5)
 
 
-class KeepsItsObserverWaiting(Steps):
+class KeepsItsObserverWaiting(STEPS):
     def integrate(self, problem, observer=None):
         return super().integrate(problem, None)
 
@@ -155,23 +184,61 @@ class NamesNobody(Steps):
         return attrs.evolve(motion, detail="Something was raised.") if raised else motion
 
 
-BROKEN = {
-    Pulls: "presses",
-    GivesMore: "normal_passive",
-    Narrows: "grows",
-    ReadsNanAsNoContact: "contacts_non_finite",
-    InNewtons: "contacts_units",
-    ComplexForce: "contacts",
-    MeanApproach: "contacts_batch",
-    NotItsMotion: "motion_agrees",
-    Remembers: "contacts_pure",
-    AlwaysSucceeds: "faults_reported",
-    NamesNobody: "faults_named",
-    HeedsItsObserver: "observer_changes_nothing",
-    KeepsItsObserverWaiting: "observer_changes_nothing",
-    OneStatusForAll: "impacts_batch",
-    TellsTheTime: "integrator_pure",
-    Sloppy: "order",
-    Inelastic: "ends_well",
-    GivesUpOnNothing: "bounded",
-}
+class IgnoresItsSteps(STEPS):
+    """As many steps as it likes, whatever is asked; it claims no order."""
+
+    order: ClassVar[int | None] = None
+
+    def integrate(self, problem, observer=None):
+        return STEPS(steps=50).integrate(problem, observer)
+
+
+@attrs.frozen(kw_only=True)
+class Mended(NormalLaw):
+    """Another normal law, its NaN read as no contact."""
+
+    api_version: ClassVar[int] = 1
+    law: NormalLaw
+
+    def start(self, pair):
+        return self.law.start(pair)
+
+    def respond(self, state, approach, rate):
+        contact, state = self.law.respond(state, approach, rate)
+        return NormalContact(*[float(np.nan_to_num(part)) for part in contact]), state
+
+
+class ReadsNanAsTheEnd(STEPS):
+    """Ends an impact where the normal law has no answer."""
+
+    def integrate(self, problem, observer=None):
+        if not isinstance(problem.normal, ClosedFormNormalLaw):
+            problem = attrs.evolve(problem, normal=Mended(law=problem.normal))
+        return super().integrate(problem, observer)
+
+
+#: Each with the check meant for it, and words of what the check says of it.
+BROKEN = [
+    (Pulls, "presses", "A force of -1 N pulls"),
+    (GivesMore, "normal_passive", "gives back 0.025"),
+    (Narrows, "grows", "The radius falls by 0.8"),
+    (ReadsNanAsNoContact, "contacts_non_finite", "An approach of NaN gives a force of 0.0"),
+    (InNewtons, "contacts_units", "In other units the force differs"),
+    (ComplexForce, "contacts", "force = 0j"),
+    (MeanApproach, "contacts_batch", "Contact 0 of a batch is off"),
+    (NotItsMotion, "motion_agrees", "The force of the motion is 1.0e-02 off"),
+    (MovesAsIfHeavier, "motion_obeys_newton", "The rate is"),
+    (InstantOffCourse, "motion_scaled", "off course"),
+    (Remembers, "contacts_pure", "The state that went in was changed"),
+    (AlwaysSucceeds, "faults_reported", "A fault in Hertz and FailingSpring reads as success"),
+    (ReadsNanAsTheEnd, "normal_faults_reported", "A fault in LinearPress and"),
+    (NamesNobody, "faults_named", "FailingSpring raised, and is not named"),
+    (HeedsItsObserver, "observer_changes_nothing", "Watched, the duration is 0.5"),
+    (KeepsItsObserverWaiting, "observer_changes_nothing", "The observer was not called"),
+    (OneStatusForAll, "impacts_batch", "status has not the batch's shape"),
+    (TellsTheTime, "integrator_pure", "run twice, ends differently"),
+    (Sloppy, "order", "Order 2 is declared, and 0.10 is found"),
+    (IgnoresItsSteps, "finer_is_better", "Made finer, the error goes from"),
+    (Inelastic, "ends_well", "An elastic impact ends at 0.415 m/s"),
+    (GivesUpOnNothing, "bounded", "is said to have ended"),
+]

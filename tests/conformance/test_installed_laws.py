@@ -11,8 +11,14 @@ OPTIONS = {
     "tangential.sharp_annulus": {"annuli": 30},
     "tangential.springs": {"springs": 30},
 }
-NAMES = REGISTRY.names()
-LAWS = [REGISTRY.create(name, **OPTIONS.get(name, {})) for name in NAMES]
+#: Laws that an option makes another law.
+FORMS = [
+    ("tangential.annulus", {"annuli": 40, "displacement": "mean"}),
+    ("tangential.mindlin_cap", {"form": "increment"}),
+    ("tangential.mindlin_cap", {"form": "increment_rescaled"}),
+]
+CHOSEN = [(name, OPTIONS.get(name, {})) for name in REGISTRY.names()] + FORMS
+LAWS = [REGISTRY.create(name, **options) for name, options in CHOSEN]
 
 
 @parametrize_with_checks(LAWS)
@@ -20,7 +26,7 @@ def test_conformance(law, check):
     check(law)
 
 
-@pytest.mark.parametrize("law", LAWS, ids=NAMES)
+@pytest.mark.parametrize("law", LAWS, ids=map(repr, LAWS))
 def test_a_law_that_claims_partial_slip_expects_no_failure(law):
     if "partial_slip" in law.offers:
         assert not law.expected_failures

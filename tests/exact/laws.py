@@ -22,6 +22,12 @@ def rebound(psi1, chi, *args, **options):
     return simulation(*args, **options).run(scene).check().psi2
 
 
+def marched_change(sim, psi1, chi):
+    """psi2 - psi1 of the integrator itself, where the plan would take eq. (45)."""
+    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    return scene.psi(sim.integrator.integrate(sim.problem(scene)).slip_velocity_change)
+
+
 @cache
 def grid():
     """psi1 in (0, 4 chi] over chi in [0.35, 4], and the exact psi2."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactlab import Scene
-from tests.exact.laws import CHI, grid, rms, simulation
+from tests.exact.laws import CHI, grid, marched_change, order, rms, simulation
 from tests.paper import plain
 
 
@@ -68,11 +68,16 @@ def test_blocks_of_steps_are_step_by_step(psi1, chi, integrator):
     assert works[0] == pytest.approx(works[1], abs=1e-11)
 
 
-def test_whole_slip_is_the_closed_form():
-    """Eq. (45), to 1e-12."""
-    for psi1 in (4.0 * CHI - 1.0, -7.0, 1e6):
-        found = impact(psi1, CHI, 10, 50).psi2
-        assert found == pytest.approx(psi1 - np.sign(psi1) * 4.0 * CHI, rel=1e-12)
+@pytest.mark.parametrize("integrator", ["paper", "symplectic"])
+@pytest.mark.parametrize("psi1", [4.0 * CHI - 1.0, -7.0, 1e6])
+def test_whole_slip_comes_to_the_closed_form(psi1, integrator):
+    """Eq. (45), to the error of the annuli: they make a little less of the friction."""
+    errors = []
+    for annuli in (10, 20, 40):
+        sim = simulation("annulus", integrator, steps=400, annuli=annuli)
+        errors.append(1.0 - marched_change(sim, psi1, CHI) / (-np.sign(psi1) * 4.0 * CHI))
+    assert 0.0 < errors[-1] < 1.5e-3
+    assert order((10, 20, 40), errors) > 1.0
 
 
 def test_sharper_annuli_are_the_same_model_with_less_error():

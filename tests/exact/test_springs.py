@@ -7,7 +7,7 @@ import pytest
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab.contracts import Increment, NormalContact, NormalLaw
-from tests.exact.laws import CHI, grid, rebound, rms, simulation
+from tests.exact.laws import CHI, grid, marched_change, rebound, rms, simulation
 from tests.reference import TABLE
 
 BOTH = [("springs", "springs"), ("sharp_annulus", "annuli")]
@@ -182,11 +182,14 @@ def test_gross_slip_is_exactly_coulomb(law, name, places):
         assert response.force == pytest.approx(1.25 * radius**3 * met, rel=1e-12)
 
 
-def test_whole_slip_is_the_closed_form():
-    """Eq. (45), to 1e-12, in both directions."""
+@pytest.mark.parametrize(("integrator", "tolerance"), [("paper", 1e-9), ("symplectic", 1e-6)])
+@pytest.mark.parametrize(("law", "name"), BOTH)
+def test_whole_slip_is_the_closed_form(law, name, integrator, tolerance):
+    """Eq. (45) in both directions, to the error of the steps."""
     psi1 = np.array([4.0 * CHI - 1.0, -6.0, 50.0, 1e9])
-    found = rebound(psi1, CHI, "springs", steps=50, springs=10)
-    assert found == pytest.approx(psi1 - np.sign(psi1) * 4.0 * CHI, rel=1e-12)
+    sim = simulation(law, integrator, steps=500, **{name: 10})
+    expected = -np.sign(psi1) * 4.0 * CHI
+    assert marched_change(sim, psi1, CHI) == pytest.approx(expected, rel=tolerance)
 
 
 @pytest.mark.parametrize(("law", "name"), BOTH)
@@ -233,20 +236,6 @@ def test_nan_gives_nan(law, name, shape):
             numbers[spoilt] = numbers[spoilt] * np.nan
             responses, _ = take(law, at, [numbers[0]], [numbers[1]], [numbers[2]])
             assert np.isnan(responses[0].force).all()
-
-
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_a_state_is_a_value(law, name):
-    """A step tried twice from the same state gives the same, and leaves it untouched."""
-    law = contactlab.create(f"tangential.{law}", **{name: 10})
-    _, state = take(law, problem(), [0.1, 0.2], [0.4, 0.8])
-    kept = state.memory.stretch.copy()
-    step = Increment(0.3, 0.3, 0.0, 0.1, 1.0)
-    contact, after = NormalContact(0.64, 0.8, 0.64), NormalContact(0.2, 0.6, 0.36)
-    one, _ = law.advance(state, step, contact, after)
-    two, _ = law.advance(state, step, contact, after)
-    assert one == two
-    assert (state.memory.stretch == kept).all()
 
 
 @pytest.mark.parametrize(("law", "name"), BOTH)

@@ -25,7 +25,7 @@ EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 SLOW = 1e3
 FOLDER = Path(tempfile.mkdtemp(prefix="contactlab"))
 METHODS = methods()
-CHEAP = {"annuli": 5, "springs": 5, "rings": 5, "steps": 20}
+CHEAP = {"annuli": 5, "springs": 5, "steps": 20}
 
 TRIED: dict[str, int] = {}
 
@@ -194,14 +194,17 @@ def mutated(text: str, seed: int) -> str:
 
 @given(st.sampled_from(EXAMPLES), st.integers(0, 2**63))
 def test_mutated_scene_files(path, seed):
+    """The file is named; laws that cannot be made or do not fit are named themselves."""
     tried("scene files")
     text = mutated(path.read_text(encoding="utf-8"), seed)
     file = FOLDER / "mutated.toml"
     file.write_text(text, encoding="utf-8")
     try:
         read = contactlab.read_scene(file)
+    except (ValueError, PluginError) as error:
+        assert file.name in str(error)  # noqa: PT017
+        return
+    try:
         read.laws.simulation()
     except (ValueError, PluginError) as error:
-        assert str(error).strip()  # noqa: PT017
-        return
-    assert read.scene.shape is not None
+        assert re.search(r"\b(normal|tangential|integrator)\b", str(error))  # noqa: PT017

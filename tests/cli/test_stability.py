@@ -1,0 +1,156 @@
+"""`contactlab stability`: its table, its files, and that a law that is wrong makes it fail."""
+
+import csv
+import json
+import re
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+
+from contactlab.analysis import stability_map
+from contactlab.analysis.bench_methods import Method
+from contactlab.analysis.stability import Stability
+from contactlab.analysis.stability_map import (
+    ALL_ANSWERED,
+    NOT_TRIED,
+    ONE_RAISED,
+    ONE_REFUSED,
+    ONE_WRONG,
+    Region,
+    region,
+)
+from contactlab.analysis.stability_outcome import RAISED, WRONG, Outcome
+from contactlab.cli import stability
+from contactlab.figures import stability as drawing
+from contactlab.registry import REGISTRY
+
+COMMAND = ("stability", "--quick", "--law", "coulomb")
+
+
+def failed(outcome):
+    return Outcome(method="a / paper", family="map", case="here", outcome=outcome, note="off by 9")
+
+
+def area(state, *, word="steps", method="a / paper", failures=()):
+    """A map of one row, a column a state; what is answered is 3e-3 off."""
+    state = np.array([state, state], dtype=np.int8)
+    return Region(
+        method=method,
+        word=word,
+        resolutions=(10, 100) if word == "steps" else (1e-2, 1e-4),
+        chis=tuple(np.geomspace(0.1, 10.0, state.shape[1])),
+        error=np.where(state == ALL_ANSWERED, 3e-3, np.nan),
+        state=state,
+        tried=state.size,
+        failures=failures,
+    )
+
+
+def test_table_csv_and_figure_of_a_law(run, tmp_path):
+    files = tmp_path / "s.csv", tmp_path / "s.png"
+    ran = run(*COMMAND, "--csv", files[0], "--figure", files[1])
+    assert ran.status == 0
+    for integrator in ("paper", "symplectic", "adaptive", "events"):
+        assert len(re.findall(rf"^coulomb / {integrator} ", ran.out, re.MULTILINE)) == 3
+    with files[0].open(newline="", encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    total = re.search(r"(\d+) runs tried, 0 silently wrong; (\d+) more were skipped", ran.out)
+    mapped = sum(map(int, re.findall(r"(?:steps|tolerance) +(\d+) +0 +0$", ran.out, re.MULTILINE)))
+    assert len(rows) == int(total[1]) + int(total[2]) - mapped
+    answered = [row for row in rows if row["outcome"] == "answered"]
+    assert len(answered) > 100
+    assert all(float(row["error"]) <= float(row["bound"]) for row in answered)
+    assert files[1].stat().st_size > 10_000
+
+
+def test_a_law_that_is_silently_wrong_fails_it_and_is_named(run, monkeypatch, tmp_path):
+    """Half the friction: steady, odd, its books in order, and wrong."""
+    law = REGISTRY.law_class("tangential.coulomb")
+    monkeypatch.setattr(law, "start", lambda _, problem: 0.5 * problem.friction_coefficient)
+    monkeypatch.setattr(
+        stability, "methods", lambda _: [Method(tangential="coulomb", integrator="symplectic")]
+    )
+    ran = run(*COMMAND, "--csv", tmp_path / "s.csv")
+    assert ran.status == 1
+    assert re.search(r"coulomb / symplectic +\S.* silently wrong +error \S+ of the range", ran.out)
+    wrong = int(re.search(r"(\d+) silently wrong;", ran.out)[1])
+    rows = re.findall(r"^coulomb / symplectic +(?:steps|[\d ]+?) .* (\d+)$", ran.out, re.MULTILINE)
+    assert sum(map(int, rows)) == wrong > 10  # those of the cases and those of the map
+    with (tmp_path / "s.csv").open(newline="", encoding="utf-8") as stream:
+        listed = [row for row in csv.DictReader(stream) if row["outcome"] == "silently wrong"]
+    assert len(listed) == wrong
+    assert {"map", "chi"} <= {row["family"] for row in listed}
+    content = json.loads(run(*COMMAND, "--json").out)
+    assert content["silently_wrong"] == wrong
+    assert len(content["map"][0]["failures"]) == int(rows[-1])
+
+
+@pytest.mark.parametrize("outcome", [WRONG, RAISED])
+def test_a_failure_on_the_map_alone_fails_it(run, monkeypatch, outcome):
+    found = Stability(
+        outcomes=(), regions=(area([ALL_ANSWERED], failures=(failed(outcome),)),), complete=True
+    )
+    monkeypatch.setattr(stability, "stability", lambda *_, **__: found)
+    ran = run(*COMMAND)
+    assert ran.status == 1
+    assert re.search(rf"a / paper +here +{outcome} +off by 9", ran.out)
+    assert f"2 runs tried, {int(outcome == WRONG)} silently wrong" in ran.out
+
+
+def test_what_raises_on_the_map_is_not_called_silently_wrong():
+    method = Method(tangential="coulomb", integrator="symplectic")
+    cells = [(5, 0.5), (5, 3.0), (9, 0.5), (9, 3.0)]
+    answers = {(5, 0.5): RAISED, (5, 3.0): WRONG, (9, 0.5): "refused", (9, 3.0): "answered"}
+
+    def judged(case):
+        cell = case.options["integrator"]["steps"], float(case.scene.make().chi)
+        return Outcome(
+            method=method.name, family="map", case="", outcome=answers[cell], error=float(cell[0])
+        )
+
+    found = region(method, cells, judged=judged)
+    assert found.state.tolist() == [[ONE_RAISED, ONE_WRONG], [ONE_REFUSED, ALL_ANSWERED]]
+    impacts = len(stability_map.INCIDENCES)
+    assert (found.count(RAISED), found.count(WRONG), found.tried) == (impacts, impacts, 4 * impacts)
+
+
+@pytest.mark.parametrize("word", ["steps", "tolerance"])
+def test_each_state_has_its_colour_on_the_map(word):
+    figure = Figure(figsize=(8.0, 4.0))
+    canvas = FigureCanvasAgg(figure)
+    axes = figure.subplots()
+    found = area([ALL_ANSWERED, ONE_REFUSED, ONE_RAISED, ONE_WRONG, NOT_TRIED], word=word)
+    mesh = drawing.usable_region(axes, found)
+    canvas.draw()
+    picture = np.asarray(canvas.buffer_rgba())[:, :, :3] / 255.0
+
+    def share(column, colour):
+        """The share of a cell, its edges left out, in which a colour is seen."""
+        edges = drawing._edges(np.array(found.chis))
+        corners = [(edges[column], found.resolutions[1]), (edges[column + 1], found.resolutions[0])]
+        (left, one), (right, other) = axes.transData.transform(corners)
+        low, high = sorted((picture.shape[0] - one, picture.shape[0] - other))
+        cell = picture[int(low) + 4 : int(high) - 4, int(left) + 4 : int(right) - 4]
+        return np.mean(np.all(np.abs(cell - to_rgb(colour)) < 0.02, axis=-1))
+
+    answered = mesh.cmap(mesh.norm(3e-3))
+    assert share(0, answered) > 0.9
+    assert share(1, drawing.REFUSED_COLOUR) > 0.3  # between the hatching
+    assert share(2, drawing.RAISED_COLOUR) > 0.9
+    assert share(3, drawing.WRONG_COLOUR) > 0.9
+    assert share(4, drawing.UNTRIED_COLOUR) > 0.9
+    bottom, top = axes.get_ylim()
+    assert (bottom > top) == (word == "tolerance")  # finer is higher up
+
+
+def test_the_map_has_a_panel_a_method_and_says_which_do_not_fit(tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
+    regions = [area([ALL_ANSWERED] * 2), area([ONE_RAISED] * 2, method="b / symplectic")]
+    drawing.draw_regions(tmp_path / "m.png", regions)
+    texts = [[text.get_text() for text in axes.texts] for axes in drawn[0].axes[:4]]
+    assert ["does not fit" in text for text in texts] == [False, True, True, False]
+    assert "raised" in [text.get_text() for text in drawn[0].legends[0].get_texts()]
