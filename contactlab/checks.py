@@ -125,9 +125,10 @@ def quantity(
 
     A default of None makes it optional: None may be given too.
     """
+    keywords: Any = {"kw_only": True} if kw_only else {}  # False would overrule the class
     return attrs.field(
         default=default,
-        kw_only=kw_only,
+        **keywords,
         converter=attrs.Converter(_checked, takes_field=True),
         eq=_key,
         metadata={"unit": unit, "rule": rule},

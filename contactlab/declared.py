@@ -95,13 +95,15 @@ def tolerance_of(integrator: Integrator) -> float | None:
     return None if found is None else float(found)
 
 
-def is_declared(problem: Problem) -> bool:
+def is_declared(problem: Problem, integrator: Integrator) -> bool:
     """Say if the error model holds: for elastic Hertz contacts, of laws whose stiffness is known.
 
-    What no law declares is not known; a law of one's own may be stiffer than it says.
+    A law of one's own may be stiffer than it says, or not say how fine it is.
     """
     law = problem.tangential
     if "elastic_hertz" not in problem.normal.offers:
+        return False
+    if any(part.resolution and not hasattr(part, part.resolution) for part in (law, integrator)):
         return False
     if law.exact:
         return True
@@ -117,7 +119,7 @@ def psi2_error(
     """
     largest = np.maximum(1.0, np.abs(scene.psi1))
     known = CLOSED_FORM * largest
-    if not is_declared(problem):
+    if not is_declared(problem, integrator):
         return _only(np.where(marched, np.nan, known)), _only(np.where(marched, np.nan, 0.0))
     unit, width, _ = range_of(scene)
     with np.errstate(all="ignore"):
@@ -137,7 +139,7 @@ def told(
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return what a plan should say of the declared error, and what it should warn of."""
     law = problem.tangential
-    if law.exact and integrator.accuracy is not None and is_declared(problem):
+    if law.exact and integrator.accuracy is not None and is_declared(problem, integrator):
         return (), ()  # that it is exact is said already
     worst = float(np.max(error))
     if np.isnan(worst):

@@ -7,6 +7,7 @@ import os
 from functools import cached_property
 from types import ModuleType
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import attrs
 import pluggy
@@ -50,13 +51,18 @@ class Registry:
 
     def __init__(self) -> None:
         self._loaded: dict[str, tuple[type[Law], PluginInfo]] = {}
-        self._origins: dict[type[Law], PluginInfo | None] = {}
+        self._origins: WeakKeyDictionary[type[Law], PluginInfo | None] = WeakKeyDictionary()
 
     @cached_property
     def _manager(self) -> pluggy.PluginManager:
         manager = pluggy.PluginManager(hookspecs.PROJECT)
         manager.add_hookspecs(hookspecs)
         return manager
+
+    @cached_property
+    def _modules(self) -> list[tuple[str, str]]:
+        """Names and modules of the laws found at first; reading entry points takes a while."""
+        return [(info.name, info.module) for info in self.installed()]
 
     def installed(self) -> list[PluginInfo]:
         """Return every law found, sorted by kind and name, without importing any."""
@@ -158,10 +164,10 @@ class Registry:
 
     def _origin(self, kind: type[Law]) -> PluginInfo | None:
         """Return the plug-in that offers this class, asked for by name or not, if any does."""
-        for info in self.installed():
-            if f"{kind.__module__}.".startswith(f"{info.module}."):
+        for name, module in self._modules:
+            if f"{kind.__module__}.".startswith(f"{module}."):
                 with contextlib.suppress(ValueError, PluginError):
-                    self.law_class(info.name)
+                    self.law_class(name)
         return next((info for known, info in self._loaded.values() if known is kind), None)
 
     def _load(self, info: PluginInfo) -> type[Law]:
