@@ -18,7 +18,7 @@ from contactlab.contracts import (
     Problem,
     Sample,
 )
-from contactlab_events.scaled import Run, item
+from contactlab_events.scaled import Run
 
 Array = NDArray[np.float64]
 
@@ -101,16 +101,16 @@ def _asking(
 
     def ask() -> Mapping[str, Any]:
         answers = []
-        indices = np.ndindex(problem.shape) if problem.shape else [()]
-        for index, run, table in zip(indices, runs, tables, strict=True):
-            one = item(problem, index) if problem.shape else problem
+        for run, table in zip(runs, tables, strict=True):
             pieces = run.followed.pieces
             piece = next((p for p in pieces if x <= p.stop and p.stop > p.start.x), None)
             if piece is None:
                 return {}
             contact = run.impact.motion.instant(x)
             slip = float(table["slip"][k])
-            answers.append(law.phase_fields(one, piece.phase, contact, slip, run.factor))
+            answers.append(
+                law.phase_fields(run.impact.problem, piece.phase, contact, slip, run.factor)
+            )
         if not problem.shape:
             return answers[0]
         return {

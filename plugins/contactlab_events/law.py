@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
-import numpy as np
 
 from contactlab.checks import Rule, quantity
 from contactlab.contracts import (
@@ -16,7 +15,7 @@ from contactlab.contracts import (
     Problem,
 )
 from contactlab_events.dense import show
-from contactlab_events.scaled import Run, impacts
+from contactlab_events.scaled import Run, scaled
 
 #: Rounding allows no more than the first; with the second the answer still has three digits.
 TOLERANCES = Rule(
@@ -60,32 +59,20 @@ class Events(Integrator):
         """Return the motion, impact by impact."""
         law = problem.tangential
         assert isinstance(law, PhasedTangentialLaw)
-        runs = [impact.run(law, self.tolerance) for impact in impacts(problem)]
+        runs = [impact.run(law, self.tolerance) for impact in map(scaled, problem.impacts())]
         if observer is not None:
             show(problem, law, runs, observer)
-        detail = next((run.failure for run in runs if run.failure), "")
-        return Motion(
-            **_columns(runs, problem.shape),
-            detail=detail,
-            counters={
-                "panels": sum(len(run.followed.pieces) for run in runs),
-                "solves": sum(run.followed.solves for run in runs),
-            },
-        )
+        motions = [_motion(run) for run in runs]
+        return Motion.joined(motions, problem.shape) if problem.shape else motions[0]
 
 
-def _columns(runs: list[Run], shape: tuple[int, ...]) -> dict[str, Any]:
-    """Return the entries of a motion: numbers for one impact, arrays for a batch."""
-    columns = {
-        "duration": [run.duration for run in runs],
-        "normal_velocity": [run.normal_velocity for run in runs],
-        "slip_velocity_change": [run.slip_velocity_change for run in runs],
-        "friction_work": [run.friction_work for run in runs],
-    }
-    statuses = [run.status for run in runs]
-    if not shape:
-        return {name: column[0] for name, column in columns.items()} | {"status": statuses[0]}
-    filled = np.empty(len(runs), dtype=object)
-    filled[:] = statuses
-    arrays = {name: np.array(column).reshape(shape) for name, column in columns.items()}
-    return arrays | {"status": filled.reshape(shape)}
+def _motion(run: Run) -> Motion:
+    return Motion(
+        duration=run.duration,
+        normal_velocity=run.normal_velocity,
+        slip_velocity_change=run.slip_velocity_change,
+        friction_work=run.friction_work,
+        status=run.status,
+        detail=run.failure,
+        counters={"panels": len(run.followed.pieces), "solves": run.followed.solves},
+    )

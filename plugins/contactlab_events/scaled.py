@@ -3,13 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import NamedTuple
 
-import attrs
-import numpy as np
-
-from contactlab.bodies import Pair
 from contactlab.contracts import (
     ClosedFormMotion,
     ClosedFormNormalLaw,
@@ -44,6 +39,7 @@ class Impact(NamedTuple):
     ``velocity_unit`` is mu v1/kappa (29), ``force_unit`` mu P_max; both 0 without friction.
     """
 
+    problem: Problem
     motion: ClosedFormMotion
     velocity: float
     inertia: float
@@ -89,17 +85,8 @@ class Impact(NamedTuple):
         )
 
 
-def impacts(problem: Problem) -> Iterator[Impact]:
-    """Iterate over the impacts of a problem, in scaled units."""
-    if not problem.shape:
-        yield _scaled(problem)
-        return
-    for index in np.ndindex(problem.shape):
-        yield _scaled(item(problem, index))
-
-
-def _scaled(problem: Problem) -> Impact:
-    """Scale a problem of one impact."""
+def scaled(problem: Problem) -> Impact:
+    """Return a problem of one impact in scaled units."""
     normal, pair = problem.normal, problem.pair
     assert isinstance(normal, ClosedFormNormalLaw)
     speed = float(problem.normal_speed)
@@ -109,6 +96,7 @@ def _scaled(problem: Problem) -> Impact:
     unit = friction * speed / kappa
     slip_velocity = float(problem.slip_velocity)
     return Impact(
+        problem=problem,
         motion=motion,
         velocity=slip_velocity / unit if unit else 0.0,
         inertia=kappa * (force / speed) * (approach / speed) / float(pair.tangential_mass),
@@ -117,24 +105,4 @@ def _scaled(problem: Problem) -> Impact:
         velocity_unit=unit,
         force_unit=friction * force,
         time_unit=approach / speed,
-    )
-
-
-def item(problem: Problem, index: tuple[int, ...]) -> Problem:
-    """Return the problem of one impact of a batch."""
-    shape = problem.shape
-
-    def pick(value: object) -> float:
-        return float(np.broadcast_to(np.asarray(value), shape)[index])
-
-    names = [field.name for field in attrs.fields(Pair)]
-    return attrs.evolve(
-        problem,
-        pair=Pair(**{name: pick(getattr(problem.pair, name)) for name in names}),
-        friction_coefficient=pick(problem.friction_coefficient),
-        normal_speed=pick(problem.normal_speed),
-        slip_velocity=pick(problem.slip_velocity),
-        maximum_radius=pick(problem.maximum_radius),
-        duration=pick(problem.duration),
-        shape=(),
     )

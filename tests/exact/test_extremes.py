@@ -128,6 +128,13 @@ def test_what_cannot_be_solved_is_given_up_soon(psi1, chi):
     assert taken < 5.0  # a tenth of it, on an idle machine
 
 
+def test_each_impact_of_a_batch_says_what_failed_in_it():
+    result = Simulation().run(Scene.nondimensional(psi1=0.5, chi=[1e6, 2.0, 1e7]))
+    assert list(result.failures) == [0, 2]
+    assert "at chi = 1e+06" in result.failures[0]
+    assert "at chi = 1e+07" in result.failures[2]
+
+
 @pytest.mark.parametrize(("psi1", "chi"), [(0.3, 5e4), (1.9e5, 1e5), (3.9e6, 1e6)])
 def test_heavy_inertia_that_can_be_solved_still_is(psi1, chi):
     """To ten times the tolerance, and beyond chi = 1e4 in a third fewer solves than before."""
