@@ -41,8 +41,3 @@ def rigid_body_rebound(psi1: Real, chi: Real, restitution: Real = 1.0) -> Real:
     """psi2 of the rigid-body theory (paper §4.3): slip until rolling, then rolling to the end."""
     reduced = np.maximum(np.abs(psi1) - 2.0 * chi * (1.0 + restitution), 0.0)
     return np.copysign(reduced, psi1)
-
-
-def initial_slip_end(psi1: Real, chi: Real) -> Real:
-    """V at which initial gross slip ends, (2 chi - psi1)/(2 chi - 1), for 1 < psi1 < 4 chi - 1."""
-    return (2.0 * chi - psi1) / (2.0 * chi - 1.0)

@@ -13,6 +13,7 @@ import numpy as np
 
 from contactlab.plain import plain
 from contactlab.result import ImpactResult
+from contactlab.scene import Scene
 
 #: Column name, unit, and where it comes from. Tables and files read this one list.
 COLUMNS: tuple[tuple[str, str, Callable[[ImpactResult], Any]], ...] = (
@@ -65,7 +66,9 @@ def write_json(result: ImpactResult, path: str | Path) -> None:
 def write_csv(result: ImpactResult, path: str | Path) -> None:
     """Write one row an impact, the unit in each heading."""
     table = [_spread(read(result), result.scene.shape) for _, _, read in COLUMNS]
-    headings = [f"{name} ({_unit(unit, result)})" if unit else name for name, unit, _ in COLUMNS]
+    headings = [
+        f"{name} ({unit_in(unit, result.scene)})" if unit else name for name, unit, _ in COLUMNS
+    ]
     _write_table(path, headings, list(zip(*table, strict=True)))
 
 
@@ -81,7 +84,7 @@ def write_history_csv(result: ImpactResult, path: str | Path) -> None:
     if history is None or result.scene.shape:
         raise ValueError("result: has no history of a single impact; run(scene, history=True)")
     columns = history.columns()
-    headings = [f"{name} ({_unit(history.unit(name), result)})" for name in columns]
+    headings = [f"{name} ({unit_in(history.unit(name), result.scene)})" for name in columns]
     _write_table(path, headings, list(zip(*columns.values(), strict=True)))
 
 
@@ -93,12 +96,13 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
     if result.history is not None:
         columns = result.history.columns() | result.history.fields
         arrays |= {f"history_{name}": column for name, column in columns.items()}
-    np.savez_compressed(path, **arrays)  # type: ignore[arg-type]
+    with Path(path).open("wb") as stream:  # a path that ends otherwise would get .npz added
+        np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
 
 
-def _unit(unit: str, result: ImpactResult) -> str:
-    """Return the unit of a column; the paper's own scenes have none."""
-    return "1" if result.scene.sphere is None else unit
+def unit_in(unit: str, scene: Scene) -> str:
+    """Return the unit that a column has in ``scene``: the paper's own have only angles."""
+    return "1" if scene.sphere is None and unit not in ("rad", "deg") else unit
 
 
 def _spread(value: Any, shape: tuple[int, ...]) -> list[Any]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.checks import refuse
-from contactlab.export import COLUMNS
+from contactlab.export import COLUMNS, unit_in
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 
@@ -23,8 +23,8 @@ class Quantity(NamedTuple):
     read: Callable[[ImpactResult], Any]
 
     def unit_in(self, scene: Scene) -> str:
-        """Return the unit that its numbers have in ``scene``: the paper's own have only angles."""
-        return "1" if scene.sphere is None and self.unit not in ("rad", "deg") else self.unit
+        """Return the unit that its numbers have in ``scene``."""
+        return unit_in(self.unit, scene)
 
     def of(self, result: ImpactResult) -> NDArray[np.float64]:
         """Return it as an array of the scene's shape; NaN where it is not defined."""

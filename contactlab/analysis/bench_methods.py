@@ -52,11 +52,6 @@ class Method:
         """``law / integrator``."""
         return f"{self.tangential} / {self.integrator}"
 
-    def order(self) -> int | None:
-        """Return the order that the integrator declares."""
-        declared: int | None = getattr(_law("integrator", self.integrator), "order", None)
-        return declared
-
     def rungs(self, *, quick: bool = False) -> list[dict[str, dict[str, Any]]]:
         """Return options of the two laws, coarse to fine."""
         law = _law("tangential", self.tangential).resolution

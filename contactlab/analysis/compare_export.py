@@ -38,7 +38,7 @@ def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]
         "measured": [
             {
                 "quantity": agreement.measured.quantity,
-                "unit": QUANTITIES[agreement.measured.quantity].unit,
+                "unit": QUANTITIES[agreement.measured.quantity].unit_in(comparison.scene),
                 "against": agreement.measured.against,
                 "source": agreement.measured.source,
                 "x": _list(agreement.measured.x),
@@ -71,7 +71,7 @@ def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO)
                 writer.writerow(["scene", name, unit, against, row[0], law, *row[1:]])
     for agreement in comparison.agreements:
         measured = agreement.measured
-        unit = QUANTITIES[measured.quantity].unit
+        unit = QUANTITIES[measured.quantity].unit_in(comparison.scene)
         for law, values in agreement.predicted.items():
             columns = (measured.x, values, measured.values, agreement.difference(law))
             for row in _rows(*columns):

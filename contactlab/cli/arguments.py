@@ -33,7 +33,7 @@ def names(text: str) -> list[str]:
     if not found:
         raise argparse.ArgumentTypeError("needs at least one name")
     if len(set(found)) < len(found):
-        raise argparse.ArgumentTypeError(f"{text!r} names a law twice")
+        raise argparse.ArgumentTypeError(f"{text!r} names one of them twice")
     return found
 
 

@@ -56,15 +56,11 @@ class Table:
         remedy = f"add a table [{self.at(key)}] with {', '.join(known)}"
         return Table(self.require(key, remedy), self.at(key), known=known)
 
-    def number(
-        self, key: str, *, default: float | None = None, rule: Rule = FINITE, remedy: str
-    ) -> Any:
+    def number(self, key: str, *, rule: Rule = FINITE, remedy: str) -> Any:
         """Return a number, or the array that a sweep has put in its place.
 
         A list written in the file is refused: what varies belongs in ``[sweep]``.
         """
-        if key not in self.content and default is not None:
-            return default
         value = self.require(key, remedy)
         if isinstance(value, list):
             raise refuse(self.at(key), value, "must be one number", "put lists in [sweep]")

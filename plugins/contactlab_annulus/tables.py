@@ -29,12 +29,10 @@ class Tables(NamedTuple):
 
     mean: bool  # which displacement (33) prescribes, see ``mean_compliance``
     radius_squared: Array  # r_j², shape (n,)
-    radius_list: list[float]  # the same as floats, for bisect
     weight: Array  # F^ = weight . q, eq. (22), shape (n,)
     compliance: Array  # B, shape (n, n)
     lower_inverse: Array  # L^-1 of B = L U, shape (n, n)
     upper_inverse: Array  # U^-1, shape (n, n)
-    grip: Array  # row m: change of q for unit displacement with 1..m stuck, shape (n + 1, n)
     responses: list[Array]  # entry c: ``response`` with annuli 1..c stuck; empty for large n
 
 
@@ -125,20 +123,16 @@ def tables(annuli: int, mean: bool = False) -> Tables:
             responses.append(exchange(responses[stuck], stuck))
     radius_squared = ((np.arange(annuli) + 0.5) / annuli) ** 2
     lower_inverse, upper_inverse = np.tril(np.linalg.inv(lower)), np.triu(np.linalg.inv(upper))
-    grip = np.zeros((annuli + 1, annuli))
-    np.cumsum(upper_inverse.T * lower_inverse.sum(axis=1)[:, None], axis=0, out=grip[1:])
     made = Tables(
         mean,
         radius_squared,
-        radius_squared.tolist(),
         weight,
         compliance,
         lower_inverse,
         upper_inverse,
-        grip,
         responses,
     )
-    for array in [radius_squared, *made[3:-1], *responses]:
+    for array in (*made[1:-1], *responses):
         array.flags.writeable = False
     return made
 

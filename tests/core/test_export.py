@@ -54,6 +54,16 @@ def test_history_csv(tmp_path):
         write_history_csv(SIM.run(SINGLE), tmp_path / "no.csv")
 
 
+def test_a_file_gets_the_name_asked_for_and_angles_keep_their_unit(tmp_path):
+    result = Simulation().run(Scene.nondimensional(psi1=1.2, chi=1.44))
+    write_npz(result, tmp_path / "a.NPZ")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.NPZ"]
+    write_csv(result, tmp_path / "a.csv")
+    headings = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert "local_rebound_angle (rad)" in headings
+    assert "normal_velocity (1)" in headings
+
+
 def test_npz_round_trip(tmp_path):
     result = SIM.run(SINGLE, history=True)
     write_npz(result, tmp_path / "a.npz")
