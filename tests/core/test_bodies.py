@@ -118,3 +118,8 @@ def test_batch_bodies_are_values_too():
     assert one == two
     assert len({one, two, Sphere([0.01, 0.03], light, gyration_ratio=ratio)}) == 2
     assert one != Sphere([0.01, 0.02], light, gyration_ratio=ratio, mass=[1.0, 2.0])
+
+
+def test_quantities_of_a_class_of_keywords_are_keywords():
+    with pytest.raises(TypeError, match="takes 1 positional argument"):
+        Pair(*[1.0] * 5)
