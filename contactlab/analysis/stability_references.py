@@ -63,46 +63,30 @@ def rigid(scene: Scene, law: TangentialLaw) -> float:  # noqa: ARG001
     return (float(rigid_body_rebound(psi1, grip)) - psi1) * scale
 
 
+def continuum(scene: Scene, law: TangentialLaw) -> float | None:  # noqa: ARG001
+    """Return the change of the exact solution."""
+    return _exact(scene)
+
+
 @lru_cache(maxsize=4096)
-def _exact(key: bytes, scene: _Held) -> float | None:  # noqa: ARG001
+def _exact(scene: Scene) -> float | None:
     for tolerance in REFERENCE_TOLERANCES:
         result = Simulation(
             integrator=REGISTRY.create("integrator.events", tolerance=tolerance)
-        ).run(scene.scene)
+        ).run(scene)
         if result.status:
             return float(result.motion.slip_velocity_change)
     return None
 
 
-class _Held:
-    """A scene as part of a cache's key: only the key beside it counts."""
-
-    def __init__(self, scene: Scene) -> None:
-        self.scene = scene
-
-    def __hash__(self) -> int:
-        return 0
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Held)
-
-
-def continuum(scene: Scene, law: TangentialLaw) -> float | None:  # noqa: ARG001
-    """Return the change of the exact solution."""
-    return _exact(_key(scene), _Held(scene))
-
-
 def itself(scene: Scene, law: TangentialLaw) -> float | None:
     """Return the change of the same law at many more steps."""
-    if not isinstance(law, SteppedTangentialLaw):
-        return None
-    return _fine(_key(scene), law, _Held(scene))
+    return _fine(scene, law) if isinstance(law, SteppedTangentialLaw) else None
 
 
 @lru_cache(maxsize=4096)
-def _fine(key: bytes, law: SteppedTangentialLaw, held: _Held) -> float | None:  # noqa: ARG001
+def _fine(scene: Scene, law: SteppedTangentialLaw) -> float | None:
     """Return the extrapolated limit of second order, or None if it is not reached."""
-    scene = held.scene
     coarse: Any = Simulation(tangential=law, integrator="symplectic")
     problem = coarse.problem(scene)
     frequency = np.sqrt(law.stiffness(problem) / problem.pair.tangential_mass)
@@ -123,13 +107,3 @@ def _fine(key: bytes, law: SteppedTangentialLaw, held: _Held) -> float | None:  
             return limits[-1]
         steps = 2 * int(fine.counters.get("steps", steps))  # it may have refined those asked for
     return None
-
-
-def _key(scene: Scene) -> bytes:
-    pair = scene.pair
-    numbers = (
-        scene.slip_velocity, scene.friction_coefficient, scene.normal_speed, pair.radius,
-        pair.effective_modulus, pair.effective_shear_modulus, pair.normal_mass,
-        pair.tangential_mass,
-    )  # fmt: skip
-    return np.array(numbers, dtype=np.float64).tobytes()

@@ -22,17 +22,7 @@ from contactlab.contracts import (
 )
 from contactlab_annulus import blocks, many, one
 from contactlab_annulus.tables import Tables, tables
-
-
-class Scales(NamedTuple):
-    """What turns SI into the paper's variables and back; floats, or arrays of the batch shape."""
-
-    radius: Real  # a, m
-    displacement: Real  # kappa R / (mu a²), 1/m: times u_x gives xi, eq. (27)
-    force: Real  # mu P_max, N
-    normal_force: Real  # P_max of a Hertz contact of radius a, N
-    work: Real  # mu P_max mu a²/(kappa R), J
-    traction: Real  # mu times the pressure unit 2 E* a/(pi R), Pa, eq. (3)
+from contactlab_jaeger.law import Scales
 
 
 class State(NamedTuple):
@@ -97,20 +87,9 @@ class Annulus(RunningTangentialLaw):
 
     def start(self, problem: Problem) -> State:
         """Return a contact without traction."""
-        pair, radius, friction = problem.pair, problem.maximum_radius, problem.friction_coefficient
-        peak = (4.0 / 3.0) * pair.effective_modulus * radius**3 / pair.radius
-        slip = friction * radius**2 / (pair.stiffness_ratio * pair.radius)
-        scales = Scales(
-            radius,
-            (friction > 0.0) / (slip + (friction == 0.0)),  # no friction: no traction either
-            friction * peak,
-            peak,
-            friction * peak * slip,
-            friction * 2.0 * pair.effective_modulus * radius / (np.pi * pair.radius),
-        )
         single = not problem.shape
         memory = one.start(self.annuli) if single else many.start(self.annuli, problem.shape)
-        return State(scales, memory)
+        return State(Scales.of(problem), memory)
 
     def advance(
         self,
@@ -122,9 +101,7 @@ class Annulus(RunningTangentialLaw):
         """Return the force (22) after the step."""
         scales, memory = state
         radius: Any = after.radius / scales.radius
-        # 1 for a Hertz contact; another law may carry more or less force at the same radius.
-        cube = scales.normal_force * radius**3
-        pressure: Any = after.force / (cube + (cube == 0.0))
+        pressure = scales.pressure(radius, after.force)
         solve = one.advance if isinstance(memory, one.Memory) else many.advance
         slip: Any = increment.displacement * scales.displacement
         force, work, settled, memory = solve(self._tables(), memory, slip, radius, pressure)
@@ -133,12 +110,11 @@ class Annulus(RunningTangentialLaw):
 
     def run(self, problem: Problem, run: Run) -> RunResponse:
         """Return the forces (22) of a whole impact, found in blocks of steps."""
-        scales = self.start(problem).scales
+        scales = Scales.of(problem)
         radius = run.radius / scales.radius
-        cube = scales.normal_force * radius**3
         course = blocks.Course(
             radius=radius,
-            pressure=run.force / np.where(cube == 0.0, 1.0, cube),
+            pressure=scales.pressure(radius, run.force),
             drift=run.drift * scales.displacement,
             kick=run.kick * scales.force / run.mass,
         )
@@ -169,7 +145,8 @@ class Annulus(RunningTangentialLaw):
             "radius": np.broadcast_to(
                 column(scales.radius) * np.sqrt(table.radius_squared), memory.traction.shape
             ),
-            "traction": column(scales.traction) * memory.traction,
+            # the unit is mu times Hertz's greatest pressure, 3 P_max/(2 pi a²), eq. (3)
+            "traction": column(1.5 * scales.force / (np.pi * scales.radius**2)) * memory.traction,
             "displacement": column(length) * xi,
             "stuck": stuck,
             "slipping": slipping,
