@@ -33,7 +33,8 @@ class ImpactError(RuntimeError):
 class ImpactResult:
     """Outcome of one impact, or of a batch: every entry has the scene's shape.
 
-    A batch can be indexed, sliced and iterated; each item is the result of one impact.
+    A batch can be indexed, sliced and iterated; each item is the result of one impact. What is
+    said of the whole batch stays: run time, counters, and the plan's sentences.
 
     Attributes
     ----------
@@ -225,7 +226,10 @@ class ImpactResult:
             self,
             scene=_picked(self.scene, pick),
             plan=attrs.evolve(
-                self.plan, marched=self.plan.marched[index], slipping=self.plan.slipping[index]
+                self.plan,
+                marched=self.plan.marched[index],
+                slipping=self.plan.slipping[index],
+                psi2_error=pick(self.plan.psi2_error),
             ),
             motion=motion,
             history=history,

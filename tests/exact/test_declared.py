@@ -40,6 +40,8 @@ def test_no_answer_is_further_off_than_declared(method):
     exact = Simulation().run(scene).check()
     assert result.plan.psi2_error.shape == (24,)
     assert (np.abs(result.psi2 - exact.psi2) <= result.plan.psi2_error).all()
+    assert result[5].plan.psi2_error == result.plan.psi2_error[5]
+    assert result[4:8].plan.psi2_error.tolist() == result.plan.psi2_error[4:8].tolist()
     closed = ~result.plan.marched
     assert closed[:2].all()
     assert (result.plan.psi2_error[closed] <= 1e-12 * np.maximum(1.0, np.abs(psi1[closed]))).all()
