@@ -135,6 +135,37 @@ def quantity(
     )
 
 
+def choice(*words: str, default: str) -> Any:
+    """Return an attrs field for one of a few words."""
+    known = ", ".join(map(repr, words))
+
+    def checked(value: object, field: attrs.Attribute[Any]) -> str:
+        if not isinstance(value, str) or value not in words:
+            raise refuse(field.name, value, f"must be one of {known}")
+        return value
+
+    return attrs.field(
+        default=default,
+        converter=attrs.Converter(checked, takes_field=True),
+        metadata={"unit": ""},
+    )
+
+
+def flag(*, default: bool) -> Any:
+    """Return an attrs field for True or False."""
+
+    def checked(value: object, field: attrs.Attribute[Any]) -> bool:
+        if not isinstance(value, bool):
+            raise refuse(field.name, value, "must be True or False")
+        return value
+
+    return attrs.field(
+        default=default,
+        converter=attrs.Converter(checked, takes_field=True),
+        metadata={"unit": ""},
+    )
+
+
 def count(*, default: Any = attrs.NOTHING, least: int = 1, most: int = 10_000_000) -> Any:
     """Return an attrs field for a checked whole number."""
 

@@ -214,6 +214,12 @@ class Scene:
         return ratio * ratio * self.pair.radius
 
     @property
+    def maximum_force(self) -> Real:
+        """P_max of a Hertz impact, in N, from its energy: ½ M v1² = (2/5) P_max C² R."""
+        speed = self.normal_speed
+        return 1.25 * self.pair.normal_mass * speed * (speed / self.maximum_approach)
+
+    @property
     def duration(self) -> Real:
         """Duration of a Hertz impact t = 2.9432 C² R / v1 (7), in s."""
         return DURATION_CONSTANT * self.maximum_approach / self.normal_speed

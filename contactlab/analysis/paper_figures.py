@@ -108,15 +108,9 @@ def chi_of_gyration(gyration_ratio: float) -> float:
     return 0.7 / 1.7 * (1.0 + gyration_ratio**-2)
 
 
-def peak_force(scene: Scene) -> float:
-    """Return P_max of a Hertz impact, eq. (4) at the largest approach, in N."""
-    pair = scene.pair
-    return float(4.0 / 3.0 * pair.effective_modulus * pair.radius**2 * scene.size_ratio**3)
-
-
 def scaled_forces(scene: Scene, history: History) -> tuple[Array, Array, Array]:
     """Return (t/duration, F/(mu P_max), P/P_max), from first touch to separation."""
-    peak = peak_force(scene)
+    peak = float(scene.maximum_force)
     time = np.concatenate([[0.0], history.time / scene.duration])
     tangential = history.tangential_force / (scene.friction_coefficient * peak)
     normal = history.normal_force / peak

@@ -20,8 +20,8 @@ TOLERANCES = (1.0, 0.1, 1e-2, 1e-3, 1e-5, 1e-8, 1e-12)
 #: Scenes for the ladders of resolution: (psi1, chi).
 LADDER = ((0.3, 0.3), (0.5, CHI), (1.2, CHI), (3.0, CHI), (1.2, 30.0), (0.3, 1e3))
 QUICK_LADDER = ((1.2, CHI), (1.2, 30.0))
-#: Steps that follow a large chi: this many times 2.85 sqrt(chi), the stability limit.
-ABOVE_LIMIT = 8
+#: Steps over sqrt(chi) at the stability limit, and how many times that follow a large chi.
+LIMIT, ABOVE_LIMIT = 2.85, 8
 
 Options = dict[str, dict[str, Any]]
 
@@ -53,7 +53,7 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
         if scene.family in ("psi1", "friction", "regimes"):
             yield _case(method, scene, {}, planned=False)
         if scene.family == "chi" and integrator.resolution == "steps":
-            steps = int(ABOVE_LIMIT * 2.85 * float(scene.make().chi) ** 0.5) + 8
+            steps = int(ABOVE_LIMIT * LIMIT * float(scene.make().chi) ** 0.5) + 8
             yield _case(method, scene, {"integrator": {"steps": steps}})
     for psi1, chi in QUICK_LADDER if quick else LADDER:
         yield from _ladder(method, law.resolution, integrator.resolution, psi1, chi, quick=quick)
@@ -80,7 +80,7 @@ def _ladder(
         for count in QUICK_PARTS if quick else PARTS:
             yield _case(method, scene("parts"), {"tangential": {part: count}})
             if step == "steps":
-                steps = int(ABOVE_LIMIT * 2.85 * chi**0.5) + 8
+                steps = int(ABOVE_LIMIT * LIMIT * chi**0.5) + 8
                 both = {"tangential": {part: count}, "integrator": {step: steps}}
                 yield _case(method, scene("parts"), both)
 

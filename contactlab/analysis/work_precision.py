@@ -200,14 +200,13 @@ def _force_error(result: ImpactResult, exact: ImpactResult) -> float:
     history, true = result.history, exact.history
     assert history is not None
     assert true is not None
-    pair, scene = exact.scene.pair, exact.scene
-    peak = 1.25 * pair.normal_mass * scene.normal_speed**2 / scene.maximum_approach
+    scene = exact.scene
     from scipy.interpolate import PchipInterpolator  # a few 1e-7 of the peak at 200 instants
 
     instants, first = np.unique(true.time, return_index=True)  # an event may stand twice
     inside = np.clip(history.time, instants[0], instants[-1])
     expected = PchipInterpolator(instants, true.tangential_force[first])(inside)
-    scale = float(np.asarray(scene.friction_coefficient * peak))
+    scale = float(np.asarray(scene.friction_coefficient * scene.maximum_force))
     return float(np.sqrt(np.mean((history.tangential_force - expected) ** 2))) / scale
 
 

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from contactlab.analysis.stability_cases import LIMIT
 from contactlab.analysis.stability_map import (
     ALL_ANSWERED,
     ONE_RAISED,
@@ -30,8 +31,6 @@ DECADES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 WRONG_COLOUR, RAISED_COLOUR = "#D00000", "#F08000"
 REFUSED_COLOUR, UNTRIED_COLOUR = "#E4E4E4", "#FBF3E4"
 PANEL_WIDTH, PANEL_HEIGHT = 2.4, 2.0
-#: Steps at the stability limit over sqrt(chi).
-LIMIT = 2.85
 LIMIT_LOOK: Any = {"color": "black", "linestyle": (0, (4, 2)), "linewidth": 1.1}
 
 

@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import Mask, Real, count, refuse
+from contactlab.checks import Mask, Real, choice, count
 from contactlab.closed_forms import slips_throughout_elastic
 from contactlab.contracts import (
     Increment,
@@ -30,11 +30,6 @@ class State(NamedTuple):
 
     scales: Scales
     memory: Any  # one.Memory or many.Memory
-
-
-def _is_displacement(_: object, attribute: attrs.Attribute[str], value: object) -> None:
-    if not isinstance(value, str) or value not in ("midpoint", "mean"):
-        raise refuse(attribute.name, value, "must be 'midpoint' or 'mean'")
 
 
 @attrs.frozen(kw_only=True)
@@ -65,9 +60,7 @@ class Annulus(RunningTangentialLaw):
     needs: ClassVar[frozenset[str]] = frozenset({"steps", "hertzian_pressure"})
 
     annuli: int = count(default=50, most=2000)
-    displacement: str = attrs.field(
-        default="midpoint", validator=_is_displacement, metadata={"unit": ""}
-    )
+    displacement: str = choice("midpoint", "mean", default="midpoint")
 
     @property
     def books_bound(self) -> float:

@@ -8,14 +8,17 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
-from contactlab.checks import Real, count
+from contactlab.checks import Real, count, flag
 from contactlab.contracts import Integrator, Motion, Observer, Problem
 from contactlab_march.march import march
 from contactlab_march.normal_steps import NormalEnd, Step
-from contactlab_march.steps import MOST_STEPS, enough, refine_field, remarks, steps_for
-
-#: A contact that lasts longer than this many Hertz durations is given up.
-LONGEST_CONTACT = 10
+from contactlab_march.steps import (
+    LONGEST_CONTACT,
+    MOST_STEPS,
+    enough,
+    remarks,
+    steps_for,
+)
 
 
 @attrs.frozen(kw_only=True)
@@ -50,7 +53,7 @@ class PaperSteps(Integrator):
     needs: ClassVar[frozenset[str]] = frozenset({"advance"})
 
     steps: int = count(default=500, most=MOST_STEPS)
-    refine: bool = refine_field()
+    refine: bool = flag(default=True)
 
     def steps_for(self, problem: Problem) -> Any:
         """Return ``steps``, or more for those impacts of a batch for which they are too few."""

@@ -6,10 +6,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import attrs
 import numpy as np
 
-from contactlab.checks import refuse
 from contactlab.contracts import Motion, Problem, SteppedTangentialLaw
 from contactlab.status import Status
 
@@ -26,6 +24,8 @@ LARGEST_LEAD = 0.05
 LEAST_STEPS = math.ceil(math.pi / LARGEST_PHASE_STEP)
 #: More steps than this are refused, whoever asks for them.
 MOST_STEPS = 2_000_000
+#: A contact that lasts longer than this many Hertz durations is given up.
+LONGEST_CONTACT = 10
 #: Where steps are raised, from one number to the next.
 RUNG = 1.25
 
@@ -112,13 +112,3 @@ def _refined(steps: int, needed: Any) -> Any:
 
 def _refusal(steps: int, needed: float) -> str:
     return f"steps = {steps}; this scene needs at least {needed:.6g}."
-
-
-def _is_bool(_: object, attribute: attrs.Attribute[bool], value: object) -> None:
-    if not isinstance(value, bool):
-        raise refuse(attribute.name, value, "must be True or False")
-
-
-def refine_field() -> Any:
-    """Return the attrs field of ``refine``, True by default."""
-    return attrs.field(default=True, validator=_is_bool, metadata={"unit": "1"})

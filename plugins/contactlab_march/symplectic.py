@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
-from contactlab.checks import count
+from contactlab.checks import count, flag
 from contactlab.contracts import (
     ClosedFormNormalLaw,
     Integrator,
@@ -19,10 +19,13 @@ from contactlab.contracts import (
 )
 from contactlab_march.march import march
 from contactlab_march.normal_steps import NormalEnd, Step, Table
-from contactlab_march.steps import MOST_STEPS, enough, refine_field, remarks, steps_for
-
-#: A contact that lasts longer than this many Hertz durations is given up.
-LONGEST_CONTACT = 10
+from contactlab_march.steps import (
+    LONGEST_CONTACT,
+    MOST_STEPS,
+    enough,
+    remarks,
+    steps_for,
+)
 
 
 @attrs.frozen(kw_only=True)
@@ -51,7 +54,7 @@ class Symplectic(Integrator):
     uses: ClassVar[frozenset[str]] = frozenset({"closed_form_motion"})
 
     steps: int = count(default=200, most=MOST_STEPS)
-    refine: bool = refine_field()
+    refine: bool = flag(default=True)
 
     def steps_for(self, problem: Problem) -> Any:
         """Return ``steps``, or more for those impacts of a batch for which they are too few."""
