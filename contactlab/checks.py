@@ -78,6 +78,8 @@ def real(argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "")
         array = np.asarray(value)
     except ValueError:
         raise refuse(argument, value, "must be a number or a regular array", remedy) from None
+    if np.ma.is_masked(value):
+        raise refuse(argument, value, "must have no masked entries", "fill or drop them")
     if array.dtype.kind not in "iuf":
         raise refuse(argument, value, "must be a real number", remedy)
     if array.size == 0:

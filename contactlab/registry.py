@@ -131,6 +131,8 @@ class Registry:
         """
         import inspect
 
+        if not isinstance(name, str):
+            raise refuse("name", name, "must be a text such as 'tangential.springs'")
         law = self.law_class(name)
         known = inspect.signature(law).parameters
         for option, value in options.items():

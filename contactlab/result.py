@@ -25,8 +25,12 @@ class ImpactError(RuntimeError):
     """
 
     def __init__(self, sentence: str, status: Status) -> None:
-        super().__init__(sentence)
+        super().__init__(sentence, status)
         self.status = status
+
+    def __str__(self) -> str:
+        """Return the sentence alone."""
+        return str(self.args[0])
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False)
@@ -202,7 +206,7 @@ class ImpactResult:
         shape = self.scene.shape
         if not shape:
             raise TypeError("the result of a single impact cannot be indexed")
-        if not isinstance(index, int | np.integer | slice):
+        if isinstance(index, bool) or not isinstance(index, int | np.integer | slice):
             raise TypeError(f"a result is indexed by a number or a slice, not {index!r}")
         if not np.size(np.arange(shape[0])[_slice(index)]):
             raise IndexError(f"{index}: there is no such impact, of {shape[0]}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import attrs
@@ -123,6 +123,9 @@ class Scene:
     @classmethod
     def stack(cls, scenes: Sequence[Scene]) -> Scene:
         """Return one batch scene of shape (len(scenes),) from scalar scenes."""
+        if not isinstance(scenes, Iterable):
+            raise refuse("scenes", scenes, "must be a sequence of Scene")
+        scenes = list(scenes)
         if not scenes:
             raise refuse("scenes", scenes, "must hold at least one Scene")
         for position, scene in enumerate(scenes):

@@ -170,7 +170,7 @@ class Simulation:
             If the scenes are none, not alike (bodies beside psi1 and chi) or no scenes.
         """
         started = time.perf_counter()
-        batch = scenes if isinstance(scenes, Scene) else Scene.stack(list(scenes))
+        batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
         if len(batch.shape) != 1:
             raise refuse(
                 "scenes",

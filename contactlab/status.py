@@ -10,7 +10,7 @@ class Status(Enum):
 
     SUCCESS = "The impact was followed from first touch to separation."
     NON_FINITE = "A law returned a value that is not a finite number."
-    TOO_FEW_STEPS = "The steps are too few for this inertia ratio: the scheme is unstable."
+    TOO_FEW_STEPS = "The steps are too few for the stiffness of the contact."
     UNSETTLED = "The tangential law found no division into stick and slip that passes its tests."
     UNRESOLVED = "The motion could not be followed to the tolerance asked for."
     UNBALANCED = "The energy books do not balance: energy came from nothing, or went nowhere."

@@ -27,6 +27,11 @@ LONGEST_CONTACT = 10
 #: First step, longest step, and the step below which errors no longer matter, over the
 #: length of the impact.
 FIRST, LONGEST, SHORTEST = 1e-3, 0.1, 1e-7
+#: Largest omega dt of the fastest tangential oscillation: at 2 steps become unstable, and what
+#: they make of a small slip would pass unseen until it is as large as the tolerance.
+LARGEST_PHASE_STEP = 1.0
+#: The longest dt of a step, which is even in the phase of a Hertz motion, over the mean.
+STRETCH = 1.35
 #: A next step aims at this share of what the error allows, and grows no faster than this.
 SAFETY, GROWTH, SHRINKAGE = 0.85, 3.0, 0.2
 #: Of two ways of second order, one with steps half as long as the other, the shorter is wrong by
@@ -75,8 +80,9 @@ class Run:
             place = path.begin()
         with self._blaming(self.law):
             here = self.slide.begin()
+            longest = self._longest()
         length = path.length or float(problem.duration)
-        step = FIRST * length
+        step = min(FIRST, longest) * length
         for _ in range(MOST_ATTEMPTS):
             with self._blaming(normal):
                 trial = path.attempt(place, step)
@@ -102,8 +108,16 @@ class Run:
                 return Status.SUCCESS, ""
             # Past a jump, over which the shortest step was taken, errors fall again.
             grow = SAFETY * (allowed / error) ** 0.5 if 0.0 < error <= allowed else GROWTH
-            step = min(step * min(grow, GROWTH), LONGEST * length)
+            step = min(step * min(grow, GROWTH), longest * length)
         return Status.NOT_SEPARATED, f"After {MOST_ATTEMPTS} attempts."
+
+    def _longest(self) -> float:
+        """Return the longest step, over the length of the impact."""
+        problem = self.problem
+        stiffness = float(self.law.stiffness(problem))
+        omega = math.sqrt(stiffness / float(problem.pair.tangential_mass))
+        swing = STRETCH * omega * float(problem.duration)
+        return min(LONGEST, LARGEST_PHASE_STEP / swing) if swing > 0.0 else LONGEST
 
     def _try(self, here: Kinematics, trial: Trial) -> tuple[float, list[Taken]]:
         """Return the error of the halves in psi, NaN if anything is not finite, and the halves.

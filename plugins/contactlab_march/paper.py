@@ -66,12 +66,11 @@ class PaperSteps(Integrator):
     def integrate(self, problem: Problem, observer: Observer | None = None) -> Motion:
         """Return the motion, with more steps than asked for where those are too few."""
 
-        def follow(problem: Problem, steps: int) -> Motion:
+        def follow(problem: Problem, steps: int, observer: Observer | None) -> Motion:
             end = NormalEnd()
             return march(problem, self._steps(problem, steps, end), end, observer)
 
-        watched = observer is not None
-        return enough(self.steps, self.refine, problem, follow, one_time_axis=watched)
+        return enough(self.steps, self.refine, problem, follow, observer)
 
     def _steps(self, problem: Problem, steps: int, end: NormalEnd) -> Iterator[Step]:
         """Yield the normal motion, (30)-(32), until every impact of the batch has ended."""

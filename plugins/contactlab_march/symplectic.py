@@ -68,13 +68,12 @@ class Symplectic(Integrator):
         """Return the motion, with more steps than asked for where those are too few."""
         closed = isinstance(problem.normal, ClosedFormNormalLaw)
 
-        def follow(problem: Problem, count: int) -> Motion:
+        def follow(problem: Problem, count: int, observer: Observer | None) -> Motion:
             end = NormalEnd()
             steps = self._along if closed else self._through
             return march(problem, steps(problem, count, end), end, observer)
 
-        watched = observer is not None
-        return enough(self.steps, self.refine, problem, follow, one_time_axis=watched)
+        return enough(self.steps, self.refine, problem, follow, observer)
 
     def _along(self, problem: Problem, count: int, end: NormalEnd) -> Table:
         """Return the steps of a motion in closed form."""

@@ -1,5 +1,6 @@
 """No silent wrong answer: steps, energy books, limits."""
 
+import pickle
 import re
 from typing import ClassVar
 
@@ -11,6 +12,7 @@ import contactlab
 from contactlab import ImpactError, Scene, Simulation, Status
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from tests.guards import cost, without
+from tests.normal_laws import LinearSpring
 from tests.tangential_laws import Creator
 
 
@@ -145,8 +147,10 @@ def test_an_impact_that_fails_takes_no_other_of_its_batch_with_it(
     if not column:
         assert batch[0].motion.detail == ""
         assert batch[1].motion.detail == alone[1].motion.detail
-    with pytest.raises(ImpactError, match="impact 1: "):
+    with pytest.raises(ImpactError, match="impact 1: ") as caught:
         batch.check()
+    sent = pickle.loads(pickle.dumps(caught.value))  # as a pool of processes does
+    assert (str(sent), sent.status) == (str(caught.value), caught.value.status)
 
 
 @pytest.mark.parametrize("shape", [(100,), (10, 10)])
@@ -178,6 +182,58 @@ def test_the_cost_of_the_guards_is_measured_against_none():
         assert creator.run(scene).status is Status.SUCCESS
     assert creator.run(scene).status is Status.UNBALANCED
     assert all(seconds > 0.0 for seconds in cost(lambda: creator.run(scene), repeats=1))
+
+
+@attrs.frozen(kw_only=True)
+class Slinger(SteppedTangentialLaw):
+    """Drives the slip on, and declares nothing of its books."""
+
+    api_version: ClassVar[int] = 1
+    offers: ClassVar[frozenset] = frozenset({"advance"})
+
+    def start(self, problem):
+        return problem.friction_coefficient
+
+    def advance(self, state, increment, before, after):
+        return TangentialResponse(-state * increment.normal_force, 0.0), state
+
+
+@pytest.mark.parametrize("integrator", ["paper", "symplectic", "adaptive"])
+def test_slip_that_grows_is_a_status_whatever_the_law_declares(integrator):
+    result = Simulation(tangential=Slinger(), integrator=integrator).run(
+        Scene.nondimensional(psi1=[0.5, 1.2], chi=1.44)
+    )
+    assert [status.name for status in result.status] == ["UNBALANCED", "UNBALANCED"]
+    assert "slips 12.52 times as fast as it met" in result.failures[0]
+
+
+@pytest.mark.parametrize("law", ["springs", "sharp_annulus", "annulus", "mindlin_cap"])
+@pytest.mark.parametrize("chi", [41.6, 1000.0])
+def test_adaptive_steps_are_stable_where_slip_is_too_small_to_see(law, chi):
+    """Unstable steps grew it up to the tolerance, unseen: by 1e14 for psi1 = 1e-20."""
+    sim = Simulation(tangential=law, integrator="adaptive")
+    for psi1 in (1e-20, 1e-8):
+        result = sim.run(Scene.nondimensional(psi1=psi1, chi=chi)).check()
+        assert abs(result.psi2) <= (1.1 if law == "mindlin_cap" else 1.0) * psi1
+
+
+@pytest.mark.parametrize("integrator", ["paper", "symplectic"])
+def test_steps_resolve_a_normal_law_that_is_stiffer_than_hertz(integrator):
+    """In 200 steps of a Hertz duration such a contact lasts 2: e was 0.54."""
+    scene = Scene.nondimensional(psi1=[0.5, 1.2], chi=1.44)
+    hertz = np.pi / float(scene.duration)
+    stiff = LinearSpring(stiffness=1e4 * float(scene.pair.normal_mass) * hertz**2)
+    sim = Simulation(normal=stiff, tangential="coulomb", integrator=integrator)
+    result = sim.run(scene).check()
+    assert result.normal_restitution == pytest.approx(1.0, abs=0.01)
+    assert result.motion.duration == pytest.approx(0.01 * float(scene.duration), rel=0.02)
+    course = sim.run(scene, history=True).check()
+    assert course.psi2.tolist() == result.psi2.tolist()
+    assert len(course.history.time) >= 20
+    fixed = contactlab.create(f"integrator.{integrator}", refine=False)
+    refused = Simulation(normal=stiff, tangential="coulomb", integrator=fixed).run(scene)
+    assert refused.status.tolist() == [Status.TOO_FEW_STEPS] * 2
+    assert "is stiffer, and needs at least" in refused.failures[0]
 
 
 @pytest.mark.parametrize("bad", [0, -1, 10**8, 1.5, "10", None, True])

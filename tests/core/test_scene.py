@@ -153,7 +153,18 @@ def test_scenes_that_are_equal_have_one_hash():
     assert len({batch, Scene.nondimensional(psi1=np.array([1.0, 2.0]), chi=1.0)}) == 2
 
 
+def test_masked_entries_are_refused():
+    """They would be taken for data."""
+    masked = np.ma.array([0.5, 99.0], mask=[False, True])
+    with pytest.raises(ValueError, match=r"psi1 = .*masked"):
+        Scene.nondimensional(psi1=masked, chi=1.0)
+    assert Scene.nondimensional(psi1=masked[:1], chi=1.0).shape == (1,)
+
+
 def test_stack_refuses_what_is_no_scene():
+    for nothing in (None, 3):
+        with pytest.raises(ValueError, match="scenes = "):
+            Scene.stack(nothing)
     with pytest.raises(ValueError, match=r"scenes\[1\]"):
         Scene.stack([scene(), 3.0])
     with pytest.raises(ValueError, match="at least one"):

@@ -35,6 +35,11 @@ def test_create_passes_options_and_checks_them():
         contactlab.create("integrator.paper", step=3)
 
 
+def test_a_name_that_is_no_text_is_refused():
+    with pytest.raises(ValueError, match="name = None: must be a text"):
+        contactlab.create(None)
+
+
 def test_unknown_name_gives_the_nearest_and_the_list():
     with pytest.raises(
         ValueError, match=r"did you mean 'tangential.coulomb'.*installed: .*tangential.springs"
