@@ -64,9 +64,13 @@ class LawChoice:
         Raises
         ------
         ValueError
-            If a law is not installed, an option is unknown, or the laws do not fit.
+            If a law is not installed, an option is unknown or out of range, of a law that is
+            not chosen too, or the laws do not fit.
         """
         choice = self.resolved()
+        for name, options in self.options.items():
+            if name not in KINDS:  # of a law that may not be chosen: misspelt, it would go unseen
+                REGISTRY.create(name, **options)
         return Simulation(**{kind: choice.made(kind) for kind in KINDS})
 
     def resolved(self) -> LawChoice:
