@@ -79,10 +79,12 @@ class PaperSteps(Integrator):
         step = problem.duration / steps
         rate, time = problem.normal_speed, 0.0 * problem.duration
         approach: Real = 0.0 * step
+        loss: Real = 0.0 * rate
         touching: Any = np.ones(problem.shape, dtype=bool) if problem.shape else True
         for _ in range(LONGEST_CONTACT * steps):
             approach = approach + rate * step
-            contact, state = normal.respond(state, approach, rate)
+            # The rate at the sample, half a step on: second order, where the force depends on it.
+            contact, state = normal.respond(state, approach, rate - 0.5 * loss)
             loss = contact.force * step / mass
             middle = rate - 0.5 * loss  # at the sample, as the slip velocity in a history
             rate = rate - loss

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
-from contactlab.checks import count, flag
+from contactlab.checks import Real, count, flag
 from contactlab.contracts import (
     ClosedFormNormalLaw,
     Integrator,
@@ -103,10 +103,12 @@ class Symplectic(Integrator):
         step = problem.duration / count
         rate, drift = problem.normal_speed, 0.5 * step
         approach, time, before = 0.0 * step, 0.0 * step, 0.0 * step
+        loss: Real = 0.0 * rate
         touching: Any = np.ones(problem.shape, dtype=bool) if problem.shape else True
         for _ in range(LONGEST_CONTACT * count):
             approach = approach + rate * drift
-            contact, state = normal.respond(state, approach, rate)
+            # The rate at the sample, half a step on: second order, where the force depends on it.
+            contact, state = normal.respond(state, approach, rate - 0.5 * loss)
             # Where the overlap changed sign the contact ended on the way to this sample.
             ending = touching & (contact.overlap <= 0.0)
             inside = before / (before - contact.overlap + (contact.overlap == before))

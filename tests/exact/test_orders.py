@@ -6,6 +6,7 @@ import pytest
 import contactlab
 from contactlab import Scene, Simulation
 from tests.exact.laws import CHI, grid, order, rebound, rms
+from tests.normal_laws import Damped
 from tests.reference import TABLE
 
 STEPS = (50, 100, 200, 400)
@@ -85,3 +86,20 @@ def test_a_rigid_law_is_exact_at_any_step(law):
     for steps in (3, 30):
         found = rebound(psi1, CHI, law, steps=steps)
         assert found == pytest.approx(np.maximum(psi1 - 4.0 * CHI, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize("integrator", ["symplectic", "paper"])
+def test_a_normal_force_that_depends_on_the_rate_leaves_the_order(integrator):
+    """Restitution and psi2 of a damped impact, against many more steps."""
+    scene = Scene.nondimensional(psi1=1.2, chi=CHI)
+    springs = contactlab.create("tangential.springs", springs=100)
+
+    def answer(steps):
+        march = contactlab.create(f"integrator.{integrator}", steps=steps)
+        result = Simulation(normal=Damped(), tangential=springs, integrator=march).run(scene)
+        return np.array([result.psi2, result.normal_restitution])
+
+    steps, fine = [100, 200, 400], answer(3200)
+    off = [np.abs(answer(count) - fine) for count in steps]
+    orders = -np.polyfit(np.log(steps), np.log(off), 1)[0]
+    assert orders == pytest.approx([2.0, 2.0], abs=0.3)
