@@ -95,7 +95,12 @@ def test_interrupted_sweep_reports_what_is_done(tmp_path):
     )
     command = [*COMMAND, "run", path, "--progress", "--out", tmp_path / "part.npz", "--json"]
     with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        # Tests that run in the background may be told to ignore the signal.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as running:
         assert running.stderr.readline().startswith(f"impacts: {CHUNK}/")
         running.send_signal(signal.SIGINT)

@@ -209,12 +209,15 @@ class Mended(NormalLaw):
 
 
 class ReadsNanAsTheEnd(STEPS):
-    """Ends an impact where the normal law has no answer."""
+    """Ends an impact where the normal law has no answer, however few steps it has lasted."""
 
     def integrate(self, problem, observer=None):
-        if not isinstance(problem.normal, ClosedFormNormalLaw):
-            problem = attrs.evolve(problem, normal=Mended(law=problem.normal))
-        return super().integrate(problem, observer)
+        if isinstance(problem.normal, ClosedFormNormalLaw) or problem.shape:
+            return super().integrate(problem, observer)
+        problem = attrs.evolve(problem, normal=Mended(law=problem.normal))
+        motion = super().integrate(problem, observer)
+        short = motion.status is Status.TOO_FEW_STEPS
+        return attrs.evolve(motion, status=Status.SUCCESS, detail="") if short else motion
 
 
 #: Each with the check meant for it, and words of what the check says of it.
