@@ -5,12 +5,16 @@ from __future__ import annotations
 from typing import ClassVar
 
 import attrs
+import numpy as np
 
 from contactlab.checks import Rule, quantity
 from contactlab.contracts import Integrator, Motion, Observer, Problem, SteppedTangentialLaw
 from contactlab_adaptive.run import Run
 
-TOLERANCE = Rule(lambda value: (value >= 1e-12) & (value <= 1.0), "must lie in [1e-12, 1]")
+TOLERANCE = Rule(
+    lambda value: np.ndim(value) == 0 and 1e-12 <= value <= 1.0,
+    "must be one number in [1e-12, 1]",
+)
 
 
 @attrs.frozen(kw_only=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 import attrs
+import numpy as np
 
 from contactlab.checks import Rule, quantity
 from contactlab.contracts import (
@@ -19,7 +20,8 @@ from contactlab_events.scaled import Run, scaled
 
 #: Rounding allows no more than the first; with the second the answer still has three digits.
 TOLERANCES = Rule(
-    lambda value: (value >= 1e-12) & (value <= 1e-3), "must lie between 1e-12 and 1e-3"
+    lambda value: np.ndim(value) == 0 and 1e-12 <= value <= 1e-3,
+    "must be one number between 1e-12 and 1e-3",
 )
 
 

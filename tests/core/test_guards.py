@@ -246,3 +246,10 @@ def test_bad_steps(bad):
 def test_bad_refine():
     with pytest.raises(ValueError, match="refine"):
         contactlab.create("integrator.paper", refine="yes")
+
+
+@pytest.mark.parametrize("integrator", ["events", "adaptive"])
+@pytest.mark.parametrize("bad", [0.0, 2.0, [1e-6, 1e-7], "1e-6", True])
+def test_bad_tolerance(integrator, bad):
+    with pytest.raises(ValueError, match="tolerance = "):
+        contactlab.create(f"integrator.{integrator}", tolerance=bad)
