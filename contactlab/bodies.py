@@ -151,6 +151,8 @@ class Pair:
     effective_shear_modulus: Real = quantity("Pa", rule=POSITIVE)
     normal_mass: Real = quantity("kg", rule=POSITIVE)
     tangential_mass: Real = quantity("kg", rule=POSITIVE)
+    #: Dundurs' beta, by which pressure and shear are coupled; 0 for like bodies.
+    dundurs_beta: Real = quantity("1", default=0.0)
 
     @property
     def stiffness_ratio(self) -> Real:
@@ -180,12 +182,20 @@ class Pair:
             effective_shear_modulus=1.0 / compliance_t,
             normal_mass=1.0 / inverse_normal,
             tangential_mass=1.0 / inverse_tangential,
+            dundurs_beta=_coupling_compliance(sphere.material, target.material) / compliance_n,
         )
 
 
 def _normal_compliance(material: Material) -> Real:
     """(1-nu)/(2G) = (1-nu²)/E: one body's part of 1/E*."""
     return (1.0 - material.poisson_ratio) / (2.0 * material.shear_modulus)
+
+
+def _coupling_compliance(one: Material, other: Material) -> Real:
+    """Return half the difference of (1-2nu)/(2G): over 1/E* it is Dundurs' beta."""
+    first = (1.0 - 2.0 * one.poisson_ratio) / (2.0 * one.shear_modulus)
+    second = (1.0 - 2.0 * other.poisson_ratio) / (2.0 * other.shear_modulus)
+    return 0.5 * (first - second)
 
 
 def _shear_compliance(material: Material) -> Real:

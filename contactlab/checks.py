@@ -87,7 +87,10 @@ def real(argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "")
     widened = array.astype(np.float64)
     if not (np.isfinite(widened).all() and np.all(rule.holds(widened))):
         raise refuse(argument, value, rule.sentence, remedy)
-    return float(widened) if widened.ndim == 0 else widened
+    if widened.ndim == 0:
+        return float(widened)
+    widened.flags.writeable = False  # a copy, which nobody may change under those who read it
+    return widened
 
 
 def whole(argument: str, value: object, *, least: int = 1, most: int = 10_000_000) -> int:

@@ -6,13 +6,24 @@ Shortcuts for the plan, oracles for the tests. Arguments may be floats or arrays
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from contactlab.checks import Mask, Real
+from contactlab.scene import Scene
 
 #: 2.9432751843: duration of an elastic Hertz impact times v1/(C²R), eq. (7) unrounded.
 DURATION_CONSTANT = 4.0 * math.gamma(0.4) * math.sqrt(math.pi) / (5.0 * math.gamma(0.9))
+
+
+class HertzScales(NamedTuple):
+    """Largest contact radius (m), approach (m) and force (N), and duration (s), eqs (7)-(9)."""
+
+    radius: Real
+    approach: Real
+    force: Real
+    duration: Real
 
 
 def size_ratio(
@@ -26,6 +37,21 @@ def size_ratio(
     stiffness = 15.0 * normal_mass / (16.0 * effective_modulus)
     ratio: Real = stiffness**0.2 * normal_speed**0.4 / radius**0.6
     return ratio
+
+
+def hertz_scales(scene: Scene) -> HertzScales:
+    """Return the scales of an elastic Hertz impact, eqs (7)-(9)."""
+    pair, speed = scene.pair, scene.normal_speed
+    ratio = size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, speed)
+    approach = ratio * ratio * pair.radius  # a product: a float squared raises OverflowError
+    # P_max follows from energy: ½ M v1² = (2/5) P_max C² R.
+    force = 1.25 * pair.normal_mass * speed * (speed / approach)  # the square may underflow
+    return HertzScales(
+        radius=ratio * pair.radius,
+        approach=approach,
+        force=force,
+        duration=DURATION_CONSTANT * (approach / speed),
+    )
 
 
 def slips_throughout_elastic(psi1: Real, chi: Real) -> Mask:

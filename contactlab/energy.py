@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 
 from contactlab.checks import Real
-from contactlab.contracts.integrator import Motion
+from contactlab.motion import Motion
 from contactlab.plain import plain
 from contactlab.scene import Scene
 from contactlab.status import Status
@@ -53,7 +53,8 @@ class EnergyLedger:
     @property
     def relative_imbalance(self) -> Real:
         """Imbalance over the energy at the start."""
-        return self.imbalance / self.start
+        with np.errstate(under="ignore"):
+            return self.imbalance / self.start
 
     def to_dict(self) -> dict[str, Any]:
         """Return the five entries and the relative imbalance as plain numbers or lists."""
@@ -65,7 +66,7 @@ def ledger(scene: Scene, motion: Motion) -> EnergyLedger:
     """Return the books of ``motion``, from the velocities alone but for the friction work."""
     pair, before, change = scene.pair, scene.slip_velocity, motion.slip_velocity_change
     speed, after = scene.normal_speed, motion.normal_velocity
-    with np.errstate(over="ignore", invalid="ignore"):
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         # Products, not powers: a float raised to a power raises OverflowError.
         start = 0.5 * pair.normal_mass * speed * speed
         start = start + 0.5 * pair.tangential_mass * before * before
@@ -87,6 +88,11 @@ def balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
     That is where the books miss by more than ``bound``, over the energy at the start; and
     where the bodies part, or slip, faster than they met.
     """
+    with np.errstate(all="ignore"):
+        return _balanced(motion, scene, bound)
+
+
+def _balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
     fast: Any = np.abs(motion.normal_velocity) > LARGEST_RESTITUTION * scene.normal_speed
     if fast.any():
         rebound = np.abs(motion.normal_velocity) / scene.normal_speed
@@ -99,12 +105,11 @@ def balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
         told = _told(f"Off by {{:.2g}} of the energy at the start; declared: {bound:.2g}.", share)
         motion = motion.failing(missing, Status.UNBALANCED, told)
     before = np.abs(scene.slip_velocity)
-    with np.errstate(all="ignore"):
-        after: Any = np.abs(scene.slip_velocity + motion.slip_velocity_change)
-        slips: Any = after > LARGEST_SLIP * before
-        if np.any(slips):
-            told = _told("The contact slips {:.4g} times as fast as it met.", after / before)
-            motion = motion.failing(slips, Status.UNBALANCED, told)
+    after: Any = np.abs(scene.slip_velocity + motion.slip_velocity_change)
+    slips: Any = after > LARGEST_SLIP * before
+    if np.any(slips):
+        told = _told("The contact slips {:.4g} times as fast as it met.", after / before)
+        motion = motion.failing(slips, Status.UNBALANCED, told)
     return motion
 
 

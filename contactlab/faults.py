@@ -6,6 +6,8 @@ that only where an answer is not a plain float.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -21,6 +23,22 @@ class LawFaultError(Exception):
     def __init__(self, status: Status, detail: str) -> None:
         super().__init__(detail)
         self.status, self.detail = status, detail
+
+
+@contextmanager
+def blaming(law: Law) -> Iterator[None]:
+    """Say of what is raised within that it was ``law``; nothing but Ctrl-C gets past.
+
+    Raises
+    ------
+    LawFaultError
+    """
+    try:
+        yield
+    except (KeyboardInterrupt, LawFaultError):
+        raise
+    except BaseException as error:  # a plug-in may not end the process
+        raise LawFaultError(Status.LAW_RAISED, told(law, raised(error), 1)) from error
 
 
 def malformed(value: Any, shape: tuple[int, ...]) -> bool:
@@ -48,7 +66,7 @@ def told(law: Law, what: str, step: int, time: Any = None) -> str:
     return f"At step {step}{when}: {what}, from {type(law).__name__}, {REGISTRY.describe(law)}."
 
 
-def raised(error: Exception) -> str:
+def raised(error: BaseException) -> str:
     """Say what was raised and where."""
     import traceback  # only where there is something to tell
 

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts.integrator import Sample
+from contactlab.contracts.integrator import Observer, Sample
+from contactlab.contracts.motion import NormalMotion
+from contactlab.plan import Answer
 
 Array = NDArray[np.float64]
+
+#: Instants in the history of impacts that are not marched.
+INSTANTS = 201
 
 
 def _column(unit: str) -> Any:
@@ -94,3 +100,30 @@ class Recorder:
         keys = self._fields[0] if self._fields else {}
         fields = {key: np.array([entry[key] for entry in self._fields]) for key in keys}
         return History(**columns, fields=fields)
+
+
+def show(normal: NormalMotion, known: Sequence[Answer], observer: Observer) -> None:
+    """Call ``observer`` along the course of impacts that are answered as wholes.
+
+    NaN stands for the tangential course of an answer that has none.
+    """
+    scene = normal.scene
+    for phase in np.linspace(0.0, np.pi, INSTANTS).tolist():
+        time, approach, rate, contact, impulse = normal.at(phase)
+        change: Any = np.full(scene.shape, np.nan)
+        force: Any = np.full(scene.shape, np.nan)
+        for where, answer in known:
+            if answer.course is not None:
+                gained, acting = answer.course(impulse, contact.friction_load)
+                change, force = np.where(where, gained, change), np.where(where, acting, force)
+        observer(
+            Sample(
+                time=time,
+                approach=approach,
+                normal_velocity=rate,
+                contact=contact,
+                slip_velocity=scene.slip_velocity + change,
+                tangential_force=force,
+                fields=dict,
+            )
+        )

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import attrs
@@ -11,15 +13,37 @@ from numpy.typing import NDArray
 
 from contactlab.checks import Real
 from contactlab.contracts.integrator import Integrator
-from contactlab.contracts.normal import NormalLaw
-from contactlab.contracts.tangential import TangentialLaw
+from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import ClosedFormNormalLaw
+from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
+from contactlab.contracts.whole_impact import WholeImpact
+from contactlab.declared import COARSE, range_of
 from contactlab.plain import plain
 from contactlab.scene import Scene
+from contactlab.status import Status
 
-#: Above this C the contact is so large that Hertz's half-space picture is doubtful (theory §8).
-HERTZ_DOUBTFUL_SIZE_RATIO = 0.1
-#: Why an impact of gross slip is not marched.
-SLIPS = "the impact slips from start to end"
+Mask = NDArray[np.bool_]
+
+#: Of what is known in closed form, over max(1, |psi1|).
+CLOSED_FORM = 1e-12
+
+
+class Sentence(NamedTuple):
+    """A sentence of a plan, and the impacts that it is said of."""
+
+    text: str
+    where: Mask
+
+    def __str__(self) -> str:
+        """Return the sentence with its share of a batch."""
+        if not self.where.ndim or self.where.all():
+            return self.text
+        share = f" ({int(self.where.sum())} of {self.where.size} impacts)"
+        head, colon, tail = self.text.partition(": ")
+        return f"{head}{share}{colon}{tail}"
+
+
+Sentences = tuple[Sentence, ...]
 
 
 @attrs.frozen(kw_only=True, eq=False)
@@ -28,22 +52,20 @@ class Plan:
 
     Attributes
     ----------
-    computed, left_out, cautions : tuple of str
-        One sentence each.
+    computed, left_out, cautions : tuple of Sentence
+        ``str`` of one gives it in words. Cautions are about the model and its numbers, and say
+        which of the two.
     marched : bool or array of bool
-        Impacts whose tangential force is followed step by step.
-    slipping : bool or array of bool
-        Impacts done by the closed form of gross slip throughout, eq. (45).
+        Impacts whose tangential motion an integrator follows.
     psi2_error : float or array
-        What psi2 may be off by, as the law and the integrator declare it (``contactlab.declared``);
-        NaN where none is declared.
+        Bound of the numerical error of psi2, as the laws and the integrator declare it; NaN where
+        none is declared. The errors of the model are not in it: see ``cautions``.
     """
 
-    computed: tuple[str, ...]
-    left_out: tuple[str, ...]
-    cautions: tuple[str, ...] = ()
-    marched: NDArray[np.bool_]
-    slipping: NDArray[np.bool_]
+    computed: Sentences
+    left_out: Sentences
+    cautions: Sentences = ()
+    marched: Mask
     psi2_error: Real = math.nan
 
     def __str__(self) -> str:
@@ -56,105 +78,197 @@ class Plan:
     def to_dict(self) -> dict[str, Any]:
         """Return the sentences as plain lists, and the declared error."""
         return {
-            "computed": list(self.computed),
-            "left_out": list(self.left_out),
-            "cautions": list(self.cautions),
+            "computed": list(map(str, self.computed)),
+            "left_out": list(map(str, self.left_out)),
+            "cautions": list(map(str, self.cautions)),
             "psi2_error": plain(self.psi2_error),
         }
+
+    def __getitem__(self, index: Any) -> Plan:
+        """Return the plan of some impacts of a batch; sentences stay those of the batch."""
+        error = self.psi2_error
+        return attrs.evolve(
+            self,
+            marched=self.marched[index],
+            psi2_error=error if isinstance(error, float) else _only(error[index]),
+        )
+
+    @classmethod
+    def joined(cls, plans: Sequence[Plan]) -> Plan:
+        """Return the plan of a one-dimensional batch from those of its parts, in order."""
+        sizes = [plan.marched.size for plan in plans]
+        errors = [
+            np.broadcast_to(plan.psi2_error, size) for plan, size in zip(plans, sizes, strict=True)
+        ]
+        kinds = {
+            kind: _together([getattr(plan, kind) for plan in plans], sizes)
+            for kind in ("computed", "left_out", "cautions")
+        }
+        return cls(
+            **kinds,
+            marched=np.concatenate([np.atleast_1d(plan.marched) for plan in plans]),
+            psi2_error=np.concatenate(errors),
+        )
+
+
+def _together(parts: Sequence[Sentences], sizes: Sequence[int]) -> Sentences:
+    """Return sentences with the masks of all parts; those that differ in numbers are one."""
+    found: dict[str, tuple[str, Mask]] = {}
+    first = 0
+    for sentences, size in zip(parts, sizes, strict=True):
+        for sentence in sentences:
+            key = re.sub(r"[\d.e+-]+", "#", sentence.text)
+            text, where = found.setdefault(key, (sentence.text, np.zeros(sum(sizes), dtype=bool)))
+            where[first : first + size] |= sentence.where
+        first += size
+    return tuple(Sentence(text, where) for text, where in found.values())
+
+
+class Answer(NamedTuple):
+    """A whole-impact answer and the impacts that it is taken for."""
+
+    where: Mask
+    known: WholeImpact
+
+
+def answers(
+    scene: Scene, normal: NormalMotion, tangential: TangentialLaw, *, history: bool | str
+) -> list[Answer]:
+    """Return the answers of ``tangential`` to whole impacts, each impact in one of them at most.
+
+    None where a march is asked for: traction and stick/slip fields come from nothing else, and
+    the impacts of a batch that keeps its history share one time axis.
+    """
+    shape = scene.shape
+    always = isinstance(tangential, WholeImpactTangentialLaw)
+    if history == "fields" and not always:
+        return []
+    left = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
+    left = np.array(np.broadcast_to(left, shape))
+    found = []
+    for known in tangential.whole_impacts(scene, normal):
+        where = left & np.broadcast_to(known.where, shape)
+        if where.any():
+            found.append(Answer(where, known))
+            left &= ~where
+    if history and shape and left.any() and not always:
+        return []
+    return found
 
 
 def make_plan(
     scene: Scene,
-    normal: NormalLaw,
+    normal: NormalMotion,
     tangential: TangentialLaw,
     integrator: Integrator,
+    known: Sequence[Answer],
     *,
     history: bool | str = False,
 ) -> Plan:
-    """Decide what ``scene`` needs from the three laws.
+    """Say what ``scene`` needs of the three laws.
 
-    Shortcuts are taken only where the normal motion is Hertz's closed form, and only on the
-    tangential law's own word (``inert``, ``slips_throughout``) or by symmetry.
+    Parameters
+    ----------
+    scene : Scene
+    normal : NormalMotion
+        Already made: it comes first.
+    tangential, integrator : Law
+    known : sequence of Answer
+        What need not be marched.
+    history : bool or "fields"
     """
-    closed_form = "elastic_hertz" in normal.offers
-    needs = _needs(scene, tangential, closed_form=closed_form, history=history)
-
-    computed, left_out = [], []
-    kind = type(normal).__name__
-    if closed_form:
-        computed.append(f"normal motion: {kind}, elastic, duration (7) in closed form")
-    else:
-        computed.append(f"normal motion: {kind}, integrated by {type(integrator).__name__}")
-    if needs.marched.any():
-        share = _share(needs.marched)
-        computed.append(f"tangential motion: {integrator!r} over {tangential!r}{share}")
-        if closed_form and tangential.exact and integrator.accuracy is not None:
-            computed.append(
-                f"exact to {integrator.accuracy:.0e}: closed-form normal motion, a friction law "
-                "without discretisation, errors under control (in psi2 over max(1, |psi1|))"
-            )
-        if closed_form and "closed_form_motion" not in integrator.uses:
-            computed.append(f"normal motion again, by the steps of {type(integrator).__name__}")
-    if needs.slipping.any():
-        computed.append(f"tangential velocity: eq. (45), slip throughout{_share(needs.slipping)}")
-    for why, mask in needs.left_out.items():
-        if mask.any():
-            left_out.append(f"tangential march{_share(mask)}: {why}")
-    if not history:
-        left_out.append("history: not asked for")
-    elif history != "fields":
-        left_out.append("traction and stick/slip fields: not asked for (history='fields')")
-    elif not needs.marched.any():
-        left_out.append("traction and stick/slip fields: there is no march to take them from")
+    everywhere = np.ones(scene.shape, dtype=bool)
+    parted = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS) & everywhere
+    marched = parted.copy()
+    left_out = []
+    for answer in known:
+        marched &= ~answer.where
+        text = f"march of the tangential motion: {answer.known.reason}"
+        left_out.append(Sentence(text, answer.where))
+    if not parted.all():
+        text = "march of the tangential motion: the normal motion came to no end"
+        left_out.append(Sentence(text, ~parted))
+    how = "integrated from first touch to separation"
+    if isinstance(normal.law, ClosedFormNormalLaw):
+        how = "in closed form"
+    computed = [Sentence(f"normal motion: {type(normal.law).__name__}, {how}", everywhere)]
     cautions = []
-    if np.any(np.asarray(scene.size_ratio) > HERTZ_DOUBTFUL_SIZE_RATIO) and scene.sphere:
-        cautions.append(
-            f"C = {np.max(scene.size_ratio):.2g}: the contact is not small against the radius, "
-            "Hertz's theory is doubtful above 0.1"
-        )
+    if parted.any():
+        cautions += list(normal.law.cautions(scene, normal))
+        cautions += list(tangential.cautions(scene, normal))
+    error = _error(scene, normal, tangential, integrator, marched)
+    if marched.any():
+        text = f"tangential motion: {integrator!r} over {tangential!r}"
+        computed.append(Sentence(text, marched))
+        cautions += list(integrator.remarks(normal, tangential, scene))
+        cautions += _coarse(scene, error, marched, tangential, integrator)
+    computed += _said(error, marched, parted)
+    if not history:
+        left_out.append(Sentence("history: not asked for", everywhere))
+    elif history != "fields":
+        text = "traction and stick/slip fields: not asked for (history='fields')"
+        left_out.append(Sentence(text, everywhere))
+    elif not marched.any():
+        text = "traction and stick/slip fields: there is no march to take them from"
+        left_out.append(Sentence(text, everywhere))
     return Plan(
         computed=tuple(computed),
         left_out=tuple(left_out),
-        cautions=tuple(cautions),
-        marched=needs.marched,
-        slipping=needs.slipping,
+        cautions=tuple(Sentence(text, everywhere) for text in cautions),
+        marched=marched,
+        psi2_error=_only(error),
     )
 
 
-class _Needs(NamedTuple):
-    """Masks of the scene's shape."""
-
-    marched: NDArray[np.bool_]
-    slipping: NDArray[np.bool_]
-    left_out: dict[str, NDArray[np.bool_]]  # by reason; each impact once
-
-
-def _needs(
-    scene: Scene, tangential: TangentialLaw, *, closed_form: bool, history: bool | str
-) -> _Needs:
-    """Return which impacts need a march, and why the others do not."""
-    shape = scene.shape
-    marched = np.ones(shape, dtype=bool)
-    if not closed_form:
-        return _Needs(marched, ~marched, {})
-    slips: Any = False
-    if history != "fields":
-        slips = tangential.slips_throughout(scene.psi1, scene.chi)
-    left_out = {}
-    for why, mask in (
-        ("the law makes no force", tangential.inert),
-        ("central impact, no slip velocity", np.asarray(scene.slip_velocity) == 0.0),
-        ("friction coefficient 0", np.asarray(scene.friction_coefficient) == 0.0),
-        (SLIPS, slips),
-    ):
-        left_out[why] = marched & mask
-        marched = marched & ~left_out[why]
-    if history and shape and marched.any():  # one time axis for the whole batch
-        marched = np.ones(shape, dtype=bool)
-        left_out = {SLIPS: ~marched}
-    return _Needs(marched, left_out[SLIPS], left_out)
+def _error(
+    scene: Scene,
+    normal: NormalMotion,
+    tangential: TangentialLaw,
+    integrator: Integrator,
+    marched: Mask,
+) -> Any:
+    """Return the declared numerical error of psi2, an array of the scene's shape."""
+    with np.errstate(all="ignore"):
+        psi1 = np.abs(scene.psi1)
+        largest = np.maximum(1.0, np.where(np.isfinite(psi1), psi1, 1.0))
+        known = CLOSED_FORM * largest + normal.accuracy * 4.0 * np.asarray(scene.chi)
+        declared: Any = np.nan
+        if marched.any():
+            declared = integrator.psi2_error(normal, tangential, scene)
+        return np.array(np.where(marched, declared, known))
 
 
-def _share(mask: NDArray[np.bool_]) -> str:
-    """Say of how many impacts of a batch something holds."""
-    return f" ({int(mask.sum())} of {mask.size} impacts)" if mask.ndim else ""
+def _said(error: Any, marched: Mask, parted: Mask) -> list[Sentence]:
+    """Return what a plan says of the numerical error."""
+    undeclared = parted & np.isnan(error)
+    found = []
+    if (parted & ~undeclared).any():
+        most = float(np.max(error[parted & ~undeclared]))
+        text = f"numerical error of psi2: at most {most:.2g}, declared"
+        found.append(Sentence(text, parted & ~undeclared))
+    if undeclared.any():
+        text = "numerical error of psi2: none is declared for these laws"
+        found.append(Sentence(text, undeclared))
+    return found
+
+
+def _coarse(
+    scene: Scene, error: Any, marched: Mask, tangential: TangentialLaw, integrator: Integrator
+) -> list[str]:
+    """Return the caution of steps or parts so coarse that no digit is sure."""
+    unit, width, _ = range_of(scene)
+    with np.errstate(all="ignore"):
+        share = np.where(marched, error * np.divide(unit, width), 0.0)
+    coarse = share > COARSE
+    if not coarse.any():
+        return []
+    of = f" for {int(coarse.sum())} of {coarse.size} impacts" if coarse.ndim else ""
+    finer = " and ".join(part.resolution for part in (tangential, integrator) if part.resolution)
+    return [
+        f"coarse{of}: the declared numerical error is {float(np.nanmax(share)):.2g} of the range "
+        f"of psi2, so that no digit is sure; finer {finer} would help"
+    ]
+
+
+def _only(array: Any) -> Any:
+    return array if np.ndim(array) else float(array)

@@ -112,6 +112,10 @@ class Registry:
             raise refuse("name", name, f"is blocked by {BLOCK_VARIABLE}", "unset it to use the law")
         return found[0]
 
+    def at_hand(self, info: PluginInfo) -> bool:
+        """Return whether a law is of this distribution, or its plug-in was imported already."""
+        return info.distribution == hookspecs.PROJECT or info.name in self._loaded
+
     def law_class(self, name: str) -> type[Law]:
         """Import the plug-in that offers ``name`` and return the law's class."""
         if name not in self._loaded or name in blocked_names():

@@ -9,10 +9,11 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab import batch
 from contactlab.checks import Real
-from contactlab.contracts.integrator import MOTION_ENTRIES, Motion
 from contactlab.energy import EnergyLedger, ledger
 from contactlab.history import History
+from contactlab.motion import Motion
 from contactlab.plan import Plan
 from contactlab.scene import Scene
 from contactlab.status import Status
@@ -45,13 +46,16 @@ class ImpactResult:
     scene : Scene
     plan : Plan
     motion : Motion
-        What the integrator returned.
+        Normal and tangential motion, as the laws and the integrator returned them.
     run_time : float
         Wall-clock time of the whole run in s (of the whole batch).
     laws : mapping of str to str
         Names of the three laws with their versions.
     history : History or None
         Only if asked for.
+    psi2_error_estimate : float, array or None
+        Estimate of the numerical error of psi2, only if asked for; the model's errors are in the
+        plan's cautions.
     """
 
     scene: Scene
@@ -60,6 +64,7 @@ class ImpactResult:
     run_time: float = attrs.field(metadata={"unit": "s"})
     laws: Mapping[str, str]
     history: History | None = attrs.field(default=None, repr=False)
+    psi2_error_estimate: Real | None = attrs.field(default=None, repr=False)
 
     def __repr__(self) -> str:
         """Return psi2, how it went and by what laws, on one line."""
@@ -211,32 +216,19 @@ class ImpactResult:
         if not np.size(np.arange(shape[0])[_slice(index)]):
             raise IndexError(f"{index}: there is no such impact, of {shape[0]}")
 
-        def pick(value: Any) -> Any:
-            if isinstance(value, float | int) or value is None:
-                return value
-            picked = np.broadcast_to(np.asarray(value), shape)[index]
-            return picked.item() if isinstance(picked, np.generic) else picked
-
-        motion = attrs.evolve(
-            self.motion,
-            **{name: pick(getattr(self.motion, name)) for name in MOTION_ENTRIES},
-        )
         history = self.history
         if history is not None:
             columns = {name: column[:, index] for name, column in history.columns().items()}
             fields = {name: field[:, index] for name, field in history.fields.items()}
             history = History(**columns, fields=fields)
+        scene = self.scene.take(index)
         return attrs.evolve(
             self,
-            scene=_picked(self.scene, pick),
-            plan=attrs.evolve(
-                self.plan,
-                marched=self.plan.marched[index],
-                slipping=self.plan.slipping[index],
-                psi2_error=pick(self.plan.psi2_error),
-            ),
-            motion=motion,
+            scene=scene,
+            plan=self.plan[index],
+            motion=batch.taken(self.motion, shape, index),
             history=history,
+            psi2_error_estimate=batch.taken(self.psi2_error_estimate, shape, index),
         )
 
     def __iter__(self) -> Iterator[ImpactResult]:
@@ -261,10 +253,3 @@ def _angle(tangential: Real, normal: Real) -> Real:
     angle = np.arctan2(tangential, normal)
     return float(angle) if np.ndim(angle) == 0 else angle
 
-
-def _picked(tree: Any, pick: Any) -> Any:
-    """Apply ``pick`` to every number of an attrs tree."""
-    if tree is None or not attrs.has(type(tree)):
-        return pick(tree)
-    names = [field.name for field in attrs.fields(type(tree))]
-    return type(tree)(**{name: _picked(getattr(tree, name), pick) for name in names})

@@ -8,9 +8,13 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab import batch
 from contactlab.bodies import HalfSpace, Pair, Sphere
 from contactlab.checks import NON_NEGATIVE, POSITIVE, Real, quantity, real, refuse
-from contactlab.closed_forms import DURATION_CONSTANT, size_ratio
+
+#: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s: numbers
+#: formed from smaller ones are no longer held to sixteen digits.
+LEAST_ENERGY = LEAST_VELOCITY = 1e-290
 
 
 def _is_sphere(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
@@ -92,6 +96,33 @@ class Scene:
                 "give numbers, or arrays of equal length"
             ) from None
         real("tangential_velocity + spin * radius", self.slip_velocity)
+        self._check_scales()
+
+    def _check_scales(self) -> None:
+        """Refuse scenes whose numbers a float cannot hold."""
+        with np.errstate(all="ignore"):
+            energy: Any = 0.5 * self.pair.normal_mass * np.square(self.normal_speed)
+            unit: Any = self.friction_coefficient * self.normal_speed / self.pair.stiffness_ratio
+            slip: Any = np.abs(self.slip_velocity)
+            slip_energy: Any = 0.5 * self.pair.tangential_mass * np.square(slip)
+            tiny = (np.maximum(unit, slip) < LEAST_VELOCITY) & (unit > 0.0) & (slip > 0.0)
+            vast = (unit > 0.0) & ~np.isfinite(np.divide(slip, unit + (unit == 0.0)))
+            lost = np.any((np.asarray(self.friction_coefficient) > 0.0) & (unit == 0.0))
+        if not np.all((energy >= LEAST_ENERGY) & np.isfinite(energy + slip_energy)):
+            raise refuse(
+                "normal_speed",
+                self.normal_speed,
+                f"the kinetic energy of the impact must be at least {LEAST_ENERGY:g} J and finite, "
+                "or digits are lost",
+                "give larger speeds and masses, or smaller ones, or other units",
+            )
+        if np.any(tiny) or np.any(vast) or lost:
+            raise refuse(
+                "friction_coefficient",
+                self.friction_coefficient,
+                "with these velocities psi1 of eq. (29) cannot be held in floating point",
+                "give 0 for no friction, or larger velocities",
+            )
 
     @classmethod
     def nondimensional(cls, *, psi1: Any, chi: Any) -> Scene:
@@ -140,20 +171,23 @@ class Scene:
                     "must have bodies if, and only if, scenes[0] has: else spin would be lost",
                     "give all in SI, or all by psi1 and chi",
                 )
-        stacked = _stacked(scenes)
+        stacked = batch.stacked(scenes)
         assert isinstance(stacked, cls)
         if stacked.shape:
             return stacked
         return attrs.evolve(stacked, normal_speed=np.full(len(scenes), stacked.normal_speed))
 
     def take(self, part: Any) -> Scene:
-        """Return the batch scene of some of the impacts, by slice, mask or indices.
+        """Return the scene of some of the impacts: a slice, mask or indices, or the index of one.
 
         What all impacts share stays a plain number: laws are faster then.
         """
-        taken = _taken(self, self.shape, part)
-        assert isinstance(taken, Scene)
-        return taken
+        shape = self.shape
+        taken: Scene = batch.taken(self, shape, part)
+        if taken.shape or isinstance(part, int | tuple):
+            return taken
+        count = np.shape(np.broadcast_to(0.0, shape)[part])
+        return attrs.evolve(taken, normal_speed=np.full(count, taken.normal_speed))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -198,57 +232,3 @@ class Scene:
     def psi1(self) -> Real:
         """Non-dimensional local angle of incidence, from the local velocity (20), (29)."""
         return self.psi(self.slip_velocity)
-
-    @property
-    def size_ratio(self) -> Real:
-        """C, the ratio of the largest contact radius to R, eq. (9)."""
-        pair = self.pair
-        return size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, self.normal_speed)
-
-    @property
-    def maximum_radius(self) -> Real:
-        """Largest contact radius of a Hertz impact, a = C R (8), in m."""
-        return self.size_ratio * self.pair.radius
-
-    @property
-    def maximum_approach(self) -> Real:
-        """C² R, the largest approach of a Hertz impact, in m."""
-        ratio = self.size_ratio  # a product: a float squared raises OverflowError
-        return ratio * ratio * self.pair.radius
-
-    @property
-    def maximum_force(self) -> Real:
-        """P_max of a Hertz impact, in N, from its energy: ½ M v1² = (2/5) P_max C² R."""
-        speed = self.normal_speed
-        return 1.25 * self.pair.normal_mass * speed * (speed / self.maximum_approach)
-
-    @property
-    def duration(self) -> Real:
-        """Duration of a Hertz impact t = 2.9432 C² R / v1 (7), in s."""
-        return DURATION_CONSTANT * self.maximum_approach / self.normal_speed
-
-
-def _stacked(items: Sequence[Any]) -> Any:
-    """Merge equal-typed attrs trees: leaves that differ become arrays."""
-    first = items[0]
-    if all(item is first for item in items):
-        return first
-    if any(type(item) is not type(first) for item in items):
-        return None  # bodies of different kinds: the reduced pair still serves
-    if attrs.has(type(first)):
-        names = [field.name for field in attrs.fields(type(first))]
-        merged = {name: _stacked([getattr(item, name) for item in items]) for name in names}
-        return type(first)(**merged)
-    if all(item == first for item in items):
-        return first
-    return np.array(items, dtype=np.float64)
-
-
-def _taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
-    """Index every array of an attrs tree; plain numbers stand for the whole batch."""
-    if isinstance(tree, np.ndarray):
-        return np.broadcast_to(tree, shape)[part]
-    if attrs.has(type(tree)):
-        names = [field.name for field in attrs.fields(type(tree))]
-        return type(tree)(**{name: _taken(getattr(tree, name), shape, part) for name in names})
-    return tree

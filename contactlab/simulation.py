@@ -5,28 +5,25 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
 
 from contactlab import composition, faults
-from contactlab.checks import Real, refuse, whole
-from contactlab.contracts.integrator import (
-    Integrator,
-    Motion,
-    Problem,
-    Sample,
-)
-from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+from contactlab.checks import refuse, whole
+from contactlab.contracts.integrator import Integrator, Observer, TangentialMotion
+from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.tangential import TangentialLaw
-from contactlab.declared import psi2_error, told
 from contactlab.energy import balanced
-from contactlab.history import Recorder
-from contactlab.plan import Plan, make_plan
+from contactlab.error_estimate import estimated
+from contactlab.history import Recorder, show
+from contactlab.motion import Motion, sound
+from contactlab.normal_motion import FailedMotion, normal_motion
+from contactlab.plan import Answer, Plan, answers, make_plan
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
-from contactlab.soundness import sound
 from contactlab.status import Status
 
 #: Impacts of a sweep advanced together: enough to hide the cost of a call, few enough that
@@ -36,8 +33,14 @@ CHUNK, CHUNK_ONE_BY_ONE = 1000, 20
 FEW = 8
 #: Friction work over the energy at the start is this many times less accurate than psi2.
 WORK_ACCURACY = 10.0
-#: Instants in the history of an impact that is done in closed form.
-CLOSED_FORM_INSTANTS = 201
+
+
+class Prepared(NamedTuple):
+    """What comes before the march: the normal motion, whole-impact answers, and the plan."""
+
+    normal: NormalMotion
+    known: list[Answer]
+    plan: Plan
 
 
 @attrs.frozen(kw_only=True, init=False)
@@ -46,11 +49,11 @@ class Simulation:
 
     Parameters
     ----------
-    normal, tangential, integrator : str or law
+    normal, tangential, integrator : str or law, optional
         A name (``"hertz"``), or an object made by ``contactlab.create`` or by your own class.
         The default is exact: Hertz's closed form and the slip front followed event by event.
-        Where no integrator is named ``events`` is taken, or ``symplectic`` where that does not
-        fit the two laws.
+        Where one is left out the best is taken that fits those given: see
+        ``contactlab.composition.PREFERRED``.
 
     Raises
     ------
@@ -65,37 +68,20 @@ class Simulation:
     def __init__(
         self,
         *,
-        normal: str | NormalLaw = "hertz",
-        tangential: str | TangentialLaw = "fronts",
+        normal: str | NormalLaw | None = None,
+        tangential: str | TangentialLaw | None = None,
         integrator: str | Integrator | None = None,
     ) -> None:
-        parts = {
-            "normal": composition.law("normal", normal),
-            "tangential": composition.law("tangential", tangential),
-        }
-        chosen = composition.fitting_integrator(**parts) if integrator is None else integrator
-        parts["integrator"] = composition.law("integrator", chosen)
-        composition.check_fit(**parts)
-        self.__attrs_init__(**parts)
+        made = composition.compose(normal, tangential, integrator)
+        self.__attrs_init__(**{law.kind: law for law in made})
 
     def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
         """Say what ``run`` would compute for ``scene``, what it leaves out and why."""
-        plan = make_plan(
-            _scene(scene), self.normal, self.tangential, self.integrator, history=_asked(history)
-        )
-        problem = self.problem(scene)
-        error, share = psi2_error(scene, problem, self.integrator, plan.marched)
-        if not plan.marched.any():
-            return attrs.evolve(plan, psi2_error=error)
-        said, remarks = told(error, share, problem, self.integrator)
-        return attrs.evolve(
-            plan,
-            computed=plan.computed + said,
-            cautions=plan.cautions + self.integrator.remarks(problem) + remarks,
-            psi2_error=error,
-        )
+        return self._prepared(_scene(scene), _asked(history)).plan
 
-    def run(self, scene: Scene, *, history: bool | str = False) -> ImpactResult:
+    def run(
+        self, scene: Scene, *, history: bool | str = False, estimate_error: bool = False
+    ) -> ImpactResult:
         """Run one impact, or a batch scene at once.
 
         Parameters
@@ -103,6 +89,10 @@ class Simulation:
         scene : Scene
         history : bool or "fields"
             Keep the course of the impact; ``"fields"`` keeps traction and stick/slip too.
+        estimate_error : bool
+            Estimate the numerical error of psi2, of any laws, by running the scene again at half
+            and at twice the resolution: ``ImpactResult.psi2_error_estimate``. About four times the
+            work.
 
         Returns
         -------
@@ -116,29 +106,19 @@ class Simulation:
             of a batch whose impacts have instants of their own.
         """
         started = time.perf_counter()
-        plan = self.plan(scene, history=history)
-        if history and scene.shape and not self.integrator.common_instants:
-            raise refuse(
-                "history",
-                history,
-                f"impacts of a batch have instants of their own under {self.integrator!r}",
-                "run them one by one",
-            )
-        recorder = Recorder(scene.shape, with_fields=history == "fields") if history else None
-        if plan.marched.all():
-            motion = self._integrate(scene, recorder)
-        elif not plan.marched.any():
-            motion = self._closed_form(scene, plan, recorder)
-        else:
-            motion = self._mixed(scene, plan)
-        return ImpactResult(
+        recorder = Recorder(_scene(scene).shape, with_fields=history == "fields")
+        plan, motion = self._outcome(scene, _asked(history), recorder if history else None)
+        result = ImpactResult(
             scene=scene,
             plan=plan,
-            motion=balanced(sound(motion), scene, self._books_bound()),
+            motion=motion,
             laws=composition.versions(self.normal, self.tangential, self.integrator),
-            history=recorder.history() if recorder else None,
+            history=recorder.history() if history else None,
             run_time=time.perf_counter() - started,
         )
+        if not estimate_error:
+            return result
+        return attrs.evolve(result, psi2_error_estimate=estimated(self, result))
 
     def sweep(
         self,
@@ -181,111 +161,184 @@ class Simulation:
         if chunk is None:
             chunk = CHUNK if self.integrator.together else CHUNK_ONE_BY_ONE
         size, step = batch.shape[0], whole("chunk", chunk)
+        plans: list[Plan] = []
         motions: list[Motion] = []
         done = 0
         try:
             while done < size:
                 part = batch.take(slice(done, min(done + step, size)))
-                motions.append(self.run(part).motion)
+                plan, motion = self._outcome(part, False, None)
+                plans.append(plan)
+                motions.append(motion)
                 done += part.shape[0]
                 if progress is not None:
                     progress(done, size)
         except KeyboardInterrupt:
+            plans, motions = plans[: len(motions)], motions[: len(plans)]
             done = sum(np.size(motion.duration) for motion in motions)
             if done < size:
                 motions.append(Motion.nothing((size - done,), Status.INTERRUPTED))
+                plans.append(_no_plan(size - done))
         return ImpactResult(
             scene=batch,
-            plan=self.plan(batch),
+            plan=Plan.joined(plans),
             motion=Motion.joined(motions, batch.shape),
             laws=composition.versions(self.normal, self.tangential, self.integrator),
             run_time=time.perf_counter() - started,
         )
 
-    def problem(self, scene: Scene) -> Problem:
-        """Return what the integrator will be given for ``scene``."""
-        return Problem(
-            normal=self.normal,
-            tangential=self.tangential,
-            pair=scene.pair,
-            friction_coefficient=scene.friction_coefficient,
-            normal_speed=scene.normal_speed,
-            slip_velocity=scene.slip_velocity,
-            maximum_radius=scene.maximum_radius,
-            duration=scene.duration,
-            shape=scene.shape,
+    def normal_motion(self, scene: Scene) -> NormalMotion:
+        """Return the normal motion of ``scene``; a law that fails gives one without an end."""
+        try:
+            return normal_motion(self.normal, scene)
+        except faults.LawFaultError as fault:
+            return FailedMotion(self.normal, scene, fault.status, fault.detail)
+
+    def _prepared(self, scene: Scene, history: bool | str) -> Prepared:
+        """Return what comes before the march.
+
+        Raises
+        ------
+        LawFaultError
+            If a law raises where it is asked what it knows.
+        """
+        with np.errstate(under="ignore"):
+            normal = self.normal_motion(scene)
+            with faults.blaming(self.tangential):
+                known = answers(scene, normal, self.tangential, history=history)
+                laws = (self.tangential, self.integrator)
+                return Prepared(
+                    normal, known, make_plan(scene, normal, *laws, known, history=history)
+                )
+
+    def _outcome(
+        self, scene: Scene, history: bool | str, recorder: Recorder | None
+    ) -> tuple[Plan, Motion]:
+        """Return plan and motion; a law that raises in a batch costs those impacts only."""
+        shape = scene.shape
+        if history and shape and not self.integrator.common_instants:
+            raise refuse(
+                "history",
+                history,
+                f"impacts of a batch have instants of their own under {self.integrator!r}",
+                "run them one by one",
+            )
+        try:
+            normal, known, plan = self._prepared(scene, history)
+        except faults.LawFaultError as fault:
+            failed = Motion.nothing(shape, fault.status, fault.detail)
+            return _no_plan(*shape), failed
+        if isinstance(normal, FailedMotion) and shape and math.prod(shape) > 1:
+            return self._by_halves(scene)
+        tangential = self._tangential(scene, Prepared(normal, known, plan), recorder)
+        motion = sound(Motion.along(normal, tangential))
+        return plan, balanced(motion, scene, self._books_bound())
+
+    def _by_halves(self, scene: Scene) -> tuple[Plan, Motion]:
+        """Return plan and motion of a batch, half by half, down to the impacts that fail."""
+        shape = scene.shape
+        first = np.arange(math.prod(shape)).reshape(shape) < math.prod(shape) // 2
+        plans, motions = zip(
+            *(self._outcome(scene.take(part), False, None) for part in (first, ~first)),
+            strict=True,
+        )
+        joined = Plan.joined(plans)
+        return (
+            attrs.evolve(
+                joined,
+                marched=joined.marched.reshape(shape),
+                psi2_error=np.reshape(joined.psi2_error, shape),
+            ),
+            Motion.joined(motions, shape),
+        )
+
+    def _tangential(
+        self, scene: Scene, prepared: Prepared, recorder: Recorder | None
+    ) -> TangentialMotion:
+        """Return the tangential motion: what is known as a whole, and the rest marched."""
+        normal, known, plan = prepared
+        shape, marched = scene.shape, plan.marched
+        if marched.all():
+            return self._march(normal, scene, recorder)
+        everywhere = np.ones(shape, dtype=bool)
+        nothing = TangentialMotion.nothing(shape, Status.NOT_SEPARATED)
+        nothing = attrs.evolve(nothing, status=normal.status, detail=normal.detail)
+        parts: list[tuple[Any, TangentialMotion]] = [(everywhere, nothing)]
+        for where, answer in known:
+            change, work = (
+                np.broadcast_to(np.asarray(entry, dtype=np.float64), shape)[where]
+                for entry in (answer.slip_velocity_change, answer.friction_work)
+            )
+            status = np.full(change.shape, Status.SUCCESS, dtype=object)
+            parts.append(
+                (
+                    where,
+                    TangentialMotion(
+                        slip_velocity_change=change, friction_work=work, status=status
+                    ),
+                )
+            )
+        if marched.any():
+            parts.append((marched, self._march(normal.take(marched), scene.take(marched), None)))
+        elif recorder is not None:
+            show(normal, known, recorder)
+        merged = TangentialMotion.merged(parts, shape)
+        if shape:
+            return merged
+        return TangentialMotion(
+            slip_velocity_change=float(merged.slip_velocity_change),
+            friction_work=float(merged.friction_work),
+            status=np.asarray(merged.status).item(),
+            detail=np.asarray(merged.detail).item(),
+            counters=merged.counters,
         )
 
     def _books_bound(self) -> float:
         """Return what the books may miss by: the law's own bound, and the integrator's share."""
         return self.tangential.books_bound + WORK_ACCURACY * (self.integrator.accuracy or 0.0)
 
-    def _integrate(self, scene: Scene, recorder: Recorder | None) -> Motion:
+    def _march(
+        self, normal: NormalMotion, scene: Scene, recorder: Observer | None
+    ) -> TangentialMotion:
         """Return the motion; a failure within a batch is traced, by halves, to those that fail."""
-        problem, shape = self.problem(scene), scene.shape
-        motion, raised = self._attempt(problem, recorder)
+        shape = scene.shape
+        size = math.prod(shape)
+        if shape and size == 1 and recorder is None:  # one impact is faster as plain numbers
+            alone = (0,) * len(shape)
+            motion, _ = self._attempt(normal.take(alone), scene.take(alone), None)
+            return TangentialMotion.joined([motion], shape)
+        motion, raised = self._attempt(normal, scene, recorder)
         if not shape or recorder or np.all(motion.status):
             return motion
         if not (raised or self.integrator.together):  # each was followed by itself
             return motion
-        size = math.prod(shape)
         if size <= FEW:
-            alone = [self._attempt(impact, None)[0] for impact in problem.impacts()]
-            return Motion.joined(alone, shape)
+            places = list(np.ndindex(shape))
+            single = [self._attempt(normal.take(at), scene.take(at), None)[0] for at in places]
+            return TangentialMotion.joined(single, shape)
         first = np.arange(size).reshape(shape) < size // 2
-        halves = [self._integrate(scene.take(part), None) for part in (first, ~first)]
-        return Motion.joined(halves, shape)
+        halves = [self._march(normal.take(part), scene.take(part), None) for part in (first, ~first)]
+        return TangentialMotion.joined(halves, shape)
 
-    def _attempt(self, problem: Problem, recorder: Recorder | None) -> tuple[Motion, bool]:
+    def _attempt(
+        self, normal: NormalMotion, scene: Scene, recorder: Observer | None
+    ) -> tuple[TangentialMotion, bool]:
         """Return the motion, and whether the integrator raised instead of returning one."""
         try:
             # Where a user has asked for errors of underflow: small numbers may vanish here.
             with np.errstate(under="ignore"):
-                return self.integrator.integrate(problem, recorder), False
-        except Exception as error:
+                return self.integrator.integrate(normal, self.tangential, scene, recorder), False
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # a plug-in may not end the process
             told = faults.raised(error)
-            return Motion.nothing(problem.shape, Status.LAW_RAISED, told), True
+            return TangentialMotion.nothing(scene.shape, Status.LAW_RAISED, told), True
 
-    def _closed_form(self, scene: Scene, plan: Plan, recorder: Recorder | None) -> Motion:
-        """Return the motion of impacts with no tangential march: none, or eq. (45)."""
-        assert isinstance(self.normal, ClosedFormNormalLaw)
-        pair, speed = scene.pair, scene.normal_speed
-        motion = self.normal.motion(pair, speed)
-        sense = np.sign(scene.slip_velocity) * plan.slipping
-        friction = scene.friction_coefficient * sense
-        impulse = 2.0 * pair.normal_mass * speed
-        change = -friction * impulse / pair.tangential_mass
-        work = friction * impulse * (scene.slip_velocity + 0.5 * change)
-        if recorder is not None:
-            phases = np.linspace(0.0, np.pi, CLOSED_FORM_INSTANTS)
-            for phase in phases.tolist():
-                instant, approach, rate, contact = motion.at(phase)
-                slowed = friction * pair.normal_mass * (speed - rate) / pair.tangential_mass
-                recorder(
-                    Sample(
-                        time=instant,
-                        approach=approach,
-                        normal_velocity=rate,
-                        contact=contact,
-                        slip_velocity=scene.slip_velocity - slowed,
-                        tangential_force=friction * contact.force,
-                        fields=dict,
-                    )
-                )
-        return Motion(
-            duration=_full(motion.duration, scene.shape),
-            normal_velocity=_full(-speed, scene.shape),
-            slip_velocity_change=_full(change, scene.shape),
-            friction_work=_full(work, scene.shape),
-            status=_statuses(scene.shape, Status.SUCCESS),
-        )
 
-    def _mixed(self, scene: Scene, plan: Plan) -> Motion:
-        """March the impacts that need it, do the rest in closed form, and merge."""
-        closed = self._closed_form(scene, plan, None)
-        marched = self._integrate(scene.take(plan.marched), None)
-        everywhere = np.ones(scene.shape, dtype=bool)
-        return Motion.merged(((everywhere, closed), (plan.marched, marched)), scene.shape)
+def _no_plan(*shape: int) -> Plan:
+    """Return the plan of impacts of which nothing is known."""
+    nowhere = np.zeros(shape, dtype=bool)
+    return Plan(computed=(), left_out=(), marched=nowhere, psi2_error=math.nan)
 
 
 def _scene(scene: object) -> Scene:
@@ -298,11 +351,3 @@ def _asked(history: bool | str) -> bool | str:
     if history in (True, False, "fields"):
         return history
     raise refuse("history", history, "must be True, False or 'fields'")
-
-
-def _full(value: Any, shape: tuple[int, ...]) -> Real:
-    return float(value) if not shape else np.array(np.broadcast_to(value, shape))
-
-
-def _statuses(shape: tuple[int, ...], status: Status) -> Any:
-    return np.full(shape, status, dtype=object) if shape else status

@@ -1,14 +1,14 @@
 """The three contracts: what a normal law, a tangential law and an integrator promise."""
 
-from contactlab.contracts.integrator import Integrator, Motion, Observer, Problem, Sample
+from contactlab.contracts.integrator import Integrator, Observer, Sample, TangentialMotion
 from contactlab.contracts.law import API_VERSION, Law
-from contactlab.contracts.normal import (
+from contactlab.contracts.motion import (
     ClosedFormMotion,
-    ClosedFormNormalLaw,
-    Course,
-    NormalContact,
-    NormalLaw,
+    NormalMotion,
+    NormalSample,
+    ScaledContact,
 )
+from contactlab.contracts.normal import ClosedFormNormalLaw, NormalContact, NormalLaw
 from contactlab.contracts.phases import (
     ClosedPhase,
     Path,
@@ -18,39 +18,46 @@ from contactlab.contracts.phases import (
     PhaseState,
 )
 from contactlab.contracts.tangential import (
+    AllStepsResponse,
+    AllStepsTangentialLaw,
     Increment,
-    Run,
-    RunningTangentialLaw,
-    RunResponse,
     SteppedTangentialLaw,
+    Steps,
     TangentialLaw,
     TangentialResponse,
+    WholeImpactTangentialLaw,
 )
+from contactlab.contracts.whole_impact import WholeImpact, no_force, sliding
 
 __all__ = [
     "API_VERSION",
+    "AllStepsResponse",
+    "AllStepsTangentialLaw",
     "ClosedFormMotion",
     "ClosedFormNormalLaw",
     "ClosedPhase",
-    "Course",
     "Increment",
     "Integrator",
     "Law",
-    "Motion",
     "NormalContact",
     "NormalLaw",
+    "NormalMotion",
+    "NormalSample",
     "Observer",
     "Path",
     "Phase",
     "PhaseResponse",
     "PhaseState",
     "PhasedTangentialLaw",
-    "Problem",
-    "Run",
-    "RunResponse",
-    "RunningTangentialLaw",
     "Sample",
+    "ScaledContact",
     "SteppedTangentialLaw",
+    "Steps",
     "TangentialLaw",
+    "TangentialMotion",
     "TangentialResponse",
+    "WholeImpact",
+    "WholeImpactTangentialLaw",
+    "no_force",
+    "sliding",
 ]

@@ -1,92 +1,28 @@
-"""The contract of an integrator: from a problem to a motion."""
+"""The contract of an integrator: the tangential motion along a normal motion."""
 
 from __future__ import annotations
 
 import math
 from abc import abstractmethod
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, ClassVar, NamedTuple, TypeAlias
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ClassVar, NamedTuple, Self, TypeAlias
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
-from contactlab.bodies import Pair
+from contactlab.batch import merged
 from contactlab.checks import Mask, Real
 from contactlab.contracts.law import Law
+from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalContact, NormalLaw
 from contactlab.contracts.tangential import TangentialLaw
+from contactlab.scene import Scene
 from contactlab.status import Status
 
 
-@attrs.frozen(kw_only=True, eq=False)
-class Problem:
-    """What an integrator solves; numbers are floats, or arrays of the batch ``shape``.
-
-    Attributes
-    ----------
-    pair : Pair
-    friction_coefficient : float or array
-    normal_speed : float or array
-        v1 in m/s.
-    slip_velocity : float or array
-        v_x at first touch, in m/s, eq. (20).
-    maximum_radius : float or array
-        a = CR in m, eq. (8): the largest contact radius of a Hertz impact. Laws that need
-        a fixed grid span it.
-    duration : float or array
-        t in s, eq. (7): the time scale for choosing steps.
-    shape : tuple of int
-        Batch shape, () for one impact.
-    """
-
-    normal: NormalLaw
-    tangential: TangentialLaw
-    pair: Pair
-    friction_coefficient: Real
-    normal_speed: Real
-    slip_velocity: Real
-    maximum_radius: Real
-    duration: Real
-    shape: tuple[int, ...]
-
-    def impacts(self) -> Iterator[Problem]:
-        """Iterate over the impacts of a batch, each a problem of shape (), in C order."""
-        whole = {name: self._spread(getattr(self, name)) for name in PROBLEM_NUMBERS}
-        fields = [field.name for field in attrs.fields(Pair)]
-        pairs = {name: self._spread(getattr(self.pair, name)) for name in fields}
-        for index in range(math.prod(self.shape)):
-            pair = Pair(**{name: column[index] for name, column in pairs.items()})
-            one: dict[str, Any] = {name: column[index] for name, column in whole.items()}
-            yield attrs.evolve(self, pair=pair, shape=(), **one)
-
-    def take(self, where: NDArray[np.bool_]) -> Problem:
-        """Return the problem of those impacts of a batch that ``where`` says, of shape (n,).
-
-        What all impacts share stays a plain number: laws are faster then.
-        """
-
-        def some(number: Any) -> Any:
-            return np.broadcast_to(number, self.shape)[where] if np.ndim(number) else number
-
-        pair = Pair(**{f.name: some(getattr(self.pair, f.name)) for f in attrs.fields(Pair)})
-        numbers = {name: some(getattr(self, name)) for name in PROBLEM_NUMBERS}
-        return attrs.evolve(self, pair=pair, shape=(int(where.sum()),), **numbers)
-
-    def _spread(self, number: Real) -> list[float]:
-        spread: list[float] = np.broadcast_to(np.asarray(number), self.shape).ravel().tolist()
-        return spread
-
-
-#: The numbers of a problem besides those of its pair.
-PROBLEM_NUMBERS = (
-    "friction_coefficient", "normal_speed", "slip_velocity", "maximum_radius", "duration",
-)  # fmt: skip
-
-
 class Sample(NamedTuple):
-    """One instant of a motion, as handed to an observer."""
+    """One instant of an impact, as handed to an observer."""
 
     time: Real
     approach: Real
@@ -102,15 +38,11 @@ Observer: TypeAlias = Callable[[Sample], None]
 
 
 @attrs.frozen(kw_only=True, eq=False)
-class Motion:
+class TangentialMotion:
     """What an integrator returns; entries have the batch shape.
 
     Attributes
     ----------
-    duration : float or array
-        Time of contact, in s.
-    normal_velocity : float or array
-        Rate of approach at the end, in m/s; negative: the bodies separate.
     slip_velocity_change : float or array
         Change of v_x in m/s. Kept apart from v_x, which may be so large that the
         change would be lost in it.
@@ -124,8 +56,6 @@ class Motion:
         Work done: ``steps``, ``evaluations``, ``rejected``, ...
     """
 
-    duration: Real
-    normal_velocity: Real
     slip_velocity_change: Real
     friction_work: Real
     status: Any = Status.SUCCESS
@@ -138,59 +68,52 @@ class Motion:
             object.__setattr__(self, "detail", spread)
 
     @classmethod
-    def joined(cls, motions: Sequence[Motion], shape: tuple[int, ...]) -> Motion:
+    def numbers(cls) -> tuple[str, ...]:
+        """Return the names of the entries that are numbers."""
+        others = ("status", "detail", "counters")
+        return tuple(field.name for field in attrs.fields(cls) if field.name not in others)
+
+    @classmethod
+    def joined(cls, motions: Sequence[Self], shape: tuple[int, ...]) -> Self:
         """Return one motion of ``shape`` from those of its impacts, or of parts of them."""
-        entries = {
-            name: np.concatenate(
-                [
-                    np.ravel(np.asarray(getattr(motion, name), dtype=MOTION_ENTRIES[name]))
-                    for motion in motions
-                ]
-            )
-            for name in MOTION_ENTRIES
-        }
         counters: Counter[str] = Counter()
         for motion in motions:
             counters.update(motion.counters)
-        return cls(
-            **{name: entry.reshape(shape) for name, entry in entries.items()},
-            counters=dict(counters),
-        )
+        entries: dict[str, Any] = {}
+        for name in (*cls.numbers(), "status", "detail"):
+            kind = float if name in cls.numbers() else object
+            parts = [np.ravel(np.asarray(getattr(each, name), dtype=kind)) for each in motions]
+            entries[name] = np.concatenate(parts).reshape(shape)
+        return cls(**entries, counters=dict(counters))
 
     @classmethod
-    def merged(
-        cls, parts: Sequence[tuple[NDArray[np.bool_], Motion]], shape: tuple[int, ...]
-    ) -> Motion:
+    def merged(cls, parts: Sequence[tuple[Any, Self]], shape: tuple[int, ...]) -> Self:
         """Return one motion of ``shape`` from motions of those impacts that a mask says of each.
 
         Of an impact in several parts the last has the word.
         """
-        entries: dict[str, Any] = {
-            name: np.empty(shape, dtype=kind) for name, kind in MOTION_ENTRIES.items()
-        }
         counters: Counter[str] = Counter()
-        for where, motion in parts:
+        for _, motion in parts:
             counters.update(motion.counters)
-            for name, entry in entries.items():
-                entry[where] = np.ravel(np.asarray(getattr(motion, name)))
+        entries: dict[str, Any] = {}
+        for name in (*cls.numbers(), "status", "detail"):
+            columns = [(where, getattr(motion, name)) for where, motion in parts]
+            entries[name] = merged(columns, shape, float if name in cls.numbers() else object)
         return cls(**entries, counters=dict(counters))
 
     @classmethod
     def nothing(
         cls, shape: tuple[int, ...], status: Status, detail: str | Sequence[str] = ""
-    ) -> Motion:
+    ) -> Self:
         """Return the motion of impacts of which nothing is known: NaN throughout."""
         unknown: Real = np.full(shape, math.nan) if shape else math.nan
         return cls(
-            duration=unknown,
-            normal_velocity=unknown,
-            slip_velocity_change=unknown,
-            friction_work=unknown,
+            **dict.fromkeys(cls.numbers(), unknown),
             status=np.full(shape, status, dtype=object) if shape else status,
             detail=detail if isinstance(detail, str) else np.array(detail, dtype=object),
         )
 
-    def failing(self, where: Mask, status: Status, detail: Any) -> Motion:
+    def failing(self, where: Mask, status: Status, detail: Any) -> Self:
         """Return this motion with ``status`` and ``detail`` on those successes ``where`` says.
 
         ``detail`` is a sentence, or an array of one for each impact.
@@ -207,34 +130,29 @@ class Motion:
         )
 
 
-#: What a motion says of each impact, and of what type; the rest is of the whole batch.
-MOTION_ENTRIES: dict[str, type] = {
-    **dict.fromkeys(("duration", "normal_velocity", "slip_velocity_change"), float),
-    "friction_work": float, "status": object, "detail": object,
-}  # fmt: skip
-#: Its numbers.
-MOTION_NUMBERS = tuple(name for name, kind in MOTION_ENTRIES.items() if kind is float)
-
-
 class Integrator(Law):
-    """Advances the bodies through the impact.
+    """Follows the tangential motion along a normal motion that is given.
 
     Contract
     --------
-    1. ``integrate(problem, observer)`` returns a ``Motion``. It is pure; it never raises for
-       a numerical failure, but returns a status with the motion so far.
+    1. ``integrate(normal, tangential, scene, observer)`` returns a ``TangentialMotion``. It is
+       pure; it never raises for a numerical failure, but returns a status with the motion so
+       far.
     2. Every loop is bounded.
     3. ``observer`` is None or is called at increasing times; having one changes no result.
     4. ``order`` is the order of convergence in the step that the class declares for smooth
        laws; None where there are no steps.
     5. Batch shapes pass through: a batch gives what its impacts give one by one. Where one
        fails the batch may be given up: a simulation then hands over each by itself.
+    6. ``tangential_contract`` and ``normal_contract`` are the classes of the laws that it runs.
+    7. ``psi2_error`` is a bound of the numerical error of psi2, from what the tangential law
+       declares; NaN, the default, where nothing is declared.
     """
 
     kind: ClassVar[str] = "integrator"
+    tangential_contract: ClassVar[type[TangentialLaw]]
+    normal_contract: ClassVar[type[NormalLaw]] = NormalLaw
     order: ClassVar[int | None] = None
-    #: Narrow contracts it makes use of where a law has them, such as ``closed_form_motion``.
-    uses: ClassVar[frozenset[str]] = frozenset()
     #: False if each impact of a batch has instants of its own: no history of a batch then.
     common_instants: ClassVar[bool] = True
     #: False if the impacts of a batch are followed one after another: a sweep hands over few.
@@ -242,20 +160,33 @@ class Integrator(Law):
 
     @property
     def accuracy(self) -> float | None:
-        """Error of psi2 over max(1, |psi1|) that it keeps to, under laws that are ``exact``.
-
-        None for an integrator that does not control its error.
-        """
+        """Error of psi2 over max(1, |psi1|) that it keeps to in time; None without control."""
         return None
 
-    def steps_for(self, problem: Problem) -> Any:  # noqa: ARG002
-        """Return how many steps of fixed length each impact takes; None if there are none."""
-        return None
-
-    def remarks(self, problem: Problem) -> tuple[str, ...]:  # noqa: ARG002
-        """Return what a plan should say of this problem: sentences, none by default."""
+    def remarks(
+        self,
+        normal: NormalMotion,  # noqa: ARG002
+        tangential: TangentialLaw,  # noqa: ARG002
+        scene: Scene,  # noqa: ARG002
+    ) -> tuple[str, ...]:
+        """Return what a plan should say of these impacts: sentences, none by default."""
         return ()
 
+    def psi2_error(
+        self,
+        normal: NormalMotion,  # noqa: ARG002
+        tangential: TangentialLaw,  # noqa: ARG002
+        scene: Scene,  # noqa: ARG002
+    ) -> Real:
+        """Return the declared numerical error of psi2."""
+        return math.nan
+
     @abstractmethod
-    def integrate(self, problem: Problem, observer: Observer | None = None) -> Motion:
-        """Return the motion from first touch to separation."""
+    def integrate(
+        self,
+        normal: NormalMotion,
+        tangential: TangentialLaw,
+        scene: Scene,
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
+        """Return the tangential motion from first touch to separation."""

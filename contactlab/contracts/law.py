@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 #: Version of the contracts in this package. A plug-in states the one it was written for.
-API_VERSION = 1
+API_VERSION = 2
 
 
 class Law(ABC):
@@ -18,26 +18,17 @@ class Law(ABC):
     1. An object is immutable and holds parameters only (``attrs.frozen(kw_only=True)``):
        the same object may serve any number of simulations at once, and it pickles.
     2. ``api_version`` is set in the class itself to the version it was written for.
-    3. ``needs`` and ``offers`` are sets of words. A composition fits if each part's needs
-       are offered by the other two. Words in use:
+    3. What a law can do follows from the classes that it is derived from. ``offers`` are
+       claims besides, words that ``contactlab.testing`` holds it to; ``needs`` are the claims
+       that a tangential law depends on in its normal law. Words in use:
 
        ========================  ====================================================
        ``radius``                the normal contact knows its contact radius
        ``hertzian_pressure``     pressure is a hemisphere over that radius, eq. (3)
-       ``closed_form_motion``    the normal motion is known in closed form
-       ``elastic_hertz``         that motion is the elastic impact of eqs (2)-(7)
-       ``advance``               the tangential law is a return mapping over a step
-       ``phases``                the tangential law is a sequence of smooth phases
-       ``steps``                 the integrator calls ``advance``
-       ``events``                the integrator runs phases and locates their ends
+       ``elastic_hertz``         the normal motion is the elastic impact of eqs (2)-(7)
        ``partial_slip``          the contact slips from its edge inwards: at fixed normal
-                                 load its force is Cattaneo and Mindlin's (a claim, held by
-                                 ``contactlab.testing``)
+                                 load its force is Cattaneo and Mindlin's
        ========================  ====================================================
-
-       An integrator needs what it calls, ``advance`` or ``phases``. A law that can be run in
-       one way only needs that way of its integrator (``steps`` or ``events``), so that a
-       refusal can name what would fit; a law that offers both needs neither.
 
     4. ``resolution`` names the parameter that makes answers finer, if there is one: a count
        (``steps``, ``annuli``) that grows, or ``tolerance``, which shrinks.
@@ -46,6 +37,7 @@ class Law(ABC):
     6. ``expected_failures`` names the checks of ``contactlab.testing`` that the law fails by
        its nature, each with the reason: a class variable, or a property if it depends on the
        parameters.
+    7. Arrays that a law is given are read-only: a law that writes in place raises an error.
     """
 
     kind: ClassVar[str]

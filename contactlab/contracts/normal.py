@@ -1,16 +1,19 @@
-"""The contract of a normal law: force and contact radius from approach and rate."""
+"""The contract of a normal law: force, contact radius and friction load from the approach."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contactlab.bodies import Pair
 from contactlab.checks import Real
 from contactlab.contracts.law import Law
+from contactlab.contracts.motion import ClosedFormMotion, NormalMotion
+from contactlab.scene import Scene
+
+#: Above this ratio of contact radius to R the picture of half-spaces is doubtful (theory §8).
+DOUBTFUL_SIZE_RATIO = 0.1
 
 
 class NormalContact(NamedTuple):
@@ -19,17 +22,32 @@ class NormalContact(NamedTuple):
     Attributes
     ----------
     force : float or array
-        P in N, positive in compression; 0 out of contact.
+        P in N, positive in compression, negative where the surfaces pull; 0 out of contact.
     radius : float or array
         b in m, the contact radius; 0 out of contact, and 0 from a law that has none.
     overlap : float or array
-        Positive in contact, negative out of contact, zero as contact begins and ends:
-        its sign tells an integrator where the impact ends. Any smooth measure in m.
+        Positive in contact, zero or negative out of contact: its sign tells where the impact
+        ends. Any measure in m.
+    friction_load : float or array, optional
+        The normal force in N that Coulomb's limit is taken of, never negative. A normal law
+        may leave it out: it is max(P, 0) then. A tangential law always finds it.
     """
 
     force: Real
     radius: Real
     overlap: Real
+    friction_load: Any = None
+
+    @property
+    def complete(self) -> NormalContact:
+        """The same contact with its friction load."""
+        if self.friction_load is not None:
+            return self
+        force: Any = self.force
+        # A product with the comparison keeps NaN a NaN, for floats and arrays alike.
+        return self._replace(friction_load=force * (force > 0.0) + 0.0 if np.ndim(force) else (
+            0.0 if force <= 0.0 else force
+        ))  # fmt: skip
 
 
 class NormalLaw(Law):
@@ -37,7 +55,7 @@ class NormalLaw(Law):
 
     Contract
     --------
-    1. ``start(pair)`` returns the state before first touch: any value, ``None`` for a law
+    1. ``start(scene)`` returns the state before first touch: any value, ``None`` for a law
        without memory.
     2. ``respond(state, approach, rate)`` returns ``(NormalContact, state)``. It is pure:
        the state that goes in is not changed, a new one comes out, so that a step may be
@@ -46,110 +64,35 @@ class NormalLaw(Law):
        time derivative, positive in compression. Both are floats for one impact, or arrays
        of the batch shape; arithmetic that serves both keeps one code path.
     4. NaN in gives NaN out, never "no contact".
+    5. The motion from first touch to separation is made from ``respond``, before any friction,
+       to ``contactlab.normal_motion.TOLERANCE``; see ``ClosedFormNormalLaw`` for the exception.
+    6. ``cautions`` says where the model itself is doubtful.
     """
 
     kind: ClassVar[str] = "normal"
 
     @abstractmethod
-    def start(self, pair: Pair) -> Any:
-        """Return the state before first touch, for bodies ``pair``."""
+    def start(self, scene: Scene) -> Any:
+        """Return the state before first touch."""
 
     @abstractmethod
     def respond(self, state: Any, approach: Real, rate: Real) -> tuple[NormalContact, Any]:
         """Return the contact at ``approach`` (m) and ``rate`` (m/s), and the new state."""
 
-
-class Course(NamedTuple):
-    """A normal motion in units of its own, at many phases (arrays) or at one (floats).
-
-    Approach, radius and force are over their greatest values, the rate over that at first
-    touch; T is time in units of greatest approach over rate at first touch (theory §1).
-
-    Attributes
-    ----------
-    phase : float or array
-    approach, radius, rate, force : float or array
-        zeta, b/a, V and P/P_max.
-    pace : float or array
-        dT/dx.
-    """
-
-    phase: Any
-    approach: Any
-    radius: Any
-    rate: Any
-    force: Any
-    pace: Any
-
-
-class ClosedFormMotion(ABC):
-    """A normal motion known in closed form, along a phase that runs from 0 to pi.
-
-    The phase x is a smooth stand-in for time: contact begins at 0, compression is
-    greatest at pi/2, contact ends at pi, and every quantity is analytic in it, so
-    that high-order methods keep their order (theory §3; in time they do not).
-    """
-
-    @property
-    @abstractmethod
-    def duration(self) -> Real:
-        """Time from first touch to separation, in s, of the batch shape."""
-
-    @property
-    @abstractmethod
-    def maximum_radius(self) -> Real:
-        """Largest contact radius, in m."""
-
-    @property
-    @abstractmethod
-    def maximum_approach(self) -> Real:
-        """Greatest approach, in m."""
-
-    @property
-    @abstractmethod
-    def maximum_force(self) -> Real:
-        """P_max, the greatest normal force, in N."""
-
-    @property
-    @abstractmethod
-    def scaled_mass(self) -> float:
-        """M in M dV/dT = -P/P_max; 0.8 for elastic Hertz contact."""
-
-    @abstractmethod
-    def course(self, phase: NDArray[np.float64]) -> Course:
-        """Return the scaled motion of one impact at many phases, as arrays."""
-
-    @abstractmethod
-    def instant(self, phase: float) -> Course:
-        """Return the scaled motion of one impact at one phase, as floats."""
-
-    @abstractmethod
-    def phase_at_rate(self, rate: float) -> float:
-        """Return the phase at which V = ``rate``, of one impact; V falls throughout."""
-
-    @abstractmethod
-    def at(self, phase: Real) -> tuple[Real, Real, Real, NormalContact]:
-        """Return (time, approach, rate, contact) at ``phase``.
-
-        ``phase`` broadcasts against the batch shape: a column of K phases, shape
-        (K, 1, ..., 1), gives K rows of the batch.
-        """
-
-    @abstractmethod
-    def phase(self, fraction: Real) -> Real:
-        """Return the phase at which ``fraction`` of the duration has passed, to about 1e-8.
-
-        For steps that are even in time; what they start from is taken exactly from ``at``.
-        """
-
-    @abstractmethod
-    def pace(self, phase: Real) -> Real:
-        """Return dt/dx at ``phase``, in s."""
+    def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
+        """Return what to be wary of in the model, a sentence each."""
+        largest = float(np.max(np.asarray(motion.maximum_radius) / scene.pair.radius))
+        if scene.sphere is None or not largest > DOUBTFUL_SIZE_RATIO:
+            return ()
+        return (
+            f"C = {largest:.2g}: the contact is not small against the radius, the theory of "
+            f"half-spaces is doubtful above {DOUBTFUL_SIZE_RATIO}",
+        )
 
 
 class ClosedFormNormalLaw(NormalLaw):
     """A normal law whose motion is known in closed form: the integration is skipped."""
 
     @abstractmethod
-    def motion(self, pair: Pair, speed: Real) -> ClosedFormMotion:
-        """Return the motion of an impact at normal ``speed`` (m/s)."""
+    def motion(self, scene: Scene) -> ClosedFormMotion:
+        """Return the motion from first touch to separation."""

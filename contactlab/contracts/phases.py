@@ -4,7 +4,7 @@ Such a law is a sequence of phases (stuck, edge slip, gross slip, ...). The inte
 inertia, the normal motion and collocation; the law knows traction; they meet here only.
 
 All quantities are scaled, theory §1, so that a law reads like the paper and a change of units
-changes no digit. The normal motion is a ``Course``; besides it:
+changes no digit. The normal motion is a ``ScaledContact``; besides it:
 
 ======================  ==================================================================
 ``x``                   phase of the normal motion (see ``ClosedFormMotion``)
@@ -20,16 +20,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts.normal import ClosedFormMotion, Course
+from contactlab.contracts.motion import ClosedFormMotion, ScaledContact
 from contactlab.contracts.tangential import TangentialLaw
-
-if TYPE_CHECKING:
-    from contactlab.contracts.integrator import Problem
 
 Array = NDArray[np.float64]
 
@@ -93,7 +90,7 @@ class ClosedPhase(ABC):
     event: int | None
 
     @abstractmethod
-    def states(self, contact: Course) -> tuple[Array, Array]:
+    def states(self, contact: ScaledContact) -> tuple[Array, Array]:
         """Return (change of velocity since first touch, force) at the contact's x."""
 
 
@@ -125,13 +122,13 @@ class Phase(ABC):
     dissipates: bool = True
 
     @abstractmethod
-    def respond(self, contact: Course, slip: Array, memo: tuple[Array, ...]) -> PhaseResponse:
+    def respond(self, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]) -> PhaseResponse:
         """Return the force at these contacts and slips (clause 1)."""
 
     def margin(
         self,
         event: int,
-        contact: Course,  # noqa: ARG002
+        contact: ScaledContact,  # noqa: ARG002
         slip: Array,  # noqa: ARG002
         velocity: Array,  # noqa: ARG002
         response: PhaseResponse,  # noqa: ARG002
@@ -143,19 +140,19 @@ class Phase(ABC):
         self,
         event: int,
         state: PhaseState,  # noqa: ARG002
-        contact: Course,  # noqa: ARG002
+        contact: ScaledContact,  # noqa: ARG002
         path: Path | None,  # noqa: ARG002
     ) -> Phase:
         """Return the next phase (clause 4)."""
         raise IndexError(event)
 
-    def carry_on(self, state: PhaseState, contact: Course, path: Path) -> Phase:  # noqa: ARG002
+    def carry_on(self, state: PhaseState, contact: ScaledContact, path: Path) -> Phase:  # noqa: ARG002
         """Return the phase that goes on after a finished panel (clause 5)."""
         return self
 
     def friction_power(
         self,
-        contact: Course,  # noqa: ARG002
+        contact: ScaledContact,  # noqa: ARG002
         slip: Array,
         velocity: Array,  # noqa: ARG002
         response: PhaseResponse,  # noqa: ARG002
@@ -193,9 +190,9 @@ class PhasedTangentialLaw(TangentialLaw):
 
     def phase_fields(
         self,
-        problem: Problem,  # noqa: ARG002
+        normal: ClosedFormMotion,  # noqa: ARG002
         phase: Phase,  # noqa: ARG002
-        contact: Course,  # noqa: ARG002
+        contact: ScaledContact,  # noqa: ARG002
         slip: float,  # noqa: ARG002
         factor: float,  # noqa: ARG002
     ) -> Mapping[str, NDArray[Any]]:

@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.cautions import coupling
 from contactlab.checks import Mask, Real
 from contactlab.contracts.law import Law
+from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalContact
-
-if TYPE_CHECKING:
-    from contactlab.contracts.integrator import Problem
-
+from contactlab.contracts.whole_impact import WholeImpact, no_force
+from contactlab.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -31,19 +31,16 @@ class Increment(NamedTuple):
         between the two instants of the step.
     velocity : float or array
         v_x in m/s, the local tangential velocity that the step starts with.
-    arresting_force : float or array
-        In N: the constant force that would bring ``velocity`` to zero by the end of the
-        step. A rigid law needs it; elastic laws have no use for it.
-    normal_force : float or array
-        P in N, the mean over the time in which the answer will act.
+    friction_load : float or array
+        The normal force in N that Coulomb's limit is taken of, never negative: the mean over
+        the time in which the answer will act.
     duration : float or array
         That time, in s.
     """
 
     displacement: Real
     velocity: Real
-    arresting_force: Real
-    normal_force: Real
+    friction_load: Real
     duration: Real
 
 
@@ -55,8 +52,10 @@ class TangentialResponse(NamedTuple):
     force : float or array
         F in N, positive where it opposes positive slip velocity.
     friction_work : float or array
-        In J, at least 0: work done by friction on slipping parts during the step, added up
-        from traction and slip, not from an energy balance.
+        In J, at least 0: work done by friction on slipping parts over ``displacement``, added up
+        from traction and slip, not from an energy balance. The slip is part of the
+        displacement, and the traction the mean of those at the two ends of the step: with that
+        the books close under any scheme, whatever its stages.
     settled : bool or array
         False where the law could not find an answer; the run then ends with a status.
     """
@@ -71,22 +70,23 @@ class TangentialLaw(Law):
 
     Contract
     --------
-    1. Friction is Coulomb's, abs(F) <= mu P (a discrete law may exceed this by its own
-       stated discretisation error), and F = 0 out of contact.
+    1. Friction is Coulomb's, abs(F) <= mu times the friction load (a discrete law may exceed
+       this by its own stated discretisation error), and F = 0 out of contact.
     2. Odd: reversing every displacement reverses every force. A central impact (v_x = 0)
        makes no tangential force, whatever the normal motion.
     3. How a law is run is a narrower contract: ``SteppedTangentialLaw`` for laws that answer
        to a step, ``contactlab.contracts.phases.PhasedTangentialLaw`` for laws that are smooth
-       between events. A law may be both.
-    4. ``slips_throughout`` may say of some impacts that the force is mu P from start to
-       end; the plan then takes the closed form (45) and the law is not run.
+       between events, ``WholeImpactTangentialLaw`` for laws that need no march. A law may be
+       several.
+    4. ``whole_impacts`` gives what the law knows of whole impacts; those are not followed. Where
+       several answers hold for an impact the first is taken.
+    5. ``psi2_error`` is a bound of the error of psi2 that the law's own discretisation and
+       ``steps`` even steps of an integrator of second order make; infinite ``steps`` are none.
+       NaN, the default: not known.
+    6. ``cautions`` says where the model itself is doubtful.
     """
 
     kind: ClassVar[str] = "tangential"
-    #: True for a law with no discretisation of its own: the integrator's error is the whole error.
-    exact: ClassVar[bool] = False
-    #: True for a law that never makes a force: the plan leaves the march out.
-    inert: ClassVar[bool] = False
 
     @property
     def books_bound(self) -> float:
@@ -97,44 +97,71 @@ class TangentialLaw(Law):
         """
         return math.inf
 
-    def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
-        """Return True where an elastic impact slips from start to end in one direction.
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:  # noqa: ARG002
+        """Return what is known of whole impacts: by contract, those of no slip or no friction."""
+        central = np.asarray(scene.slip_velocity) == 0.0
+        smooth = np.asarray(scene.friction_coefficient) == 0.0
+        return (
+            no_force(scene, where=central, reason="central impact, no slip velocity"),
+            no_force(scene, where=smooth, reason="friction coefficient 0"),
+        )
 
-        Parameters
-        ----------
-        psi1, chi : float or array
-            Eqs (29) and (38).
+    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:  # noqa: ARG002
+        """Return the declared numerical error of psi2 at so many steps of an impact."""
+        return math.nan
 
-        Returns
-        -------
-        bool or array
-            False wherever the law does not know.
-        """
-        return np.zeros(np.broadcast_shapes(np.shape(psi1), np.shape(chi)), dtype=bool)
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:  # noqa: ARG002
+        """Return what to be wary of in the model, a sentence each: coupling of unlike bodies."""
+        return coupling(scene)
 
 
-class Run(NamedTuple):
-    """All fixed steps of one impact, arrays of shape (K,); see ``Increment``.
+class WholeImpactTangentialLaw(TangentialLaw):
+    """A tangential law that answers every impact as a whole: no integrator is asked.
 
-    Of a batch of B impacts: arrays of shape (K, B), or (K, 1) where they agree.
+    Contract
+    --------
+    1. ``whole_impacts`` holds everywhere: the last of its answers is for all impacts left.
     """
 
-    force: Array
-    radius: Array
-    drift: Array
-    kick: Array
-    velocity: Any
-    mass: Any
+    @abstractmethod
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return what is known of whole impacts: everything."""
+        return super().whole_impacts(scene, normal)
 
 
-class RunResponse(NamedTuple):
-    """Forces at the K samples of a run (fewer where it stopped), and the friction work.
+class Steps(NamedTuple):
+    """All even steps of an impact, arrays of shape (K,); of a batch (K, *shape) or (K, 1, ..).
 
-    Of a batch: shapes (K, B) and (B,).
+    The march drifts to a sample of the normal contact, asks the law, and kicks.
+
+    Attributes
+    ----------
+    contact : NormalContact
+        At the samples.
+    drift : array
+        Time from the last sample to this one, in s: slip velocity acts on displacement.
+    kick : array
+        Time in s for which the force found at the sample acts on velocity.
+    friction_load : array
+        Mean of the friction load over the kick, in N.
+    time, approach, rate : array
+        At the sample.
     """
 
+    contact: NormalContact
+    drift: Any
+    kick: Any
+    friction_load: Any
+    time: Any
+    approach: Any
+    rate: Any
+
+
+class AllStepsResponse(NamedTuple):
+    """Forces in N at the K samples (fewer where it stopped), and the friction work in J."""
+
     force: Array
-    friction_work: Real
+    friction_work: float
     settled: bool
 
 
@@ -143,22 +170,25 @@ class SteppedTangentialLaw(TangentialLaw):
 
     Contract
     --------
-    1. ``start(problem)`` returns the state at first touch. It holds what the law needs of the
-       problem (stiffness, friction coefficient, grid) and its memory.
+    1. ``start(scene, normal)`` returns the state at first touch. It holds what the law needs of
+       scene and normal motion (stiffness, friction coefficient, a grid that spans the largest
+       contact) and its memory.
     2. ``advance(state, increment, before, after)`` returns ``(TangentialResponse, state)``.
        History is a value: the state that goes in stays untouched, so an integrator may try a
        step, reject it and try again.
-    3. ``before`` and ``after`` are the normal contact at the two ends of the step.
+    3. ``before`` and ``after`` are the normal contact at the two ends of the step. Coulomb's
+       limit is taken of their friction load, or of the increment's, never of the force, which
+       may be a pull.
     4. Growing normal force alone (displacement 0) makes no tangential force.
     5. ``fields(state)`` names arrays for the history; it changes nothing.
-    6. ``stiffness(problem)`` is an upper bound of dF/dD in N/m, from which an integrator
+    6. ``stiffness(scene, normal)`` is an upper bound of dF/dD in N/m, from which an integrator
        knows its largest stable step; 0 for a law whose force does not come from displacement.
        Of a law that does not offer ``partial_slip``, whose microslip damps the oscillation,
        the errors of phase of all periods are taken to add up, and more steps are needed.
     """
 
     @abstractmethod
-    def start(self, problem: Problem) -> Any:
+    def start(self, scene: Scene, normal: NormalMotion) -> Any:
         """Return the state at first touch."""
 
     @abstractmethod
@@ -167,7 +197,7 @@ class SteppedTangentialLaw(TangentialLaw):
     ) -> tuple[TangentialResponse, Any]:
         """Return the response at the end of the step, and the new state."""
 
-    def stiffness(self, problem: Problem) -> Real:  # noqa: ARG002
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:  # noqa: ARG002
         """Return the largest tangential stiffness, in N/m."""
         return 0.0
 
@@ -176,19 +206,18 @@ class SteppedTangentialLaw(TangentialLaw):
         return {}
 
 
-class RunningTangentialLaw(SteppedTangentialLaw):
-    """A stepped law that can also take all steps of one impact at a time, which may be faster.
+class AllStepsTangentialLaw(SteppedTangentialLaw):
+    """A stepped law that can also take all steps of one impact in one call, which is faster.
 
     Contract
     --------
-    1. ``run(problem, run)`` gives, to rounding, the forces that ``advance`` gives step by step
-       when velocity falls by force times kick over mass after each step.
-    2. ``problem`` has the batch shape (), or (B,) if ``runs_batches``.
-    3. ``run`` may return None: these impacts are better done step by step.
+    1. ``advance_all(scene, normal, steps)`` gives, to rounding, the forces that ``advance`` gives
+       step by step when the slip velocity falls by force times kick over mass after each step.
+    2. It may return None: this impact is better done step by step.
     """
 
-    runs_batches: ClassVar[bool] = False
-
     @abstractmethod
-    def run(self, problem: Problem, run: Run) -> RunResponse | None:
-        """Return the forces of whole impacts."""
+    def advance_all(
+        self, scene: Scene, normal: NormalMotion, steps: Steps
+    ) -> AllStepsResponse | None:
+        """Return the forces of a whole impact."""

@@ -9,19 +9,21 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import Mask, Real, choice, count
-from contactlab.closed_forms import slips_throughout_elastic
+from contactlab.checks import Real, choice, count
 from contactlab.contracts import (
+    AllStepsResponse,
+    AllStepsTangentialLaw,
     Increment,
     NormalContact,
-    Problem,
-    Run,
-    RunningTangentialLaw,
-    RunResponse,
+    NormalMotion,
+    Steps,
     TangentialResponse,
+    WholeImpact,
 )
+from contactlab.scene import Scene
 from contactlab_annulus import blocks, many, one
 from contactlab_annulus.tables import Tables, tables
+from contactlab_jaeger.gross_slip import gross_slip
 from contactlab_jaeger.law import Scales
 
 
@@ -33,7 +35,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class Annulus(RunningTangentialLaw):
+class Annulus(AllStepsTangentialLaw):
     """Mindlin's partial slip by the paper's concentric annuli.
 
     Each step solves (33) where the surfaces stick and (34) where they slip, tests the
@@ -54,10 +56,10 @@ class Annulus(RunningTangentialLaw):
     eqs (1), (13)-(18), (22), non-dimensional as (33)-(37).
     """
 
-    api_version: ClassVar[int] = 1
+    api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "annuli"
-    offers: ClassVar[frozenset[str]] = frozenset({"advance", "partial_slip"})
-    needs: ClassVar[frozenset[str]] = frozenset({"steps", "hertzian_pressure"})
+    offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
+    needs: ClassVar[frozenset[str]] = frozenset({"hertzian_pressure"})
 
     annuli: int = count(default=50, most=2000)
     displacement: str = choice("midpoint", "mean", default="midpoint")
@@ -70,19 +72,19 @@ class Annulus(RunningTangentialLaw):
         """
         return 1.0 / self.annuli if self.displacement == "midpoint" else 0.01
 
-    def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
-        """Return True where (44) and (46) say so."""
-        return slips_throughout_elastic(psi1, chi)
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return those of gross slip too, where (44) and (46) say so."""
+        return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
 
-    def stiffness(self, problem: Problem) -> Real:
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""
-        return 2.0 * problem.pair.effective_shear_modulus * problem.maximum_radius
+        return 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
 
-    def start(self, problem: Problem) -> State:
+    def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return a contact without traction."""
-        single = not problem.shape
-        memory = one.start(self.annuli) if single else many.start(self.annuli, problem.shape)
-        return State(Scales.of(problem), memory)
+        shape = scene.shape
+        memory = many.start(self.annuli, shape) if shape else one.start(self.annuli)
+        return State(Scales.of(scene, normal), memory)
 
     def advance(
         self,
@@ -94,27 +96,27 @@ class Annulus(RunningTangentialLaw):
         """Return the force (22) after the step."""
         scales, memory = state
         radius: Any = after.radius / scales.radius
-        pressure = scales.pressure(radius, after.force)
+        pressure = scales.pressure(radius, after.friction_load)
         solve = one.advance if isinstance(memory, one.Memory) else many.advance
         slip: Any = increment.displacement * scales.displacement
         force, work, settled, memory = solve(self._tables(), memory, slip, radius, pressure)
         response = TangentialResponse(force * scales.force, work * scales.work, settled)
         return response, State(scales, memory)
 
-    def run(self, problem: Problem, run: Run) -> RunResponse:
+    def advance_all(self, scene: Scene, normal: NormalMotion, steps: Steps) -> AllStepsResponse:
         """Return the forces (22) of a whole impact, found in blocks of steps."""
-        scales = Scales.of(problem)
-        radius = run.radius / scales.radius
+        scales = Scales.of(scene, normal)
+        radius = steps.contact.radius / scales.radius
         course = blocks.Course(
             radius=radius,
-            pressure=scales.pressure(radius, run.force),
-            drift=run.drift * scales.displacement,
-            kick=run.kick * scales.force / run.mass,
+            pressure=scales.pressure(radius, steps.contact.friction_load),
+            drift=steps.drift * scales.displacement,
+            kick=steps.kick * scales.force / scene.pair.tangential_mass,
         )
-        runner = blocks.Runner(self._tables(), course, run.velocity)
+        runner = blocks.Runner(self._tables(), course, float(scene.slip_velocity))
         settled = runner.run()
         work = runner.friction_work() * float(scales.work)
-        return RunResponse(runner.forces * scales.force, work, settled)
+        return AllStepsResponse(runner.forces * scales.force, work, settled)
 
     def _tables(self) -> Tables:
         return tables(self.annuli, self.displacement == "mean")

@@ -92,7 +92,7 @@ class SharpAnnulus(ProfileLaw):
     eqs (1), (33), (34); Jaeger, Arch. Appl. Mech. 65 (1995) 478-487.
     """
 
-    api_version: ClassVar[int] = 1
+    api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "annuli"
 
     annuli: int = count(default=50, most=100_000)

@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import (
     ClosedPhase,
-    Course,
     NormalContact,
     Observer,
     PhasedTangentialLaw,
-    Problem,
     Sample,
+    ScaledContact,
 )
 from contactlab_events.scaled import Run
 
@@ -27,20 +26,20 @@ INSTANTS = 201
 
 
 def show(
-    problem: Problem, law: PhasedTangentialLaw, runs: Sequence[Run], observer: Observer
+    batch: tuple[int, ...], law: PhasedTangentialLaw, runs: Sequence[Run], observer: Observer
 ) -> None:
     """Call ``observer`` at phases common to all impacts, as far as every one of them came."""
     reached = min(run.followed.state.x for run in runs)
     x = np.linspace(0.0, math.pi, INSTANTS)
-    if not problem.shape:
+    if not batch:
         x = np.union1d(x, [piece.stop for piece in runs[0].followed.pieces])
     x = x[x <= reached]
     tables = [_course(run, x) for run in runs]
-    shape = (len(x), *problem.shape)
+    shape = (len(x), *batch)
 
     def column(name: str) -> list[Any]:
         values = np.array([table[name] for table in tables]).T
-        return list(values.reshape(shape)) if problem.shape else values[:, 0].tolist()
+        return list(values.reshape(shape)) if batch else values[:, 0].tolist()
 
     names = ("time", "approach", "rate", "force", "radius", "velocity", "friction")
     for k, row in enumerate(zip(*(column(name) for name in names), strict=True)):
@@ -50,10 +49,10 @@ def show(
                 time=time,
                 approach=approach,
                 normal_velocity=rate,
-                contact=NormalContact(force, radius, approach),
+                contact=NormalContact(force, radius, approach, force),
                 slip_velocity=velocity,
                 tangential_force=friction,
-                fields=_asking(problem, law, runs, tables, float(x[k]), k),
+                fields=_asking(batch, law, runs, tables, float(x[k]), k),
             )
         )
 
@@ -61,16 +60,16 @@ def show(
 def _course(run: Run, x: Array) -> dict[str, Array]:
     """Return one impact's course at ascending x, in SI; slip stays scaled, for the fields."""
     impact, followed = run.impact, run.followed
-    time, approach, rate, contact = impact.motion.at(x)
+    time, approach, rate, contact, _ = impact.motion.at(x)
     change, friction, slip = np.empty_like(x), np.zeros_like(x), np.zeros_like(x)
     change[:] = followed.state.change
-    normal = impact.motion.course(x)
+    normal = impact.motion.scaled(x)
     for piece in followed.pieces:
         inside = (x >= piece.start.x) & (x <= piece.stop)
         if piece.stop <= piece.start.x or not inside.any():
             continue
         if isinstance(piece.path, ClosedPhase):
-            part = Course(*(column[inside] for column in normal))
+            part = ScaledContact(*(column[inside] for column in normal))
             change[inside], friction[inside] = piece.path.states(part)
             slip[inside] = piece.start.slip
         else:
@@ -90,7 +89,7 @@ def _course(run: Run, x: Array) -> dict[str, Array]:
 
 
 def _asking(
-    problem: Problem,
+    batch: tuple[int, ...],
     law: PhasedTangentialLaw,
     runs: Sequence[Run],
     tables: Sequence[Mapping[str, Array]],
@@ -106,16 +105,16 @@ def _asking(
             piece = next((p for p in pieces if x <= p.stop and p.stop > p.start.x), None)
             if piece is None:
                 return {}
-            contact = run.impact.motion.instant(x)
+            contact = run.impact.motion.scaled_at(x)
             slip = float(table["slip"][k])
             answers.append(
-                law.phase_fields(run.impact.problem, piece.phase, contact, slip, run.factor)
+                law.phase_fields(run.impact.motion, piece.phase, contact, slip, run.factor)
             )
-        if not problem.shape:
+        if not batch:
             return answers[0]
         return {
             name: np.array([answer[name] for answer in answers]).reshape(
-                *problem.shape, *np.shape(answers[0][name])
+                *batch, *np.shape(answers[0][name])
             )
             for name in answers[0]
         }

@@ -18,7 +18,7 @@ from contactlab.contracts import (
 )
 from contactlab.status import Status
 from contactlab_events.forecast import too_many
-from contactlab_events.nodes import lobatto, row, rows
+from contactlab.collocation import lobatto, row, rows
 from contactlab_events.panel import Overshot, PanelPath, Solved, newton
 from contactlab_events.search import first_event
 
@@ -165,7 +165,7 @@ class _Walk:
         if closed.event is None:
             self.state = end._replace(x=math.pi)
         else:
-            instant = self.motion.instant(end.x)
+            instant = self.motion.scaled_at(end.x)
             self._enter(self.phase.follow(closed.event, end, instant, None))
         return failure
 
@@ -224,7 +224,7 @@ class _Walk:
 
     def _resolved(self, solved: Solved) -> bool:
         """Say whether the highest Legendre terms of the force are small."""
-        one, two = (self.nodes.tail @ (solved.contact.pace * solved.force)).tolist()
+        one, two = (self.nodes.tail @ (solved.contact.time_rate * solved.force)).tolist()
         middle = abs(solved.velocity[NODES // 2].item())
         scale = abs(self.state.velocity) + abs(solved.change[-1].item()) + middle
         largest = self.inertia * solved.length * max(abs(one), abs(two))
@@ -251,7 +251,7 @@ class _Walk:
     def _turn(self, event: int) -> None:
         """Go over to the next phase at once."""
         state = self.state
-        self._enter(self.phase.follow(event, state, self.motion.instant(state.x), None))
+        self._enter(self.phase.follow(event, state, self.motion.scaled_at(state.x), None))
 
     def _accept(self, solved: Solved, event: int | None, stop: float, *, rooted: bool) -> None:
         """Move to tau = ``stop`` of a solved panel."""
@@ -263,10 +263,10 @@ class _Walk:
         self.pieces.append(Piece(self.phase, start, path, x))
         self.state = self._arrive(solved, stop, x)
         if event is None:
-            self.phase = self.phase.carry_on(self.state, motion.instant(x), path)
+            self.phase = self.phase.carry_on(self.state, motion.scaled_at(x), path)
             self.length = min(self.longest, 1.5 * solved.length)
         else:
-            self._enter(self.phase.follow(event, self.state, motion.instant(x), path))
+            self._enter(self.phase.follow(event, self.state, motion.scaled_at(x), path))
 
     def _arrive(self, solved: Solved, stop: float, x: float) -> PhaseState:
         """Return the state at tau = ``stop`` of a solved panel."""

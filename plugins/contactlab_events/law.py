@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
 
-from contactlab.checks import Rule, quantity
+from contactlab import faults
+from contactlab.checks import Real, Rule, quantity
 from contactlab.contracts import (
+    ClosedFormMotion,
+    ClosedFormNormalLaw,
     Integrator,
-    Motion,
+    NormalLaw,
+    NormalMotion,
     Observer,
     PhasedTangentialLaw,
-    Problem,
+    TangentialLaw,
+    TangentialMotion,
 )
+from contactlab.scene import Scene
 from contactlab_events.dense import show
 from contactlab_events.scaled import Run, scaled
 
@@ -43,11 +49,10 @@ class Events(Integrator):
     IV.8: collocation at Lobatto points.
     """
 
-    api_version: ClassVar[int] = 1
+    api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "tolerance"
-    offers: ClassVar[frozenset[str]] = frozenset({"events"})
-    needs: ClassVar[frozenset[str]] = frozenset({"phases", "closed_form_motion"})
-    uses: ClassVar[frozenset[str]] = frozenset({"closed_form_motion"})
+    tangential_contract: ClassVar[type[TangentialLaw]] = PhasedTangentialLaw
+    normal_contract: ClassVar[type[NormalLaw]] = ClosedFormNormalLaw
     together: ClassVar[bool] = False
 
     tolerance: float = quantity("1", rule=TOLERANCES, default=1e-9)
@@ -57,21 +62,38 @@ class Events(Integrator):
         """The error aimed at."""
         return self.tolerance
 
-    def integrate(self, problem: Problem, observer: Observer | None = None) -> Motion:
+    def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
+        """Return the tolerance, and what the law declares for itself."""
+        own: Any = tangential.psi2_error(scene, normal, np.inf)
+        return self.tolerance * np.maximum(1.0, np.abs(scene.psi1)) + own
+
+    def integrate(
+        self,
+        normal: NormalMotion,
+        tangential: TangentialLaw,
+        scene: Scene,
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
         """Return the motion, impact by impact."""
-        law = problem.tangential
+        law, shape = tangential, scene.shape
         assert isinstance(law, PhasedTangentialLaw)
-        runs = [impact.run(law, self.tolerance) for impact in map(scaled, problem.impacts())]
+        assert isinstance(normal, ClosedFormMotion)
+        places = list(np.ndindex(shape)) if shape else [None]
+        runs = []
+        for place in places:
+            motion = normal if place is None else normal.take(place)
+            assert isinstance(motion, ClosedFormMotion)
+            with faults.blaming(motion.law):
+                impact = scaled(motion)
+            runs.append(impact.run(law, self.tolerance))
         if observer is not None:
-            show(problem, law, runs, observer)
+            show(shape, law, runs, observer)
         motions = [_motion(run) for run in runs]
-        return Motion.joined(motions, problem.shape) if problem.shape else motions[0]
+        return TangentialMotion.joined(motions, shape) if shape else motions[0]
 
 
-def _motion(run: Run) -> Motion:
-    return Motion(
-        duration=run.duration,
-        normal_velocity=run.normal_velocity,
+def _motion(run: Run) -> TangentialMotion:
+    return TangentialMotion(
         slip_velocity_change=run.slip_velocity_change,
         friction_work=run.friction_work,
         status=run.status,

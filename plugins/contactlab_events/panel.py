@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
-from contactlab.contracts import ClosedFormMotion, Course, Phase, PhaseResponse, PhaseState
-from contactlab_events.nodes import ON_NODE, Nodes, rows
+from contactlab.contracts import ClosedFormMotion, ScaledContact, Phase, PhaseResponse, PhaseState
+from contactlab.collocation import ON_NODE, Nodes, rows
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ LARGEST_CHANGE = 1e150
 class Solved(NamedTuple):
     """Converged values at a panel's nodes; ``change`` is counted from the panel's start."""
 
-    contact: Course
+    contact: ScaledContact
     response: PhaseResponse
     slip: Array
     change: Array
@@ -76,8 +76,8 @@ class PanelPath:
                 solved.force,
                 contact.approach,
                 contact.radius,
-                contact.pace * solved.velocity,
-                contact.pace * contact.rate,
+                contact.time_rate * solved.velocity,
+                contact.time_rate * contact.rate,
                 self.nodes.plain[1],
             ]
         )
@@ -104,7 +104,7 @@ class _Grid(NamedTuple):
     ``drift`` is the slip if the velocity stayed as it was.
     """
 
-    contact: Course
+    contact: ScaledContact
     rate: Array
     time_matrix: Array
     time: Array
@@ -121,8 +121,8 @@ class _Grid(NamedTuple):
     ) -> _Grid:
         """Lay ``nodes`` out from ``start``, spaced evenly or with ``nodes.rooted``."""
         spot, spread = spacing
-        contact = motion.course(start.x + length * spot)
-        rate = contact.pace * (length * spread)
+        contact = motion.scaled(start.x + length * spot)
+        rate = contact.time_rate * (length * spread)
         time = nodes.integral.dot(rate)
         drift = start.velocity * time
         drift += start.slip
@@ -194,7 +194,7 @@ def newton(
             if not abs(shift) < 0.5 * length:
                 return None
             if abs(shift) > FIT_MOVE * length:
-                change -= (inertia * shift) * (force * grid.contact.pace * spacing[0])
+                change -= (inertia * shift) * (force * grid.contact.time_rate * spacing[0])
                 length += shift
                 grid = _Grid.of(motion, nodes, spacing, start, length)
                 update = max(update, 1e-3 * abs(shift) / length)
@@ -231,7 +231,7 @@ def _shift(margin: Array, spot: Array, length: float) -> float:
 
 def glance(
     phase: Phase,
-    contact: Course,
+    contact: ScaledContact,
     slip: Array,
     velocity: Array,
     response: PhaseResponse,

@@ -5,13 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from contactlab.contracts import (
-    ClosedFormMotion,
-    ClosedFormNormalLaw,
-    PhasedTangentialLaw,
-    PhaseState,
-    Problem,
-)
+from contactlab.contracts import ClosedFormMotion, PhasedTangentialLaw, PhaseState
 from contactlab.status import Status
 from contactlab_events.follow import Followed, follow
 
@@ -25,8 +19,6 @@ class Run(NamedTuple):
     impact: Impact
     followed: Followed
     factor: float
-    duration: float
-    normal_velocity: float
     slip_velocity_change: float
     friction_work: float
     status: Status
@@ -39,12 +31,10 @@ class Impact(NamedTuple):
     ``velocity_unit`` is mu v1/kappa (29), ``force_unit`` mu P_max; both 0 without friction.
     """
 
-    problem: Problem
     motion: ClosedFormMotion
     velocity: float
     inertia: float
     slip_velocity: float
-    speed: float
     velocity_unit: float
     force_unit: float
     time_unit: float
@@ -53,7 +43,6 @@ class Impact(NamedTuple):
         """Follow the impact; a law is odd, so the velocity goes in without its sign."""
         speed = abs(self.velocity)
         factor = -1.0 if self.velocity < 0.0 else 1.0
-        works = not law.inert  # friction that does none has none, however large its unit
         if 0.0 < speed < law.linear_below and self.inertia > LEAST_INERTIA:
             speed, factor = law.linear_below, factor * (speed / law.linear_below)
         if not (math.isfinite(speed) and math.isfinite(self.inertia) and self.inertia > 0.0):
@@ -63,7 +52,7 @@ class Impact(NamedTuple):
         elif speed == 0.0 or self.force_unit == 0.0:  # nothing moves, or nothing resists
             ended = PhaseState(math.pi, 0.0, 0.0, speed, 0.0, 0.0, 0.0)
             followed = Followed("", ended, (), 0)
-            status, failure, works = Status.SUCCESS, "", False
+            status, failure = Status.SUCCESS, ""
         else:
             followed = follow(law, self.motion, self.inertia, speed, tolerance)
             status, failure = followed.status, followed.failure
@@ -71,13 +60,11 @@ class Impact(NamedTuple):
         usable = math.nan if status is not Status.SUCCESS else 1.0
         # A tiny factor stands for a huge friction coefficient: each unit takes its own.
         velocity_unit, force_unit = factor * self.velocity_unit, factor * self.force_unit
-        work_unit = velocity_unit * self.time_unit * force_unit if works else 0.0
+        work_unit = velocity_unit * self.time_unit * force_unit
         return Run(
             impact=self,
             followed=followed,
             factor=factor,
-            duration=float(self.motion.duration),
-            normal_velocity=self.motion.instant(math.pi).rate * self.speed,
             slip_velocity_change=usable * factor * state.change * self.velocity_unit,
             friction_work=usable * state.work * work_unit,
             status=status,
@@ -85,23 +72,18 @@ class Impact(NamedTuple):
         )
 
 
-def scaled(problem: Problem) -> Impact:
-    """Return a problem of one impact in scaled units."""
-    normal, pair = problem.normal, problem.pair
-    assert isinstance(normal, ClosedFormNormalLaw)
-    speed = float(problem.normal_speed)
-    motion = normal.motion(pair, speed)
-    friction, kappa = float(problem.friction_coefficient), float(pair.stiffness_ratio)
+def scaled(motion: ClosedFormMotion) -> Impact:
+    """Return one impact in scaled units."""
+    scene = motion.scene
+    speed, kappa = float(scene.normal_speed), float(scene.pair.stiffness_ratio)
+    friction, slip_velocity = float(scene.friction_coefficient), float(scene.slip_velocity)
     force, approach = float(motion.maximum_force), float(motion.maximum_approach)
     unit = friction * speed / kappa
-    slip_velocity = float(problem.slip_velocity)
     return Impact(
-        problem=problem,
         motion=motion,
         velocity=slip_velocity / unit if unit else 0.0,
-        inertia=kappa * (force / speed) * (approach / speed) / float(pair.tangential_mass),
+        inertia=kappa * (force / speed) * (approach / speed) / float(scene.pair.tangential_mass),
         slip_velocity=slip_velocity,
-        speed=speed,
         velocity_unit=unit,
         force_unit=friction * force,
         time_unit=approach / speed,

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import Phase
-from contactlab_events.nodes import Nodes, row
+from contactlab.collocation import Nodes, row
 from contactlab_events.panel import Solved
 
 Array = NDArray[np.float64]

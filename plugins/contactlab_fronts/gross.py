@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts import ClosedFormMotion, ClosedPhase, Course, PhaseState
+from contactlab.contracts import ClosedFormMotion, ClosedPhase, ScaledContact, PhaseState
 
 Array = NDArray[np.float64]
 
@@ -23,8 +23,8 @@ class GrossMotion(ClosedPhase):
     def __init__(
         self, share: float, state: PhaseState, motion: ClosedFormMotion, inertia: float
     ) -> None:
-        first = motion.instant(state.x)
-        last = motion.instant(np.pi).rate
+        first = motion.scaled_at(state.x)
+        last = motion.scaled_at(np.pi).rate
         ratio = inertia * motion.scaled_mass
         self.share, self.ratio, self.first, self.start = share, ratio, first.rate, state
         self.event = None
@@ -39,8 +39,8 @@ class GrossMotion(ClosedPhase):
             # to the end, V = -1: from the energy 1 - V², as the difference would cancel
             fall = first.approach * first.force / (1.0 - first.rate)
         gained = -share * ratio * fall
-        normal, before = motion.instant(x), motion.instant(x - RATE_STEP)
-        rate = (normal.force - before.force) / (RATE_STEP * before.pace)
+        normal, before = motion.scaled_at(x), motion.scaled_at(x - RATE_STEP)
+        rate = (normal.force - before.force) / (RATE_STEP * before.time_rate)
         # Work is the integral of (s psi - V) P over T, and P dT = -mass dV.
         mean = share * (state.velocity + 0.5 * gained) - 0.5 * (first.rate + last)
         self.end = PhaseState(
@@ -53,7 +53,7 @@ class GrossMotion(ClosedPhase):
             work=state.work + motion.scaled_mass * fall * mean,
         )
 
-    def states(self, contact: Course) -> tuple[Array, Array]:
+    def states(self, contact: ScaledContact) -> tuple[Array, Array]:
         """Return (change of velocity, force)."""
         gained = self.share * self.ratio * (contact.rate - self.first)
         return self.start.change + gained, self.share * contact.force

@@ -9,9 +9,17 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import Mask, Real
-from contactlab.closed_forms import slips_throughout_elastic
-from contactlab.contracts import ClosedFormMotion, Course, Phase, PhasedTangentialLaw, Problem
+from contactlab.checks import Real
+from contactlab.contracts import (
+    ClosedFormMotion,
+    NormalMotion,
+    Phase,
+    PhasedTangentialLaw,
+    ScaledContact,
+    WholeImpact,
+)
+from contactlab.scene import Scene
+from contactlab_jaeger.gross_slip import gross_slip
 from contactlab_fronts.phases import Balanced, FrontPhase, GrossSlip, Stuck
 
 Array = NDArray[np.float64]
@@ -40,10 +48,9 @@ class Fronts(PhasedTangentialLaw):
     tangential loading from superposed normal contacts, of which the springs are one form.
     """
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset[str]] = frozenset({"phases", "partial_slip"})
-    needs: ClassVar[frozenset[str]] = frozenset({"events", "elastic_hertz"})
-    exact: ClassVar[bool] = True
+    api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
+    needs: ClassVar[frozenset[str]] = frozenset({"elastic_hertz"})
     linear_below: ClassVar[float] = 1e-8
 
     @property
@@ -55,9 +62,13 @@ class Fronts(PhasedTangentialLaw):
         """
         return 2e-6
 
-    def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
-        """Return True where (44) and (46) say so."""
-        return slips_throughout_elastic(psi1, chi)
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return those of gross slip too, where (44) and (46) say so."""
+        return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
+
+    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:  # noqa: ARG002
+        """Return 0: there is no discretisation."""
+        return 0.0
 
     def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
         """Stick below psi1 = 1 (44), else slip; at exactly 1 the inertia decides."""
@@ -82,7 +93,7 @@ class Fronts(PhasedTangentialLaw):
         return rebound.rebound(psi1, chi, tolerance)
 
     def phase_fields(
-        self, problem: Problem, phase: Phase, contact: Course, slip: float, factor: float
+        self, normal: ClosedFormMotion, phase: Phase, contact: ScaledContact, slip: float, factor: float
     ) -> Mapping[str, NDArray[Any]]:
         """Return rings of equal width: radius (m), stuck, and the sign of slipping traction.
 
@@ -93,7 +104,7 @@ class Fronts(PhasedTangentialLaw):
         ring = (np.arange(RINGS) + 0.5) / RINGS
         touching, inside = ring < contact.radius, ring < front
         sense = sign if factor > 0.0 else -sign
-        largest = float(problem.maximum_radius)
+        largest = float(normal.maximum_radius)
         return {
             "radius": largest * ring,
             "front": np.array(largest * front),

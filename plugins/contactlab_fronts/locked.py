@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts import Course
+from contactlab.contracts import ScaledContact
 from contactlab_fronts.profile import Front, Piece
 
 Array = NDArray[np.float64]
@@ -31,7 +31,7 @@ class Locked(Piece):
         """I(c) = base + sign c³."""
         return self.inner_force - self.sign * self.inner_q * math.sqrt(self.inner_q)
 
-    def front(self, sign: int, contact: Course, slip: Array, memo: tuple[Array, ...]) -> Front:  # noqa: ARG002
+    def front(self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]) -> Front:  # noqa: ARG002
         """Solve in closed form: only the other sign comes here, and s w - l then falls as 2 q."""
         q = contact.approach - sign * slip
         q += self.inner_q - sign * self.inner_f
@@ -45,7 +45,7 @@ class Locked(Piece):
             force += self.base
         return Front(c, force, (q,))
 
-    def depth(self, sign: int, contact: Course, slip: Array, memo: tuple[Array, ...]) -> Array:  # noqa: ARG002
+    def depth(self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]) -> Array:  # noqa: ARG002
         """Return zeta - q."""
         return np.asarray(contact.approach - memo[0])
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from contactlab.contracts import (
     ClosedFormMotion,
     ClosedPhase,
-    Course,
+    ScaledContact,
     Path,
     Phase,
     PhaseResponse,
@@ -28,7 +28,7 @@ Profile = tuple[Piece, ...]
 class FrontPhase(Phase):
     """A phase of the spring bundle: stuck within a radius, slipping one way outside."""
 
-    def division(self, contact: Course, slip: float) -> tuple[float, int]:  # noqa: ARG002
+    def division(self, contact: ScaledContact, slip: float) -> tuple[float, int]:  # noqa: ARG002
         """Return radius of the front and sense of slip outside it: here all sticks."""
         return contact.radius, 0
 
@@ -46,14 +46,14 @@ class Stuck(FrontPhase):
     linear = True
     dissipates = False
 
-    def respond(self, contact: Course, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
+    def respond(self, contact: ScaledContact, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
         """Gather dF = 1.5 c dD."""
         return PhaseResponse(np.full_like(slip, self.force), None, 1.5 * contact.radius, ())
 
     def margin(
         self,
         event: int,
-        contact: Course,
+        contact: ScaledContact,
         slip: Array,  # noqa: ARG002
         velocity: Array,
         response: PhaseResponse,  # noqa: ARG002
@@ -61,12 +61,12 @@ class Stuck(FrontPhase):
         """Return V -+ psi: the edge sticks while |psi| < V."""
         return np.asarray(contact.rate + velocity if event else contact.rate - velocity)
 
-    def follow(self, event: int, state: PhaseState, contact: Course, path: Path | None) -> Phase:  # noqa: ARG002
+    def follow(self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None) -> Phase:  # noqa: ARG002
         """Begin to slip at the edge."""
         sign = -1 if event else 1
         return slipping(sign, self._grown(state, path, sign))
 
-    def carry_on(self, state: PhaseState, contact: Course, path: Path) -> Phase:  # noqa: ARG002
+    def carry_on(self, state: PhaseState, contact: ScaledContact, path: Path) -> Phase:  # noqa: ARG002
         """Keep what the panel laid down."""
         return Stuck(self._grown(state, path, 0), state.x, state.force, 0)
 
@@ -91,13 +91,13 @@ class EdgeSlip(FrontPhase):
         piece = profile[-1]
         return cls(sign, profile, (False, piece.flat(sign), False), piece.span(sign))
 
-    def respond(self, contact: Course, slip: Array, memo: Memo) -> PhaseResponse:
+    def respond(self, contact: ScaledContact, slip: Array, memo: Memo) -> PhaseResponse:
         """Return the force of profile and slip zone; dF/dD = 1.5 c."""
         radius, force, memo = self.profile[-1].front(self.sign, contact, slip, memo)
         return PhaseResponse(force, 1.5 * radius, None, memo)
 
     def margin(
-        self, event: int, contact: Course, slip: Array, velocity: Array, response: PhaseResponse
+        self, event: int, contact: ScaledContact, slip: Array, velocity: Array, response: PhaseResponse
     ) -> Array:
         """Return s psi - V; what the front has left to its piece's inner end; zeta - q there."""
         sign, piece = self.sign, self.profile[-1]
@@ -108,7 +108,7 @@ class EdgeSlip(FrontPhase):
             return np.asarray(contact.approach - sign * slip - inner)
         return piece.depth(sign, contact, slip, response.memo)
 
-    def follow(self, event: int, state: PhaseState, contact: Course, path: Path | None) -> Phase:  # noqa: ARG002
+    def follow(self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None) -> Phase:  # noqa: ARG002
         """Re-stick (0), go on to the next piece (1), or slip the other way (2)."""
         sign = self.sign
         if event == 1:
@@ -121,14 +121,14 @@ class EdgeSlip(FrontPhase):
         locked = Locked(sign, c * c, inner_f, inner_force)
         return sticking(sign, (*self.profile, locked), state, contact)
 
-    def division(self, contact: Course, slip: float) -> tuple[float, int]:
+    def division(self, contact: ScaledContact, slip: float) -> tuple[float, int]:
         """Return the front at one instant."""
-        here = Course(*(np.array([value]) for value in contact))
+        here = ScaledContact(*(np.array([value]) for value in contact))
         front = self.profile[-1].front(self.sign, here, np.array([slip]), ())
         return front.radius.item(), self.sign
 
     def friction_power(
-        self, contact: Course, slip: Array, velocity: Array, response: PhaseResponse
+        self, contact: ScaledContact, slip: Array, velocity: Array, response: PhaseResponse
     ) -> Array:
         """1.5 (s psi - V) times the integral of zeta - s² over the slip zone.
 
@@ -151,18 +151,18 @@ class GrossSlip(FrontPhase):
 
     rough = (False,)
 
-    def respond(self, contact: Course, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
+    def respond(self, contact: ScaledContact, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
         """F = s P."""
         return PhaseResponse(self.sign * contact.force, None, None, ())
 
-    def division(self, contact: Course, slip: float) -> tuple[float, int]:  # noqa: ARG002
+    def division(self, contact: ScaledContact, slip: float) -> tuple[float, int]:  # noqa: ARG002
         """Return a front at the centre."""
         return 0.0, self.sign
 
     def margin(
         self,
         event: int,  # noqa: ARG002
-        contact: Course,
+        contact: ScaledContact,
         slip: Array,  # noqa: ARG002
         velocity: Array,
         response: PhaseResponse,  # noqa: ARG002
@@ -170,7 +170,7 @@ class GrossSlip(FrontPhase):
         """Slip goes on while s psi > V."""
         return np.asarray(self.sign * velocity - contact.rate)
 
-    def follow(self, event: int, state: PhaseState, contact: Course, path: Path | None) -> Phase:  # noqa: ARG002
+    def follow(self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None) -> Phase:  # noqa: ARG002
         """Re-stick, all at once."""
         locked = Locked(self.sign, 0.0, self.sign * contact.approach - state.slip, 0.0)
         return sticking(self.sign, (locked,), state, contact)
@@ -191,7 +191,7 @@ class Balanced(FrontPhase):
 
     share: float
 
-    def respond(self, contact: Course, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
+    def respond(self, contact: ScaledContact, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
         """F = share P."""
         return PhaseResponse(self.share * contact.force, None, None, ())
 
@@ -214,7 +214,7 @@ def slipping(sign: int, profile: Profile) -> Phase:
     return EdgeSlip.through(sign, profile) if profile else GrossSlip(sign)
 
 
-def sticking(sign: int, profile: Profile, state: PhaseState, contact: Course) -> Phase:
+def sticking(sign: int, profile: Profile, state: PhaseState, contact: ScaledContact) -> Phase:
     """Return what follows when slip of this sign stops: in unloading the edge slips back."""
     if contact.rate > 0.0:
         return Stuck(profile, state.x, state.force, sign)

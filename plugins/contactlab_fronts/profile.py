@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts import Course
+from contactlab.contracts import ScaledContact
 
 Array = NDArray[np.float64]
 
@@ -39,11 +39,11 @@ class Piece(ABC):
     inner_f: float
 
     @abstractmethod
-    def front(self, sign: int, contact: Course, slip: Array, memo: tuple[Array, ...]) -> Front:
+    def front(self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]) -> Front:
         """Return the front of slip with this sign, where s (f(q) + D) = zeta - q."""
 
     @abstractmethod
-    def depth(self, sign: int, contact: Course, slip: Array, memo: tuple[Array, ...]) -> Array:
+    def depth(self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]) -> Array:
         """Return zeta - q at the front: zero as the slip zone vanishes."""
 
     @abstractmethod

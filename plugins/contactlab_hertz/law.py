@@ -9,6 +9,7 @@ import attrs
 from contactlab.bodies import Pair
 from contactlab.checks import Real
 from contactlab.contracts import ClosedFormNormalLaw, NormalContact
+from contactlab.scene import Scene
 from contactlab_hertz.motion import HertzMotion
 
 
@@ -16,7 +17,7 @@ from contactlab_hertz.motion import HertzMotion
 class Hertz(ClosedFormNormalLaw):
     """Elastic, frictionless normal contact of smooth bodies.
 
-    The state of a run is the pair itself: the law has no memory.
+    The state is the pair of bodies: the law has no memory.
 
     References
     ----------
@@ -24,14 +25,12 @@ class Hertz(ClosedFormNormalLaw):
     eqs (2)-(6), for a general pair: P = (4/3) E* sqrt(R) u_z^1.5.
     """
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset[str]] = frozenset(
-        {"radius", "hertzian_pressure", "closed_form_motion", "elastic_hertz"}
-    )
+    api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure", "elastic_hertz"})
 
-    def start(self, pair: Pair) -> Pair:
+    def start(self, scene: Scene) -> Pair:
         """Return the pair; there is nothing to remember."""
-        return pair
+        return scene.pair
 
     def respond(self, state: Pair, approach: Real, rate: Real) -> tuple[NormalContact, Pair]:  # noqa: ARG002
         """Return force (4) and radius (2) at ``approach``; both are 0 out of contact."""
@@ -39,8 +38,8 @@ class Hertz(ClosedFormNormalLaw):
         compression: Any = approach * (approach > 0.0)
         radius = (state.radius * compression) ** 0.5
         force = (4.0 / 3.0) * state.effective_modulus * radius * compression
-        return NormalContact(force, radius, approach), state
+        return NormalContact(force, radius, approach, force), state
 
-    def motion(self, pair: Pair, speed: Real) -> HertzMotion:
-        """Return the motion of an impact at ``speed`` (m/s) in closed form."""
-        return HertzMotion.of(pair, speed)
+    def motion(self, scene: Scene) -> HertzMotion:
+        """Return the motion in closed form."""
+        return HertzMotion.of(self, scene)

@@ -10,10 +10,16 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.bodies import Pair
 from contactlab.checks import Real
-from contactlab.closed_forms import DURATION_CONSTANT, size_ratio
-from contactlab.contracts import ClosedFormMotion, Course, NormalContact
+from contactlab.closed_forms import DURATION_CONSTANT, hertz_scales
+from contactlab.contracts import (
+    ClosedFormMotion,
+    NormalContact,
+    NormalLaw,
+    NormalSample,
+    ScaledContact,
+)
+from contactlab.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -76,65 +82,59 @@ def _kept(function: Callable[[Array], tuple[Array, ...]], at: bytes) -> tuple[Ar
     return found
 
 
-@attrs.frozen
+@attrs.frozen(kw_only=True, eq=False, repr=False)
 class HertzMotion(ClosedFormMotion):
     """Elastic impact: V² + zeta^2.5 = 1 in scaled variables, theory §§1 and 3.
 
     With the phase x in [0, pi]: sqrt(zeta) = sin x = u, V = cos x g(u), dT/dx = 2u/g(u).
     """
 
-    speed: Real
-    approach_scale: Real  # C² R in m
-    force_scale: Real  # P_max in N
-    radius_scale: Real  # C R in m
+    law: NormalLaw
+    scene: Scene
+    duration: Real
+    maximum_radius: Real
+    maximum_approach: Real
+    maximum_force: Real
+    final_rate: Real
+    total_load_impulse: Real
 
     @classmethod
-    def of(cls, pair: Pair, speed: Real) -> HertzMotion:
-        """Return the motion of ``pair`` meeting at ``speed`` (m/s), eqs (7)-(9)."""
-        ratio = size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, speed)
-        approach = ratio * ratio * pair.radius
-        # P_max follows from energy: ½ M v1² = (2/5) P_max C² R.
-        force = 1.25 * pair.normal_mass * speed * (speed / approach)  # the square may underflow
-        return cls(speed, approach, force, ratio * pair.radius)
+    def of(cls, law: NormalLaw, scene: Scene) -> HertzMotion:
+        """Return the motion of ``scene``, eqs (7)-(9); it parts as fast as it met."""
+        scales, speed = hertz_scales(scene), scene.normal_speed
+        return cls(
+            law=law,
+            scene=scene,
+            duration=scales.duration,
+            maximum_radius=scales.radius,
+            maximum_approach=scales.approach,
+            maximum_force=scales.force,
+            final_rate=-speed,
+            total_load_impulse=2.0 * scene.pair.normal_mass * speed,
+        )
 
-    @property
-    def duration(self) -> Real:
-        """Duration (7), in s."""
-        return DURATION_CONSTANT * (self.approach_scale / self.speed)
-
-    @property
-    def maximum_radius(self) -> Real:
-        """Largest contact radius (8), in m."""
-        return self.radius_scale
-
-    @property
-    def maximum_approach(self) -> Real:
-        """Greatest approach C² R, in m."""
-        return self.approach_scale
-
-    @property
-    def maximum_force(self) -> Real:
-        """P_max, in N."""
-        return self.force_scale
+    def take(self, part: object) -> HertzMotion:
+        """Return the motion of some impacts."""
+        return HertzMotion.of(self.law, self.scene.take(part))
 
     @property
     def scaled_mass(self) -> float:
         """V' = -1.25 zeta^1.5, theory §1."""
         return 0.8
 
-    def course(self, phase: Array) -> Course:
+    def scaled(self, phase: Array) -> ScaledContact:
         """Return zeta = u², b/a = u, V = cos x g(u), P/P_max = u³ and dT/dx = 2u/g(u)."""
         u = np.sin(phase)
         square = u * u
         g = np.sqrt(1.0 + square + square * square / (1.0 + u))
-        return Course(phase, square, u, np.cos(phase) * g, u * square, (u + u) / g)
+        return ScaledContact(phase, square, u, np.cos(phase) * g, u * square, (u + u) / g)
 
-    def instant(self, phase: float) -> Course:
+    def scaled_at(self, phase: float) -> ScaledContact:
         """Return the same in plain floats."""
         u = math.sin(phase)
         square = u * u
         g = math.sqrt(1.0 + square + square * square / (1.0 + u))
-        return Course(phase, square, u, math.cos(phase) * g, u * square, 2.0 * u / g)
+        return ScaledContact(phase, square, u, math.cos(phase) * g, u * square, 2.0 * u / g)
 
     def phase_at_rate(self, rate: float) -> float:
         """Return x where V = ``rate``; by the tangent, accurate near the greatest compression."""
@@ -142,19 +142,17 @@ class HertzMotion(ClosedFormMotion):
         g = math.sqrt(1.0 + u * u + u**4 / (1.0 + u))
         return math.atan2(u, rate / g)
 
-    def at(self, phase: Real) -> tuple[Real, Real, Real, NormalContact]:
-        """Return (time, approach, rate, contact) at ``phase`` in [0, pi]."""
+    def at(self, phase: Real) -> NormalSample:
+        """Return the motion at ``phase`` in [0, pi]."""
+        speed = self.scene.normal_speed
         u, rate, instant = remembered(scaled_motion, phase)
-        instant = instant * (self.approach_scale / self.speed)
-        approach = u * u * self.approach_scale
-        contact = NormalContact(u**3 * self.force_scale, u * self.radius_scale, approach)
-        return instant, approach, rate * self.speed, contact
+        instant = instant * (self.maximum_approach / speed)
+        approach = u * u * self.maximum_approach
+        force = u**3 * self.maximum_force
+        contact = NormalContact(force, u * self.maximum_radius, approach, force)
+        impulse = self.scene.pair.normal_mass * speed * (1.0 - rate)
+        return NormalSample(instant, approach, rate * speed, contact, impulse)
 
     def phase(self, fraction: Real) -> Real:
         """Return the phase at ``fraction`` of the duration, by the inverse of ``scaled_time``."""
         return remembered(phase_at_fraction, fraction)[0]
-
-    def pace(self, phase: Real) -> Real:
-        """Return dt/dx at ``phase``, in s."""
-        u = np.maximum(np.sin(phase), 0.0)
-        return 2.0 * u / velocity_factor(u) * (self.approach_scale / self.speed)

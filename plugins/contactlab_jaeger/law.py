@@ -10,18 +10,21 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import Mask, Real
-from contactlab.closed_forms import slips_throughout_elastic
+from contactlab.cautions import hemisphere
+from contactlab.checks import Real
 from contactlab.contracts import (
+    AllStepsResponse,
+    AllStepsTangentialLaw,
     Increment,
     NormalContact,
-    Problem,
-    Run,
-    RunningTangentialLaw,
-    RunResponse,
+    NormalMotion,
+    Steps,
     TangentialResponse,
+    WholeImpact,
 )
+from contactlab.scene import Scene
 from contactlab_jaeger import step, whole
+from contactlab_jaeger.gross_slip import gross_slip
 from contactlab_jaeger.places import Array, Places
 
 #: Numbers in a table of a whole run; larger ones (16 MB each) are not made.
@@ -38,18 +41,18 @@ class Scales(NamedTuple):
     work: Real  # mu P_max mu a²/(kappa R), J
 
     @classmethod
-    def of(cls, problem: Problem) -> Scales:
-        """Return the scales of ``problem``, theory §1."""
-        pair, radius, friction = problem.pair, problem.maximum_radius, problem.friction_coefficient
+    def of(cls, scene: Scene, normal: NormalMotion) -> Scales:
+        """Return the scales of the largest contact, theory §1."""
+        pair, radius, friction = scene.pair, normal.maximum_radius, scene.friction_coefficient
         peak = (4.0 / 3.0) * pair.effective_modulus * radius**3 / pair.radius
         slip = friction * radius**2 / (pair.stiffness_ratio * pair.radius)
         per_slip = (friction > 0.0) / (slip + (friction == 0.0))
         return cls(radius, per_slip, friction * peak, peak, friction * peak * slip)
 
-    def pressure(self, radius: Any, force: Any) -> Any:
-        """Return p: 1 for a Hertz contact; another law may carry another force at a radius."""
+    def pressure(self, radius: Any, load: Any) -> Any:
+        """Return p: 1 for a Hertz contact; another law may carry another load at a radius."""
         cube = self.normal_force * radius**3
-        return force / (cube + (cube == 0.0))
+        return load / (cube + (cube == 0.0))
 
 
 class State(NamedTuple):
@@ -60,28 +63,31 @@ class State(NamedTuple):
     memory: step.Memory
 
 
-class ProfileLaw(RunningTangentialLaw):
+class ProfileLaw(AllStepsTangentialLaw):
     """A law of independent springs; a subclass says where they are."""
 
-    offers: ClassVar[frozenset[str]] = frozenset({"advance", "partial_slip"})
-    needs: ClassVar[frozenset[str]] = frozenset({"steps", "radius"})
-    runs_batches: ClassVar[bool] = True
+    offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
+    needs: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     @abstractmethod
     def places(self) -> Places:
         """Return the places, made once for each number of them."""
 
-    def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
-        """Return True where (44) and (46) say so."""
-        return slips_throughout_elastic(psi1, chi)
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return those of gross slip too, where (44) and (46) say so."""
+        return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
 
-    def stiffness(self, problem: Problem) -> Real:
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+        """Return those of every law, and that of a pressure that may be no hemisphere."""
+        return (*super().cautions(scene, normal), *hemisphere(normal.offers))
+
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""
-        return 2.0 * problem.pair.effective_shear_modulus * problem.maximum_radius
+        return 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
 
-    def start(self, problem: Problem) -> State:
+    def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return contacts without traction."""
-        return State(problem.shape, Scales.of(problem), step.start())
+        return State(scene.shape, Scales.of(scene, normal), step.start())
 
     def advance(
         self,
@@ -93,7 +99,7 @@ class ProfileLaw(RunningTangentialLaw):
         """Return the force after the step."""
         shape, scales, memory = state
         radius = step.plain(after.radius) / scales.radius
-        pressure = scales.pressure(radius, step.plain(after.force))
+        pressure = scales.pressure(radius, step.plain(after.friction_load))
         radius, pressure = step.common(radius, shape), step.common(pressure, shape)
         moved = increment.displacement * scales.displacement
         if not shape:
@@ -108,24 +114,22 @@ class ProfileLaw(RunningTangentialLaw):
         force, work = force.reshape(shape) * scales.force, work.reshape(shape) * scales.work
         return TangentialResponse(force, work), State(shape, scales, memory)
 
-    def run(self, problem: Problem, run: Run) -> RunResponse | None:
-        """Return the forces of a whole impact, or of many that differ in scale only."""
-        scales, shape = Scales.of(problem), problem.shape
-        columns = math.prod(shape) if shape else len(self.places().squares)
-        if len(run.radius) * columns > LARGEST_RUN:
+    def advance_all(
+        self, scene: Scene, normal: NormalMotion, steps: Steps
+    ) -> AllStepsResponse | None:
+        """Return the forces of a whole impact."""
+        if len(steps.drift) * len(self.places().squares) > LARGEST_RUN:
             return None
-        radius = run.radius / scales.radius
-        pressure = scales.pressure(radius, run.force)
-        drift, kick = run.drift * scales.displacement, run.kick * (scales.force / run.mass)
-        if not shape:
-            course = whole.Course(radius, pressure, drift, kick)
-            force, work = whole.run(self.places(), course, run.velocity)
-            return RunResponse(force * scales.force, work * scales.work, True)
-        if not (_alike(radius) and _alike(pressure)):
-            return None
-        course = whole.Course(radius[:, 0], pressure[:, 0], drift, kick)
-        forces, works = whole.run_many(self.places(), course, run.velocity, shape[0])
-        return RunResponse(forces * scales.force, works * scales.work, True)
+        scales = Scales.of(scene, normal)
+        radius = steps.contact.radius / scales.radius
+        course = whole.Course(
+            radius=radius,
+            pressure=scales.pressure(radius, steps.contact.friction_load),
+            drift=steps.drift * scales.displacement,
+            kick=steps.kick * (scales.force / scene.pair.tangential_mass),
+        )
+        force, work = whole.run(self.places(), course, float(scene.slip_velocity))
+        return AllStepsResponse(force * scales.force, float(work * scales.work), True)
 
     def fields(self, state: State) -> Mapping[str, NDArray[Any]]:
         """Return radius (m), displacement and limit (m), stuck and slipping at every place.
@@ -157,8 +161,3 @@ class ProfileLaw(RunningTangentialLaw):
             "slipping": (slips * np.sign(stretch)).astype(np.int8),
         }
 
-
-def _alike(rows: Array) -> bool:
-    """Return whether all impacts agree, to rounding, in each row."""
-    first = rows[:, :1]
-    return rows.shape[1] == 1 or bool((np.abs(rows - first) <= step.ROUNDING * first).all())

@@ -1,4 +1,4 @@
-"""All steps at once: the geometry of every step, then a lean loop; one impact, or many alike."""
+"""All steps of one impact at once: the geometry of every step, then a lean loop."""
 
 from __future__ import annotations
 
@@ -6,14 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlab.checks import Real
-from contactlab_jaeger.geometry import Geometry, of_each
+from contactlab_jaeger.geometry import of_each
 from contactlab_jaeger.places import Array, Places
-from contactlab_jaeger.step import follow
 
 
 class Course(NamedTuple):
-    """The steps, scaled: radius and pressure of shape (K,), the others too or (K, items).
+    """The steps, scaled, each of shape (K,).
 
     ``drift`` takes the slip velocity to displacement, ``kick`` takes F to its change.
     """
@@ -59,30 +57,3 @@ def run(places: Places, course: Course, velocity: float) -> tuple[Array, float]:
     work = np.maximum(np.einsum("ij,ij->i", weigh, slip), 0.0)
     return np.array(forces), 0.5 * float(work.sum())
 
-
-def run_many(places: Places, course: Course, velocity: Real, items: int) -> tuple[Array, Array]:
-    """Return forces, shape (K, items), and works of impacts that go through one course."""
-    old, work, change = np.zeros((0, 1)), np.zeros(items), np.zeros(items)
-    forces = np.empty((len(course.radius), items))
-    for k, geometry in enumerate(_steps(places, course)):
-        displacement = (velocity + change) * course.drift[k]
-        forces[k], lost, old = follow(places, old, geometry, displacement, items)
-        change -= course.kick[k] * forces[k]
-        work += lost
-    return forces, work
-
-
-def _steps(places: Places, course: Course) -> list[Geometry]:
-    """Return the geometry of each step of a course that all impacts share."""
-    square = course.radius * course.radius
-    before = np.concatenate(([0.0], square[:-1]))
-    found = of_each(places, before, square, course.pressure)
-    reach = places.squares.searchsorted(square)
-    settled = np.where(square > before, places.squares.searchsorted(before), reach)
-    rows = (np.ascontiguousarray(table.T) for table in found[1:])
-    return [
-        Geometry(first, share[first:last, None], limit[:last, None], weights[:last])
-        for first, last, share, limit, weights in zip(
-            settled.tolist(), reach.tolist(), *rows, strict=True
-        )
-    ]

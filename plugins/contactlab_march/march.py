@@ -1,123 +1,113 @@
-"""The march that every fixed-step scheme shares: drift, ask the law, kick."""
+"""The march that every scheme of even steps shares: drift, ask the law, kick."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
 from contactlab import faults
+from contactlab.batch import locked, spread
 from contactlab.checks import Real
 from contactlab.contracts import (
+    AllStepsTangentialLaw,
     Increment,
     Law,
-    Motion,
     NormalContact,
+    NormalMotion,
     Observer,
-    Problem,
-    Run,
-    RunningTangentialLaw,
     Sample,
     SteppedTangentialLaw,
+    Steps,
+    TangentialMotion,
 )
+from contactlab.scene import Scene
 from contactlab.status import Status
-from contactlab_march.normal_steps import NormalEnd, Step, Table, watched
+from contactlab_march.division import one_by_one
 
 
 def march(
-    problem: Problem, steps: Iterable[Step], end: NormalEnd, observer: Observer | None
-) -> Motion:
+    normal: NormalMotion,
+    law: SteppedTangentialLaw,
+    scene: Scene,
+    steps: Steps,
+    observer: Observer | None,
+) -> TangentialMotion:
     """Follow the tangential motion along ``steps``: all at once if the law can, else one by one."""
-    law, single = problem.tangential, not problem.shape
-    assert isinstance(law, SteppedTangentialLaw)
-    at_once = law if observer is None and isinstance(law, RunningTangentialLaw) else None
-    if at_once and single and not isinstance(steps, Table):
-        try:
-            steps = Table.of(problem, steps)
-        except faults.LawFaultError as fault:
-            return _ended(problem, end, math.nan, math.nan, fault.status, fault.detail, 0)
-    if isinstance(steps, Table):
-        if (motion := _unsound(problem, steps, end)) is not None:
-            return motion
-        fits = at_once and (single or (at_once.runs_batches and len(problem.shape) == 1))
-        motion = _all_at_once(problem, at_once, steps, end) if at_once and fits else None
+    if (complaint := _unsound(normal, steps)) is not None:
+        return _ended(scene, law, math.nan, math.nan, Status.NON_FINITE, complaint, 0)
+    if observer is None and not scene.shape and isinstance(law, AllStepsTangentialLaw):
+        motion = _all_at_once(normal, law, scene, steps)
         if motion is not None:
             return motion
-    else:
-        steps = watched(problem, steps)
-    return _one_by_one(problem, law, steps, end, observer)
+    return _one_by_one(normal, law, scene, steps, observer)
 
 
 def _all_at_once(
-    problem: Problem, law: RunningTangentialLaw, table: Table, end: NormalEnd
-) -> Motion | None:
-    """Follow the tangential motion with a law that takes all steps at once, if it will."""
-    columns = table.columns
-    force, radius = columns.contact[:2]
-    mass, initial = problem.pair.tangential_mass, problem.slip_velocity
+    normal: NormalMotion, law: AllStepsTangentialLaw, scene: Scene, steps: Steps
+) -> TangentialMotion | None:
+    """Follow the tangential motion with a law that takes all steps in one call, if it will."""
     try:
-        response = law.run(problem, Run(force, radius, columns.drift, columns.kick, initial, mass))
-        if response is None:
-            return None
-        count = len(response.force)
-        change = -np.sum(response.force * (columns.kick[:count] / mass), axis=0)
-    except Exception as error:
-        detail = faults.told(law, f"{faults.raised(error)}, all steps at once", 1)
-        return _ended(problem, end, math.nan, math.nan, Status.LAW_RAISED, detail, 0)
+        with faults.blaming(law):
+            response = law.advance_all(scene, normal, steps)
+            if response is None:
+                return None
+            count = len(response.force)
+            change = -np.sum(response.force * (steps.kick[:count] / scene.pair.tangential_mass))
+    except faults.LawFaultError as fault:
+        return _ended(scene, law, math.nan, math.nan, fault.status, fault.detail, 0)
     status, detail = Status.SUCCESS, ""
     if not response.settled:
         status, detail = Status.UNSETTLED, faults.told(law, "no division found", count + 1)
-    elif not np.isfinite(change).all():
-        bad = ~np.isfinite(response.force).reshape(count, -1).all(axis=1)
-        step = int(bad.argmax())
+    elif not np.isfinite(change):
+        step = int((~np.isfinite(response.force)).argmax())
         detail = faults.told(law, f"force {faults.shown(response.force[step])}", step + 1)
         status = Status.NON_FINITE
-    return _ended(problem, end, change, response.friction_work, status, detail, count)
+    return _ended(scene, law, change, response.friction_work, status, detail, count)
 
 
 def _one_by_one(
-    problem: Problem,
+    normal: NormalMotion,
     law: SteppedTangentialLaw,
-    steps: Iterable[Step],
-    end: NormalEnd,
+    scene: Scene,
+    steps: Steps,
     observer: Observer | None,
-) -> Motion:
+) -> TangentialMotion:
     """Ask the law in every step.
 
     The change of velocity is summed apart from the velocity, which may be so large
     that it would swallow the change (theory §8).
     """
-    single, initial, mass = not problem.shape, problem.slip_velocity, problem.pair.tangential_mass
-    change: Real = 0.0 if single else np.zeros(problem.shape)
-    work: Real = 0.0 if single else np.zeros(problem.shape)
+    single, initial, mass = not scene.shape, scene.slip_velocity, scene.pair.tangential_mass
+    change: Real = 0.0 if single else np.zeros(scene.shape)
+    work: Real = 0.0 if single else np.zeros(scene.shape)
     nothing = 0.0 * change
-    before = contact = NormalContact(nothing, nothing, nothing)
+    before = NormalContact(nothing, nothing, nothing, nothing)
     status, what, count = Status.SUCCESS, "", 0
-    velocity: Real = initial
+    velocity: Real = locked(initial)
     time: Real = 0.0
     try:
-        state = law.start(problem)
-        for step in steps:
+        state = law.start(scene, normal)
+        for step in one_by_one(steps):
             time, contact = step.time, step.contact
             count += 1
-            change_per_force = step.kick / mass  # once: often the same for a whole batch
-            arresting = velocity / change_per_force
-            increment = Increment(
-                velocity * step.drift, velocity, arresting, step.normal_force, step.kick
-            )
+            displacement = velocity * step.drift
+            if not single:
+                locked(velocity), locked(displacement)
+            increment = Increment(displacement, velocity, step.friction_load, step.kick)
             response, state = law.advance(state, increment, before, contact)
             force, lost = response.force, response.friction_work
             if not (single and isinstance(force, float) and isinstance(lost, float)):
-                status, what = _checked(problem, force, lost)
+                status, what = _checked(scene, force, lost)
                 if status is not Status.SUCCESS:
                     break
-            change = change - force * change_per_force
+            slowed = force * (step.kick / mass)
+            change = change - slowed
             work = work + lost
             before = contact
             if observer is not None:
-                middle = velocity - 0.5 * force * change_per_force
-                observer(_sample(step, middle, force, law, state))
+                observer(_sample(step, velocity - 0.5 * slowed, force, law, state))
             velocity = initial + change
             if response.settled is not True and not np.all(response.settled):
                 status, what = Status.UNSETTLED, "no division found"
@@ -125,76 +115,56 @@ def _one_by_one(
                 status, what = Status.NON_FINITE, f"force {faults.shown(force)}"
             if status is not Status.SUCCESS:
                 break
-    except faults.LawFaultError as fault:
-        return _ended(problem, end, change, work, fault.status, fault.detail, count)
-    except Exception as error:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # a plug-in may not end the process
         status, what = Status.LAW_RAISED, faults.raised(error)
     if status is Status.SUCCESS:
-        return _ended(problem, end, change, work, status, "", count)
-    blamed: Law = law
-    if faults.unsound(contact, problem.shape):
-        blamed, what = problem.normal, faults.shown(tuple(contact))
-    detail = faults.told(blamed, what, count, time)
-    return _ended(problem, end, change, work, status, detail, count)
+        return _ended(scene, law, change, work, status, "", count)
+    return _ended(scene, law, change, work, status, faults.told(law, what, count, time), count)
 
 
-def _checked(problem: Problem, *answers: Real) -> tuple[Status, str]:
+def _checked(scene: Scene, *answers: Real) -> tuple[Status, str]:
     """Return what is wrong with a law's answers if they are not real numbers of the right shape."""
     for answer in answers:
-        if faults.malformed(answer, problem.shape):
+        if faults.malformed(answer, scene.shape):
             return Status.MALFORMED, f"the answer {faults.shown(answer)}"
     return Status.SUCCESS, ""
 
 
 def _ended(
-    problem: Problem,
-    end: NormalEnd,
-    change: Real,
-    work: Real,
-    status: Status,
-    detail: str,
-    count: int,
-) -> Motion:
-    """Return the motion, after a last look at how the normal motion ended."""
-    if status is Status.SUCCESS and not np.all(np.isfinite(end.rate)):
+    scene: Scene, law: Law, change: Real, work: Real, status: Status, detail: str, count: int
+) -> TangentialMotion:
+    """Return the motion, after a last look at the friction work."""
+    if status is Status.SUCCESS and not np.all(np.isfinite(work)):
         status = Status.NON_FINITE
-        detail = faults.told(problem.normal, f"rate {faults.shown(end.rate)}", count, end.duration)
-    elif status is Status.SUCCESS and not np.all(np.isfinite(work)):
-        status = Status.NON_FINITE
-        what = f"friction work {faults.shown(work)}"
-        detail = faults.told(problem.tangential, what, count, end.duration)
-    elif status is Status.SUCCESS and not end.separated:
-        status, detail = Status.NOT_SEPARATED, f"After {count} steps."
-    return Motion(
-        duration=_spread(end.duration, problem.shape),
-        normal_velocity=_spread(end.rate, problem.shape),
-        slip_velocity_change=_spread(change, problem.shape),
-        friction_work=_spread(work, problem.shape),
-        status=np.full(problem.shape, status, dtype=object) if problem.shape else status,
+        detail = faults.told(law, f"friction work {faults.shown(work)}", count)
+    return TangentialMotion(
+        slip_velocity_change=spread(change, scene.shape),
+        friction_work=spread(work, scene.shape),
+        status=np.full(scene.shape, status, dtype=object) if scene.shape else status,
         detail=detail,
         counters={"steps": count},
     )
 
 
-def _unsound(problem: Problem, table: Table, end: NormalEnd) -> Motion | None:
-    """Return the motion of a run that is not begun: a normal motion that is not finite.
+def _unsound(normal: NormalMotion, steps: Steps) -> str | None:
+    """Return what is wrong with a normal motion that is not finite: then no march is begun.
 
-    Not left to the tangential law: where the force is infinite Coulomb's cap is no cap, and
+    Not left to the tangential law: where the load is infinite Coulomb's cap is no cap, and
     the answer would look right.
     """
-    columns = table.columns
-    for column in (*columns.contact[:2], columns.drift, columns.kick, columns.normal_force):
+    for column in (*steps.contact, *steps[1:4]):
         if not np.isfinite(column).all():
             bad = ~np.isfinite(column).reshape(len(column), -1).all(axis=1)
-            count, nothing = int(bad.argmax()), math.nan
-            what, time = faults.shown(column[count]), columns.time[count]
-            detail = faults.told(problem.normal, what, count + 1, time)
-            return _ended(problem, end, nothing, nothing, Status.NON_FINITE, detail, count)
+            count: int = int(bad.argmax())
+            what: Any = faults.shown(column[count])
+            return faults.told(normal.law, what, count + 1, steps.time[count])
     return None
 
 
 def _sample(
-    step: Step, velocity: Real, force: Real, law: SteppedTangentialLaw, state: object
+    step: Steps, velocity: Real, force: Real, law: SteppedTangentialLaw, state: object
 ) -> Sample:
     return Sample(
         time=step.time,
@@ -205,7 +175,3 @@ def _sample(
         tangential_force=force,
         fields=lambda: law.fields(state),
     )
-
-
-def _spread(value: Real, shape: tuple[int, ...]) -> Real:
-    return np.array(np.broadcast_to(value, shape)) if shape else float(value)

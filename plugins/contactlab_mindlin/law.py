@@ -12,10 +12,13 @@ from contactlab.checks import Mask, Real, choice
 from contactlab.contracts import (
     Increment,
     NormalContact,
-    Problem,
+    NormalMotion,
     SteppedTangentialLaw,
     TangentialResponse,
+    WholeImpact,
+    sliding,
 )
+from contactlab.scene import Scene
 
 FORMS = ("displacement", "increment", "increment_rescaled")
 
@@ -68,9 +71,8 @@ class MindlinCap(SteppedTangentialLaw):
     Cleary, Powder Technol. 210 (2011) 189-197, for the rescaled form.
     """
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
-    needs: ClassVar[frozenset[str]] = frozenset({"steps", "radius"})
+    api_version: ClassVar[int] = 2
+    needs: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     form: str = choice(*FORMS, default="displacement")
 
@@ -79,7 +81,16 @@ class MindlinCap(SteppedTangentialLaw):
         """Return what its form fails: each is found out by another path."""
         return FAILURES[self.form]
 
-    def slips_throughout(self, psi1: Real, chi: Real) -> Mask:
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return elastic impacts at the cap from start to end too."""
+        known = super().whole_impacts(scene, normal)
+        if "elastic_hertz" not in normal.offers:
+            return known
+        where = self._slips_throughout(scene.psi1, scene.chi)
+        reason = "the force is at Coulomb's cap from start to end"
+        return (*known, sliding(scene, normal, where=where, reason=reason, stops=False))
+
+    def _slips_throughout(self, psi1: Real, chi: Real) -> Mask:
         """Return True where the force is at the cap from start to end.
 
         Gross slip goes on while the cap changes slower than the spring: in scaled variables
@@ -92,22 +103,22 @@ class MindlinCap(SteppedTangentialLaw):
             np.maximum(loading, 2.0 * np.asarray(chi)), 4.0 * np.asarray(chi) - unloading
         )
 
-    def stiffness(self, problem: Problem) -> Real:
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, of the largest contact."""
-        return 2.0 * problem.pair.effective_shear_modulus * problem.maximum_radius
+        return 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
 
-    def start(self, problem: Problem) -> State:
+    def start(self, scene: Scene, normal: NormalMotion) -> State:  # noqa: ARG002
         """Return a spring at rest."""
-        nothing: Real = np.zeros(problem.shape) if problem.shape else 0.0
-        modulus = 2.0 * problem.pair.effective_shear_modulus
-        return State(modulus, problem.friction_coefficient, nothing, nothing)
+        nothing: Real = np.zeros(scene.shape) if scene.shape else 0.0
+        modulus = 2.0 * scene.pair.effective_shear_modulus
+        return State(modulus, scene.friction_coefficient, nothing, nothing)
 
     def advance(
         self, state: State, increment: Increment, before: NormalContact, after: NormalContact
     ) -> tuple[TangentialResponse, State]:
         """Return the force after the step, and the work of the mean force on the slip."""
         stiffness: Any = state.modulus * after.radius
-        cap = state.friction_coefficient * after.force
+        cap = state.friction_coefficient * after.friction_load
         compliance = (stiffness > 0.0) / (stiffness + (stiffness == 0.0))
         if self.form == "displacement":
             trial = state.held + increment.displacement

@@ -85,7 +85,7 @@ class Springs(ProfileLaw):
     Fawcett's annuli, Wear 38 (1976) 101-114, as their number grows.
     """
 
-    api_version: ClassVar[int] = 1
+    api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "springs"
 
     springs: int = count(default=50, most=100_000)

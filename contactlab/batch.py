@@ -1,0 +1,75 @@
+"""Batches: trees of numbers stacked, taken apart and put together again, in one place.
+
+A tree is a number, an array, an attrs object or a NamedTuple of trees, or anything else, which is
+left as it is. In a batch of ``shape`` every number is either plain, and holds for all impacts, or
+an array that broadcasts to ``shape``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+
+
+def locked(value: Any) -> Any:
+    """Return ``value``, read-only if it is an array: what leaves the core is nobody's to change."""
+    if isinstance(value, np.ndarray):
+        value.flags.writeable = False
+    return value
+
+
+def stacked(items: Sequence[Any]) -> Any:
+    """Return one tree from trees of equal type: leaves that differ become arrays, (items,)."""
+    first = items[0]
+    if all(item is first for item in items):
+        return first
+    if any(type(item) is not type(first) for item in items):
+        return None  # bodies of different kinds: the reduced pair still serves
+    if attrs.has(type(first)):
+        names = [field.name for field in attrs.fields(type(first))]
+        return type(first)(
+            **{name: stacked([getattr(item, name) for item in items]) for name in names}
+        )
+    if all(item == first for item in items):
+        return first
+    return np.array(items, dtype=np.float64)
+
+
+def taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
+    """Return the tree of some impacts of a batch of ``shape``.
+
+    Parameters
+    ----------
+    tree : tree
+        Plain numbers stand for the whole batch, and stay plain: laws are faster then.
+    shape : tuple of int
+        Batch shape.
+    part : int, tuple of int, slice, mask or array of indices
+        Which impacts. Of a single one the numbers come out plain.
+    """
+    if isinstance(tree, np.ndarray):
+        found = np.broadcast_to(tree, shape)[part]
+        return found.item() if isinstance(found, np.generic) else found
+    if attrs.has(type(tree)):
+        found = object.__new__(type(tree))  # every number was checked when the tree was made
+        for field in attrs.fields(type(tree)):
+            value = taken(getattr(tree, field.name), shape, part)
+            object.__setattr__(found, field.name, value)
+        return found
+    return tree
+
+
+def merged(parts: Sequence[tuple[Any, Any]], shape: tuple[int, ...], kind: Any = float) -> Any:
+    """Return an array of ``shape`` from (mask, values) pairs; of several the last has the word."""
+    entry = np.empty(shape, dtype=kind)
+    for where, values in parts:
+        entry[where] = np.ravel(np.asarray(values, dtype=kind)) if np.ndim(values) else values
+    return entry
+
+
+def spread(value: Any, shape: tuple[int, ...]) -> Any:
+    """Return ``value`` as a float for one impact, or as an array of the batch ``shape``."""
+    return np.array(np.broadcast_to(value, shape)) if shape else float(value)

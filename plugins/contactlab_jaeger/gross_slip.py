@@ -1,0 +1,16 @@
+"""Elastic impacts that slip from start to end, which laws of partial slip need not follow."""
+
+from __future__ import annotations
+
+from contactlab.closed_forms import slips_throughout_elastic
+from contactlab.contracts import NormalMotion, WholeImpact, sliding
+from contactlab.scene import Scene
+
+
+def gross_slip(scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+    """Return the impacts of eq. (45), of elastic Hertz contacts; of others nothing is known."""
+    if "elastic_hertz" not in normal.offers:
+        return ()
+    where = slips_throughout_elastic(scene.psi1, scene.chi)
+    reason = "the impact slips from start to end, eq. (45)"
+    return (sliding(scene, normal, where=where, reason=reason, stops=False),)

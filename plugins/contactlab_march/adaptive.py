@@ -1,0 +1,185 @@
+"""Error control around even steps: as many as keep psi2 within a tolerance."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab import faults
+from contactlab.checks import Real, Rule, quantity
+from contactlab.contracts import (
+    Integrator,
+    NormalMotion,
+    Observer,
+    SteppedTangentialLaw,
+    TangentialLaw,
+    TangentialMotion,
+)
+from contactlab.declared import range_of
+from contactlab.scene import Scene
+from contactlab.status import Status
+from contactlab_march.division import midpoints
+from contactlab_march.fixed import MOST_STEPS, in_groups, needed_steps, refined
+from contactlab_march.march import march
+
+TOLERANCE = Rule(
+    lambda value: np.ndim(value) == 0 and 1e-12 <= value <= 1.0,
+    "must be one number in [1e-12, 1]",
+)
+#: Steps that are tried first; then twice as many, until the error is small enough.
+FIRST = 32
+#: Where the steps are doubled the change of psi2 falls by 4 for a smooth law, and by 2 for one
+#: that jumps: the error left is then a third of the last change, or all of it. Less than
+#: this part of the change before it is never believed: two answers may agree by chance.
+BELIEVED = 1.0 / 8.0
+#: psi2 is rounded to this part of max(1, |psi1|) by sums of many steps.
+ROUNDING = 1e-13
+
+
+@attrs.frozen(kw_only=True)
+class Adaptive(Integrator):
+    """The steps of ``symplectic``, doubled until psi2 no longer changes by the tolerance.
+
+    The error is that of the whole impact, seen in the answer itself, and not a sum of what
+    single steps may have missed. It is the error in time: that of a law's own discretisation
+    is not in it.
+
+    Parameters
+    ----------
+    tolerance : float
+        Of psi2 over max(1, |psi1|); from 1e-12 to 1. Cost grows as its inverse square root.
+
+    References
+    ----------
+    Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), §II.4:
+    Richardson extrapolation as an estimate of the error.
+    """
+
+    api_version: ClassVar[int] = 2
+    resolution: ClassVar[str | None] = "tolerance"
+    tangential_contract: ClassVar[type[TangentialLaw]] = SteppedTangentialLaw
+
+    tolerance: float = quantity("1", rule=TOLERANCE, default=1e-4)
+
+    def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
+        """Return twice the tolerance, and what the law declares for its own discretisation."""
+        own: Any = tangential.psi2_error(scene, normal, np.inf)
+        return 2.0 * self.tolerance * np.maximum(1.0, np.abs(scene.psi1)) + own
+
+    def integrate(
+        self,
+        normal: NormalMotion,
+        tangential: TangentialLaw,
+        scene: Scene,
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
+        """Return the motion; impacts of a batch choose their own steps."""
+        law = tangential
+        assert isinstance(law, SteppedTangentialLaw)
+
+        def follow(normal: NormalMotion, scene: Scene, count: int) -> TangentialMotion:
+            return self._follow(normal, law, scene, count)
+
+        try:
+            with faults.blaming(law):
+                needed = needed_steps(normal, law, scene)
+            motion = in_groups(normal, scene, FIRST, needed, refined(FIRST, needed), follow)
+            if observer is not None:
+                _march(normal, law, scene, motion.counters.get("steps", FIRST), observer)
+        except faults.LawFaultError as fault:
+            return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
+        return motion
+
+    def _follow(
+        self, normal: NormalMotion, law: SteppedTangentialLaw, scene: Scene, count: int
+    ) -> TangentialMotion:
+        """Follow impacts that all begin with ``count`` steps."""
+        first = _march(normal, law, scene, count)
+        second = _march(normal, law, scene, 2 * count) if np.all(first.status) else first
+        if not np.all(second.status):
+            return second
+        tried = 3 * count
+        return self._doubled(normal, law, scene, 4 * count, (first, second), tried)
+
+    def _doubled(
+        self,
+        normal: NormalMotion,
+        law: SteppedTangentialLaw,
+        scene: Scene,
+        count: int,
+        before: tuple[TangentialMotion, TangentialMotion],
+        tried: int,
+    ) -> TangentialMotion:
+        """Take ``count`` steps, and twice as many where that is not enough.
+
+        Parameters
+        ----------
+        normal : NormalMotion
+        law : SteppedTangentialLaw
+        scene : Scene
+        count : int
+        before : tuple of two TangentialMotion
+            With a quarter and with half the steps.
+        tried : int
+            Steps taken before, for the counters.
+        """
+        last = _march(normal, law, scene, count)
+        counters = {"steps": count, "evaluations": tried + count}
+        last = attrs.evolve(last, counters=counters)
+        if not np.all(last.status):
+            return last
+        left, allowed = self._error(scene, *before, last), self._allowed(scene)
+        open_: Any = np.asarray(~(left <= allowed))
+        if not open_.any():
+            return last
+        if 2 * count > MOST_STEPS:
+            told = f"After {count} steps psi2 still changes by more than the tolerance."
+            return last.failing(open_, Status.UNRESOLVED, told)
+        if not scene.shape or open_.all():
+            return self._doubled(normal, law, scene, 2 * count, (before[1], last), tried + count)
+
+        def some(motion: TangentialMotion) -> TangentialMotion:
+            return TangentialMotion(
+                slip_velocity_change=np.asarray(motion.slip_velocity_change)[open_],
+                friction_work=np.asarray(motion.friction_work)[open_],
+            )
+
+        finer = self._doubled(
+            normal.take(open_), law, scene.take(open_), 2 * count, (some(before[1]), some(last)), 0
+        )
+        merged = TangentialMotion.merged(((np.ones_like(open_), last), (open_, finer)), scene.shape)
+        return attrs.evolve(
+            merged,
+            counters={
+                "steps": finer.counters["steps"],  # the most that any impact took
+                "evaluations": counters["evaluations"] + finer.counters["evaluations"],
+            },
+        )
+
+    def _allowed(self, scene: Scene) -> Any:
+        """Return the tolerance as a change of slip velocity, in m/s."""
+        unit, _, speed = range_of(scene)
+        return max(self.tolerance, ROUNDING) * np.maximum(unit, speed)
+
+    @staticmethod
+    def _error(scene: Scene, *motions: TangentialMotion) -> Any:
+        """Return the error of the last of three answers, each with twice the steps, in m/s."""
+        coarse, middle, fine = (np.asarray(m.slip_velocity_change) for m in motions)
+        one, two = np.abs(middle - coarse), np.abs(fine - middle)
+        with np.errstate(all="ignore"):
+            ratio = np.clip(np.where(two > 0.0, one / two, 4.0), 2.0, 4.0)
+        return np.maximum(two / (ratio - 1.0), BELIEVED * one)
+
+
+def _march(
+    normal: NormalMotion,
+    law: SteppedTangentialLaw,
+    scene: Scene,
+    count: int,
+    observer: Observer | None = None,
+) -> TangentialMotion:
+    with faults.blaming(normal.law):
+        steps = midpoints(normal, count)
+    return march(normal, law, scene, steps, observer)

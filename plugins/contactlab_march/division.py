@@ -1,0 +1,72 @@
+"""A normal motion divided into even steps, and the steps one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from contactlab.contracts import NormalContact, NormalMotion, Steps
+
+
+def midpoints(normal: NormalMotion, count: int) -> Steps:
+    """Return ``count`` steps of the contact's duration, each sampled in its middle."""
+    halves = np.array(normal.phase(np.linspace(0.0, 1.0, 2 * count + 1)))
+    halves[-1] = np.pi  # exactly, as the inverse is not
+    ends = normal.at(_column(halves[::2], normal))
+    times = np.asarray(ends.time)
+    kick = times[1:] - times[:-1]
+    impulse = np.asarray(ends.load_impulse)
+    return _steps(normal, halves[1::2], kick, impulse[1:] - impulse[:-1])
+
+
+def endpoints(normal: NormalMotion, count: int) -> Steps:
+    """Return the same steps sampled at their ends; the friction load is centred there.
+
+    The half step before the first sample and the one after the last have a neighbour's force.
+    """
+    fractions = np.linspace(0.0, 1.0, count + 1)
+    edges = np.concatenate(([0.0], fractions[1:-1] + 0.5 / count, [1.0]))
+    phases = np.array(normal.phase(np.concatenate((fractions[1:], edges))))
+    phases[[count - 1, -1]] = np.pi
+    impulse = np.asarray(normal.at(_column(phases[count:], normal)).load_impulse)
+    if count > 1:
+        loads = impulse[1:] - impulse[:-1]
+    else:
+        loads = impulse[-1:] - impulse[:1]
+    kick = np.asarray(normal.duration) / count
+    shape = (count,) + (1,) * len(normal.scene.shape)
+    return _steps(normal, phases[:count], np.ones(shape) * kick, loads)
+
+
+def _steps(normal: NormalMotion, phases: Any, kick: Any, load_impulse: Any) -> Steps:
+    """Return steps that sample the contact at ``phases``, as read-only arrays."""
+    time, approach, rate, contact, _ = normal.at(_column(phases, normal))
+    drift = np.array(time)
+    drift[1:] -= time[:-1]
+    full = np.zeros_like(drift + kick)  # what all impacts share may lack the batch's axes
+    steps = Steps(
+        contact=NormalContact(*(full + entry for entry in contact)),
+        drift=drift,
+        kick=kick,
+        friction_load=full + load_impulse / kick,
+        time=full + time,
+        approach=full + approach,
+        rate=full + rate,
+    )
+    for column in (*steps.contact, *steps[1:]):
+        column.flags.writeable = False
+    return steps
+
+
+def one_by_one(steps: Steps) -> Iterator[Steps]:
+    """Iterate over the steps: floats for one impact (much faster), arrays for a batch."""
+    columns = [*steps.contact, *steps[1:]]
+    lists = [column.tolist() if column.ndim == 1 else column for column in columns]
+    for row in zip(*lists, strict=True):
+        yield Steps(NormalContact(*row[:4]), *row[4:])
+
+
+def _column(phases: Any, normal: NormalMotion) -> Any:
+    return phases.reshape((-1,) + (1,) * len(normal.scene.shape))

@@ -1,0 +1,192 @@
+"""How many even steps an impact needs, and what is done if fewer were asked for."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab import faults
+from contactlab.checks import Real, count, flag
+from contactlab.contracts import (
+    Integrator,
+    NormalMotion,
+    Observer,
+    SteppedTangentialLaw,
+    Steps,
+    TangentialLaw,
+    TangentialMotion,
+)
+from contactlab.scene import Scene
+from contactlab.status import Status
+from contactlab_march.march import march
+
+#: Largest omega dt of the fastest tangential oscillation. At 2 the leapfrog is unstable (theory
+#: §4) and wrong by any amount; below it is stable, but useless well before: at 1/2 the
+#: phase is off by 1 % a radian.
+LARGEST_PHASE_STEP = 0.5
+#: The leapfrog's phase runs ahead by (omega dt)²/24 a radian. Where microslip damps the oscillation
+#: that is forgotten with it; where a law has none it adds up over the impact, to no more than
+#: this, in radians: an error of up to a third of it over the range, whatever chi.
+LARGEST_LEAD = 0.05
+#: The normal load is half an oscillation, and is resolved alike whatever the tangential law.
+LEAST_STEPS = math.ceil(math.pi / LARGEST_PHASE_STEP)
+#: More steps than this are refused, whoever asks for them.
+MOST_STEPS = 2_000_000
+#: Where steps are raised, from one number to the next.
+RUNG = 1.25
+
+#: Follows impacts that all take the same number of steps.
+Follow = Callable[[NormalMotion, Scene, int], TangentialMotion]
+
+
+def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene) -> Any:
+    """Return the least number of steps an impact that resolve omega = sqrt(stiffness/mass).
+
+    A float, or an array of the batch shape; ``LEAST_STEPS`` for a law without stiffness.
+    """
+    assert isinstance(law, SteppedTangentialLaw)
+    omega = np.sqrt(law.stiffness(scene, normal) / scene.pair.tangential_mass)
+    swing = omega * normal.duration
+    steps = swing / LARGEST_PHASE_STEP
+    if "partial_slip" not in law.offers:
+        steps = np.maximum(steps, swing * np.sqrt(swing / (24.0 * LARGEST_LEAD)))
+    return np.maximum(np.ceil(steps), float(LEAST_STEPS))
+
+
+def refined(steps: int, needed: Any) -> Any:
+    """Return ``steps``, or the first rung of a ladder up from there that is enough.
+
+    With rungs the impacts of a batch fall into a few groups of equal steps.
+    """
+    ladder = [float(steps)]
+    while ladder[-1] < min(float(np.nanmax(needed)), MOST_STEPS):
+        ladder.append(min(math.ceil(ladder[-1] * RUNG), MOST_STEPS))
+    ladder.append(np.inf)
+    return np.array(ladder)[np.searchsorted(ladder, needed)]
+
+
+def refusal(steps: int, needed: float) -> str:
+    """Return the detail of ``TOO_FEW_STEPS``."""
+    return f"steps = {steps}; this scene needs at least {needed:.6g}."
+
+
+def in_groups(
+    normal: NormalMotion, scene: Scene, steps: int, needed: Any, taken: Any, follow: Follow
+) -> TangentialMotion:
+    """Follow each impact of a batch with the steps that it would take alone.
+
+    Parameters
+    ----------
+    normal : NormalMotion
+    scene : Scene
+    steps : int
+        Asked for, for the refusal.
+    needed, taken : float or array
+        Steps that an impact needs, and those that it takes.
+    follow : callable
+    """
+    shape = scene.shape
+    followed = (needed <= taken) & (taken <= MOST_STEPS)
+    if np.all(followed) and np.min(taken) == np.max(taken):
+        return follow(normal, scene, int(np.max(taken)))
+    if not shape:
+        return TangentialMotion.nothing(shape, Status.TOO_FEW_STEPS, refusal(steps, needed))
+    taken = np.broadcast_to(np.where(followed, taken, 0), shape)
+    needed = np.broadcast_to(needed, shape)
+    parts = []
+    for number in np.unique(taken).tolist():
+        where = taken == number
+        if number:
+            motion = follow(normal.take(where), scene.take(where), int(number))
+        else:
+            detail = [refusal(steps, least) for least in needed[where].tolist()]
+            motion = TangentialMotion.nothing((len(detail),), Status.TOO_FEW_STEPS, detail)
+        parts.append((where, motion))
+    return TangentialMotion.merged(parts, shape)
+
+
+@attrs.frozen(kw_only=True)
+class FixedSteps(Integrator):
+    """Even steps over the contact's duration, whatever the normal law; a subclass samples them.
+
+    Parameters
+    ----------
+    steps : int
+        Steps from first touch to separation.
+    refine : bool
+        Where ``steps`` are too few for the stiffness of the law: take more (the default),
+        or refuse with the status ``TOO_FEW_STEPS`` and the number needed.
+    """
+
+    resolution: ClassVar[str | None] = "steps"
+    order: ClassVar[int | None] = 2
+    tangential_contract: ClassVar[type[TangentialLaw]] = SteppedTangentialLaw
+
+    steps: int = count(default=200, most=MOST_STEPS)
+    refine: bool = flag(default=True)
+
+    @abstractmethod
+    def divide(self, normal: NormalMotion, count: int) -> Steps:
+        """Return ``count`` steps of a normal motion."""
+
+    def steps_for(self, normal: NormalMotion, law: TangentialLaw, scene: Scene) -> Any:
+        """Return how many steps each impact takes, more than ``steps`` where those are too few."""
+        if not self.refine:
+            return float(self.steps)
+        return refined(self.steps, needed_steps(normal, law, scene))
+
+    def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
+        """Return what the tangential law declares for as many steps."""
+        steps = self.steps_for(normal, tangential, scene)
+        return tangential.psi2_error(scene, normal, steps)
+
+    def remarks(
+        self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
+    ) -> tuple[str, ...]:
+        """Say whether the steps are enough."""
+        needed = needed_steps(normal, tangential, scene)
+        most = float(np.nanmax(needed))
+        if most <= self.steps:
+            return ()
+        few = np.broadcast_to(needed > self.steps, scene.shape)
+        share = f" for {int(few.sum())} of {few.size} impacts" if few.ndim else ""
+        if self.refine and most <= MOST_STEPS:
+            to = int(np.max(refined(self.steps, needed)))
+            return (
+                f"steps raised from {self.steps} to {to}{share}: fewer do not resolve the stiffness",
+            )
+        return (f"{self.steps} steps are too few{share}: this scene needs {most:.6g}",)
+
+    def integrate(
+        self,
+        normal: NormalMotion,
+        tangential: TangentialLaw,
+        scene: Scene,
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
+        """Return the motion, with more steps than asked for where those are too few.
+
+        Impacts that are observed take as many steps as any of them needs: one time axis.
+        """
+        law = tangential
+        assert isinstance(law, SteppedTangentialLaw)
+
+        def follow(normal: NormalMotion, scene: Scene, number: int) -> TangentialMotion:
+            with faults.blaming(normal.law):
+                steps = self.divide(normal, number)
+            return march(normal, law, scene, steps, observer)
+
+        try:
+            with faults.blaming(law):
+                needed = needed_steps(normal, law, scene)
+            if observer is not None:
+                needed = float(np.max(needed))
+            taken = refined(self.steps, needed) if self.refine else float(self.steps)
+            return in_groups(normal, scene, self.steps, needed, taken, follow)
+        except faults.LawFaultError as fault:
+            return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
