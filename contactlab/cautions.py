@@ -51,7 +51,8 @@ def coupling(scene: Scene) -> tuple[str, ...]:
     if not np.any(np.asarray(scene.pair.dundurs_beta) != 0.0):
         return ()
     number, shift = (
-        np.broadcast_to(each, scene.shape) for each in (coupling_number(scene), coupling_shift(scene))
+        np.broadcast_to(each, scene.shape)
+        for each in (coupling_number(scene), coupling_shift(scene))
     )
     worst = np.unravel_index(np.argmax(shift), scene.shape) if scene.shape else ()
     if not float(shift[worst]) >= LEAST_SHIFT:

@@ -6,13 +6,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from contactlab.checks import refuse
-from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.law import Law
-from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.phases import PhasedTangentialLaw
 from contactlab.contracts.tangential import (
     SteppedTangentialLaw,
-    TangentialLaw,
     WholeImpactTangentialLaw,
 )
 from contactlab.registry import REGISTRY, PluginError
@@ -40,10 +38,8 @@ def law(kind: str, value: object) -> Any:
     raise refuse(kind, value, f"must be a name or a {kind} law", remedy)
 
 
-def compose(
-    normal: object, tangential: object, integrator: object
-) -> tuple[NormalLaw, TangentialLaw, Integrator]:
-    """Return three laws that fit, from names, laws, or None for the best that fits.
+def compose(normal: object, tangential: object, integrator: object) -> dict[str, Law]:
+    """Return three laws that fit, by kind, from names, laws, or None for the best that fits.
 
     Raises
     ------
@@ -51,33 +47,51 @@ def compose(
         If a name is not installed, or the laws do not fit together (naming what would).
     """
     pressing = law("normal", DEFAULT_NORMAL if normal is None else normal)
-    rubbing = _chosen("tangential", tangential, pressing)
-    following = _chosen("integrator", integrator, pressing, rubbing)
+    asked = () if integrator is None else (law("integrator", integrator),)
+    rubbing = _chosen("tangential", tangential, pressing, after=asked)
+    following = asked[0] if asked else _chosen("integrator", None, pressing, rubbing)
     if (complaint := misfit(pressing, rubbing, following)) is not None:
         raise ValueError(complaint + _would_fit(pressing, rubbing, following))
-    return pressing, rubbing, following
+    return {"normal": pressing, "tangential": rubbing, "integrator": following}
 
 
-def _chosen(kind: str, value: object, *others: Law) -> Any:
-    """Return the law given, or the first of those preferred that fits the others."""
-    if value is not None:
-        return law(kind, value)
-    first: Any = None
+def _chosen(kind: str, value: object, *others: Law, after: tuple[Law, ...] = ()) -> Any:
+    """Return the law given, or the best that fits the others."""
+    return law(kind, preferred(kind, *others, after=after) if value is None else value)
+
+
+def preferred(kind: str, *others: Law, after: tuple[Law, ...] = ()) -> str:
+    """Return the name of the first law in ``PREFERRED`` that fits the others, or else the first.
+
+    Parameters
+    ----------
+    kind : str
+        ``"tangential"``, for a normal law, or ``"integrator"``, for both.
+    others : Law
+    after : tuple of Law
+        The integrator that a tangential law has to fit, if one was named.
+    """
+    installed = []
     for name in PREFERRED[kind]:
         try:
             found = law(kind, name)
         except ValueError:  # blocked, or not installed
             continue
-        first = found if first is None else first
-        if misfit(*others, found) is None:
-            return found
-    if first is None:
-        raise refuse(kind, None, "must be given: none of the defaults is installed",
-                     f"installed: {', '.join(REGISTRY.names(kind))}")  # fmt: skip
-    return first
+        installed.append(name)
+        if _fits(*others, found, *after):
+            return name
+    if not installed:
+        names = ", ".join(REGISTRY.names(kind))
+        why = "must be given: none of the defaults is installed"
+        raise refuse(kind, None, why, f"installed: {names}")
+    return installed[0]
 
 
-def misfit(normal: Any, tangential: Any, integrator: Any = None) -> str | None:
+def _fits(*parts: Law) -> bool:
+    return misfit(*parts) is None
+
+
+def misfit(normal: Any, tangential: Any = None, integrator: Any = None) -> str | None:
     """Return why laws do not fit, naming both parties; None if they do."""
     if "elastic_hertz" in normal.offers and not isinstance(normal, ClosedFormNormalLaw):
         return (
@@ -87,7 +101,8 @@ def misfit(normal: Any, tangential: Any, integrator: Any = None) -> str | None:
     if not isinstance(tangential, WAYS):
         ways = ", ".join(way.__name__ for way in WAYS)
         return f"tangential = {_name(tangential)}: must be derived from one of {ways}"
-    for word in sorted(tangential.needs - normal.offers):
+    if missing := sorted(tangential.needs - normal.offers):
+        word = missing[0]
         return (
             f"tangential = {_name(tangential)}: needs {word!r} of the normal law, which "
             f"{_name(normal)} does not offer"
@@ -110,15 +125,12 @@ def misfit(normal: Any, tangential: Any, integrator: Any = None) -> str | None:
 def _would_fit(normal: Law, tangential: Law, integrator: Law) -> str:
     """Return which laws would fit in the place of one, of those that need no new import."""
     parts = {"normal": normal, "tangential": tangential, "integrator": integrator}
-    found = []
+    found: list[str] = []
     for kind in parts:
-        fits = []
-        for name, other in _candidates(kind):
-            if misfit(*{**parts, kind: other}.values()) is None:
-                fits.append(name)
-        if fits:
-            found.append(f"{kind} {' or '.join(fits)}")
-    return f"; these would fit instead: {'; '.join(found)}" if found else "; no law at hand fits"
+        candidates = _candidates(kind)
+        fits = [name for name, other in candidates if _fits(*{**parts, kind: other}.values())]
+        found += fits
+    return f"; these would fit: {', '.join(found)}" if found else "; no law at hand fits"
 
 
 def _candidates(kind: str) -> Iterator[tuple[str, Law]]:

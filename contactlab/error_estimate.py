@@ -8,7 +8,6 @@ import attrs
 import numpy as np
 
 from contactlab.checks import Real
-from contactlab.contracts.law import Law
 from contactlab.status import Status
 
 if TYPE_CHECKING:
@@ -70,7 +69,7 @@ def _successes(result: ImpactResult) -> Any:
 
 def _at(simulation: Simulation, doublings: int) -> Simulation | None:
     """Return the simulation at twice, or half, the resolution; None if there is none."""
-    changed: dict[str, Law] = {}
+    changed: dict[str, Any] = {}
     for kind in ("tangential", "integrator"):
         law: Any = getattr(simulation, kind)
         if law.resolution is None:

@@ -46,6 +46,7 @@ def to_dict(result: ImpactResult) -> dict[str, Any]:
     numbers = {name: plain(read(result)) for name, _, read in COLUMNS}
     return numbers | {
         "detail": plain(result.motion.detail),
+        "psi2_error_estimate": plain(result.psi2_error_estimate),
         "run_time_s": result.run_time,
         "energy": result.energy.to_dict(),
         "counters": dict(result.counters),

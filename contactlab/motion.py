@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Self
 
 import attrs
@@ -63,6 +64,11 @@ def sound(motion: Motion) -> Motion:
     Integrators look at what they use as they go; this also finds what overflows on the way back
     to SI, and what an integrator forgets.
     """
+    if motion.status is Status.SUCCESS:
+        if all(math.isfinite(getattr(motion, name)) for name in motion.numbers()):
+            return motion
+    elif not np.ndim(motion.status):
+        return motion
     values = {name: np.asarray(getattr(motion, name)) for name in motion.numbers()}
     good = np.all([np.isfinite(value) for value in values.values()], axis=0)
     if np.all(good):

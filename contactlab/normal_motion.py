@@ -118,7 +118,7 @@ class Table:
         for step in near:
             found = np.einsum("mn,inc->imc", finer, self.values[:, step])
             np.maximum(rough, found.max(axis=1), out=rough)
-        return rough
+        return np.asarray(rough)
 
     def take(self, index: NDArray[np.intp], shape: tuple[int, ...]) -> Table:
         """Return the table of some items, which have ``shape``."""
@@ -158,7 +158,9 @@ class FailedMotion(NormalMotion):
 
     def take(self, part: Any) -> FailedMotion:
         """Return the same of some impacts."""
-        status, detail = (np.ravel(np.asarray(e, dtype=object))[0] for e in (self.status, self.detail))
+        status, detail = (
+            np.ravel(np.asarray(e, dtype=object))[0] for e in (self.status, self.detail)
+        )
         return FailedMotion(self.law, self.scene.take(part), status, detail)
 
 
@@ -208,9 +210,7 @@ class SolvedMotion(NormalMotion):
         if not shape:
             return self.of_batch(scene)
         found = np.arange(math.prod(shape)).reshape(shape)[part]
-        return SolvedMotion(
-            self.law, scene, self.table.take(np.ravel(found), np.shape(found))
-        )
+        return SolvedMotion(self.law, scene, self.table.take(np.ravel(found), np.shape(found)))
 
     def of_batch(self, scene: Scene) -> SolvedMotion:
         """Return the same motion for all impacts of ``scene``."""
@@ -354,9 +354,9 @@ class _Solver:
         """Return the derivatives of scaled approach and rate."""
         if not self.shape:
             length, speed = self.scale
-            force = float(self._ask(scaled[:1] * length, scaled[1:] * speed)[0].force)
-            self.finite = math.isfinite(force)
-            return np.array([scaled[1], -force * self.softness])
+            one = float(self._ask(scaled[:1] * length, scaled[1:] * speed)[0].force)
+            self.finite = math.isfinite(one)
+            return np.array([scaled[1], -one * self.softness])
         force = self._respond(scaled)[0]
         self.finite = bool(np.isfinite(force).all())
         change = -force * (self.unit / (self.mass * self.speed)) * self.active
@@ -366,7 +366,7 @@ class _Solver:
         """Return force, radius, overlap and friction load, shape (items,)."""
         approach, rate = scaled[: self.items] * self.length, scaled[self.items :] * self.speed
         contact = self._ask(approach, rate)[0].complete
-        return tuple(self._flat(entry) for entry in contact)  # type: ignore[return-value]
+        return tuple(self._flat(entry) for entry in contact)
 
     def _ask(self, approach: Array, rate: Array) -> tuple[NormalContact, Any]:
         """Ask the law; name it if it fails."""
@@ -382,13 +382,13 @@ class _Solver:
         except BaseException as error:  # a plug-in may not end the process
             raise self._fault(Status.LAW_RAISED, faults.raised(error)) from error
         for entry in contact:
-            if type(entry) is not float and entry is not None:  # rarely, for one impact
-                if faults.malformed(entry, self.shape):
-                    what = f"the answer {faults.shown(entry)}"
-                    raise self._fault(Status.MALFORMED, what)
+            plain = type(entry) is float or entry is None
+            if not plain and faults.malformed(entry, self.shape):
+                what = f"the answer {faults.shown(entry)}"
+                raise self._fault(Status.MALFORMED, what)
         return contact, state
 
-    def _flat(self, entry: Any) -> Array:
+    def _flat(self, entry: Any) -> Any:
         if not self.shape:
             return np.array([entry], dtype=np.float64)
         return np.array(np.broadcast_to(entry, self.shape), dtype=np.float64).reshape(-1)

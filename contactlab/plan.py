@@ -24,6 +24,8 @@ from contactlab.status import Status
 
 Mask = NDArray[np.bool_]
 
+#: The mask of a single impact.
+ONE: Mask = np.array(True)
 #: Of what is known in closed form, over max(1, |psi1|).
 CLOSED_FORM = 1e-12
 
@@ -118,8 +120,8 @@ def _together(parts: Sequence[Sentences], sizes: Sequence[int]) -> Sentences:
     for sentences, size in zip(parts, sizes, strict=True):
         for sentence in sentences:
             key = re.sub(r"[\d.e+-]+", "#", sentence.text)
-            text, where = found.setdefault(key, (sentence.text, np.zeros(sum(sizes), dtype=bool)))
-            where[first : first + size] |= sentence.where
+            entry = found.setdefault(key, (sentence.text, np.zeros(sum(sizes), dtype=bool)))
+            entry[1][first : first + size] |= sentence.where
         first += size
     return tuple(Sentence(text, where) for text, where in found.values())
 
@@ -142,6 +144,12 @@ def answers(
     shape = scene.shape
     always = isinstance(tangential, WholeImpactTangentialLaw)
     if history == "fields" and not always:
+        return []
+    if not shape:
+        if normal.status is Status.SUCCESS:
+            for known in tangential.whole_impacts(scene, normal):
+                if known.where:
+                    return [Answer(ONE, known)]
         return []
     left = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
     left = np.array(np.broadcast_to(left, shape))
@@ -177,9 +185,9 @@ def make_plan(
         What need not be marched.
     history : bool or "fields"
     """
-    everywhere = np.ones(scene.shape, dtype=bool)
-    parted = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS) & everywhere
-    marched = parted.copy()
+    everywhere = np.ones(scene.shape, dtype=bool) if scene.shape else ONE
+    parted = np.array(np.asarray(normal.status, dtype=object) == Status.SUCCESS) & everywhere
+    marched = np.array(parted)
     left_out = []
     for answer in known:
         marched &= ~answer.where
@@ -202,7 +210,7 @@ def make_plan(
         computed.append(Sentence(text, marched))
         cautions += list(integrator.remarks(normal, tangential, scene))
         cautions += _coarse(scene, error, marched, tangential, integrator)
-    computed += _said(error, marched, parted)
+    computed += _said(error, parted)
     if not history:
         left_out.append(Sentence("history: not asked for", everywhere))
     elif history != "fields":
@@ -228,6 +236,10 @@ def _error(
     marched: Mask,
 ) -> Any:
     """Return the declared numerical error of psi2, an array of the scene's shape."""
+    if not scene.shape and not marched:
+        psi1 = abs(scene.psi1)
+        largest = max(1.0, psi1) if math.isfinite(psi1) else 1.0
+        return np.array(CLOSED_FORM * largest + normal.accuracy * 4.0 * scene.chi)
     with np.errstate(all="ignore"):
         psi1 = np.abs(scene.psi1)
         largest = np.maximum(1.0, np.where(np.isfinite(psi1), psi1, 1.0))
@@ -238,7 +250,7 @@ def _error(
         return np.array(np.where(marched, declared, known))
 
 
-def _said(error: Any, marched: Mask, parted: Mask) -> list[Sentence]:
+def _said(error: Any, parted: Mask) -> list[Sentence]:
     """Return what a plan says of the numerical error."""
     undeclared = parted & np.isnan(error)
     found = []

@@ -252,4 +252,3 @@ def _ratio(after: Real, before: Real) -> Real:
 def _angle(tangential: Real, normal: Real) -> Real:
     angle = np.arctan2(tangential, normal)
     return float(angle) if np.ndim(angle) == 0 else angle
-

@@ -70,6 +70,8 @@ class Scene:
     spin: Real = quantity("rad/s", default=0.0)
     # None only until the bodies are looked at, below.
     pair: Pair = attrs.field(default=None, validator=_is_pair, kw_only=True, repr=False)
+    #: Batch shape: () for one impact.
+    shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
 
     def __attrs_post_init__(self) -> None:
         if self.sphere is not None and self.target is not None:
@@ -82,13 +84,10 @@ class Scene:
                 "both bodies must be given",
                 "or use Scene.nondimensional(psi1=, chi=)",
             )
-        numbers = attrs.asdict(self.pair)
-        for field in attrs.fields(Scene):
-            if "unit" in field.metadata:
-                numbers[field.name] = getattr(self, field.name)
+        numbers = self._numbers()
         shapes = {name: np.shape(number) for name, number in numbers.items() if np.shape(number)}
         try:
-            np.broadcast_shapes(*shapes.values())
+            object.__setattr__(self, "shape", np.broadcast_shapes(*shapes.values()))
         except ValueError:
             told = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
             raise ValueError(
@@ -97,6 +96,14 @@ class Scene:
             ) from None
         real("tangential_velocity + spin * radius", self.slip_velocity)
         self._check_scales()
+
+    def _numbers(self) -> dict[str, Real]:
+        """Return every number of the scene and of its pair, by name."""
+        numbers = {field.name: getattr(self.pair, field.name) for field in attrs.fields(Pair)}
+        for field in attrs.fields(Scene):
+            if "unit" in field.metadata:
+                numbers[field.name] = getattr(self, field.name)
+        return numbers
 
     def _check_scales(self) -> None:
         """Refuse scenes whose numbers a float cannot hold."""
@@ -108,7 +115,17 @@ class Scene:
             tiny = (np.maximum(unit, slip) < LEAST_VELOCITY) & (unit > 0.0) & (slip > 0.0)
             vast = (unit > 0.0) & ~np.isfinite(np.divide(slip, unit + (unit == 0.0)))
             lost = np.any((np.asarray(self.friction_coefficient) > 0.0) & (unit == 0.0))
-        if not np.all((energy >= LEAST_ENERGY) & np.isfinite(energy + slip_energy)):
+        if not np.all(np.isfinite(slip_energy)):
+            name, value = "tangential_velocity", self.tangential_velocity
+            if self.sphere is None:
+                name, value = "psi1, chi", (value, self.chi)
+            raise refuse(
+                name,
+                value,
+                "the kinetic energy of slip must be finite",
+                "give less; from 4 chi - 1 on psi1 falls by 4 chi",
+            )
+        if not np.all((energy >= LEAST_ENERGY) & np.isfinite(energy)):
             raise refuse(
                 "normal_speed",
                 self.normal_speed,
@@ -182,24 +199,13 @@ class Scene:
 
         What all impacts share stays a plain number: laws are faster then.
         """
-        shape = self.shape
-        taken: Scene = batch.taken(self, shape, part)
+        taken: Scene = batch.taken(self, self.shape, part)
+        numbers = taken._numbers().values()
+        object.__setattr__(taken, "shape", np.broadcast_shapes(*map(np.shape, numbers)))
         if taken.shape or isinstance(part, int | tuple):
             return taken
-        count = np.shape(np.broadcast_to(0.0, shape)[part])
+        count = np.shape(np.broadcast_to(0.0, self.shape)[part])
         return attrs.evolve(taken, normal_speed=np.full(count, taken.normal_speed))
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Batch shape: () for one impact."""
-        return np.shape(
-            self.slip_velocity
-            + self.friction_coefficient
-            + self.pair.inertia_ratio
-            + self.normal_speed
-            + self.pair.effective_modulus
-            + self.pair.radius
-        )
 
     @property
     def slip_velocity(self) -> Real:

@@ -72,8 +72,8 @@ class Simulation:
         tangential: str | TangentialLaw | None = None,
         integrator: str | Integrator | None = None,
     ) -> None:
-        made = composition.compose(normal, tangential, integrator)
-        self.__attrs_init__(**{law.kind: law for law in made})
+        made: dict[str, Any] = composition.compose(normal, tangential, integrator)
+        self.__attrs_init__(**made)
 
     def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
         """Say what ``run`` would compute for ``scene``, what it leaves out and why."""
@@ -260,6 +260,16 @@ class Simulation:
         shape, marched = scene.shape, plan.marched
         if marched.all():
             return self._march(normal, scene, recorder)
+        if not shape:
+            if recorder is not None:
+                show(normal, known, recorder)
+            if not known:
+                return TangentialMotion.nothing((), normal.status, normal.detail)
+            answer = known[0].known
+            return TangentialMotion(
+                slip_velocity_change=float(answer.slip_velocity_change),
+                friction_work=float(answer.friction_work),
+            )
         everywhere = np.ones(shape, dtype=bool)
         nothing = TangentialMotion.nothing(shape, Status.NOT_SEPARATED)
         nothing = attrs.evolve(nothing, status=normal.status, detail=normal.detail)
@@ -282,16 +292,7 @@ class Simulation:
             parts.append((marched, self._march(normal.take(marched), scene.take(marched), None)))
         elif recorder is not None:
             show(normal, known, recorder)
-        merged = TangentialMotion.merged(parts, shape)
-        if shape:
-            return merged
-        return TangentialMotion(
-            slip_velocity_change=float(merged.slip_velocity_change),
-            friction_work=float(merged.friction_work),
-            status=np.asarray(merged.status).item(),
-            detail=np.asarray(merged.detail).item(),
-            counters=merged.counters,
-        )
+        return TangentialMotion.merged(parts, shape)
 
     def _books_bound(self) -> float:
         """Return what the books may miss by: the law's own bound, and the integrator's share."""
@@ -317,7 +318,9 @@ class Simulation:
             single = [self._attempt(normal.take(at), scene.take(at), None)[0] for at in places]
             return TangentialMotion.joined(single, shape)
         first = np.arange(size).reshape(shape) < size // 2
-        halves = [self._march(normal.take(part), scene.take(part), None) for part in (first, ~first)]
+        halves = [
+            self._march(normal.take(part), scene.take(part), None) for part in (first, ~first)
+        ]
         return TangentialMotion.joined(halves, shape)
 
     def _attempt(

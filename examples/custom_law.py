@@ -15,7 +15,7 @@ from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 
 
 class Spring(NamedTuple):
-    """The state: two constants of the problem, and the force, which is all the memory."""
+    """The state: two constants of the scene, and the force, which is all the memory."""
 
     shear_modulus: float
     friction_coefficient: float
@@ -31,13 +31,12 @@ class MindlinCap(SteppedTangentialLaw):
     Mindlin, J. Appl. Mech. 16 (1949) 259-268: the stiffness 2 G* b, all stuck.
     """
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
-    needs: ClassVar[frozenset[str]] = frozenset({"steps", "radius"})
+    api_version: ClassVar[int] = 2
+    needs: ClassVar[frozenset[str]] = frozenset({"radius"})
 
-    def start(self, problem):
+    def start(self, scene, normal):
         """Return the spring unloaded."""
-        return Spring(problem.pair.effective_shear_modulus, problem.friction_coefficient, 0.0)
+        return Spring(scene.pair.effective_shear_modulus, scene.friction_coefficient, 0.0)
 
     def advance(self, state, increment, before, after):
         """Return the force after the step, and the work of friction in it."""
@@ -49,16 +48,16 @@ class MindlinCap(SteppedTangentialLaw):
         kept = np.where(before.radius > 0.0, kept, 1.0)
         held = kept * state.force
         trial = held + stiffness * increment.displacement
-        limit = state.friction_coefficient * increment.normal_force
+        limit = state.friction_coefficient * increment.friction_load
         force = np.clip(trial, -limit, limit)
         slip = (trial - force) * softness
         # The mean of the force before and after: as contact ends a spring lets go of all it holds.
         work = np.maximum(0.5 * (held + force) * slip, 0.0)
         return TangentialResponse(force, work), state._replace(force=force)
 
-    def stiffness(self, problem):
+    def stiffness(self, scene, normal):
         """Return the stiffness of the largest contact."""
-        return 2.0 * problem.pair.effective_shear_modulus * problem.maximum_radius
+        return 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
 
 
 if __name__ == "__main__":

@@ -14,11 +14,12 @@ simulation = contactlab.Simulation(
     tangential=contactlab.create("tangential.annulus", annuli=100),
     integrator=contactlab.create("integrator.symplectic", steps=400),
 )
-history = simulation.run(scene, history="fields").check().history
+result = simulation.run(scene, history="fields").check()
+history = result.history
 assert history is not None
 fields = history.fields
-time = history.time / scene.duration
-radius = fields["radius"][0] / scene.maximum_radius
+time = history.time / result.motion.duration
+radius = fields["radius"][0] / result.motion.maximum_radius
 in_contact = fields["stuck"] | (fields["slipping"] != 0)
 for instant in (0.1, 0.3, 0.5, 0.7, 0.9):
     row = int(abs(time - instant).argmin())

@@ -24,10 +24,6 @@ def _first(first, *_):
     return first
 
 
-def _second(_, second):
-    return second
-
-
 def _nothing(*_):
     return None
 
@@ -38,7 +34,6 @@ def without():
     with (
         mock.patch.object(simulation, "sound", _first),
         mock.patch.object(simulation, "balanced", _first),
-        mock.patch.object(march, "watched", _second),
         mock.patch.object(march, "_unsound", _nothing),
     ):
         yield

@@ -97,9 +97,9 @@ def test_third_party_plugin_on_the_command_line(plugin_path, tmp_path):
 
 def test_third_party_plugin_is_put_through_the_stability_report(plugin_path, tmp_path):
     command = ("-m", "contactlab", "stability", "--quick", "--law", "tangential.cundall", "--json")
-    ran = python(*command, "--budget", "5", folder=tmp_path, path=plugin_path)
+    ran = python(*command, folder=tmp_path, path=plugin_path)
     assert ran.returncode == 0, ran.stdout + ran.stderr
-    assert json.loads(ran.stdout)["tried"] > 20
+    assert json.loads(ran.stdout)["tried"] > 200
 
 
 def test_without_the_plugin_its_law_is_unknown(tmp_path):

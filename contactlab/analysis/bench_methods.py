@@ -8,6 +8,7 @@ from typing import Any
 import attrs
 
 from contactlab.bodies import HalfSpace, Material, Sphere
+from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.registry import REGISTRY, PluginError
 from contactlab.scene import Scene
 from contactlab.simulation import Simulation
@@ -48,14 +49,21 @@ class Method:
     integrator: str
 
     @property
+    def whole(self) -> bool:
+        """Whether the law answers every impact as a whole, and asks no integrator."""
+        return issubclass(_law("tangential", self.tangential), WholeImpactTangentialLaw)
+
+    @property
     def name(self) -> str:
-        """``law / integrator``."""
+        """``law / integrator``, or the law alone if it needs none."""
+        if self.whole:
+            return self.tangential
         return f"{self.tangential} / {self.integrator}"
 
     def rungs(self, *, quick: bool = False) -> list[dict[str, dict[str, Any]]]:
         """Return options of the two laws, coarse to fine."""
         law = _law("tangential", self.tangential).resolution
-        steps = _law("integrator", self.integrator).resolution
+        steps = None if self.whole else _law("integrator", self.integrator).resolution
         values: Sequence[Any] = (None,)
         if "tolerance" in (law, steps):
             values = TOLERANCES
@@ -106,7 +114,7 @@ def methods(laws: Iterable[str] | None = None) -> list[Method]:
     found = []
     for tangential in named or [_short(name) for name in REGISTRY.names("tangential")]:
         try:
-            if _law("tangential", tangential).inert and named is None:
+            if named is None and _makes_no_force(tangential):
                 continue
             integrators = [_short(name) for name in REGISTRY.names("integrator")]
             fitting = [
@@ -114,6 +122,8 @@ def methods(laws: Iterable[str] | None = None) -> list[Method]:
                 for integrator in integrators
                 if _fits(tangential, integrator)
             ]
+            if issubclass(_law("tangential", tangential), WholeImpactTangentialLaw):
+                fitting = fitting[:1]  # no integrator is asked
         except PluginError:
             if named is not None:
                 raise
@@ -130,6 +140,17 @@ def _fits(tangential: str, integrator: str) -> bool:
     except (ValueError, TypeError):
         return False
     return True
+
+
+def _makes_no_force(tangential: str) -> bool:
+    """Return whether a law that answers whole impacts changes no velocity."""
+    if not issubclass(_law("tangential", tangential), WholeImpactTangentialLaw):
+        return False
+    try:
+        result = Simulation(tangential=tangential).run(Scene.nondimensional(psi1=1.0, chi=1.0))
+    except ValueError:
+        return False
+    return bool(result.psi_change == 0.0)
 
 
 def _accepted(name: str, options: dict[str, Any]) -> bool:

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.closed_forms import rigid_body_rebound
-from contactlab.history import History
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.simulation import Simulation
@@ -108,10 +107,12 @@ def chi_of_gyration(gyration_ratio: float) -> float:
     return 0.7 / 1.7 * (1.0 + gyration_ratio**-2)
 
 
-def scaled_forces(scene: Scene, history: History) -> tuple[Array, Array, Array]:
+def scaled_forces(result: ImpactResult) -> tuple[Array, Array, Array]:
     """Return (t/duration, F/(mu P_max), P/P_max), from first touch to separation."""
-    peak = float(scene.maximum_force)
-    time = np.concatenate([[0.0], history.time / scene.duration])
+    scene, history = result.scene, result.history
+    assert history is not None
+    peak = float(result.motion.maximum_force)
+    time = np.concatenate([[0.0], history.time / result.motion.duration])
     tangential = history.tangential_force / (scene.friction_coefficient * peak)
     normal = history.normal_force / peak
     return time, np.concatenate([[0.0], tangential]), np.concatenate([[0.0], normal])
@@ -123,8 +124,7 @@ def _forces(
     curves: list[Curve] = []
     for value, scene in scenes.items():
         result = simulation.run(scene, history=True).check()
-        assert result.history is not None
-        time, tangential, normal = scaled_forces(scene, result.history)
+        time, tangential, normal = scaled_forces(result)
         if not curves:  # the normal force is the same for all
             curves.append(Curve("P/P_max", np.nan, time, normal))
         curves.append(Curve("F/(mu P_max)", value, time, tangential))

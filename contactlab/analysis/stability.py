@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
-import statistics
 import time
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Callable, Sequence
 
 import attrs
@@ -24,14 +24,11 @@ from contactlab.analysis.stability_outcome import (
 )
 from contactlab.declared import COARSE
 
-#: A case expected to take longer than this is skipped, in s; much less in the quick set.
-LONGEST, QUICK_LONGEST = 20.0, 0.5
-#: Seconds that a method may take over a family of scenes; what is left of it then is skipped.
-ALLOWANCE, QUICK_ALLOWANCE = 40.0, 0.3
-#: Seconds that a step takes before a method has shown its own pace.
-FIRST_PACE = 2e-5
-#: Seconds a step of the runs so far, by method.
-Paces = dict[str, list[float]]
+#: A case of more work than this, in steps of one part, is skipped: what is tried does not depend
+#: on the machine.
+LARGEST, QUICK_LARGEST = 4_000_000.0, 12_000.0
+#: What a method takes where a case does not say, for the estimate of its work.
+DEFAULT_STEPS, DEFAULT_TOLERANCE = 200, 1e-4
 
 
 @attrs.frozen(kw_only=True)
@@ -57,7 +54,7 @@ class Stability:
         return done + sum(item.tried for item in self.regions)
 
     def skipped(self) -> int:
-        """Return the number of cases left out because they would take too long."""
+        """Return the number of cases left out because they are too much work."""
         return sum(item.outcome == SKIPPED for item in self.outcomes)
 
     def counts(self, method: str) -> Counter[str]:
@@ -107,24 +104,15 @@ def stability(
     total = sum(map(len, listed)) + sum(map(len, cells))
     outcomes: list[Outcome] = []
     regions: list[Region] = []
-    pace: Paces = {}
-    spent: defaultdict[tuple[str, str], float] = defaultdict(float)
-    longest = QUICK_LONGEST if quick else LONGEST
-    allowance = QUICK_ALLOWANCE if quick else ALLOWANCE
+    largest = QUICK_LARGEST if quick else LARGEST
     done = 0
     # One family after another over all methods, so that a budget cuts all of them alike, and
-    # what is quick before what is long, so that an allowance leaves out the long.
-    ordered = sorted((case for mine in listed for case in mine), key=lambda c: (c.family, _size(c)))
+    # what is quick before what is long.
+    ordered = sorted((case for mine in listed for case in mine), key=lambda c: (c.family, work(c)))
     for case in ordered:
         if time.perf_counter() - started > budget:
             break
-        part = case.method.name, case.family
-        if spent[part] > allowance or _expected(case, pace) > longest:
-            outcomes.append(_skipped(case))
-        else:
-            outcomes.append(judged(case))
-            _learn(case, outcomes[-1], pace)
-            spent[part] += outcomes[-1].run_time_s
+        outcomes.append(judged(case) if work(case) <= largest else _skipped(case))
         done += 1
         if progress is not None:
             progress(done, total)
@@ -138,31 +126,22 @@ def stability(
     return Stability(outcomes=tuple(outcomes), regions=tuple(regions), complete=done == total)
 
 
-def _size(case: Case) -> float:
-    """Return steps times what a part costs beside a step.
+def work(case: Case) -> float:
+    """Return about how much work a case is: steps, times what a part costs beside a step.
 
     Where steps are chosen on the way they grow with chi, and as the root of the tolerance.
     """
     options = case.options["integrator"]
-    steps: float = float(options.get("steps", 200))
-    if "steps" not in options and case.family == "chi":
-        steps *= math.pow(1.0 + float(case.scene.make().chi), 0.7)
-    steps *= math.sqrt(1e-4 / float(options.get("tolerance", 1e-4)))
+    steps = float(options.get("steps", DEFAULT_STEPS))
+    if "steps" not in options:
+        tolerance = float(options.get("tolerance", DEFAULT_TOLERANCE))
+        with contextlib.suppress(ValueError):  # bad input is an outcome, not an end
+            steps *= math.sqrt(1.0 + min(float(np.max(case.scene.make().chi)), 1e12))
+        steps *= math.sqrt(DEFAULT_TOLERANCE / tolerance)
     parts = [
         float(value) for name, value in case.options["tangential"].items() if name != "tolerance"
     ]
     return steps * (1.0 + max([0.0, *parts]) ** 2 / 1e4)
-
-
-def _expected(case: Case, pace: Paces) -> float:
-    seen = pace.get(case.method.name)
-    pace_now: float = statistics.median(seen) if seen else FIRST_PACE
-    return _size(case) * pace_now
-
-
-def _learn(case: Case, outcome: Outcome, pace: Paces) -> None:
-    if outcome.outcome == ANSWERED and outcome.run_time_s > 1e-3:
-        pace.setdefault(case.method.name, []).append(outcome.run_time_s / _size(case))
 
 
 def _skipped(case: Case) -> Outcome:
@@ -171,5 +150,5 @@ def _skipped(case: Case) -> Outcome:
         family=case.family,
         case=case.label,
         outcome=SKIPPED,
-        note="too long",
+        note="too much work",
     )

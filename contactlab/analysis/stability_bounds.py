@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlab.contracts import Integrator
-from contactlab.declared import NORMAL, ROUNDING, TOLERANCE, range_of, tolerance_of
+from contactlab.declared import range_of
 from contactlab.result import ImpactResult
 
 #: Energy books, over the energy at the start: an integrator that controls its error adds up
@@ -13,8 +12,8 @@ from contactlab.result import ImpactResult
 BOOKS = 1e-5
 #: However coarse a method is, energy from nothing beyond this is wrong.
 LARGEST_GAIN = 0.1
-#: |1 - e| is never beyond this, however few the steps.
-LARGEST_NORMAL = 0.1
+#: |1 - e| of an elastic impact is never beyond this, however few the steps.
+LARGEST_NORMAL = 1e-9
 
 
 def broken_invariants(result: ImpactResult, bound: float, *, passive: bool = True) -> list[str]:
@@ -48,11 +47,3 @@ def broken_invariants(result: ImpactResult, bound: float, *, passive: bool = Tru
     if float(books.friction_work) < -allowed * scale:
         broken.append("friction does work on the bodies")
     return broken
-
-
-def normal_error_allowed(integrator: Integrator, taken: int | None = None) -> float:
-    """Return the largest |1 - e| of an elastic impact that the integrator may make."""
-    if integrator.resolution == "steps":
-        steps = taken or int(getattr(integrator, integrator.resolution))
-        return min(NORMAL / steps**2, LARGEST_NORMAL) + ROUNDING
-    return TOLERANCE * (tolerance_of(integrator) or 0.0) + ROUNDING

@@ -50,11 +50,15 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
     integrator = REGISTRY.law_class(f"integrator.{method.integrator}")
     for scene in extreme_scenes(quick=quick):
         yield _case(method, scene, {})
+        if method.whole:
+            continue
         if scene.family in ("psi1", "friction", "regimes"):
             yield _case(method, scene, {}, planned=False)
         if scene.family == "chi" and integrator.resolution == "steps":
             steps = int(ABOVE_LIMIT * LIMIT * float(scene.make().chi) ** 0.5) + 8
             yield _case(method, scene, {"integrator": {"steps": steps}})
+    if method.whole:
+        return
     for psi1, chi in QUICK_LADDER if quick else LADDER:
         yield from _ladder(method, law.resolution, integrator.resolution, psi1, chi, quick=quick)
 

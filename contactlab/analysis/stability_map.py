@@ -22,8 +22,9 @@ Array = NDArray[np.float64]
 #: States of a cell. Of its impacts the worst counts.
 ALL_ANSWERED, ONE_REFUSED, ONE_RAISED, ONE_WRONG, NOT_TRIED = range(5)
 STATES = {ANSWERED: ALL_ANSWERED, RAISED: ONE_RAISED, WRONG: ONE_WRONG}
-#: Seconds for a cell: at the same resolution a larger chi takes no less, and is not tried.
-LONGEST = 2.0
+#: Under a tolerance steps grow with chi, and as its inverse root: cells beyond this product of
+#: the two are not tried.
+MOST_STEPS = 3e4
 #: psi1 of the impacts in each cell; the worst is shown.
 INCIDENCES = (0.3, 0.95, 1.2)
 CHIS = tuple(np.geomspace(0.05, 1e4, 17).tolist())
@@ -46,8 +47,8 @@ class Region:
         NaN where every impact was refused.
     state : array of int
         ``ALL_ANSWERED``; ``ONE_REFUSED``, ``ONE_RAISED`` or ``ONE_WRONG`` where at least one
-        impact was refused, raised or is silently wrong; ``NOT_TRIED``: a smaller chi took longer
-        than ``LONGEST`` already, or the time was up.
+        impact was refused, raised or is silently wrong; ``NOT_TRIED``: more work than
+        ``MOST_STEPS``, or the time was up.
     failures : tuple of Outcome
         The impacts that are silently wrong, or raised.
     complete : bool
@@ -106,7 +107,7 @@ def region(
         place = resolutions.index(fine), chis.index(chi)
         began = time.perf_counter()
         complete = began < until
-        if not complete or state[place] == NOT_TRIED:
+        if not complete or (word == "tolerance" and (1.0 + chi) ** 0.5 / fine**0.5 > MOST_STEPS):
             state[place] = NOT_TRIED
             continue
         for psi1 in INCIDENCES:
@@ -116,8 +117,6 @@ def region(
             if outcome.outcome in (WRONG, RAISED):
                 failures.append(outcome)
             error[place] = np.fmax(error[place], outcome.error)
-        if time.perf_counter() - began > LONGEST:
-            state[place[0], place[1] + 1 :] = NOT_TRIED
     return Region(
         method=method.name,
         word=word,
@@ -132,7 +131,7 @@ def region(
 
 
 def _word(method: Method) -> str | None:
-    if method.tangential == "frictionless":
+    if method.whole:
         return None
     found: str | None = REGISTRY.law_class(f"integrator.{method.integrator}").resolution
     return found

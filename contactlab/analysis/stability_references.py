@@ -88,9 +88,9 @@ def itself(scene: Scene, law: TangentialLaw) -> float | None:
 def _fine(scene: Scene, law: SteppedTangentialLaw) -> float | None:
     """Return the extrapolated limit of second order, or None if it is not reached."""
     coarse: Any = Simulation(tangential=law, integrator="symplectic")
-    problem = coarse.problem(scene)
-    frequency = np.sqrt(law.stiffness(problem) / problem.pair.tangential_mass)
-    steps = max(FINE * (int(0.5 * frequency * problem.duration) + 1), FEWEST)
+    normal = coarse.normal_motion(scene)
+    frequency = np.sqrt(law.stiffness(scene, normal) / scene.pair.tangential_mass)
+    steps = max(FINE * (int(0.5 * frequency * normal.duration) + 1), FEWEST)
     width = range_of(scene).width
     answers: list[float] = []
     limits: list[float] = []

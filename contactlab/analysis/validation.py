@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from contactlab.bodies import HalfSpace, Material, Sphere
-from contactlab.closed_forms import rigid_body_rebound
+from contactlab.closed_forms import hertz_scales, rigid_body_rebound
 from contactlab.registry import REGISTRY
 from contactlab.scene import Scene
 from contactlab.simulation import Simulation
@@ -87,7 +87,7 @@ def _checks() -> Iterator[Callable[[], Finding]]:
 def _hertz() -> Finding:
     scene = Scene.nondimensional(psi1=0.0, chi=1.0)
     result = Simulation(tangential="coulomb", integrator="symplectic").run(scene)
-    duration = float(np.asarray(result.motion.duration / scene.duration)) - 1.0
+    duration = float(np.asarray(result.motion.duration / hertz_scales(scene).duration)) - 1.0
     worst = max(abs(duration), abs(float(np.asarray(result.normal_restitution)) - 1.0))
     return Finding(
         what="hertz: duration and restitution",

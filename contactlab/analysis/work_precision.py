@@ -206,7 +206,7 @@ def _force_error(result: ImpactResult, exact: ImpactResult) -> float:
     instants, first = np.unique(true.time, return_index=True)  # an event may stand twice
     inside = np.clip(history.time, instants[0], instants[-1])
     expected = PchipInterpolator(instants, true.tangential_force[first])(inside)
-    scale = float(np.asarray(scene.friction_coefficient * scene.maximum_force))
+    scale = float(np.asarray(scene.friction_coefficient * exact.motion.maximum_force))
     return float(np.sqrt(np.mean((history.tangential_force - expected) ** 2))) / scale
 
 

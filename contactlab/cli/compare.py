@@ -82,7 +82,8 @@ def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Si
     """Return every combination of the laws asked for, named by what differs between them."""
     asked = {kind: getattr(arguments, kind) or [getattr(file.laws, kind)] for kind in KINDS}
     if arguments.tangential is None:
-        asked["tangential"] = list(dict.fromkeys([file.laws.tangential, *DEFAULT_LAWS]))
+        own = file.laws.resolved().tangential
+        asked["tangential"] = list(dict.fromkeys([own, *DEFAULT_LAWS]))
     asked = {
         kind: [name and name.removeprefix(f"{kind}.") for name in names]
         for kind, names in asked.items()
@@ -94,7 +95,7 @@ def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Si
         chosen = dict(zip(KINDS, combination, strict=True))
         choice = file.laws.choose(**chosen).resolved()
         settings = {path: value for path, value in arguments.settings if _knows(choice, path, used)}
-        name = " + ".join(chosen[kind] for kind in several)
+        name = " + ".join(getattr(choice, kind) for kind in several)
         simulations[name] = choice.set(settings).simulation()
     for path, _ in arguments.settings:
         if path not in used:

@@ -19,6 +19,8 @@ from typing import Any
 
 from contactlab.cli.arguments import FAILED, OK, add_progress, progress
 from contactlab.cli.table import table
+from contactlab.composition import WAYS
+from contactlab.contracts import Integrator, TangentialLaw
 from contactlab.registry import BLOCK_VARIABLE, REGISTRY, PluginInfo, blocked_names
 
 
@@ -67,6 +69,10 @@ def _show(arguments: argparse.Namespace) -> int:
         str(option.replace(annotation=option.empty)).replace("=", " = ")
         for option in inspect.signature(law).parameters.values()
     ]
+    if issubclass(law, Integrator):
+        entry["runs"] = law.tangential_contract.__name__
+    if issubclass(law, TangentialLaw):
+        entry["is a"] = [way.__name__ for way in WAYS if issubclass(law, way)]
     entry["needs"], entry["offers"] = sorted(law.needs), sorted(law.offers)
     if arguments.json:
         print(json.dumps(entry, indent=2))

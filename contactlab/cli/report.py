@@ -32,11 +32,28 @@ def describe(result: ImpactResult, *, title: str = "", varied: Mapping[str, Any]
         body = _sweep(result, varied)
     else:
         body = [
+            answer(result),
             _table(result, ["", "before", "after", "unit"], _velocities(result)),
             _table(result, ["contact", "value", "unit"], _contact(result)),
             _table(result, ["energy", "value", "unit"], _energy(result)),
         ]
     return "\n\n".join([title] * bool(title) + [*body, str(result.plan), _closing(result)])
+
+
+def answer(result: ImpactResult) -> str:
+    """Return the answer, its numerical error and its run time, a line each."""
+    estimate, declared = result.psi2_error_estimate, float(np.asarray(result.plan.psi2_error))
+    known = []
+    if estimate is not None and np.isfinite(estimate) and float(estimate) != declared:
+        known.append(f"about {float(estimate):.1g}, estimated")
+    if np.isfinite(declared):
+        known.append(f"at most {declared:.1g}, declared")
+    lines = [
+        ("psi2", number(result.psi2, digits=10)),
+        ("numerical error of psi2", "; ".join(known) or "not known"),
+        ("run time", time(result.run_time)),
+    ]
+    return "\n".join(f"{name:24} {value}" for name, value in lines)
 
 
 def _table(result: ImpactResult, headings: list[str], rows: list[Row]) -> str:
@@ -69,14 +86,15 @@ def _velocities(result: ImpactResult) -> list[Row]:
 
 
 def _contact(result: ImpactResult) -> list[Row]:
-    scene = result.scene
+    scene, motion = result.scene, result.motion
     rows: list[Row] = [
         ["chi", scene.chi, "1"],
         ["normal restitution e", result.normal_restitution, "1"],
         ["tangential restitution e_t", result.tangential_restitution, "1"],
-        ["contact time", result.motion.duration, "s"],
-        ["largest contact radius (8)", scene.maximum_radius, "m"],
-        ["size ratio C (9)", scene.size_ratio, "1"],
+        ["contact time", motion.duration, "s"],
+        ["largest contact radius", motion.maximum_radius, "m"],
+        ["largest contact radius over R, C (9)", motion.maximum_radius / scene.pair.radius, "1"],
+        ["largest normal force", motion.maximum_force, "N"],
     ]
     return rows if scene.sphere is not None else rows[:4]
 
@@ -118,7 +136,8 @@ def _closing(result: ImpactResult) -> str:
     counters = ", ".join(f"{count} {key}" for key, count in result.counters.items()) or "none"
     impacts = f" for {len(result)} impacts" if result.scene.shape else ""
     lines = [f"laws:     {', '.join(laws)}", f"counters: {counters}"]
-    lines += [f"run time: {time(result.run_time)}{impacts}"]
+    if result.scene.shape:
+        lines += [f"run time: {time(result.run_time)}{impacts}"]
     failures = Counter(result.failures.values())
     if failures.total() < np.size(result.status):
         lines += [f"status:   {Status.SUCCESS.value}"]

@@ -12,6 +12,7 @@ Examples
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import sys
 from collections.abc import Mapping
@@ -54,6 +55,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE.csv",
         help="also write the course of a single impact",
     )
+    parser.add_argument(
+        "--estimate",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="estimate the numerical error of a single impact by runs at other resolutions",
+    )
     shared.add_progress(parser)
 
 
@@ -68,11 +75,14 @@ def execute(arguments: argparse.Namespace) -> int:
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )
     simulation = choice.set(dict(arguments.settings)).simulation()
-    if scene.shape:
-        progress = shared.progress(arguments.progress, "impacts")
-        result = simulation.sweep(scene, progress=progress)
-    else:
-        result = simulation.run(scene, history=bool(arguments.history))
+    with contextlib.redirect_stdout(sys.stderr):  # what a plug-in prints is not our output
+        if scene.shape:
+            progress = shared.progress(arguments.progress, "impacts")
+            result = simulation.sweep(scene, progress=progress)
+        else:
+            result = simulation.run(
+                scene, history=bool(arguments.history), estimate_error=arguments.estimate
+            )
     if arguments.out:
         WRITERS[arguments.out.suffix.lower()](result, arguments.out)
     if arguments.history:

@@ -76,7 +76,7 @@ def report(found: Stability) -> str:
         parts.append(table(["method", "case", "", ""], rows))
     parts.append(
         f"{found.tried()} runs tried, {found.silently_wrong()} silently wrong; "
-        f"{found.skipped()} more were skipped as too long.\nErrors are over the range that "
+        f"{found.skipped()} more were skipped as too much work.\nErrors are over the range that "
         "physics leaves to psi2, of answers whose declared error is below a\nquarter of it: "
         "the others are counted as coarse."
     )

@@ -10,6 +10,8 @@ Examples
 from __future__ import annotations
 
 import argparse
+import contextlib
+import sys
 from typing import Any
 
 import numpy as np
@@ -53,7 +55,8 @@ def execute(arguments: argparse.Namespace) -> int:
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )
     simulation = choice.set(dict(arguments.settings)).simulation()
-    result = simulation.sweep(scene, progress=shared.progress(arguments.progress, "impacts"))
+    with contextlib.redirect_stdout(sys.stderr):  # what a plug-in prints is not our output
+        result = simulation.sweep(scene, progress=shared.progress(arguments.progress, "impacts"))
     if arguments.out:
         WRITERS[arguments.out.suffix.lower()](result, arguments.out)
     if arguments.csv:

@@ -6,6 +6,7 @@ import math
 from abc import abstractmethod
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from typing import Any, ClassVar, NamedTuple, Self, TypeAlias
 
 import attrs
@@ -70,8 +71,7 @@ class TangentialMotion:
     @classmethod
     def numbers(cls) -> tuple[str, ...]:
         """Return the names of the entries that are numbers."""
-        others = ("status", "detail", "counters")
-        return tuple(field.name for field in attrs.fields(cls) if field.name not in others)
+        return _numbers(cls)
 
     @classmethod
     def joined(cls, motions: Sequence[Self], shape: tuple[int, ...]) -> Self:
@@ -106,9 +106,10 @@ class TangentialMotion:
         cls, shape: tuple[int, ...], status: Status, detail: str | Sequence[str] = ""
     ) -> Self:
         """Return the motion of impacts of which nothing is known: NaN throughout."""
-        unknown: Real = np.full(shape, math.nan) if shape else math.nan
+        unknown: Any = np.full(shape, math.nan) if shape else math.nan
+        entries: dict[str, Any] = dict.fromkeys(cls.numbers(), unknown)
         return cls(
-            **dict.fromkeys(cls.numbers(), unknown),
+            **entries,
             status=np.full(shape, status, dtype=object) if shape else status,
             detail=detail if isinstance(detail, str) else np.array(detail, dtype=object),
         )
@@ -128,6 +129,12 @@ class TangentialMotion:
         return attrs.evolve(
             self, status=statuses, detail=np.where(fallen, detail, self.detail).astype(object)
         )
+
+
+@cache
+def _numbers(kind: type[TangentialMotion]) -> tuple[str, ...]:
+    others = ("status", "detail", "counters")
+    return tuple(field.name for field in attrs.fields(kind) if field.name not in others)
 
 
 class Integrator(Law):
@@ -150,8 +157,8 @@ class Integrator(Law):
     """
 
     kind: ClassVar[str] = "integrator"
-    tangential_contract: ClassVar[type[TangentialLaw]]
-    normal_contract: ClassVar[type[NormalLaw]] = NormalLaw
+    tangential_contract: ClassVar[Any]  # a type; mypy allows no abstract one
+    normal_contract: ClassVar[Any] = NormalLaw
     order: ClassVar[int | None] = None
     #: False if each impact of a batch has instants of its own: no history of a batch then.
     common_instants: ClassVar[bool] = True
@@ -165,18 +172,18 @@ class Integrator(Law):
 
     def remarks(
         self,
-        normal: NormalMotion,  # noqa: ARG002
-        tangential: TangentialLaw,  # noqa: ARG002
-        scene: Scene,  # noqa: ARG002
+        normal: NormalMotion,
+        tangential: TangentialLaw,
+        scene: Scene,
     ) -> tuple[str, ...]:
         """Return what a plan should say of these impacts: sentences, none by default."""
         return ()
 
     def psi2_error(
         self,
-        normal: NormalMotion,  # noqa: ARG002
-        tangential: TangentialLaw,  # noqa: ARG002
-        scene: Scene,  # noqa: ARG002
+        normal: NormalMotion,
+        tangential: TangentialLaw,
+        scene: Scene,
     ) -> Real:
         """Return the declared numerical error of psi2."""
         return math.nan

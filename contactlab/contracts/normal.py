@@ -81,8 +81,10 @@ class NormalLaw(Law):
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
         """Return what to be wary of in the model, a sentence each."""
-        largest = float(np.max(np.asarray(motion.maximum_radius) / scene.pair.radius))
-        if scene.sphere is None or not largest > DOUBTFUL_SIZE_RATIO:
+        if scene.sphere is None:
+            return ()
+        largest = float(np.max(motion.maximum_radius / scene.pair.radius))
+        if not largest > DOUBTFUL_SIZE_RATIO:
             return ()
         return (
             f"C = {largest:.2g}: the contact is not small against the radius, the theory of "

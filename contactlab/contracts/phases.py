@@ -122,16 +122,18 @@ class Phase(ABC):
     dissipates: bool = True
 
     @abstractmethod
-    def respond(self, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]) -> PhaseResponse:
+    def respond(
+        self, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]
+    ) -> PhaseResponse:
         """Return the force at these contacts and slips (clause 1)."""
 
     def margin(
         self,
         event: int,
-        contact: ScaledContact,  # noqa: ARG002
-        slip: Array,  # noqa: ARG002
-        velocity: Array,  # noqa: ARG002
-        response: PhaseResponse,  # noqa: ARG002
+        contact: ScaledContact,
+        slip: Array,
+        velocity: Array,
+        response: PhaseResponse,
     ) -> Array:
         """Return the margin of one event (clause 2)."""
         raise IndexError(event)
@@ -139,32 +141,32 @@ class Phase(ABC):
     def follow(
         self,
         event: int,
-        state: PhaseState,  # noqa: ARG002
-        contact: ScaledContact,  # noqa: ARG002
-        path: Path | None,  # noqa: ARG002
+        state: PhaseState,
+        contact: ScaledContact,
+        path: Path | None,
     ) -> Phase:
         """Return the next phase (clause 4)."""
         raise IndexError(event)
 
-    def carry_on(self, state: PhaseState, contact: ScaledContact, path: Path) -> Phase:  # noqa: ARG002
+    def carry_on(self, state: PhaseState, contact: ScaledContact, path: Path) -> Phase:
         """Return the phase that goes on after a finished panel (clause 5)."""
         return self
 
     def friction_power(
         self,
-        contact: ScaledContact,  # noqa: ARG002
+        contact: ScaledContact,
         slip: Array,
-        velocity: Array,  # noqa: ARG002
-        response: PhaseResponse,  # noqa: ARG002
+        velocity: Array,
+        response: PhaseResponse,
     ) -> Array:
         """Return the rate of friction work (clause 6)."""
         return np.zeros_like(slip)
 
     def closed_form(
         self,
-        state: PhaseState,  # noqa: ARG002
-        motion: ClosedFormMotion,  # noqa: ARG002
-        inertia: float,  # noqa: ARG002
+        state: PhaseState,
+        motion: ClosedFormMotion,
+        inertia: float,
     ) -> ClosedPhase | None:
         """Return the motion in closed form, if it has one (clause 7)."""
         return None
@@ -190,11 +192,11 @@ class PhasedTangentialLaw(TangentialLaw):
 
     def phase_fields(
         self,
-        normal: ClosedFormMotion,  # noqa: ARG002
-        phase: Phase,  # noqa: ARG002
-        contact: ScaledContact,  # noqa: ARG002
-        slip: float,  # noqa: ARG002
-        factor: float,  # noqa: ARG002
+        normal: ClosedFormMotion,
+        phase: Phase,
+        contact: ScaledContact,
+        slip: float,
+        factor: float,
     ) -> Mapping[str, NDArray[Any]]:
         """Return named arrays (traction, stuck, ...) of one impact at one instant.
 

@@ -97,7 +97,7 @@ class TangentialLaw(Law):
         """
         return math.inf
 
-    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:  # noqa: ARG002
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return what is known of whole impacts: by contract, those of no slip or no friction."""
         central = np.asarray(scene.slip_velocity) == 0.0
         smooth = np.asarray(scene.friction_coefficient) == 0.0
@@ -106,11 +106,11 @@ class TangentialLaw(Law):
             no_force(scene, where=smooth, reason="friction coefficient 0"),
         )
 
-    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:  # noqa: ARG002
+    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
         """Return the declared numerical error of psi2 at so many steps of an impact."""
         return math.nan
 
-    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:  # noqa: ARG002
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return what to be wary of in the model, a sentence each: coupling of unlike bodies."""
         return coupling(scene)
 
@@ -137,7 +137,7 @@ class Steps(NamedTuple):
     Attributes
     ----------
     contact : NormalContact
-        At the samples.
+        At the samples, of arrays.
     drift : array
         Time from the last sample to this one, in s: slip velocity acts on displacement.
     kick : array
@@ -148,7 +148,7 @@ class Steps(NamedTuple):
         At the sample.
     """
 
-    contact: NormalContact
+    contact: Any
     drift: Any
     kick: Any
     friction_load: Any
@@ -197,11 +197,11 @@ class SteppedTangentialLaw(TangentialLaw):
     ) -> tuple[TangentialResponse, Any]:
         """Return the response at the end of the step, and the new state."""
 
-    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:  # noqa: ARG002
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return the largest tangential stiffness, in N/m."""
         return 0.0
 
-    def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:  # noqa: ARG002
+    def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:
         """Return named arrays of ``state`` for the history (traction, stuck, ...)."""
         return {}
 

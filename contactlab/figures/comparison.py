@@ -72,13 +72,12 @@ def differences(
 
 def forces_over_contact(axes: Axes, comparison: Comparison) -> Axes:
     """Draw the tangential force of each law over one impact, inside the limit of friction."""
-    scene = comparison.scene
     zero_line(axes)
     drawn = False
     for number, run in enumerate(comparison.runs):
         if run.result.history is None or run.result.history.time.size == 0:
             continue
-        time, tangential, normal = scaled_forces(scene, run.result.history)
+        time, tangential, normal = scaled_forces(run.result)
         if not drawn:
             friction_limit(axes, time, normal)
             drawn = True

@@ -21,17 +21,16 @@ class LawChoice:
 
     Attributes
     ----------
-    normal, tangential : str
-        Names without their kind; the exact solution by default.
-    integrator : str or None
-        None for the best that fits the two laws.
+    normal, tangential, integrator : str or None
+        Names without their kind; None for the best that fits the others, the exact solution if
+        nothing else is asked for.
     options : mapping of str to mapping
         Options by kind, for the law chosen here (``{"tangential": {"annuli": 50}}``), or by
         full name, for that law whenever it is chosen (``{"tangential.annulus": ...}``).
     """
 
-    normal: str = "hertz"
-    tangential: str = "fronts"
+    normal: str | None = None
+    tangential: str | None = None
     integrator: str | None = None
     options: Mapping[str, Mapping[str, Any]] = attrs.field(factory=dict)
 
@@ -43,7 +42,7 @@ class LawChoice:
         chosen = {
             kind: name.removeprefix(f"{kind}.") for kind, name in names.items() if name is not None
         }
-        changed = [kind for kind, name in chosen.items() if name != getattr(self, kind)]
+        changed = [kind for kind, name in chosen.items() if getattr(self, kind) not in (None, name)]
         kept = {key: value for key, value in self.options.items() if key not in changed}
         return attrs.evolve(self, **chosen, options=kept)
 
@@ -74,11 +73,14 @@ class LawChoice:
         return Simulation(**{kind: choice.made(kind) for kind in KINDS})
 
     def resolved(self) -> LawChoice:
-        """Return the choice with its integrator named."""
-        if self.integrator is not None:
-            return self
-        best = composition.fitting_integrator(self.made("normal"), self.made("tangential"))
-        return attrs.evolve(self, integrator=best)
+        """Return the choice with every law named."""
+        choice = attrs.evolve(self, normal=self.normal or composition.DEFAULT_NORMAL)
+        made = [choice.made("normal")]
+        for kind in ("tangential", "integrator"):
+            if getattr(choice, kind) is None:
+                choice = choice.choose(**{kind: composition.preferred(kind, *made)})
+            made.append(choice.made(kind))
+        return choice
 
     def made(self, kind: str) -> Any:
         """Return the law of one kind with its options."""

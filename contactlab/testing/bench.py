@@ -7,15 +7,18 @@ begins at slip = zeta and the forces, in units of mu P_max, are those of theory 
 from __future__ import annotations
 
 import itertools
+import math
 from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.batch import locked
 from contactlab.bodies import Pair
-from contactlab.contracts import Increment, NormalContact, Problem, SteppedTangentialLaw
+from contactlab.contracts import Increment, NormalContact, NormalMotion, SteppedTangentialLaw
 from contactlab.contracts.tangential import TangentialLaw
+from contactlab.normal_motion import normal_motion
 from contactlab.registry import REGISTRY
 from contactlab.scene import Scene
 from contactlab.testing.check import hold
@@ -25,21 +28,40 @@ Array = NDArray[np.float64]
 
 #: A body so heavy that the machine, not friction, decides how it moves.
 HEAVY = 1e-4
+#: Friction coefficient, where nothing else is said.
+FRICTION = 0.3
 
 
-def scene(psi1: Any, chi: Any, *, friction: Any = 0.3, units: Units | None = None) -> Scene:
-    """Return a scene like a steel ball's, of given psi1 and chi, in some system of units."""
+def scene(
+    psi1: Any, chi: Any, *, friction: Any = FRICTION, units: Units | None = None, bodies: Any = 1.0
+) -> Scene:
+    """Return a scene like a steel ball's, of given psi1 and chi, in some system of units.
+
+    Parameters
+    ----------
+    psi1, chi, friction : float or array
+    units : Units, optional
+        In which the numbers are given; SI by default.
+    bodies : float or array
+        1 for the ball; other numbers give bodies of other radius, moduli, mass and speed.
+    """
     length, time, mass = units or Units()
     pressure = mass / (length * time**2)
+    modulus, kappa = 1.12e11 * pressure / bodies**0.5, 0.823529 / bodies**0.1
     pair = Pair(
-        radius=0.0127 * length,
-        effective_modulus=1.12e11 * pressure,
-        effective_shear_modulus=0.823529 * 1.12e11 * pressure,
-        normal_mass=0.067 * mass,
-        tangential_mass=0.5 * 0.823529 * 0.067 * mass / chi,
+        radius=0.0127 * length * bodies,
+        effective_modulus=modulus,
+        effective_shear_modulus=kappa * modulus,
+        normal_mass=0.067 * mass * bodies**1.7,
+        tangential_mass=0.5 * kappa * (0.067 * mass * bodies**1.7) / chi,
     )
-    speed = 0.83 * length / time
-    return Scene(None, None, friction, speed, psi1 * friction * speed / 0.823529, pair=pair)
+    speed = 0.83 * length / time / bodies**0.3
+    return Scene(None, None, friction, speed, psi1 * friction * speed / kappa, pair=pair)
+
+
+def bodies(*shape: int) -> Any:
+    """Return what makes each body of a batch another one."""
+    return np.linspace(0.6, 1.6, math.prod(shape)).reshape(shape)
 
 
 class Path(NamedTuple):
@@ -61,7 +83,8 @@ class Answers(NamedTuple):
 class Bench:
     """One contact (or a batch) with its scales: P_max, a, C²R, the unit of slip, a duration."""
 
-    problem: Problem
+    scene: Scene
+    normal: NormalMotion
     force: Any
     radius: Any
     approach: Any
@@ -69,59 +92,56 @@ class Bench:
     time: Any
 
     @classmethod
-    def of(
-        cls, law: TangentialLaw, shape: tuple[int, ...] = (), units: Units | None = None
-    ) -> Bench:
-        """Return a bench; the contacts of a batch differ in friction."""
-        friction: Any = 0.3
-        if shape:
-            friction = np.linspace(0.1, 0.7, int(np.prod(shape))).reshape(shape)
-        given = scene(0.0, HEAVY, friction=friction, units=units)
-        return cls.with_problem(
-            Problem(
-                normal=REGISTRY.create("normal.hertz"),
-                tangential=law,
-                pair=given.pair,
-                friction_coefficient=given.friction_coefficient,
-                normal_speed=given.normal_speed,
-                slip_velocity=given.slip_velocity,
-                maximum_radius=given.maximum_radius,
-                duration=given.duration,
-                shape=shape,
-            )
+    def of(cls, shape: tuple[int, ...] = (), units: Units | None = None) -> Bench:
+        """Return a bench; the contacts of a batch differ in friction and in the bodies."""
+        friction, other = (
+            (np.linspace(0.1, 0.7, math.prod(shape)).reshape(shape), bodies(*shape))
+            if shape
+            else (FRICTION, 1.0)
         )
+        given = scene(0.0, HEAVY, friction=friction, units=units, bodies=other)
+        return cls.along(normal_motion(REGISTRY.create("normal.hertz"), given))
 
     @classmethod
-    def with_problem(cls, problem: Problem) -> Bench:
-        """Return the bench on which ``problem`` would take place."""
-        pair, radius = problem.pair, problem.maximum_radius
-        approach = radius * radius / pair.radius
-        force = (4.0 / 3.0) * pair.effective_modulus * radius * approach
-        slip = problem.friction_coefficient * approach / pair.stiffness_ratio
-        return cls(problem, force, radius, approach, slip, problem.duration)
+    def along(cls, normal: NormalMotion) -> Bench:
+        """Return the bench of contacts that are at most as large as those of ``normal``."""
+        given, radius = normal.scene, normal.maximum_radius
+        approach = radius * radius / given.pair.radius
+        force = (4.0 / 3.0) * given.pair.effective_modulus * radius * approach
+        slip = given.friction_coefficient * approach / given.pair.stiffness_ratio
+        return cls(given, normal, force, radius, approach, slip, normal.duration)
+
+    def alone(self, place: int) -> Bench:
+        """Return the bench of one contact of a batch."""
+        return Bench.along(self.normal.take(place))
+
+    def start(self, law: SteppedTangentialLaw) -> Any:
+        """Return the state of ``law`` at first touch."""
+        return law.start(self.scene, self.normal)
 
     def contact(self, level: Any) -> NormalContact:
         """Return the Hertz contact at zeta = ``level``; out of contact where it is negative."""
         inside = level * (level > 0.0)
-        overlap = self.approach * level
-        return NormalContact(self.force * inside**1.5, self.radius * inside**0.5, overlap)
+        force = locked(self.force * inside**1.5)
+        radius, overlap = locked(self.radius * inside**0.5), locked(self.approach * level)
+        return NormalContact(force, radius, overlap, force)
 
     def increment(self, slip: Any, after: NormalContact, duration: Any) -> Increment:
         """Return the step in which the machine moves the body by ``slip`` (scaled)."""
-        displacement = self.slip * slip
-        velocity = displacement / duration
-        arresting = self.problem.pair.tangential_mass * velocity / duration
-        return Increment(displacement, velocity, arresting, after.force, duration)
+        displacement = locked(self.slip * slip)
+        return Increment(
+            displacement, locked(displacement / duration), after.friction_load, duration
+        )
 
     @property
     def friction_force(self) -> Any:
         """The unit of tangential force, mu P_max, in N."""
-        return self.problem.friction_coefficient * self.force
+        return self.scene.friction_coefficient * self.force
 
 
 def drive(law: SteppedTangentialLaw, bench: Bench, path: Path) -> Answers:
     """Take ``law`` along ``path`` from first touch."""
-    return continue_from(law, bench, law.start(bench.problem), path)
+    return continue_from(law, bench, bench.start(law), path)
 
 
 def continue_from(
@@ -138,7 +158,7 @@ def continue_from(
 
     ``count`` is the number of steps of the whole path, if ``path`` is a part of it.
     """
-    duration = bench.time / (count or len(path.slip))
+    duration = locked(bench.time / (count or len(path.slip)))
     before = bench.contact(level)
     forces, works = [], []
     for now, depth in zip(_rows(path.slip), _rows(path.level), strict=True):

@@ -28,7 +28,7 @@ def given_work(path: Path, force: Any) -> Any:
 @check(SteppedTangentialLaw)
 def closed_cycles(law: Any) -> None:
     """To and fro at any normal load, to the same load: a cycle gives back no energy."""
-    bench = Bench.of(law)
+    bench = Bench.of()
     for low, high in ((0.6, 0.6), (0.2, 0.8), (0.8, 0.2), (0.4, 1.0), (1.0, 0.4)):
         for size in (0.15, 0.5, 2.0):
             cycle = [(size, low), (size, high), (-size, high), (-size, low)]
@@ -45,7 +45,7 @@ def closed_cycles(law: Any) -> None:
 @check(SteppedTangentialLaw)
 def random_paths(law: Any) -> None:
     """From rest, no path gives back more energy than it took (passivity, theory §7)."""
-    bench = Bench.of(law)
+    bench = Bench.of()
     for fixed in (True, False):
         for seed in SEEDS:
             path = wandering(seed, fixed=fixed)
@@ -60,7 +60,7 @@ def random_paths(law: Any) -> None:
 @check(SteppedTangentialLaw)
 def partial_unloading(law: Any) -> None:
     """Sheared, then pressed less or more, then let go: no more comes back than was put in."""
-    bench = Bench.of(law)
+    bench = Bench.of()
     for first, then in ((1.0, 0.4), (1.0, 0.1), (0.4, 1.0), (0.1, 0.8)):
         for size in (0.05, 0.15, 0.4):
             path = straight((0.0, first), (size, first), (size, then), (-2.0 * size, then))
@@ -77,14 +77,14 @@ def friction_work(law: Any) -> None:
     """Friction work is never negative, in no step (TangentialResponse)."""
     allowed = 1e-12 if law.resolution is None else DISCRETE_WORK
     for seed in SEEDS:
-        least = drive(law, Bench.of(law), wandering(seed)).work.min()
+        least = drive(law, Bench.of(), wandering(seed)).work.min()
         hold(least >= -allowed, f"Friction work of {least:.2g} in one step (seed {seed}).")
 
 
 @check(SteppedTangentialLaw)
 def books(law: Any) -> None:
     """What is put in is lost to friction once the bodies part: nothing else is left."""
-    bench = Bench.of(law)
+    bench = Bench.of()
     for seed in SEEDS[:3]:
         out = wandering(seed, knots=6, steps=PART)
         path = Path(

@@ -8,15 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import NormalContact, SteppedTangentialLaw
-from contactlab.testing.bench import (
-    Bench,
-    Path,
-    continue_from,
-    drive,
-    slack,
-    straight,
-    wandering,
-)
+from contactlab.testing.bench import Bench, Path, drive, slack, straight, wandering
 from contactlab.testing.check import check, hold
 from contactlab.testing.units import ODD_UNITS, in_units
 
@@ -28,7 +20,7 @@ SEEDS = (11, 12, 13)
 @check(SteppedTangentialLaw)
 def odd_in_slip(law: Any) -> None:
     """Reversing every displacement reverses every force (TangentialLaw, 2)."""
-    bench = Bench.of(law)
+    bench = Bench.of()
     for seed in SEEDS:
         path = wandering(seed)
         there = drive(law, bench, path)
@@ -42,7 +34,7 @@ def odd_in_slip(law: Any) -> None:
 @check(SteppedTangentialLaw)
 def opposes_slip(law: Any) -> None:
     """A first slip is opposed: the force is positive with it, or zero (TangentialResponse)."""
-    force = drive(law, Bench.of(law), straight((0.0, 0.7), (1.0, 0.7))).force
+    force = drive(law, Bench.of(), straight((0.0, 0.7), (1.0, 0.7))).force
     hold(force.min() >= -ROUNDING, f"A first, positive slip meets a force of {force.min():.2g}.")
 
 
@@ -52,8 +44,8 @@ def units(law: Any) -> None:
     other = in_units(law, ODD_UNITS)
     for seed in SEEDS:
         path = wandering(seed)
-        here = drive(law, Bench.of(law), path)
-        there = drive(other, Bench.of(other, units=ODD_UNITS), path)
+        here = drive(law, Bench.of(), path)
+        there = drive(other, Bench.of(units=ODD_UNITS), path)
         gap = max(_worst(here.force - there.force), _worst(here.work - there.work))
         hold(gap <= ROUNDING, f"In other units the answer differs by {gap:.1e} of mu P_max.")
 
@@ -63,7 +55,7 @@ def coulomb_limit(law: Any) -> None:
     """The force is within mu P, always (TangentialLaw, 1)."""
     for seed in SEEDS:
         path = wandering(seed)
-        over = np.abs(drive(law, Bench.of(law), path).force) - path.level**1.5
+        over = np.abs(drive(law, Bench.of(), path).force) - path.level**1.5
         hold(
             over.max() <= slack(law),
             f"abs(F) exceeds mu P by {over.max():.2g} of mu P_max, at zeta = "
@@ -75,14 +67,14 @@ def coulomb_limit(law: Any) -> None:
 def separation(law: Any) -> None:
     """Out of contact there is no force (TangentialLaw, 1)."""
     away = straight((0.0, 0.7), (0.4, 0.7), (0.5, 0.0), (0.6, -0.3))
-    gone = drive(law, Bench.of(law), away).force[away.level <= 0.0]
+    gone = drive(law, Bench.of(), away).force[away.level <= 0.0]
     hold(np.all(gone == 0.0), f"F = {np.max(np.abs(gone)):.2g} mu P_max out of contact.")
 
 
 @check(SteppedTangentialLaw)
 def normal_load_alone(law: Any) -> None:
     """Normal load that grows or falls makes no tangential force (stepped contract, 4)."""
-    bench = Bench.of(law)
+    bench = Bench.of()
     force = drive(law, bench, straight((0.0, 1.0), (0.0, 0.2), (0.0, 0.6))).force
     hold(np.all(force == 0.0), f"Pressing alone makes F = {_worst(force):.2g} mu P_max.")
     path = straight((0.0, 0.4), (0.3, 0.4), (0.3, 1.0))
@@ -98,7 +90,7 @@ def normal_load_alone(law: Any) -> None:
 def gross_slip(law: Any) -> None:
     """A large displacement one way ends at F = mu P, and the work is F times slip."""
     path = straight((0.0, 0.7), (4.0, 0.7), (8.0, 0.7))
-    found = drive(law, Bench.of(law), path)
+    found = drive(law, Bench.of(), path)
     gap = abs(float(found.force[-1]) - 0.7**1.5)
     hold(gap <= slack(law), f"F = {found.force[-1]:.4g} mu P_max where mu P is {0.7**1.5:.4g}.")
     work = float(np.sum(found.work[80:]))
@@ -112,15 +104,15 @@ def gross_slip(law: Any) -> None:
 @check(SteppedTangentialLaw)
 def non_finite(law: Any) -> None:
     """NaN in, as slip or as contact, is refused or comes out; never a clean number."""
-    bench = Bench.of(law)
+    bench = Bench.of()
     state = drive(law, bench, straight((0.0, 0.7), (0.3, 0.7), steps=8)).state
     before, nan = bench.contact(0.7), math.nan
     sound = bench.increment(0.1, before, bench.time / 16.0)
-    ill = sound._replace(displacement=nan, velocity=nan, arresting_force=nan)
-    pressed = sound._replace(normal_force=nan)
+    ill = sound._replace(displacement=nan, velocity=nan)
+    pressed = sound._replace(friction_load=nan)
     for what, given, after in (
         ("slip", ill, before),
-        ("normal contact", pressed, NormalContact(nan, nan, nan)),
+        ("normal contact", pressed, NormalContact(nan, nan, nan, nan)),
     ):
         try:
             response, _ = law.advance(state, given, before, after)
@@ -128,37 +120,6 @@ def non_finite(law: Any) -> None:
             continue
         clean = bool(response.settled) and math.isfinite(response.force)
         hold(not clean, f"NaN as {what} gives F = {response.force!r}, as if nothing were wrong.")
-
-
-@check(SteppedTangentialLaw)
-def stiffness(law: Any) -> None:
-    """``stiffness`` bounds dF/dD, so that a step can be known to be stable (stepped, 6)."""
-    bench = Bench.of(law)
-    bound = float(law.stiffness(bench.problem)) * bench.slip / bench.friction_force
-    hold(bound >= 0.0 and math.isfinite(bound), f"stiffness = {bound!r}.")
-    if bound == 0.0:
-        _ignores_displacement(law, bench)
-        return
-    for level in (0.3, 1.0):
-        pressed = drive(law, bench, straight((0.0, level), steps=8)).state
-        path = straight((1e-3, 0.0), (-1e-3, 0.0), steps=4)
-        path = Path(path.slip, np.full_like(path.slip, level))
-        found = continue_from(law, bench, pressed, path, level=level)
-        slope = np.diff(found.force, prepend=0.0) / np.diff(path.slip, prepend=0.0)
-        hold(
-            slope.max() <= bound * (1.0 + slack(law, 1e-6)),
-            f"dF/dD is {slope.max() / bound:.3g} times the stiffness it states, at zeta = {level}.",
-        )
-
-
-def _ignores_displacement(law: Any, bench: Bench) -> None:
-    """Hold that a law which states no stiffness takes no notice of displacement."""
-    after = bench.contact(0.7)
-    given = bench.increment(0.1, after, bench.time / 16.0)
-    moved = given._replace(displacement=2.0 * given.displacement)
-    state = law.start(bench.problem)
-    forces = [law.advance(state, each, after, after)[0].force for each in (given, moved)]
-    hold(forces[0] == forces[1], "It states stiffness 0, and its force depends on displacement.")
 
 
 def _worst(values: Any) -> float:

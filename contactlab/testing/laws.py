@@ -1,4 +1,4 @@
-"""Laws with answers known beforehand, and faulty ones, on which integrators are tried."""
+"""Laws with answers known beforehand, on which integrators and other laws are tried."""
 
 from __future__ import annotations
 
@@ -8,28 +8,21 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.bodies import Pair
 from contactlab.checks import Real
 from contactlab.contracts import (
     ClosedFormMotion,
-    Course,
     Increment,
     NormalContact,
     NormalLaw,
+    NormalMotion,
     Phase,
     PhasedTangentialLaw,
     PhaseResponse,
-    Problem,
+    ScaledContact,
     SteppedTangentialLaw,
     TangentialResponse,
 )
-
-#: What a law may be asked for in one impact before it calls a halt.
-MOST_CALLS = 3_000_000
-
-
-class TooManyCallsError(RuntimeError):
-    """An integrator asked without end."""
+from contactlab.scene import Scene
 
 
 class Stretch(NamedTuple):
@@ -46,21 +39,19 @@ class PressedSpring(SteppedTangentialLaw):
     It heeds no limit: a yardstick for order, not a friction law.
     """
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
+    api_version: ClassVar[int] = 2
     #: c P_max times the square of the unit of time, C²R/v1, over the tangential mass.
     strength: ClassVar[float] = 1.3
 
-    def stiffness(self, problem: Problem) -> Real:
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return c P_max."""
-        unit = self._unit(problem)
-        return self.strength * problem.pair.tangential_mass / np.square(unit)
+        unit = normal.maximum_approach / scene.normal_speed
+        return self.strength * scene.pair.tangential_mass / np.square(unit)
 
-    def start(self, problem: Problem) -> Stretch:
+    def start(self, scene: Scene, normal: NormalMotion) -> Stretch:
         """Return the spring at rest."""
-        nothing: Real = np.zeros(problem.shape) if problem.shape else 0.0
-        greatest = 1.25 * problem.pair.normal_mass * problem.normal_speed / self._unit(problem)
-        return Stretch(self.stiffness(problem) / greatest, nothing)
+        nothing: Real = np.zeros(scene.shape) if scene.shape else 0.0
+        return Stretch(self.stiffness(scene, normal) / normal.maximum_force, nothing)
 
     def advance(
         self,
@@ -74,10 +65,6 @@ class PressedSpring(SteppedTangentialLaw):
         force = state.stiffness * after.force * displacement
         return TangentialResponse(force, 0.0 * force), Stretch(state.stiffness, displacement)
 
-    @staticmethod
-    def _unit(problem: Problem) -> Real:
-        return problem.maximum_radius**2 / problem.pair.radius / problem.normal_speed
-
     @classmethod
     def rebound(cls, motion: ClosedFormMotion) -> float:
         """Return the slip velocity after an impact over that before it.
@@ -87,8 +74,9 @@ class PressedSpring(SteppedTangentialLaw):
         from scipy.integrate import solve_ivp
 
         def slope(phase: float, state: Any) -> list[float]:
-            here = motion.instant(phase)
-            return [-here.pace * cls.strength * here.force * state[1], here.pace * state[0]]
+            here = motion.scaled_at(phase)
+            rate = here.time_rate
+            return [-rate * cls.strength * here.force * state[1], rate * state[0]]
 
         solution = solve_ivp(
             slope, (0.0, math.pi), [1.0, 0.0], method="DOP853", rtol=1e-12, atol=1e-14
@@ -96,39 +84,80 @@ class PressedSpring(SteppedTangentialLaw):
         return float(solution.y[0, -1])
 
 
-@attrs.frozen(kw_only=True)
-class FailingSpring(SteppedTangentialLaw):
-    """A spring that answers NaN, or raises, at one step; the state counts the steps.
+class Slip(NamedTuple):
+    """Friction coefficient with the sign of slip, and the force at the last instant, in N."""
 
-    At the step 0, which is the start, it can only raise.
+    friction: Real
+    force: Real
+
+
+@attrs.frozen(kw_only=True)
+class Slider(SteppedTangentialLaw):
+    """F = mu times the friction load of the step, against the slip velocity at first touch.
+
+    For impacts that slip throughout: the impulse is then mu times that of the load.
     """
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
-    at: int = 7
-    raises: bool = False
+    api_version: ClassVar[int] = 2
 
-    def start(self, problem: Problem) -> tuple[int, Any]:  # noqa: ARG002
-        """Return that no step was taken."""
-        if self.raises and self.at == 0:
-            raise ArithmeticError("as it was asked to")
-        return 0, 0.0
+    def start(self, scene: Scene, normal: NormalMotion) -> Slip:  # noqa: ARG002
+        """Return the direction of slip."""
+        friction = scene.friction_coefficient * np.sign(scene.slip_velocity)
+        return Slip(friction if scene.shape else float(friction), 0.0 * friction)
 
     def advance(
         self,
-        state: tuple[int, Any],
+        state: Slip,
         increment: Increment,
         before: NormalContact,  # noqa: ARG002
         after: NormalContact,  # noqa: ARG002
-    ) -> tuple[TangentialResponse, tuple[int, Any]]:
-        """Answer with no force, until it fails."""
-        count = state[0] + 1
-        nothing = 0.0 * increment.displacement
-        if count >= self.at:
-            if self.raises:
-                raise ArithmeticError("as it was asked to")
-            nothing = nothing + math.nan
-        return TangentialResponse(nothing, nothing), (count, nothing)
+    ) -> tuple[TangentialResponse, Slip]:
+        """Return the force of slip; its work is that of the mean force."""
+        force = state.friction * increment.friction_load
+        work = 0.5 * (force + state.force) * increment.displacement
+        return TangentialResponse(force, work), Slip(state.friction, force)
+
+
+class Yield(NamedTuple):
+    """Stiffness in N/m, friction coefficient, and the force at the last instant, in N."""
+
+    stiffness: Real
+    friction: Real
+    force: Real
+
+
+@attrs.frozen(kw_only=True)
+class Yielding(SteppedTangentialLaw):
+    """A spring of the stiffness of the largest contact, and a slider: its books close."""
+
+    api_version: ClassVar[int] = 2
+    needs: ClassVar[frozenset[str]] = frozenset({"radius"})
+
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
+        """Return 2 G* a."""
+        return 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
+
+    def start(self, scene: Scene, normal: NormalMotion) -> Yield:
+        """Return the spring at rest."""
+        nothing: Real = np.zeros(scene.shape) if scene.shape else 0.0
+        return Yield(self.stiffness(scene, normal), scene.friction_coefficient, nothing)
+
+    def advance(
+        self,
+        state: Yield,
+        increment: Increment,
+        before: NormalContact,  # noqa: ARG002
+        after: NormalContact,
+    ) -> tuple[TangentialResponse, Yield]:
+        """Return the force of the spring, cut to the limit, and the work of the slip."""
+        trial = state.force + state.stiffness * increment.displacement
+        limit = state.friction * after.friction_load
+        force = np.minimum(np.maximum(trial, -limit), limit)
+        slip = (trial - force) / state.stiffness
+        work = np.maximum(0.5 * (force + state.force) * slip, 0.0)
+        if not np.ndim(state.force):
+            force, work = float(force), float(work)
+        return TangentialResponse(force, work), state._replace(force=force)
 
 
 @attrs.frozen(kw_only=True)
@@ -137,12 +166,18 @@ class Sliding(Phase):
 
     fails_at: float = math.inf
 
-    def respond(self, contact: Course, slip: Any, memo: Any) -> PhaseResponse:  # noqa: ARG002
+    def respond(self, contact: ScaledContact, slip: Any, memo: Any) -> PhaseResponse:  # noqa: ARG002
         """Return P."""
         force = np.where(contact.phase < self.fails_at, contact.force, math.nan)
         return PhaseResponse(force, None, None, ())
 
-    def friction_power(self, contact: Course, slip: Any, velocity: Any, response: Any) -> Any:  # noqa: ARG002
+    def friction_power(
+        self,
+        contact: ScaledContact,
+        slip: Any,  # noqa: ARG002
+        velocity: Any,
+        response: Any,  # noqa: ARG002
+    ) -> Any:
         """Return force times velocity."""
         return contact.force * velocity
 
@@ -154,9 +189,7 @@ class SlidingForEver(PhasedTangentialLaw):
     With ``fails`` it answers NaN from x = 1 on; with ``at_once`` it raises as it begins.
     """
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset[str]] = frozenset({"phases"})
-    exact: ClassVar[bool] = True
+    api_version: ClassVar[int] = 2
     fails: bool = False
     at_once: bool = False
 
@@ -168,35 +201,31 @@ class SlidingForEver(PhasedTangentialLaw):
 
 
 @attrs.frozen(kw_only=True)
-class LinearPress(NormalLaw):
-    """P = k u: a half period of a sine, duration pi sqrt(M/k); it may fail, or never let go.
+class DampedHertz(NormalLaw):
+    """Hertz's force times 1 + damping times the rate over v1 (Hunt & Crossley 1975)."""
 
-    Attributes
-    ----------
-    answers : str
-        "force"; or from the step ``at`` on "nan"; or "nothing": in contact without any force.
-    """
+    api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
+    damping: ClassVar[float] = 0.2
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset[str]] = frozenset({"radius"})
-    stiffness: float = 1e8
-    answers: str = "force"
-    at: int = 7
+    def start(self, scene: Scene) -> Scene:
+        """Return the scene; there is nothing to remember."""
+        return scene
 
-    def start(self, pair: Pair) -> int:  # noqa: ARG002
-        """Return that it was never asked."""
-        return 0
+    def respond(self, state: Scene, approach: Real, rate: Real) -> tuple[NormalContact, Scene]:
+        """Return the contact; up to 1/damping times v1 it never pulls."""
+        inside: Any = approach * (approach > 0.0)
+        radius = (state.pair.radius * inside) ** 0.5
+        hertz = (4.0 / 3.0) * state.pair.effective_modulus * radius * inside
+        force = hertz * (1.0 + self.damping * rate / state.normal_speed)
+        return NormalContact(force, radius, approach), state
 
-    def respond(self, state: int, approach: Real, rate: Real) -> tuple[NormalContact, int]:  # noqa: ARG002
+
+@attrs.frozen(kw_only=True)
+class SoftHertz(DampedHertz):
+    """A tenth of Hertz's force: contacts 2.5 times as deep and 1.6 times as wide as his."""
+
+    def respond(self, state: Scene, approach: Real, rate: Real) -> tuple[NormalContact, Scene]:
         """Return the contact."""
-        if state > MOST_CALLS:
-            raise TooManyCallsError(f"The normal law was asked {MOST_CALLS} times.")
-        compression: Any = approach * (approach > 0.0)
-        if self.answers == "nothing":
-            nothing = 0.0 * compression
-            return NormalContact(nothing, nothing, nothing + 1e-6), state + 1
-        factor = math.nan if self.answers == "nan" and state + 1 >= self.at else 1.0
-        contact = NormalContact(
-            factor * self.stiffness * compression, factor * compression, factor * approach
-        )
-        return contact, state + 1
+        contact, state = super().respond(state, approach, 0.0 * rate)
+        return contact._replace(force=0.1 * contact.force), state

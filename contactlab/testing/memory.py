@@ -17,7 +17,7 @@ STEPS = 40
 @check(SteppedTangentialLaw)
 def turning_points(law: Any) -> None:
     """Masing: unloading is loading doubled, and a closed loop is forgotten (theory §7)."""
-    bench, press = Bench.of(law), (0.0, LEVEL)
+    bench, press = Bench.of(), (0.0, LEVEL)
     for turn in (0.3, 0.6, 1.5):
         loading = drive(law, bench, straight(press, (turn, LEVEL), steps=STEPS)).force[STEPS:]
         path = straight(press, (turn, LEVEL), (-turn, LEVEL), steps=STEPS)
@@ -42,7 +42,7 @@ def turning_points(law: Any) -> None:
 def cattaneo_mindlin(law: Any) -> None:
     """At fixed P, F/(mu P) = 1 - (1 - xi)^1.5: slip from the edge inwards (theory §7)."""
     path = straight((0.0, LEVEL), (1.3 * LEVEL, LEVEL), steps=65)
-    found = drive(law, Bench.of(law), path).force[65:] / LEVEL**1.5
+    found = drive(law, Bench.of(), path).force[65:] / LEVEL**1.5
     xi = np.minimum(path.slip[65:] / LEVEL, 1.0)
     gap = np.abs(found - (1.0 - (1.0 - xi) ** 1.5))
     hold(

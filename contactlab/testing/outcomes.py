@@ -64,7 +64,7 @@ def outcome(law: Law, check: Check) -> Outcome:
         return Outcome(check.name, Verdict.NOT_CLAIMED, f"The law does not offer {check.claim!r}.")
     reason = expected(law).get(check.name)
     try:
-        check.run(law)
+        check(law)
     except NotApplicableError as reason_why:
         return Outcome(check.name, Verdict.NOT_APPLICABLE, str(reason_why))
     except CheckFailedError as failure:

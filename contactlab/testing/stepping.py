@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.batch import locked
 from contactlab.contracts import SteppedTangentialLaw
 from contactlab.testing.bench import Bench, Path, continue_from, drive, straight, wandering
 from contactlab.testing.check import check, hold
@@ -20,14 +21,14 @@ ROUNDING = 1e-9
 def answers(law: Any) -> None:
     """Every answer holds real, finite numbers of the batch's shape (TangentialResponse)."""
     for shape in ((), (3,), (2, 3)):
-        bench = Bench.of(law, shape)
-        state = law.start(bench.problem)
+        bench = Bench.of(shape)
+        state = bench.start(law)
         path = _spread(wandering(1, knots=5, steps=6), shape)
         before, slip = bench.contact(0.0 * path.level[0]), 0.0 * path.slip[0]
         for step in range(len(path.slip)):
             now, level = _row(path.slip, step), _row(path.level, step)
             after = bench.contact(level)
-            given = bench.increment(now - slip, after, bench.time / 100.0)
+            given = bench.increment(now - slip, after, locked(bench.time / 100.0))
             answer = law.advance(state, given, before, after)
             where = f"at step {step + 1} of a batch of shape {shape}"
             hold(
@@ -44,9 +45,9 @@ def answers(law: Any) -> None:
 
 @check(SteppedTangentialLaw)
 def batch(law: Any) -> None:
-    """A batch answers as its contacts do one by one (design: one code path)."""
+    """A batch of unlike bodies answers as its contacts do one by one (Integrator, 5)."""
     paths = [wandering(seed, knots=8) for seed in (2, 3, 4, 5)]
-    whole = Bench.of(law, (4,))
+    whole = Bench.of((4,))
     together = drive(
         law,
         whole,
@@ -54,8 +55,8 @@ def batch(law: Any) -> None:
             np.stack([path.slip for path in paths], 1), np.stack([path.level for path in paths], 1)
         ),
     )
-    for place, (one, path) in enumerate(zip(whole.problem.impacts(), paths, strict=True)):
-        alone = drive(law, Bench.with_problem(one), path)
+    for place, path in enumerate(paths):
+        alone = drive(law, whole.alone(place), path)
         gap = _gap(alone.force, together.force[:, place])
         hold(gap <= ROUNDING, f"Contact {place} of a batch is off by {gap:.1e} of mu P_max.")
 
@@ -63,9 +64,9 @@ def batch(law: Any) -> None:
 @check(SteppedTangentialLaw)
 def pure(law: Any) -> None:
     """``advance`` changes neither the state that goes in nor the law (stepped contract, 2)."""
-    bench, path = Bench.of(law), wandering(6, knots=6)
+    bench, path = Bench.of(), wandering(6, knots=6)
     law_before = copy.deepcopy(law)
-    before, slip, state = bench.contact(0.0), 0.0, law.start(bench.problem)
+    before, slip, state = bench.contact(0.0), 0.0, bench.start(law)
     duration = bench.time / len(path.slip)
     for step, (now, level) in enumerate(zip(path.slip.tolist(), path.level.tolist(), strict=True)):
         kept, after = copy.deepcopy(state), bench.contact(level)
@@ -84,12 +85,25 @@ def pure(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
+def read_only(law: Any) -> None:
+    """Nothing that the law is given is written into (Law, 7)."""
+    bench = Bench.of((3,))
+    kept = copy.deepcopy(bench.scene)
+    try:
+        drive(law, bench, _spread(wandering(9, knots=5, steps=6), (3,)))
+    except ValueError as error:
+        hold("read-only" not in str(error), f"The law writes into what it was given: {error}.")
+        raise
+    hold(same(bench.scene, kept), "The law changed the scene.")
+
+
+@check(SteppedTangentialLaw)
 def repeatable(law: Any) -> None:
     """Two runs of one law do not know of each other, interleaved or not (Law, 1)."""
-    bench, paths = Bench.of(law), (wandering(7, knots=6), wandering(8, knots=6))
+    bench, paths = Bench.of(), (wandering(7, knots=6), wandering(8, knots=6))
     alone = [drive(law, bench, path).force for path in paths]
     parts: list[list[Any]] = [[], []]
-    states, places = [law.start(bench.problem) for _ in paths], [(0.0, 0.0), (0.0, 0.0)]
+    states, places = [bench.start(law) for _ in paths], [(0.0, 0.0), (0.0, 0.0)]
     for part in range(0, len(paths[0].slip), 8):
         for run, path in enumerate(paths):
             piece = Path(path.slip[part : part + 8], path.level[part : part + 8])
@@ -112,7 +126,7 @@ def repeatable(law: Any) -> None:
 @check(SteppedTangentialLaw)
 def fields(law: Any) -> None:
     """``fields`` names arrays and changes nothing (stepped contract, 5)."""
-    bench = Bench.of(law)
+    bench = Bench.of()
     state = drive(law, bench, straight((0.0, 0.7), (0.3, 0.7), steps=8)).state
     kept = copy.deepcopy(state)
     named = law.fields(state)

@@ -90,7 +90,7 @@ class Annulus(AllStepsTangentialLaw):
         self,
         state: State,
         increment: Increment,
-        before: NormalContact,  # noqa: ARG002
+        before: NormalContact,
         after: NormalContact,
     ) -> tuple[TangentialResponse, State]:
         """Return the force (22) after the step."""

@@ -51,7 +51,7 @@ class Coulomb(WholeImpactTangentialLaw):
             sliding(scene, normal, where=True, reason=reason, stops=True),
         )
 
-    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:  # noqa: ARG002
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return that the elasticity of the surfaces is left out."""
         return (
             "rigid bodies: tangential elasticity is left out, which moves psi2 by up to about 1.4 "
@@ -74,10 +74,10 @@ class Frictionless(WholeImpactTangentialLaw):
         """Return the bound of rounding: there is no work."""
         return ROUNDING
 
-    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:  # noqa: ARG002
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return no force."""
         return (no_force(scene, where=True, reason="the law makes no force"),)
 
-    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:  # noqa: ARG002
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return nothing: there is no coupling without traction."""
         return ()

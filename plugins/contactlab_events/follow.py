@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab import faults
+from contactlab.collocation import lobatto, row, rows
 from contactlab.contracts import (
     ClosedFormMotion,
     ClosedPhase,
@@ -18,7 +19,6 @@ from contactlab.contracts import (
 )
 from contactlab.status import Status
 from contactlab_events.forecast import too_many
-from contactlab.collocation import lobatto, row, rows
 from contactlab_events.panel import Overshot, PanelPath, Solved, newton
 from contactlab_events.search import first_event
 

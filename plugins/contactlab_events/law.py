@@ -13,7 +13,6 @@ from contactlab.contracts import (
     ClosedFormMotion,
     ClosedFormNormalLaw,
     Integrator,
-    NormalLaw,
     NormalMotion,
     Observer,
     PhasedTangentialLaw,
@@ -51,8 +50,8 @@ class Events(Integrator):
 
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "tolerance"
-    tangential_contract: ClassVar[type[TangentialLaw]] = PhasedTangentialLaw
-    normal_contract: ClassVar[type[NormalLaw]] = ClosedFormNormalLaw
+    tangential_contract: ClassVar[Any] = PhasedTangentialLaw
+    normal_contract: ClassVar[Any] = ClosedFormNormalLaw
     together: ClassVar[bool] = False
 
     tolerance: float = quantity("1", rule=TOLERANCES, default=1e-9)
@@ -65,7 +64,8 @@ class Events(Integrator):
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return the tolerance, and what the law declares for itself."""
         own: Any = tangential.psi2_error(scene, normal, np.inf)
-        return self.tolerance * np.maximum(1.0, np.abs(scene.psi1)) + own
+        bound: Real = self.tolerance * np.maximum(1.0, np.abs(scene.psi1)) + own
+        return bound
 
     def integrate(
         self,

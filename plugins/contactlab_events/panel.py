@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
-from contactlab.contracts import ClosedFormMotion, ScaledContact, Phase, PhaseResponse, PhaseState
 from contactlab.collocation import ON_NODE, Nodes, rows
+from contactlab.contracts import ClosedFormMotion, Phase, PhaseResponse, PhaseState, ScaledContact
 
 Array = NDArray[np.float64]
 

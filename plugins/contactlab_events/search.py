@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts import Phase
 from contactlab.collocation import Nodes, row
+from contactlab.contracts import Phase
 from contactlab_events.panel import Solved
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts import ClosedFormMotion, ClosedPhase, ScaledContact, PhaseState
+from contactlab.contracts import ClosedFormMotion, ClosedPhase, PhaseState, ScaledContact
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts import ScaledContact, Path
+from contactlab.contracts import Path, ScaledContact
 from contactlab_fronts.profile import Front, Piece
 
 Array = NDArray[np.float64]
@@ -57,7 +57,9 @@ class Laid(Piece):
         inner_q = inner.approach if start > 0.0 else 0.0
         return cls(path, start, stop, began, ended, inner, outer, inner_q, -inner.slip)
 
-    def front(self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]) -> Front:
+    def front(
+        self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]
+    ) -> Front:
         """Find, by Newton's method, the x at which the edge was where the front is now."""
         level = sign * slip
         level -= contact.approach
@@ -138,11 +140,13 @@ class Laid(Piece):
                 break
         return y
 
-    def depth(self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]) -> Array:  # noqa: ARG002
+    def depth(
+        self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]
+    ) -> Array:
         """Return s (D - D when the front was the edge), which is zeta - q there."""
         return np.asarray(sign * (slip - memo[1]))
 
-    def swept(self, sign: int) -> bool:  # noqa: ARG002
+    def swept(self, sign: int) -> bool:
         """Springs laid down one by one slip one by one."""
         return False
 

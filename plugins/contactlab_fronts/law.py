@@ -19,8 +19,8 @@ from contactlab.contracts import (
     WholeImpact,
 )
 from contactlab.scene import Scene
-from contactlab_jaeger.gross_slip import gross_slip
 from contactlab_fronts.phases import Balanced, FrontPhase, GrossSlip, Stuck
+from contactlab_jaeger.gross_slip import gross_slip
 
 Array = NDArray[np.float64]
 
@@ -66,7 +66,7 @@ class Fronts(PhasedTangentialLaw):
         """Return those of gross slip too, where (44) and (46) say so."""
         return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
 
-    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:  # noqa: ARG002
+    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
         """Return 0: there is no discretisation."""
         return 0.0
 
@@ -93,7 +93,12 @@ class Fronts(PhasedTangentialLaw):
         return rebound.rebound(psi1, chi, tolerance)
 
     def phase_fields(
-        self, normal: ClosedFormMotion, phase: Phase, contact: ScaledContact, slip: float, factor: float
+        self,
+        normal: ClosedFormMotion,
+        phase: Phase,
+        contact: ScaledContact,
+        slip: float,
+        factor: float,
     ) -> Mapping[str, NDArray[Any]]:
         """Return rings of equal width: radius (m), stuck, and the sign of slipping traction.
 

@@ -31,7 +31,9 @@ class Locked(Piece):
         """I(c) = base + sign c³."""
         return self.inner_force - self.sign * self.inner_q * math.sqrt(self.inner_q)
 
-    def front(self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]) -> Front:  # noqa: ARG002
+    def front(
+        self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]
+    ) -> Front:
         """Solve in closed form: only the other sign comes here, and s w - l then falls as 2 q."""
         q = contact.approach - sign * slip
         q += self.inner_q - sign * self.inner_f
@@ -45,7 +47,9 @@ class Locked(Piece):
             force += self.base
         return Front(c, force, (q,))
 
-    def depth(self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]) -> Array:  # noqa: ARG002
+    def depth(
+        self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]
+    ) -> Array:
         """Return zeta - q."""
         return np.asarray(contact.approach - memo[0])
 
@@ -53,10 +57,10 @@ class Locked(Piece):
         """Slip of the same sign finds s w - l constant here."""
         return sign == self.sign
 
-    def flat(self, sign: int) -> bool:  # noqa: ARG002
+    def flat(self, sign: int) -> bool:
         """Only the centre is reached like a square root."""
         return self.inner_q == 0.0
 
-    def span(self, sign: int) -> float | None:  # noqa: ARG002
+    def span(self, sign: int) -> float | None:
         """Nothing is known."""
         return None

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from contactlab.contracts import (
     ClosedFormMotion,
     ClosedPhase,
-    ScaledContact,
     Path,
     Phase,
     PhaseResponse,
     PhaseState,
+    ScaledContact,
 )
 from contactlab_fronts.gross import GrossMotion
 from contactlab_fronts.laid import Laid
@@ -28,7 +28,7 @@ Profile = tuple[Piece, ...]
 class FrontPhase(Phase):
     """A phase of the spring bundle: stuck within a radius, slipping one way outside."""
 
-    def division(self, contact: ScaledContact, slip: float) -> tuple[float, int]:  # noqa: ARG002
+    def division(self, contact: ScaledContact, slip: float) -> tuple[float, int]:
         """Return radius of the front and sense of slip outside it: here all sticks."""
         return contact.radius, 0
 
@@ -46,7 +46,7 @@ class Stuck(FrontPhase):
     linear = True
     dissipates = False
 
-    def respond(self, contact: ScaledContact, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
+    def respond(self, contact: ScaledContact, slip: Array, memo: Memo) -> PhaseResponse:
         """Gather dF = 1.5 c dD."""
         return PhaseResponse(np.full_like(slip, self.force), None, 1.5 * contact.radius, ())
 
@@ -54,19 +54,21 @@ class Stuck(FrontPhase):
         self,
         event: int,
         contact: ScaledContact,
-        slip: Array,  # noqa: ARG002
+        slip: Array,
         velocity: Array,
-        response: PhaseResponse,  # noqa: ARG002
+        response: PhaseResponse,
     ) -> Array:
         """Return V -+ psi: the edge sticks while |psi| < V."""
         return np.asarray(contact.rate + velocity if event else contact.rate - velocity)
 
-    def follow(self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None) -> Phase:  # noqa: ARG002
+    def follow(
+        self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None
+    ) -> Phase:
         """Begin to slip at the edge."""
         sign = -1 if event else 1
         return slipping(sign, self._grown(state, path, sign))
 
-    def carry_on(self, state: PhaseState, contact: ScaledContact, path: Path) -> Phase:  # noqa: ARG002
+    def carry_on(self, state: PhaseState, contact: ScaledContact, path: Path) -> Phase:
         """Keep what the panel laid down."""
         return Stuck(self._grown(state, path, 0), state.x, state.force, 0)
 
@@ -97,7 +99,12 @@ class EdgeSlip(FrontPhase):
         return PhaseResponse(force, 1.5 * radius, None, memo)
 
     def margin(
-        self, event: int, contact: ScaledContact, slip: Array, velocity: Array, response: PhaseResponse
+        self,
+        event: int,
+        contact: ScaledContact,
+        slip: Array,
+        velocity: Array,
+        response: PhaseResponse,
     ) -> Array:
         """Return s psi - V; what the front has left to its piece's inner end; zeta - q there."""
         sign, piece = self.sign, self.profile[-1]
@@ -108,7 +115,9 @@ class EdgeSlip(FrontPhase):
             return np.asarray(contact.approach - sign * slip - inner)
         return piece.depth(sign, contact, slip, response.memo)
 
-    def follow(self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None) -> Phase:  # noqa: ARG002
+    def follow(
+        self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None
+    ) -> Phase:
         """Re-stick (0), go on to the next piece (1), or slip the other way (2)."""
         sign = self.sign
         if event == 1:
@@ -151,26 +160,28 @@ class GrossSlip(FrontPhase):
 
     rough = (False,)
 
-    def respond(self, contact: ScaledContact, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
+    def respond(self, contact: ScaledContact, slip: Array, memo: Memo) -> PhaseResponse:
         """F = s P."""
         return PhaseResponse(self.sign * contact.force, None, None, ())
 
-    def division(self, contact: ScaledContact, slip: float) -> tuple[float, int]:  # noqa: ARG002
+    def division(self, contact: ScaledContact, slip: float) -> tuple[float, int]:
         """Return a front at the centre."""
         return 0.0, self.sign
 
     def margin(
         self,
-        event: int,  # noqa: ARG002
+        event: int,
         contact: ScaledContact,
-        slip: Array,  # noqa: ARG002
+        slip: Array,
         velocity: Array,
-        response: PhaseResponse,  # noqa: ARG002
+        response: PhaseResponse,
     ) -> Array:
         """Slip goes on while s psi > V."""
         return np.asarray(self.sign * velocity - contact.rate)
 
-    def follow(self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None) -> Phase:  # noqa: ARG002
+    def follow(
+        self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None
+    ) -> Phase:
         """Re-stick, all at once."""
         locked = Locked(self.sign, 0.0, self.sign * contact.approach - state.slip, 0.0)
         return sticking(self.sign, (locked,), state, contact)
@@ -191,7 +202,7 @@ class Balanced(FrontPhase):
 
     share: float
 
-    def respond(self, contact: ScaledContact, slip: Array, memo: Memo) -> PhaseResponse:  # noqa: ARG002
+    def respond(self, contact: ScaledContact, slip: Array, memo: Memo) -> PhaseResponse:
         """F = share P."""
         return PhaseResponse(self.share * contact.force, None, None, ())
 
@@ -199,7 +210,7 @@ class Balanced(FrontPhase):
         self,
         state: PhaseState,
         motion: ClosedFormMotion,
-        inertia: float,  # noqa: ARG002
+        inertia: float,
     ) -> ClosedPhase:
         """Gross slip's formula with psi1 for the sign, and no work."""
         path = GrossMotion(self.share, state, motion, 1.0 / motion.scaled_mass)

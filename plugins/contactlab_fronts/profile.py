@@ -39,11 +39,15 @@ class Piece(ABC):
     inner_f: float
 
     @abstractmethod
-    def front(self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]) -> Front:
+    def front(
+        self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]
+    ) -> Front:
         """Return the front of slip with this sign, where s (f(q) + D) = zeta - q."""
 
     @abstractmethod
-    def depth(self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]) -> Array:
+    def depth(
+        self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]
+    ) -> Array:
         """Return zeta - q at the front: zero as the slip zone vanishes."""
 
     @abstractmethod

@@ -32,7 +32,7 @@ class Hertz(ClosedFormNormalLaw):
         """Return the pair; there is nothing to remember."""
         return scene.pair
 
-    def respond(self, state: Pair, approach: Real, rate: Real) -> tuple[NormalContact, Pair]:  # noqa: ARG002
+    def respond(self, state: Pair, approach: Real, rate: Real) -> tuple[NormalContact, Pair]:
         """Return force (4) and radius (2) at ``approach``; both are 0 out of contact."""
         # A product with the comparison keeps NaN a NaN, for floats and arrays alike.
         compression: Any = approach * (approach > 0.0)

@@ -93,7 +93,7 @@ class ProfileLaw(AllStepsTangentialLaw):
         self,
         state: State,
         increment: Increment,
-        before: NormalContact,  # noqa: ARG002
+        before: NormalContact,
         after: NormalContact,
     ) -> tuple[TangentialResponse, State]:
         """Return the force after the step."""
@@ -160,4 +160,3 @@ class ProfileLaw(AllStepsTangentialLaw):
             "stuck": (limit > 0.0) & ~slips,
             "slipping": (slips * np.sign(stretch)).astype(np.int8),
         }
-

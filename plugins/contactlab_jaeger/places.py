@@ -41,6 +41,6 @@ class Places(ABC):
     def weights_within(self, square: float, reach: int) -> Array:
         """Return the same for one contact, of its ``reach`` places only."""
 
-    def lift(self, square: Real) -> Real:  # noqa: ARG002
+    def lift(self, square: Real) -> Real:
         """Return the factor on the limits for which gross slip gives b³: 1 if the weights do."""
         return 1.0

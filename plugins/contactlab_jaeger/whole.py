@@ -56,4 +56,3 @@ def run(places: Places, course: Course, velocity: float) -> tuple[Array, float]:
     slip *= held[1:] + held[:-1]
     work = np.maximum(np.einsum("ij,ij->i", weigh, slip), 0.0)
     return np.array(forces), 0.5 * float(work.sum())
-

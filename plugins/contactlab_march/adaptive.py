@@ -59,14 +59,15 @@ class Adaptive(Integrator):
 
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "tolerance"
-    tangential_contract: ClassVar[type[TangentialLaw]] = SteppedTangentialLaw
+    tangential_contract: ClassVar[Any] = SteppedTangentialLaw
 
     tolerance: float = quantity("1", rule=TOLERANCE, default=1e-4)
 
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return twice the tolerance, and what the law declares for its own discretisation."""
         own: Any = tangential.psi2_error(scene, normal, np.inf)
-        return 2.0 * self.tolerance * np.maximum(1.0, np.abs(scene.psi1)) + own
+        bound: Real = 2.0 * self.tolerance * np.maximum(1.0, np.abs(scene.psi1)) + own
+        return bound
 
     def integrate(
         self,
@@ -130,7 +131,7 @@ class Adaptive(Integrator):
         last = attrs.evolve(last, counters=counters)
         if not np.all(last.status):
             return last
-        left, allowed = self._error(scene, *before, last), self._allowed(scene)
+        left, allowed = self._error(*before, last), self._allowed(scene)
         open_: Any = np.asarray(~(left <= allowed))
         if not open_.any():
             return last
@@ -164,7 +165,7 @@ class Adaptive(Integrator):
         return max(self.tolerance, ROUNDING) * np.maximum(unit, speed)
 
     @staticmethod
-    def _error(scene: Scene, *motions: TangentialMotion) -> Any:
+    def _error(*motions: TangentialMotion) -> Any:
         """Return the error of the last of three answers, each with twice the steps, in m/s."""
         coarse, middle, fine = (np.asarray(m.slip_velocity_change) for m in motions)
         one, two = np.abs(middle - coarse), np.abs(fine - middle)

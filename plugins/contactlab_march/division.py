@@ -27,14 +27,11 @@ def endpoints(normal: NormalMotion, count: int) -> Steps:
     The half step before the first sample and the one after the last have a neighbour's force.
     """
     fractions = np.linspace(0.0, 1.0, count + 1)
-    edges = np.concatenate(([0.0], fractions[1:-1] + 0.5 / count, [1.0]))
+    edges = np.concatenate(([0.0], fractions[1:-1] + 0.5 / count, [1.0]))  # count + 1 of them
     phases = np.array(normal.phase(np.concatenate((fractions[1:], edges))))
     phases[[count - 1, -1]] = np.pi
     impulse = np.asarray(normal.at(_column(phases[count:], normal)).load_impulse)
-    if count > 1:
-        loads = impulse[1:] - impulse[:-1]
-    else:
-        loads = impulse[-1:] - impulse[:1]
+    loads = impulse[1:] - impulse[:-1]
     kick = np.asarray(normal.duration) / count
     shape = (count,) + (1,) * len(normal.scene.shape)
     return _steps(normal, phases[:count], np.ones(shape) * kick, loads)

@@ -125,7 +125,7 @@ class FixedSteps(Integrator):
 
     resolution: ClassVar[str | None] = "steps"
     order: ClassVar[int | None] = 2
-    tangential_contract: ClassVar[type[TangentialLaw]] = SteppedTangentialLaw
+    tangential_contract: ClassVar[Any] = SteppedTangentialLaw
 
     steps: int = count(default=200, most=MOST_STEPS)
     refine: bool = flag(default=True)
@@ -157,9 +157,8 @@ class FixedSteps(Integrator):
         share = f" for {int(few.sum())} of {few.size} impacts" if few.ndim else ""
         if self.refine and most <= MOST_STEPS:
             to = int(np.max(refined(self.steps, needed)))
-            return (
-                f"steps raised from {self.steps} to {to}{share}: fewer do not resolve the stiffness",
-            )
+            raised = f"steps raised from {self.steps} to {to}{share}"
+            return (f"{raised}: fewer do not resolve the stiffness",)
         return (f"{self.steps} steps are too few{share}: this scene needs {most:.6g}",)
 
     def integrate(

@@ -80,6 +80,7 @@ def _one_by_one(
     that it would swallow the change (theory §8).
     """
     single, initial, mass = not scene.shape, scene.slip_velocity, scene.pair.tangential_mass
+    shape = scene.shape
     change: Real = 0.0 if single else np.zeros(scene.shape)
     work: Real = 0.0 if single else np.zeros(scene.shape)
     nothing = 0.0 * change
@@ -99,7 +100,7 @@ def _one_by_one(
             response, state = law.advance(state, increment, before, contact)
             force, lost = response.force, response.friction_work
             if not (single and isinstance(force, float) and isinstance(lost, float)):
-                status, what = _checked(scene, force, lost)
+                status, what = _checked(shape, force, lost)
                 if status is not Status.SUCCESS:
                     break
             slowed = force * (step.kick / mass)
@@ -124,10 +125,10 @@ def _one_by_one(
     return _ended(scene, law, change, work, status, faults.told(law, what, count, time), count)
 
 
-def _checked(scene: Scene, *answers: Real) -> tuple[Status, str]:
+def _checked(shape: tuple[int, ...], *answers: Real) -> tuple[Status, str]:
     """Return what is wrong with a law's answers if they are not real numbers of the right shape."""
     for answer in answers:
-        if faults.malformed(answer, scene.shape):
+        if faults.malformed(answer, shape):
             return Status.MALFORMED, f"the answer {faults.shown(answer)}"
     return Status.SUCCESS, ""
 

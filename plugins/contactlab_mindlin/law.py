@@ -107,7 +107,7 @@ class MindlinCap(SteppedTangentialLaw):
         """Return 2 G* a, of the largest contact."""
         return 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
 
-    def start(self, scene: Scene, normal: NormalMotion) -> State:  # noqa: ARG002
+    def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return a spring at rest."""
         nothing: Real = np.zeros(scene.shape) if scene.shape else 0.0
         modulus = 2.0 * scene.pair.effective_shear_modulus

@@ -35,8 +35,7 @@ def test_nothing_is_silently_wrong():
 class Spoiled(SteppedTangentialLaw):
     """The annulus law with its force multiplied: finite, odd, and wrong."""
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset] = frozenset({"advance"})
+    api_version: ClassVar[int] = 2
     needs: ClassVar[frozenset] = frozenset({"hertzian_pressure"})
     factor: float = 1.0
 
@@ -44,11 +43,14 @@ class Spoiled(SteppedTangentialLaw):
     def law(self):
         return contactlab.create("tangential.annulus", annuli=40)
 
-    def start(self, problem):
-        return self.law.start(problem)
+    def start(self, scene, normal):
+        return self.law.start(scene, normal)
 
-    def stiffness(self, problem):
-        return self.law.stiffness(problem)
+    def stiffness(self, scene, normal):
+        return self.law.stiffness(scene, normal)
+
+    def psi2_error(self, scene, normal, steps):
+        return self.law.psi2_error(scene, normal, steps)
 
     def advance(self, state, increment, before, after):
         response, state = self.law.advance(state, increment, before, after)
@@ -62,26 +64,25 @@ class Spoiled(SteppedTangentialLaw):
 class Restless(SteppedTangentialLaw):
     """A force that depends on how fine the steps are."""
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset] = frozenset({"advance"})
+    api_version: ClassVar[int] = 2
 
-    def start(self, problem):
-        return problem.duration
+    def start(self, scene, normal):
+        return normal.duration
 
     def advance(self, state, increment, before, after):
         share = np.cos(np.log(state / increment.duration))
-        return TangentialResponse(float(0.1 * share * increment.normal_force), 0.0), state
+        return TangentialResponse(float(0.1 * share * increment.friction_load), 0.0), state
 
 
 @attrs.frozen(kw_only=True)
 class Bouncy(NormalLaw):
     """Hertz's law that pushes harder on the way out."""
 
-    api_version: ClassVar[int] = 1
+    api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset] = frozenset({"radius", "hertzian_pressure"})
 
-    def start(self, pair):
-        return contactlab.create("normal.hertz").start(pair)
+    def start(self, scene):
+        return contactlab.create("normal.hertz").start(scene)
 
     def respond(self, state, approach, rate):
         contact, state = contactlab.create("normal.hertz").respond(state, approach, rate)

@@ -77,7 +77,7 @@ def test_show_says_what_a_law_does_and_takes(run):
     assert "partial_slip" in out
     entry = json.loads(run("plugins", "show", "integrator.symplectic", "--json").out)
     assert entry["options"] == ["steps = 200", "refine = True"]
-    assert entry["needs"] == ["advance"]
+    assert entry["runs"] == "SteppedTangentialLaw"
 
 
 def test_unknown_name(run):

@@ -4,6 +4,7 @@ import csv
 import json
 import re
 
+import attrs
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -68,16 +69,25 @@ def test_table_csv_and_figure_of_a_law(run, tmp_path):
 
 def test_a_law_that_is_silently_wrong_fails_it_and_is_named(run, monkeypatch, tmp_path):
     """Half the friction: steady, odd, its books in order, and wrong."""
-    law = REGISTRY.law_class("tangential.coulomb")
-    monkeypatch.setattr(law, "start", lambda _, problem: 0.5 * problem.friction_coefficient)
+    law = REGISTRY.law_class("tangential.springs")
+    start, answer = law.start, law.whole_impacts
+
+    def halved(scene):
+        return attrs.evolve(scene, friction_coefficient=0.5 * scene.friction_coefficient)
+
+    monkeypatch.setattr(law, "advance_all", lambda *_: None)
+    monkeypatch.setattr(law, "start", lambda me, scene, normal: start(me, halved(scene), normal))
     monkeypatch.setattr(
-        stability, "methods", lambda _: [Method(tangential="coulomb", integrator="symplectic")]
+        law, "whole_impacts", lambda me, scene, normal: answer(me, halved(scene), normal)
+    )
+    monkeypatch.setattr(
+        stability, "methods", lambda _: [Method(tangential="springs", integrator="symplectic")]
     )
     ran = run(*COMMAND, "--csv", tmp_path / "s.csv")
     assert ran.status == 1
-    assert re.search(r"coulomb / symplectic +\S.* silently wrong +error \S+ of the range", ran.out)
+    assert re.search(r"springs / symplectic +\S.* silently wrong +error \S+ of the range", ran.out)
     wrong = int(re.search(r"(\d+) silently wrong;", ran.out)[1])
-    rows = re.findall(r"^coulomb / symplectic +(?:steps|[\d ]+?) .* (\d+)$", ran.out, re.MULTILINE)
+    rows = re.findall(r"^springs / symplectic +(?:steps|[\d ]+?) .* (\d+)$", ran.out, re.MULTILINE)
     assert sum(map(int, rows)) == wrong > 10  # those of the cases and those of the map
     with (tmp_path / "s.csv").open(newline="", encoding="utf-8") as stream:
         listed = [row for row in csv.DictReader(stream) if row["outcome"] == "silently wrong"]
@@ -101,7 +111,7 @@ def test_a_failure_on_the_map_alone_fails_it(run, monkeypatch, outcome):
 
 
 def test_what_raises_on_the_map_is_not_called_silently_wrong():
-    method = Method(tangential="coulomb", integrator="symplectic")
+    method = Method(tangential="springs", integrator="symplectic")
     cells = [(5, 0.5), (5, 3.0), (9, 0.5), (9, 3.0)]
     answers = {(5, 0.5): RAISED, (5, 3.0): WRONG, (9, 0.5): "refused", (9, 3.0): "answered"}
 

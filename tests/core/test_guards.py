@@ -1,5 +1,6 @@
 """No silent wrong answer: steps, energy books, limits."""
 
+import itertools
 import pickle
 import re
 from typing import ClassVar
@@ -10,6 +11,7 @@ import pytest
 
 import contactlab
 from contactlab import ImpactError, Scene, Simulation, Status
+from contactlab.closed_forms import hertz_scales
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from tests.guards import cost, without
 from tests.normal_laws import LinearSpring
@@ -69,7 +71,8 @@ def test_the_limit_follows_the_law_and_the_scene():
     rigid = Simulation(
         tangential="coulomb", integrator=contactlab.create("integrator.paper", steps=7)
     )
-    assert not rigid.plan(scene).cautions
+    assert "raised" not in str(rigid.plan(scene))
+    assert "too few" not in str(rigid.plan(scene))
 
 
 def test_without_partial_slip_steps_must_keep_the_phase():
@@ -87,14 +90,19 @@ def test_without_partial_slip_steps_must_keep_the_phase():
         assert (ringing.run(scene).status is Status.SUCCESS) is (not cautions)
 
 
-def test_the_normal_motion_takes_steps_too():
+@pytest.mark.parametrize("integrator", ["paper", "symplectic"])
+def test_the_normal_motion_takes_no_steps(integrator):
     """In one explicit step a rigid sphere would rebound 18 times as fast as it came."""
     scene = Scene.nondimensional(psi1=1.2, chi=1.44)
-    rigid = Simulation(
-        tangential="coulomb", integrator=contactlab.create("integrator.paper", steps=1)
-    )
-    assert rigid.plan(scene).cautions
-    assert rigid.run(scene).check().normal_restitution == pytest.approx(1.0, abs=0.01)
+    for steps, refine in itertools.product((1, 2, 7), (True, False)):
+        march = contactlab.create(f"integrator.{integrator}", steps=steps, refine=refine)
+        for tangential in ("coulomb", FailsWhenFast()):
+            result = Simulation(tangential=tangential, integrator=march).run(scene)
+            assert result.normal_restitution == 1.0
+            raised = tangential != "coulomb" and steps < 7
+            refused = raised and not refine
+            assert result.status is (Status.TOO_FEW_STEPS if refused else Status.SUCCESS)
+            assert ("steps raised" in str(result.plan)) is (raised and refine)
 
 
 def test_one_impossible_impact_does_not_spoil_a_batch():
@@ -108,16 +116,17 @@ def test_one_impossible_impact_does_not_spoil_a_batch():
 class FailsWhenFast(SteppedTangentialLaw):
     """Coulomb's law, but for slip beyond psi = 2.5: there it does what it was made to do."""
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset] = frozenset({"advance"})
+    api_version: ClassVar[int] = 2
 
     fault: str = "nan"
 
-    def start(self, problem):
-        return problem.friction_coefficient
+    def start(self, scene, normal):
+        return scene.friction_coefficient, scene.pair.tangential_mass
 
     def advance(self, state, increment, before, after):
-        force = np.clip(increment.arresting_force, -after.force, after.force) * state
+        limit = state[0] * after.friction_load
+        arresting = state[1] * increment.velocity / increment.duration
+        force = np.clip(arresting, -limit, limit)
         fast = np.abs(increment.velocity) > 2.5
         if self.fault == "raises" and np.any(fast):
             raise ArithmeticError("too fast")
@@ -188,14 +197,13 @@ def test_the_cost_of_the_guards_is_measured_against_none():
 class Slinger(SteppedTangentialLaw):
     """Drives the slip on, and declares nothing of its books."""
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset] = frozenset({"advance"})
+    api_version: ClassVar[int] = 2
 
-    def start(self, problem):
-        return problem.friction_coefficient
+    def start(self, scene, normal):
+        return scene.friction_coefficient
 
     def advance(self, state, increment, before, after):
-        return TangentialResponse(-state * increment.normal_force, 0.0), state
+        return TangentialResponse(-state * increment.friction_load, 0.0), state
 
 
 @pytest.mark.parametrize("integrator", ["paper", "symplectic", "adaptive"])
@@ -218,22 +226,23 @@ def test_adaptive_steps_are_stable_where_slip_is_too_small_to_see(law, chi):
 
 
 @pytest.mark.parametrize("integrator", ["paper", "symplectic"])
-def test_steps_resolve_a_normal_law_that_is_stiffer_than_hertz(integrator):
-    """In 200 steps of a Hertz duration such a contact lasts 2: e was 0.54."""
+@pytest.mark.parametrize("stiffer", [1e4, 1e-8])
+def test_steps_divide_the_contact_that_there_is(integrator, stiffer):
+    """In 200 steps of a Hertz duration a contact of a hundredth of it lasts 2: e was 0.54."""
     scene = Scene.nondimensional(psi1=[0.5, 1.2], chi=1.44)
-    hertz = np.pi / float(scene.duration)
-    stiff = LinearSpring(stiffness=1e4 * float(scene.pair.normal_mass) * hertz**2)
-    sim = Simulation(normal=stiff, tangential="coulomb", integrator=integrator)
-    result = sim.run(scene).check()
-    assert result.normal_restitution == pytest.approx(1.0, abs=0.01)
-    assert result.motion.duration == pytest.approx(0.01 * float(scene.duration), rel=0.02)
-    course = sim.run(scene, history=True).check()
-    assert course.psi2.tolist() == result.psi2.tolist()
-    assert len(course.history.time) >= 20
-    fixed = contactlab.create(f"integrator.{integrator}", refine=False)
-    refused = Simulation(normal=stiff, tangential="coulomb", integrator=fixed).run(scene)
-    assert refused.status.tolist() == [Status.TOO_FEW_STEPS] * 2
-    assert "is stiffer, and needs at least" in refused.failures[0]
+    hertz = float(hertz_scales(scene).duration)
+    spring = LinearSpring(stiffness=stiffer * float(scene.pair.normal_mass) * (np.pi / hertz) ** 2)
+    for refine in (True, False):
+        march = contactlab.create(f"integrator.{integrator}", refine=refine)
+        sim = Simulation(normal=spring, tangential=FailsWhenFast(), integrator=march)
+        result = sim.run(scene).check()
+        assert result.normal_restitution == pytest.approx(1.0, abs=1e-8)
+        assert result.motion.duration == pytest.approx(hertz / np.sqrt(stiffer), rel=1e-8)
+        assert result.counters["steps"] == march.steps
+        assert not result.plan.cautions
+        course = sim.run(scene, history=True).check()
+        assert course.psi2.tolist() == result.psi2.tolist()
+        assert len(course.history.time) == march.steps
 
 
 @pytest.mark.parametrize("bad", [0, -1, 10**8, 1.5, "10", None, True])

@@ -25,7 +25,9 @@ def rebound(psi1, chi, *args, **options):
 def marched_change(sim, psi1, chi):
     """psi2 - psi1 of the integrator itself, where the plan would take eq. (45)."""
     scene = Scene.nondimensional(psi1=psi1, chi=chi)
-    return scene.psi(sim.integrator.integrate(sim.problem(scene)).slip_velocity_change)
+    normal = sim.normal_motion(scene)
+    motion = sim.integrator.integrate(normal, sim.tangential, scene)
+    return scene.psi(motion.slip_velocity_change)
 
 
 @cache

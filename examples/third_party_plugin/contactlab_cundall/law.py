@@ -11,10 +11,11 @@ from contactlab.checks import POSITIVE, Real, quantity
 from contactlab.contracts import (
     Increment,
     NormalContact,
-    Problem,
+    NormalMotion,
     SteppedTangentialLaw,
     TangentialResponse,
 )
+from contactlab.scene import Scene
 
 
 class Spring(NamedTuple):
@@ -39,31 +40,30 @@ class CundallStrack(SteppedTangentialLaw):
     Cundall & Strack, Géotechnique 29 (1979) 47-65, doi:10.1680/geot.1979.29.1.47.
     """
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset[str]] = frozenset({"advance"})
-    needs: ClassVar[frozenset[str]] = frozenset({"steps"})
+    api_version: ClassVar[int] = 2
+    needs: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     stiffness_ratio: float = quantity("1", rule=POSITIVE, default=0.7)
 
-    def stiffness(self, problem: Problem) -> Real:
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return k."""
-        mindlin = 2.0 * problem.pair.effective_shear_modulus * problem.maximum_radius
+        mindlin = 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
         return self.stiffness_ratio * mindlin
 
-    def start(self, problem: Problem) -> Spring:
+    def start(self, scene: Scene, normal: NormalMotion) -> Spring:
         """Return the spring unloaded."""
-        return Spring(self.stiffness(problem), problem.friction_coefficient, 0.0)
+        return Spring(self.stiffness(scene, normal), scene.friction_coefficient, 0.0)
 
     def advance(
         self,
         state: Spring,
         increment: Increment,
-        before: NormalContact,  # noqa: ARG002
-        after: NormalContact,  # noqa: ARG002
+        before: NormalContact,
+        after: NormalContact,
     ) -> tuple[TangentialResponse, Spring]:
         """Stretch the spring; what is beyond mu P is slip."""
         trial = state.force + state.stiffness * increment.displacement
-        limit = state.friction_coefficient * increment.normal_force
+        limit = state.friction_coefficient * increment.friction_load
         force = np.minimum(np.maximum(trial, -limit), limit)
         slip = (trial - force) / state.stiffness
         # The mean of the force before and after: as contact ends a spring lets go of all it holds.

@@ -1,0 +1,137 @@
+"""Checks of the motion that a normal law gives, from first touch to separation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
+from contactlab.normal_motion import normal_motion
+from contactlab.status import Status
+from contactlab.testing.bench import bodies, scene
+from contactlab.testing.check import check, hold
+from contactlab.testing.normal import respond, strokes
+
+#: Impacts are tried at these times the speed of the others.
+SPEEDS = (0.1, 1.0, 3.0)
+#: Force at the end of contact over the greatest: a polynomial's overshoot, and no more.
+END = 1e-3
+#: Steps of a leg of a closed cycle, and what the trapezium rule makes of it, over what went in.
+LEG, QUADRATURE = 400, 3e-3
+#: Rates over v1 of the legs of a cycle: in, out, in again, out.
+RATES = (
+    (0.05, 1.0),
+    (1.0, 0.05),
+    (0.5, 0.5),
+    (0.0, 0.0),
+    (0.05, 0.05, 1.0, 1.0),
+    (0.3, 1.0, 0.05, 0.6),
+)
+#: Relative accuracy of a solved motion, and between one solved alone and in a batch.
+SOLVED = 1e-6
+
+
+class _Stepwise(NormalLaw):
+    """A law without its closed form: its motion is solved from ``respond``."""
+
+    api_version = 2
+
+    def __init__(self, law: NormalLaw) -> None:
+        self.law = law
+
+    def start(self, scene: Any) -> Any:
+        return self.law.start(scene)
+
+    def respond(self, state: Any, approach: Any, rate: Any) -> tuple[NormalContact, Any]:
+        return self.law.respond(state, approach, rate)
+
+
+def impacts(law: Any) -> Iterator[NormalMotion]:
+    """Iterate over motions of the law at several speeds, solved and in closed form."""
+    for factor in SPEEDS:
+        ball = scene(0.0, 1.0)
+        given = type(ball)(
+            None, None, ball.friction_coefficient, factor * ball.normal_speed, 0.0, pair=ball.pair
+        )
+        for each in (_Stepwise(law), law):
+            motion = normal_motion(each, given)
+            hold(motion.status is Status.SUCCESS, f"An impact does not end: {motion.detail}")
+            yield motion
+
+
+@check(NormalLaw)
+def normal_passive(law: Any) -> None:
+    """A closed cycle that begins and ends out of contact gives no energy, at any rates.
+
+    Pressed slowly and released fast, and the other way round; partly released and pressed again.
+    """
+    given, stroke, _ = strokes()
+    depth, speed = float(stroke.max()), float(given.normal_speed)
+    for rates in RATES:
+        knots = [0.0, depth, -0.2 * depth]
+        if len(rates) > 2:
+            knots = [0.0, depth, 0.6 * depth, 0.9 * depth, -0.2 * depth]
+        legs = list(zip(knots, knots[1:], rates, strict=False))
+        # Each turning point is passed with the rate of the leg before, then of the one after.
+        approach = np.concatenate([np.linspace(start, stop, LEG + 1) for start, stop, _ in legs])
+        rate = np.concatenate(
+            [np.full(LEG + 1, share * speed * np.sign(stop - start)) for start, stop, share in legs]
+        )
+        force = respond(law, given, approach, rate)[0]
+        mean = 0.5 * (force[1:] + force[:-1])
+        work = mean * np.diff(approach)
+        put_in = float(np.sum(np.abs(work)))
+        gained = -float(work.sum())
+        hold(
+            gained <= QUADRATURE * put_in,
+            f"A closed cycle at rates {rates} of v1 gives {gained:.3g} J from nothing, with "
+            f"{put_in:.3g} J moved to and fro.",
+        )
+
+
+@check(NormalLaw)
+def rebounds(law: Any) -> None:
+    """The bodies part, no faster than they met, and the force is their change of momentum."""
+    for motion in impacts(law):
+        given = motion.scene
+        rebound = -float(motion.final_rate) / float(given.normal_speed)
+        hold(0.0 <= rebound <= 1.0 + SOLVED, f"The bodies part {rebound:.6g} times as fast.")
+        momentum = given.pair.normal_mass * (given.normal_speed - float(motion.final_rate))
+        sample = motion.at(np.linspace(0.0, np.pi, 2001))
+        load = np.asarray(sample.contact.friction_load)
+        impulse = np.trapezoid(np.asarray(sample.contact.force), np.asarray(sample.time))
+        gap = abs(float(impulse) / momentum - 1.0)
+        hold(gap <= QUADRATURE, f"The force adds up to an impulse that is {gap:.2g} off.")
+        gathered = float(np.trapezoid(load, np.asarray(sample.time)))
+        gap = abs(gathered - float(motion.total_load_impulse)) / max(gathered, momentum)
+        hold(gap <= QUADRATURE, f"The friction load's impulse is {gap:.2g} off its integral.")
+
+
+@check(NormalLaw)
+def ends_unloaded(law: Any) -> None:
+    """Contact does not end while it presses: the force has come to nothing by then, or pulls."""
+    for motion in impacts(law):
+        last = motion.at(np.asarray(np.pi)).contact
+        left = float(last.force) / float(motion.maximum_force)
+        hold(
+            left <= END, f"Contact ends under load: the force is still {left:.2g} of the greatest."
+        )
+
+
+@check(NormalLaw)
+def motion_batch(law: Any) -> None:
+    """A batch of unlike bodies moves as each impact does alone (Integrator, 5)."""
+    given = scene(0.0, 1.0, bodies=bodies(4))
+    together = normal_motion(law, given)
+    for place in range(4):
+        alone = normal_motion(law, given.take(place))
+        for name in (
+            "duration", "maximum_radius", "maximum_approach", "maximum_force", "final_rate",
+            "total_load_impulse",
+        ):  # fmt: skip
+            one = float(getattr(alone, name))
+            other = float(np.broadcast_to(getattr(together, name), given.shape)[place])
+            gap = abs(other - one) / max(abs(one), 1e-300)
+            hold(gap <= SOLVED, f"The {name} of impact {place} of a batch is off by {gap:.1e}.")
