@@ -29,7 +29,7 @@ def stacked(items: Sequence[Any]) -> Any:
     if any(type(item) is not type(first) for item in items):
         return None  # bodies of different kinds: the reduced pair still serves
     if attrs.has(type(first)):
-        names = [field.name for field in attrs.fields(type(first))]
+        names = [field.name for field in attrs.fields(type(first)) if field.init]
         return type(first)(
             **{name: stacked([getattr(item, name) for item in items]) for name in names}
         )

@@ -33,8 +33,9 @@ from contactlab.testing.parametrize import parametrize_with_checks
 
 #: Modules with checks: each enters its own, in the order in which they are run.
 ORDER = (
-    "every_law", "normal", "motion", "stepping", "friction", "energy", "memory", "impacts",
-    "integrators", "integrator_faults", "accuracy",
+    "every_law", "normal", "normal_contact", "normal_motions", "motion", "stepping", "friction",
+    "stiffness", "energy", "memory", "impacts", "whole_impacts", "integrators",
+    "integrator_faults", "accuracy",
 )  # fmt: skip
 for _module in ORDER:
     importlib.import_module(f"contactlab.testing.{_module}")

@@ -1,4 +1,4 @@
-"""Checks of an integrator's accuracy: order, resolution."""
+"""Checks of an integrator's accuracy: order, resolution, impulse, energy books."""
 
 from __future__ import annotations
 
@@ -8,15 +8,20 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import ClosedFormNormalLaw, Integrator
+from contactlab.normal_motion import normal_motion
 from contactlab.simulation import Simulation
 from contactlab.testing.bench import scene
 from contactlab.testing.check import apply_if, check, hold
-from contactlab.testing.integrators import CHI, fitting, run
-from contactlab.testing.laws import PressedSpring, SlidingForEver
+from contactlab.testing.integrators import CHI, fitting, follow, run
+from contactlab.testing.laws import DampedHertz, PressedSpring, Slider, SlidingForEver, Yielding
 
 #: Numbers of steps over which the order is regressed.
 LADDER = (40, 80, 160, 320)
 ORDER_ROOM = 0.3
+#: What the impulse of sliding may be off: of an integrator of first order, and of any better.
+FIRST_ORDER, BETTER = 1e-3, 1e-6
+#: What even steps may leave out of the books, over the energy of psi = 1 or more.
+BOOKS = 0.03
 
 
 @check(Integrator)
@@ -56,13 +61,72 @@ def finer_is_better(integrator: Any) -> None:
         )
 
 
+@check(Integrator)
+def sliding_impulse_by(integrator: Any) -> None:
+    """Slip throughout takes mu (1 + e) v1 M_n/M_t from v_x, whatever the normal law.
+
+    The law's force is mu times the friction load of the step, so that an integrator which hands
+    over the mean load has the impulse to rounding.
+    """
+    tried = 0
+    room = FIRST_ORDER if integrator.order == 1 else BETTER
+    for pressing in ("normal.hertz", DampedHertz()):
+        for way in fitting(integrator, (Slider(), SlidingForEver()), pressing):
+            for psi1 in (-40.0, 12.0):
+                given = scene(psi1, CHI)
+                normal = normal_motion(way.normal, given)
+                bounce = 1.0 - float(normal.final_rate) / float(np.asarray(given.normal_speed))
+                exact = -np.sign(psi1) * 2.0 * CHI * bounce
+                tried += 1
+                off = abs(given.psi(run(way, psi1).slip_velocity_change) / exact - 1.0)
+                hold(
+                    off <= room,
+                    f"The impulse of sliding is {off:.2g} off mu (1 + e) v1 M_n under "
+                    f"{type(way.normal).__name__}.",
+                )
+    apply_if(tried, "It runs neither of the sliding laws of the kit.")
+
+
+@check(Integrator)
+def books_by(integrator: Any) -> None:
+    """The energy lost is the friction work that the law adds up, whatever the stages of a step.
+
+    Where steps can be made finer the imbalance falls.
+    """
+    ways = list(fitting(integrator, (Yielding(), SlidingForEver()), "normal.hertz"))
+    apply_if(ways, "It runs neither of the laws of the kit whose books close.")
+    for way in ways:
+        for psi1 in (0.5, 1.2, 2.0, 8.0):
+            off = _imbalance(way, psi1)
+            hold(off <= BOOKS, f"psi1 = {psi1}: {off:.1%} of the energy is in no book.")
+        if isinstance(getattr(integrator, integrator.resolution or "", None), int):
+            worst = max(_imbalance(way, psi1) for psi1 in (0.5, 1.2, 2.0))
+            many = {integrator.resolution: 8 * getattr(integrator, integrator.resolution)}
+            finer = _with(way, attrs.evolve(integrator, **many))
+            left = max(_imbalance(finer, psi1) for psi1 in (0.5, 1.2, 2.0))
+            hold(
+                left <= max(0.5 * worst, 1e-9),
+                f"With 8 times the steps {left:.2g} of the energy is in no book, not less "
+                f"than half the {worst:.2g} before.",
+            )
+
+
+def _imbalance(way: Simulation, psi1: float) -> float:
+    """Return what is in no book, over the energy of psi1, or of 1."""
+    given: Any = scene(psi1, CHI)
+    motion = follow(way, given)
+    change, unit = given.psi(motion.slip_velocity_change), given.pair.tangential_mass
+    work = motion.friction_work * given.psi_scale**2 / unit
+    return float(abs(change * (psi1 + 0.5 * change) + work) / (0.5 * max(psi1, 1.0) ** 2))
+
+
 def _exact(way: Simulation, psi1: float) -> Any:
     """Return the exact change of slip velocity."""
     given: Any = scene(psi1, CHI)
     if not isinstance(way.tangential, PressedSpring):
         return -4.0 * CHI / given.psi_scale  # eq. (45)
     assert isinstance(way.normal, ClosedFormNormalLaw)
-    motion = way.normal.motion(given.pair, given.normal_speed)
+    motion = way.normal.motion(given)
     return given.slip_velocity * (PressedSpring.rebound(motion) - 1.0)
 
 

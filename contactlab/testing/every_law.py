@@ -10,13 +10,13 @@ from typing import Any
 
 import attrs
 
+from contactlab.composition import WAYS
 from contactlab.contracts import (
     API_VERSION,
+    ClosedFormNormalLaw,
     Integrator,
     Law,
     NormalLaw,
-    PhasedTangentialLaw,
-    SteppedTangentialLaw,
     TangentialLaw,
 )
 from contactlab.registry import KINDS
@@ -29,6 +29,13 @@ BAD_NUMBERS = (float("nan"), float("inf"), float("-inf"), "seven", 1j)
 BAD_WORDS, BAD_FLAGS = ("no such word", 3.5), (float("nan"), "yes", 2)
 
 
+def claims(contract: type[Law]) -> frozenset[str]:
+    """Return the words that laws of ``contract`` may offer: those that a check holds them to."""
+    return frozenset(
+        entry.claim for entry in CHECKS if entry.claim and issubclass(entry.contract, contract)
+    )
+
+
 @check(Law)
 def contract(law: Law) -> None:
     """Kind, needs, offers and resolution say what the law is (contract of Law, 2 to 4)."""
@@ -37,18 +44,28 @@ def contract(law: Law) -> None:
     hold(
         isinstance(law, bases[law.kind]), f"A {law.kind} law must be a {bases[law.kind].__name__}."
     )
-    for name in ("needs", "offers"):
+    for name, contract in (("needs", NormalLaw), ("offers", bases[law.kind])):
         words = getattr(law, name)
         good = isinstance(words, frozenset) and all(isinstance(word, str) for word in words)
         hold(good, f"{name} = {words!r}: must be a frozenset of words.")
+        known_words = claims(contract)
+        for word in sorted(words - known_words):
+            told = ", ".join(sorted(known_words)) or "none"
+            hold(False, f"{name}: {word!r} is a word that no check knows; there are: {told}.")
+    hold(not law.needs or isinstance(law, TangentialLaw), "Only a tangential law needs something.")
     if isinstance(law, TangentialLaw):
-        ways = {"advance": SteppedTangentialLaw, "phases": PhasedTangentialLaw}
-        hold(law.offers & ways.keys(), "It must offer 'advance' or 'phases': nobody can run it.")
-        for word, narrow in ways.items():
-            hold(
-                isinstance(law, narrow) == (word in law.offers),
-                f"It must offer {word!r} if, and only if, it is a {narrow.__name__}.",
-            )
+        ways = ", ".join(way.__name__ for way in WAYS)
+        hold(isinstance(law, WAYS), f"It must be derived from one of {ways}: nobody can run it.")
+    if isinstance(law, Integrator):
+        for name, base in (("tangential_contract", TangentialLaw), ("normal_contract", NormalLaw)):
+            found = getattr(law, name, None)
+            good = isinstance(found, type) and issubclass(found, base)
+            hold(good, f"{name} = {found!r}: must be a class derived from {base.__name__}.")
+    if "elastic_hertz" in law.offers:
+        hold(
+            isinstance(law, ClosedFormNormalLaw),
+            "It offers 'elastic_hertz', and is no ClosedFormNormalLaw.",
+        )
     known = inspect.signature(type(law)).parameters
     hold(
         law.resolution is None or law.resolution in known,

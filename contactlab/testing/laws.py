@@ -57,7 +57,7 @@ class PressedSpring(SteppedTangentialLaw):
         self,
         state: Stretch,
         increment: Increment,
-        before: NormalContact,  # noqa: ARG002
+        before: NormalContact,
         after: NormalContact,
     ) -> tuple[TangentialResponse, Stretch]:
         """Stretch the spring."""
@@ -100,7 +100,7 @@ class Slider(SteppedTangentialLaw):
 
     api_version: ClassVar[int] = 2
 
-    def start(self, scene: Scene, normal: NormalMotion) -> Slip:  # noqa: ARG002
+    def start(self, scene: Scene, normal: NormalMotion) -> Slip:
         """Return the direction of slip."""
         friction = scene.friction_coefficient * np.sign(scene.slip_velocity)
         return Slip(friction if scene.shape else float(friction), 0.0 * friction)
@@ -109,8 +109,8 @@ class Slider(SteppedTangentialLaw):
         self,
         state: Slip,
         increment: Increment,
-        before: NormalContact,  # noqa: ARG002
-        after: NormalContact,  # noqa: ARG002
+        before: NormalContact,
+        after: NormalContact,
     ) -> tuple[TangentialResponse, Slip]:
         """Return the force of slip; its work is that of the mean force."""
         force = state.friction * increment.friction_load
@@ -146,7 +146,7 @@ class Yielding(SteppedTangentialLaw):
         self,
         state: Yield,
         increment: Increment,
-        before: NormalContact,  # noqa: ARG002
+        before: NormalContact,
         after: NormalContact,
     ) -> tuple[TangentialResponse, Yield]:
         """Return the force of the spring, cut to the limit, and the work of the slip."""
@@ -166,7 +166,7 @@ class Sliding(Phase):
 
     fails_at: float = math.inf
 
-    def respond(self, contact: ScaledContact, slip: Any, memo: Any) -> PhaseResponse:  # noqa: ARG002
+    def respond(self, contact: ScaledContact, slip: Any, memo: Any) -> PhaseResponse:
         """Return P."""
         force = np.where(contact.phase < self.fails_at, contact.force, math.nan)
         return PhaseResponse(force, None, None, ())
@@ -174,9 +174,9 @@ class Sliding(Phase):
     def friction_power(
         self,
         contact: ScaledContact,
-        slip: Any,  # noqa: ARG002
+        slip: Any,
         velocity: Any,
-        response: Any,  # noqa: ARG002
+        response: Any,
     ) -> Any:
         """Return force times velocity."""
         return contact.force * velocity
@@ -193,7 +193,7 @@ class SlidingForEver(PhasedTangentialLaw):
     fails: bool = False
     at_once: bool = False
 
-    def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:  # noqa: ARG002
+    def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
         """Slide."""
         if self.at_once:
             raise ArithmeticError("as it was asked to")

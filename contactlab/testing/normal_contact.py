@@ -10,7 +10,6 @@ import numpy as np
 from contactlab.closed_forms import hertz_scales
 from contactlab.contracts import NormalLaw
 from contactlab.normal_motion import normal_motion
-from contactlab.testing.bench import scene
 from contactlab.testing.check import check, hold
 from contactlab.testing.normal import ROUNDING, STEPS, respond, strokes
 

@@ -95,7 +95,7 @@ def normal_passive(law: Any) -> None:
 def rebounds(law: Any) -> None:
     """The bodies part, no faster than they met, and the force is their change of momentum."""
     for motion in impacts(law):
-        given = motion.scene
+        given: Any = motion.scene
         rebound = -float(motion.final_rate) / float(given.normal_speed)
         hold(0.0 <= rebound <= 1.0 + SOLVED, f"The bodies part {rebound:.6g} times as fast.")
         momentum = given.pair.normal_mass * (given.normal_speed - float(motion.final_rate))

@@ -60,7 +60,8 @@ class Impact(NamedTuple):
         usable = math.nan if status is not Status.SUCCESS else 1.0
         # A tiny factor stands for a huge friction coefficient: each unit takes its own.
         velocity_unit, force_unit = factor * self.velocity_unit, factor * self.force_unit
-        work_unit = velocity_unit * self.time_unit * force_unit
+        # Without work there is none, however large its unit.
+        work_unit = velocity_unit * self.time_unit * force_unit if state.work != 0.0 else 0.0
         return Run(
             impact=self,
             followed=followed,

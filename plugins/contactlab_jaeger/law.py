@@ -22,6 +22,7 @@ from contactlab.contracts import (
     TangentialResponse,
     WholeImpact,
 )
+from contactlab.declared import ErrorModel
 from contactlab.scene import Scene
 from contactlab_jaeger import step, whole
 from contactlab_jaeger.gross_slip import gross_slip
@@ -68,6 +69,7 @@ class ProfileLaw(AllStepsTangentialLaw):
 
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
+    errors: ClassVar[ErrorModel]
 
     @abstractmethod
     def places(self) -> Places:
@@ -76,6 +78,12 @@ class ProfileLaw(AllStepsTangentialLaw):
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return those of gross slip too, where (44) and (46) say so."""
         return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
+
+    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
+        """Return what was measured over elastic Hertz contacts; of others nothing is declared."""
+        if "elastic_hertz" not in normal.offers:
+            return math.nan
+        return self.errors.psi2_error(scene, steps, len(self.places().squares))
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return those of every law, and that of a pressure that may be no hemisphere."""

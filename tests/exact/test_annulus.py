@@ -18,7 +18,7 @@ def impact(psi1, chi, annuli, steps, *, history=False, integrator="paper"):
 def test_equations_30_to_37(psi1, chi):
     """psi2 and the force at every step, to 1e-9."""
     steps, annuli = 300, 30
-    psi2, forces = plain.impact(psi1, chi, annuli=annuli, steps=steps)
+    psi2, forces = plain.along_the_exact_motion(psi1, chi, annuli=annuli, steps=steps)
     if psi1 >= max(
         1.0, 4.0 * chi - 1.0
     ):  # here the plan takes eq. (45) unless fields are asked for
@@ -31,9 +31,20 @@ def test_equations_30_to_37(psi1, chi):
     assert found == pytest.approx(forces, abs=1e-9)
 
 
+@pytest.mark.parametrize(("psi1", "chi"), [(0.1, 0.4), (1.2, CHI), (2.6, 3.0)])
+def test_the_papers_own_march_of_the_normal_motion_is_as_near(psi1, chi):
+    """Eqs (30)-(32) by the same steps: the answers come together as the square of the step."""
+    apart = []
+    for steps in (100, 200, 400):
+        psi2, _ = plain.impact(psi1, chi, annuli=20, steps=steps)
+        apart.append(abs(impact(psi1, chi, 20, steps).psi2 - psi2))
+    assert apart[-1] < 1e-4
+    assert order((100, 200, 400), apart) > 1.5
+
+
 @pytest.mark.parametrize("annuli", [1, 2, 200])
 def test_any_number_of_annuli(annuli):
-    psi2, _ = plain.impact(1.2, CHI, annuli=annuli, steps=100)
+    psi2, _ = plain.along_the_exact_motion(1.2, CHI, annuli=annuli, steps=100)
     assert impact(1.2, CHI, annuli, 100).psi2 == pytest.approx(psi2, abs=1e-9)
 
 

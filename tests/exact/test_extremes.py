@@ -8,7 +8,8 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
-from contactlab.soundness import sound
+from contactlab.contracts import WholeImpactTangentialLaw
+from contactlab.motion import Motion, sound
 
 CHI = 49 / 34
 FRICTION = (0.0, 1e-308, 1e-300, 1e-12, 1e3, 1e12, 1e300)
@@ -17,9 +18,24 @@ CHIS = (0.05, 0.5, CHI, 100.0, 1e5, 1e9, 1e12, 1e300)
 
 
 def integrate(law, scene):
-    """Return the motion without the plan's short cuts."""
+    """Return the motion without the plan's short cuts, of laws that have others."""
     simulation = Simulation(tangential=law, integrator="events")
-    return sound(simulation.integrator.integrate(simulation.problem(scene), None))
+    if isinstance(simulation.tangential, WholeImpactTangentialLaw):
+        return simulation.run(scene).motion
+    normal = simulation.normal_motion(scene)
+    motion = simulation.integrator.integrate(normal, simulation.tangential, scene)
+    return sound(Motion.along(normal, motion))
+
+
+def paper_scene(psi1, chi):
+    """Return the scene; None, with a ValueError checked, where the energy of slip overflows."""
+    with np.errstate(over="ignore"):
+        energy = 0.25 / chi * np.float64(psi1) ** 2
+    if np.isfinite(energy):
+        return Scene.nondimensional(psi1=psi1, chi=chi)
+    with pytest.raises(ValueError, match=r"psi1, chi = .*kinetic energy of slip.*give less"):
+        Scene.nondimensional(psi1=psi1, chi=chi)
+    return None
 
 
 def change(law, psi1, chi):
@@ -39,6 +55,8 @@ def ball(friction, slip=0.3):
 )
 def test_a_rigid_body_to_relative_rounding(psi1, chi):
     """|change| = min(|psi1|, 4 chi) (paper §4.3), however small or large the two are."""
+    if paper_scene(psi1, chi) is None:
+        return
     expected = -math.copysign(min(abs(psi1), 4.0 * chi), psi1)
     assert change("coulomb", psi1, chi) == pytest.approx(expected, rel=1e-15)
 
@@ -100,7 +118,10 @@ def test_friction_work_under_a_huge_coefficient(law, friction):
 @pytest.mark.parametrize("psi1", PSI1)
 def test_any_incidence_and_inertia(psi1, chi):
     """Never an exception or a warning; slip throughout is eq. (45), a refusal says what to do."""
-    motion = integrate("fronts", Scene.nondimensional(psi1=psi1, chi=chi))
+    scene = paper_scene(psi1, chi)
+    if scene is None:
+        return
+    motion = integrate("fronts", scene)
     if motion.status is Status.UNRESOLVED:
         assert chi > 1e4
         assert "law of steps" in motion.detail or chi > 1e15

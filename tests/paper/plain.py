@@ -49,6 +49,49 @@ def contact(matrix_stick, matrix_slip, radius, moved, beta, sign, stuck):
     raise RuntimeError("division into stick and slip did not settle")
 
 
+def radii(steps):
+    """Return beta after each of ``steps`` even steps, from T(x) by quadrature (theory §3).
+
+    sqrt(zeta) = beta = sin x, dT/dx = 2 beta/g(beta); the second half mirrors the first.
+    """
+    points, weights = np.polynomial.legendre.leggauss(60)
+
+    def pace(x):
+        u = np.sin(x)
+        return 2.0 * u / np.sqrt((1.0 + u + u**2 + u**3 + u**4) / (1.0 + u))
+
+    def passed(x):
+        return (pace(0.5 * x[:, None] * (1.0 + points)) * weights).sum(axis=1) * 0.5 * x
+
+    fraction = np.arange(1, steps + 1) / steps
+    half = np.minimum(fraction, 1.0 - fraction) * DURATION
+    x = np.sqrt(half) * 1.05 + 1e-300
+    for _ in range(60):
+        x = np.clip(x - (passed(x) - half) / pace(x), 0.5 * x, 0.5 * np.pi)
+    return np.where(half > 0.0, np.sin(x), 0.0)
+
+
+def along_the_exact_motion(psi1, chi, *, annuli, steps):
+    """Return what ``impact`` does, with the contact (30)-(32) given and not marched.
+
+    The last step ends at separation: there are ``steps`` of them whatever psi1.
+    """
+    matrix_stick, matrix_slip = 0.5 * influence(annuli), shape(annuli)
+    radius = (np.arange(1, annuli + 1) - 0.5) / annuli
+    weight = (np.arange(1, annuli + 1) / annuli) ** 2
+    step, psi = DURATION / steps, float(psi1)
+    xi, sign, stuck = np.zeros(annuli), np.zeros(annuli), np.zeros(annuli, bool)
+    forces = []
+    for beta in radii(steps):
+        moved = xi + psi * step
+        phi, sign, stuck = contact(matrix_stick, matrix_slip, radius, moved, beta, sign, stuck)
+        xi = matrix_stick @ phi
+        force = weight @ phi
+        psi -= 1.25 * np.pi * chi * force * step
+        forces.append(0.5 * np.pi * force)
+    return psi, np.array(forces)
+
+
 def impact(psi1, chi, *, annuli=50, steps=500):
     """Return psi2 and the forces F/(mu P_max) after each step."""
     matrix_stick, matrix_slip = 0.5 * influence(annuli), shape(annuli)

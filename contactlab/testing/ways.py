@@ -1,0 +1,130 @@
+"""The ways in which a tangential law can be run, each of which is tried."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlab.contracts import (
+    Integrator,
+    NormalLaw,
+    Observer,
+    PhasedTangentialLaw,
+    SteppedTangentialLaw,
+    TangentialLaw,
+    TangentialMotion,
+    WholeImpactTangentialLaw,
+)
+from contactlab.history import History, Recorder
+from contactlab.normal_motion import normal_motion
+from contactlab.registry import REGISTRY
+from contactlab.scene import Scene
+from contactlab.simulation import Simulation
+from contactlab.status import Status
+from contactlab.testing.bench import scene, slack
+from contactlab.testing.check import apply_if, hold
+from contactlab.testing.units import Units
+
+#: Steps of an impact; more if the law says that it needs more.
+STEPS = 200
+#: What the integration may add to an error in psi: second order at 200 steps.
+INTEGRATION = 2e-3
+#: What rounding may add to an answer for a whole impact.
+ROUNDING = 1e-9
+
+
+class Followed(NamedTuple):
+    """An impact followed: the change of psi, the motion, and friction work over unit energy."""
+
+    change: Any
+    motion: TangentialMotion
+    work: Any
+
+
+class Way(NamedTuple):
+    """One way of running a law: by an integrator, or as whole impacts, under a normal law."""
+
+    law: TangentialLaw
+    normal: NormalLaw
+    integrator: Integrator | None
+
+    def __str__(self) -> str:
+        """Return what the law is run by."""
+        return f"by {type(self.integrator).__name__}" if self.integrator else "as whole impacts"
+
+    @property
+    def exact(self) -> bool:
+        """Whether nothing is added by steps."""
+        return self.integrator is None or bool(self.integrator.accuracy)
+
+    def follow(self, given: Scene, recorder: Observer | None = None) -> Followed:
+        """Follow the impacts of a scene.
+
+        An integrator is called itself, as a simulation would take short cuts; whole impacts are
+        those of a simulation.
+        """
+        motion: TangentialMotion
+        if self.integrator is None:
+            motion = Simulation(normal=self.normal, tangential=self.law).run(given).motion
+        else:
+            normal = normal_motion(self.normal, given)
+            motion = self.integrator.integrate(normal, self.law, given, recorder)
+        good = np.all(np.asarray(motion.status) == Status.SUCCESS)
+        hold(
+            good,
+            f"psi1 = {given.psi1}, chi = {given.chi}: {motion.status} {motion.detail} ({self})",
+        )
+        unit = given.pair.tangential_mass / np.square(given.psi_scale)
+        change = given.psi(motion.slip_velocity_change)
+        return Followed(change, motion, motion.friction_work / unit)
+
+
+def ways(law: TangentialLaw, normal: NormalLaw | None = None) -> list[Way]:
+    """Return the ways in which the law can be run: by steps, by events, as whole impacts.
+
+    Raises
+    ------
+    NotApplicableError
+        If there is none under this normal law, Hertz's by default.
+    """
+    pressing = REGISTRY.create("normal.hertz") if normal is None else normal
+    found = []
+    if isinstance(law, SteppedTangentialLaw):
+        found.append(Way(law, pressing, REGISTRY.create("integrator.symplectic", steps=STEPS)))
+    if isinstance(law, PhasedTangentialLaw):
+        events: Integrator = REGISTRY.create("integrator.events")
+        if isinstance(pressing, events.normal_contract):
+            found.append(Way(law, pressing, events))
+    if isinstance(law, WholeImpactTangentialLaw):
+        found.append(Way(law, pressing, None))
+    if not law.needs <= pressing.offers:
+        found = []
+    apply_if(found, f"There is no way to run it under {type(pressing).__name__}.")
+    return found
+
+
+def meet(
+    way: Way, psi1: Any, chi: Any, *, units: Units | None = None, recorder: Observer | None = None
+) -> Followed:
+    """Follow an impact of given psi1 and chi."""
+    return way.follow(scene(psi1, chi, units=units), recorder)
+
+
+def course(way: Way, psi1: float, chi: float) -> tuple[History, TangentialMotion]:
+    """Return the history of an impact, and the motion."""
+    if way.integrator is None:
+        simulation = Simulation(normal=way.normal, tangential=way.law)
+        result = simulation.run(scene(psi1, chi), history=True)
+        assert result.history is not None
+        return result.history, result.motion
+    recorder = Recorder((), with_fields=False)
+    motion = meet(way, psi1, chi, recorder=recorder).motion
+    return recorder.history(), motion
+
+
+def allowed(way: Way) -> float:
+    """Return the error allowed in psi: the law's, and the integrator's."""
+    if way.integrator is None:
+        return ROUNDING
+    return slack(way.law, 0.0) + (way.integrator.accuracy or INTEGRATION)
