@@ -250,7 +250,7 @@ class _Solver:
 
     def solve(self) -> SolvedMotion:
         """Return the motion."""
-        with faults.blaming(self.law):
+        with np.errstate(all="ignore"), faults.blaming(self.law):
             self.state = self.law.start(self.scene)
         touch = Place(0.0, np.concatenate([np.zeros(self.items), np.ones(self.items)]))
         if self.items > 1:
@@ -371,12 +371,15 @@ class _Solver:
     def _ask(self, approach: Array, rate: Array) -> tuple[NormalContact, Any]:
         """Ask the law; name it if it fails."""
         try:
-            if self.shape:
-                arrays = (batch.locked(each.reshape(self.shape)) for each in (approach, rate))
-                contact, state = self.law.respond(self.state, *arrays)
-            else:
-                given = (approach.item(), rate.item())
-                contact, state = self.law.respond(self.state, *given)
+            with np.errstate(all="ignore"):  # and whatever a law makes of it ends here
+                if self.shape:
+                    arrays = (batch.locked(each.reshape(self.shape)) for each in (approach, rate))
+                    contact, state = self.law.respond(self.state, *arrays)
+                else:
+                    given = (approach.item(), rate.item())
+                    contact, state = self.law.respond(self.state, *given)
+            if not isinstance(contact, NormalContact):
+                raise TypeError(f"respond gave {faults.shown(contact)}, not a NormalContact")
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a plug-in may not end the process
@@ -420,6 +423,7 @@ class _Solver:
 
     def _cut(self, dense: Array, overlap: Array) -> Array | None:
         """Return the part of the step for which each item stays in contact; None if all do."""
+        self._known(overlap)
         begun = np.logical_or.accumulate(overlap > 0.0, axis=0) | self.begun
         out = begun & ~(overlap > 0.0) & self.active
         self.begun |= begun[-1]
@@ -434,9 +438,16 @@ class _Solver:
             middle = 0.5 * (low + high)
             weights = rows(lobatto(NODES), middle)
             here = np.einsum("in,nci->ci", weights, both).reshape(-1)
-            inside = self._respond(here)[2] > 0.0
+            found = self._respond(here)[2]
+            self._known(found)
+            inside = found > 0.0
             low, high = np.where(inside, middle, low), np.where(inside, high, middle)
         return np.where(ended, np.minimum(low, np.nextafter(1.0, 0.0)), 1.0)
+
+    def _known(self, overlap: Array) -> None:
+        """Refuse NaN, which compares as out of contact."""
+        if np.isnan(overlap[..., self.active]).any():
+            raise self._fault(Status.NON_FINITE, "the overlap nan")
 
     def _remember(self, scaled: Array) -> None:
         """Enter the memory that the law has at the end of the step."""

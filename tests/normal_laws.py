@@ -13,11 +13,11 @@ from contactlab.contracts import NormalContact, NormalLaw
 class LinearSpring(NormalLaw):
     """P = k u_z, without radius or closed form: the impact lasts pi sqrt(M/k), and e = 1."""
 
-    api_version: ClassVar[int] = 1
+    api_version: ClassVar[int] = 2
 
-    stiffness: float = 1.0
+    stiffness: float = quantity("N/m", default=1.0)
 
-    def start(self, pair):
+    def start(self, scene):
         return None
 
     def respond(self, state, approach, rate):
@@ -29,13 +29,13 @@ class LinearSpring(NormalLaw):
 class Damped(NormalLaw):
     """Hertz's force times 1 + damping times rate (Hunt & Crossley 1975)."""
 
-    api_version: ClassVar[int] = 1
+    api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset] = frozenset({"radius", "hertzian_pressure"})
 
     damping: float = quantity("s/m", default=0.2)
 
-    def start(self, pair):
-        return pair
+    def start(self, scene):
+        return scene.pair
 
     def respond(self, state, approach, rate):
         inside = np.maximum(approach, 0.0)

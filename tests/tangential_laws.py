@@ -11,12 +11,11 @@ from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 class Creator(SteppedTangentialLaw):
     """Makes energy, and says that its books close to a thousandth."""
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset] = frozenset({"advance"})
+    api_version: ClassVar[int] = 2
     books_bound: ClassVar[float] = 1e-3
 
-    def start(self, problem):
-        return problem.friction_coefficient
+    def start(self, scene, normal):
+        return scene.friction_coefficient
 
     def advance(self, state, increment, before, after):
-        return TangentialResponse(-0.1 * state * increment.normal_force, 0.0), state
+        return TangentialResponse(-0.1 * state * increment.friction_load, 0.0), state

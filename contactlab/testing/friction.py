@@ -122,5 +122,33 @@ def non_finite(law: Any) -> None:
         hold(not clean, f"NaN as {what} gives F = {response.force!r}, as if nothing were wrong.")
 
 
+@check(SteppedTangentialLaw)
+def last_step(law: Any) -> None:
+    """A step that ends with hardly any load left keeps force and work within what there was.
+
+    An integrator may sample the contact at the ends of steps: the load after the last step is
+    then nothing, or rounding, and the mean load of the step is not.
+    """
+    bench, moved, level = Bench.of(), 0.1, 0.7
+    before = bench.contact(level)
+    for slip in (0.2, 2.0):
+        state = drive(law, bench, straight((0.0, level), (slip, level), steps=16)).state
+        for left in (1e-6, 1e-12, 1e-32, 0.0):
+            after = bench.contact(left)
+            given = bench.increment(moved, after, bench.time / 64.0)
+            given = given._replace(friction_load=0.4 * before.friction_load)
+            response, _ = law.advance(state, given, before, after)
+            force = abs(float(response.force)) / bench.friction_force
+            work = float(response.friction_work) / (bench.friction_force * bench.slip)
+            most = (1.0 + slack(law)) * level**1.5
+            hold(force <= most, f"F = {force:.2g} mu P_max as the load falls to zeta = {left:.1g}.")
+            # No more slips than the step, and the stretch that the load held.
+            hold(
+                -ROUNDING <= work <= most * (moved + level),
+                f"Friction work of {work:.2g} in a step of {moved} as the load falls to zeta = "
+                f"{left:.1g}.",
+            )
+
+
 def _worst(values: Any) -> float:
     return float(np.nan_to_num(np.max(np.abs(values)), nan=np.inf))

@@ -70,14 +70,26 @@ class Way(NamedTuple):
         else:
             normal = normal_motion(self.normal, given)
             motion = self.integrator.integrate(normal, self.law, given, recorder)
-        good = np.all(np.asarray(motion.status) == Status.SUCCESS)
-        hold(
-            good,
-            f"psi1 = {given.psi1}, chi = {given.chi}: {motion.status} {motion.detail} ({self})",
-        )
+        if not np.all(np.asarray(motion.status) == Status.SUCCESS):
+            hold(False, f"{_which(given)}: {_told(motion)} ({self})")
         unit = given.pair.tangential_mass / np.square(given.psi_scale)
         change = given.psi(motion.slip_velocity_change)
         return Followed(change, motion, motion.friction_work / unit)
+
+
+def _which(given: Scene) -> str:
+    """Return which impact a scene is."""
+    if given.shape:
+        return f"A batch of shape {given.shape}"
+    return f"psi1 = {float(given.psi1):.6g}, chi = {float(given.chi):.4g}"
+
+
+def _told(motion: TangentialMotion) -> str:
+    """Return status and detail of the first impact that failed."""
+    statuses = np.ravel(np.asarray(motion.status, dtype=object))
+    first = int(np.argmax(statuses != Status.SUCCESS))
+    detail = np.ravel(np.asarray(motion.detail, dtype=object))
+    return f"{statuses[first].name} {detail[min(first, detail.size - 1)]}"
 
 
 def ways(law: TangentialLaw, normal: NormalLaw | None = None) -> list[Way]:

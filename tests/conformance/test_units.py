@@ -16,16 +16,15 @@ from tests.normal_laws import Damped
 class Viscous(SteppedTangentialLaw):
     """A damper cut off at Coulomb's limit."""
 
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset] = frozenset({"advance"})
+    api_version: ClassVar[int] = 2
 
     damping: float = quantity("N s/m", rule=POSITIVE, default=900.0)
 
-    def start(self, problem):
-        return problem.friction_coefficient
+    def start(self, scene, normal):
+        return scene.friction_coefficient
 
     def advance(self, state, increment, before, after):
-        limit = state * after.force
+        limit = state * after.friction_load
         trial = self.damping * increment.displacement / increment.duration
         force = min(max(trial, -limit), limit)
         return TangentialResponse(force, force * increment.displacement), state

@@ -29,8 +29,8 @@ def test_no_chatter_once_the_sphere_rolls():
     sliding = history.tangential_force != 0.0
     last = int(np.flatnonzero(sliding)[-1])
     assert 0 < last < len(sliding) - 50
-    assert sliding[: last + 1].all()
-    assert (np.diff(sliding.astype(int)) != 0).sum() == 1
+    assert sliding[1 : last + 1].all()  # at first touch there is no load yet
+    assert (np.diff(sliding[1:].astype(int)) != 0).sum() == 1
     assert history.slip_velocity[last + 1 :] == pytest.approx(0.0, abs=1e-15)
 
 

@@ -14,9 +14,8 @@ from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 
 @attrs.frozen(kw_only=True)
 class Mine(SteppedTangentialLaw):
-    api_version: ClassVar[int] = 1
-    offers: ClassVar[frozenset] = frozenset({"advance"})
-    def start(self, problem):
+    api_version: ClassVar[int] = 2
+    def start(self, scene, normal):
         return 0.0
     def advance(self, state, increment, before, after):
         return TangentialResponse(0.0, 0.0), state

@@ -132,9 +132,9 @@ def test_the_traceback_of_a_broken_plugin_is_kept(registry, install):
 
 
 def test_wrong_interface_version_wrong_kind_and_abstract_laws(registry, install, law_source):
-    install("old", "old_law", law_source.replace("int] = 1", "int] = 99"), "tangential.old")
+    install("old", "old_law", law_source.replace("int] = 2", "int] = 99"), "tangential.old")
     install("odd", "odd_law", law_source, "normal.odd")
-    start = "    def start(self, problem):\n        return 0.0\n"
+    start = "    def start(self, scene, normal):\n        return 0.0\n"
     install("half", "half_law", law_source.replace(start, ""), "tangential.half")
     with pytest.raises(PluginError, match="api_version is 99"):
         registry.create("tangential.old")

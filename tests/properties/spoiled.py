@@ -34,9 +34,9 @@ class Spoiler:
 
 def inert_copy(law, base):
     """Return class attributes of a law for its wrapper."""
-    names = ("needs", "offers", "resolution", "inert", "exact", "linear_below")
+    names = ("needs", "offers", "resolution", "linear_below")
     found = {name: getattr(law, name) for name in names if hasattr(law, name)}
-    return found | {"api_version": 1}
+    return found | {"api_version": 2}
 
 
 def spoiled_tangential(law, spoil, entry):
@@ -47,9 +47,9 @@ def spoiled_tangential(law, spoil, entry):
         return response._replace(**{entry: spoil(getattr(response, entry))}), state
 
     body = inert_copy(law, SteppedTangentialLaw) | {
-        "start": lambda _, problem: law.start(problem),
+        "start": lambda _, scene, normal: law.start(scene, normal),
         "advance": advance,
-        "stiffness": lambda _, problem: law.stiffness(problem),
+        "stiffness": lambda _, scene, normal: law.stiffness(scene, normal),
     }
     return attrs.frozen(type("Spoiled", (SteppedTangentialLaw,), body))()
 
@@ -105,38 +105,40 @@ class SpoiledMotion(ClosedFormMotion):
     def _told(self, name, value):
         return self.spoil(value) if name == self.name else value
 
-    def _course(self, name, course):
-        if not self.name.startswith(name):
-            return course
-        entry = self.name.partition(".")[2]
-        return course._replace(**{entry: self.spoil(getattr(course, entry))})
+    def _scaled(self, contact):
+        what, _, entry = self.name.partition(".")
+        if what != "scaled":
+            return contact
+        return contact._replace(**{entry: self.spoil(getattr(contact, entry))})
 
+    law = property(lambda self: self.motion.law)
+    scene = property(lambda self: self.motion.scene)
     duration = property(lambda self: self._told("duration", self.motion.duration))
     maximum_radius = property(lambda self: self.motion.maximum_radius)
     maximum_approach = property(lambda self: self.motion.maximum_approach)
     maximum_force = property(lambda self: self._told("maximum_force", self.motion.maximum_force))
+    final_rate = property(lambda self: self.motion.final_rate)
+    total_load_impulse = property(lambda self: self.motion.total_load_impulse)
     scaled_mass = property(lambda self: self.motion.scaled_mass)
 
-    def course(self, phase):
-        return self._course("course", self.motion.course(phase))
+    def scaled(self, phase):
+        return self._scaled(self.motion.scaled(phase))
 
-    def instant(self, phase):
-        return self._course("instant", self.motion.instant(phase))
+    def scaled_at(self, phase):
+        return self._scaled(self.motion.scaled_at(phase))
 
     def phase_at_rate(self, rate):
         return self.motion.phase_at_rate(rate)
 
     def at(self, phase):
-        time, approach, rate, contact = self.motion.at(phase)
-        if self.name == "at.rate":
-            rate = self._one(rate)
-        if self.name == "at.force":
-            contact = contact._replace(force=self._one(contact.force))
-        if self.name == "at.radius":
-            contact = contact._replace(radius=self._one(contact.radius))
-        if self.name == "at.time":
-            time = self._one(time)
-        return time, approach, rate, contact
+        sample = self.motion.at(phase)
+        what, _, entry = self.name.partition(".")
+        if what != "at":
+            return sample
+        if hasattr(sample.contact, entry):
+            spoiled = self._one(getattr(sample.contact, entry))
+            return sample._replace(contact=sample.contact._replace(**{entry: spoiled}))
+        return sample._replace(**{entry: self._one(getattr(sample, entry))})
 
     def _one(self, rows):
         """Spoil one instant, whether they come one by one or all at once."""
@@ -149,32 +151,30 @@ class SpoiledMotion(ClosedFormMotion):
     def phase(self, fraction):
         return self.motion.phase(fraction)
 
-    def pace(self, phase):
-        return self.motion.pace(phase)
+    def take(self, part):
+        return SpoiledMotion(self.motion.take(part), self.spoil, self.name)
 
 
 def spoiled_closed_form(law, spoil, name):
     """Wrap a normal law with a motion in closed form."""
     body = inert_copy(law, ClosedFormNormalLaw) | {
-        # No short cut of the plan: the march is what is tested.
-        "offers": law.offers,
-        "start": lambda _, pair: law.start(pair),
+        "start": lambda _, scene: law.start(scene),
         "respond": lambda _, *arguments: law.respond(*arguments),
-        "motion": lambda _, pair, speed: SpoiledMotion(law.motion(pair, speed), spoil, name),
+        "motion": lambda _, scene: SpoiledMotion(law.motion(scene), spoil, name),
     }
     return attrs.frozen(type("SpoiledHertz", (ClosedFormNormalLaw,), body))()
 
 
 def spoiled_normal(law, spoil, entry):
-    """Wrap a normal law; without closed form, so that every integrator asks it step by step."""
+    """Wrap a normal law; without closed form, so that its motion has to be solved."""
 
     def respond(self, state, approach, rate):
         contact, state = law.respond(state, approach, rate)
         return contact._replace(**{entry: spoil(getattr(contact, entry))}), state
 
     body = inert_copy(law, NormalLaw) | {
-        "offers": law.offers - {"closed_form_motion", "elastic_hertz"},
-        "start": lambda _, pair: law.start(pair),
+        "offers": law.offers - {"elastic_hertz"},
+        "start": lambda _, scene: law.start(scene),
         "respond": respond,
     }
     return attrs.frozen(type("SpoiledHertz", (NormalLaw,), body))()

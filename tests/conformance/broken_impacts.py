@@ -1,0 +1,319 @@
+"""Laws of phases, of whole impacts and of all steps at once that break one clause each."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab.contracts import (
+    AllStepsResponse,
+    AllStepsTangentialLaw,
+    NormalContact,
+    Phase,
+    PhasedTangentialLaw,
+    PhaseResponse,
+    SteppedTangentialLaw,
+    TangentialResponse,
+    WholeImpactTangentialLaw,
+    sliding,
+)
+from contactlab.contracts.tangential import Increment
+
+
+@attrs.frozen(kw_only=True)
+class AllAtOnce(AllStepsTangentialLaw):
+    """Rigid sliders, sound: all steps at once, which for such a law is the same loop."""
+
+    api_version: ClassVar[int] = 2
+
+    def start(self, scene, normal):
+        nothing = np.zeros(scene.shape) if scene.shape else 0.0
+        stiffness = 1.4 * scene.pair.effective_shear_modulus * normal.maximum_radius
+        return scene.friction_coefficient, stiffness, nothing
+
+    def stiffness(self, scene, normal):
+        return 1.4 * scene.pair.effective_shear_modulus * normal.maximum_radius
+
+    def advance(self, state, increment, before, after):
+        friction, stiffness, held = state
+        limit = friction * after.friction_load
+        trial = held + stiffness * increment.displacement
+        force = np.minimum(np.maximum(trial, -limit), limit)
+        work = np.maximum(0.5 * (force + held) * (trial - force) / stiffness, 0.0)
+        return TangentialResponse(force, work), (friction, stiffness, force)
+
+    def advance_all(self, scene, normal, steps):
+        state, forces, work = self.start(scene, normal), [], 0.0
+        velocity, mass = scene.slip_velocity, scene.pair.tangential_mass
+        contact = NormalContact(0.0, 0.0, 0.0, 0.0)
+        for row in zip(*steps.contact, *steps[1:4], strict=True):
+            before, contact, (drift, kick, load) = contact, NormalContact(*row[:4]), row[4:]
+            given = Increment(velocity * drift, velocity, load, kick)
+            response, state = self.advance(state, given, before, contact)
+            velocity = velocity - response.force * kick / mass
+            forces.append(response.force)
+            work = work + response.friction_work
+        return self.told(AllStepsResponse(np.array(forces), float(work), True))
+
+    def told(self, response):
+        return response
+
+
+class OtherwiseAtOnce(AllAtOnce):
+    """A little weaker where all steps are taken at once."""
+
+    def told(self, response):
+        return response._replace(force=0.99 * response.force)
+
+
+@attrs.frozen(kw_only=True)
+class Knowing(SteppedTangentialLaw):
+    """A slider of F = mu times the friction load, which knows of grazing impacts as wholes."""
+
+    api_version: ClassVar[int] = 2
+
+    def start(self, scene, normal):
+        return scene.friction_coefficient, 0.0 * scene.slip_velocity
+
+    def advance(self, state, increment, before, after):
+        force = state[0] * after.friction_load * np.sign(increment.velocity)
+        work = np.maximum(0.5 * (force + state[1]) * increment.displacement, 0.0)
+        return TangentialResponse(force, work), (state[0], force)
+
+    def whole_impacts(self, scene, normal):
+        where = np.abs(scene.psi1) >= 5.0 * np.asarray(scene.chi)
+        known = sliding(scene, normal, where=where, reason="grazing", stops=False)
+        return (*super().whole_impacts(scene, normal), self.told(known, scene))
+
+    def told(self, known, scene):
+        return known
+
+
+class KnowsTooMuch(Knowing):
+    """Says that every impact grazes."""
+
+    def told(self, known, scene):
+        return attrs.evolve(known, where=True)
+
+
+class KnowsHalfTheWork(Knowing):
+    def told(self, known, scene):
+        return attrs.evolve(known, friction_work=0.5 * known.friction_work, course=None)
+
+
+class KnowsAnotherCourse(Knowing):
+    """The right end, by a course that hurries."""
+
+    def told(self, known, scene):
+        def course(impulse, load):
+            change, force = known.course(impulse, load)
+            return known.slip_velocity_change * (change / known.slip_velocity_change) ** 0.5, force
+
+        return attrs.evolve(known, course=course)
+
+
+class ShortImpulse(Knowing):
+    """One per cent short of the impulse that friction has, as a whole; it slips all the same."""
+
+    def told(self, known, scene):
+        return attrs.evolve(
+            known, slip_velocity_change=0.99 * known.slip_velocity_change, course=None
+        )
+
+
+@attrs.frozen(kw_only=True)
+class Whole(WholeImpactTangentialLaw):
+    """Slip until it stops, with something done to the answer."""
+
+    api_version: ClassVar[int] = 2
+
+    def whole_impacts(self, scene, normal):
+        known = sliding(scene, normal, where=True, reason="rigid", stops=True)
+        return (*super().whole_impacts(scene, normal), self.told(known, scene))
+
+    def told(self, known, scene):
+        return known
+
+
+class WholeNotOdd(Whole):
+    def told(self, known, scene):
+        change = known.slip_velocity_change * np.where(scene.slip_velocity > 0.0, 1.0, 0.9)
+        return attrs.evolve(known, slip_velocity_change=change)
+
+
+class WholeInMetres(Whole):
+    """Weaker for large bodies, by a constant with a unit."""
+
+    def told(self, known, scene):
+        share = 1.0 / (1.0 + 10.0 * scene.pair.radius)
+        return attrs.evolve(known, slip_velocity_change=share * known.slip_velocity_change)
+
+
+class WholeTooStrong(Whole):
+    """Throws back what it should stop, a little faster."""
+
+    def told(self, known, scene):
+        change = -2.04 * scene.slip_velocity * np.ones(scene.shape)
+        return attrs.evolve(known, slip_velocity_change=change)
+
+
+class WholeWithoutBooks(Whole):
+    def told(self, known, scene):
+        return attrs.evolve(known, friction_work=0.5 * known.friction_work)
+
+
+class WholeBeyondCoulomb(Whole):
+    """Twice the friction along its course."""
+
+    def told(self, known, scene):
+        def course(impulse, load):
+            change, force = known.course(impulse, load)
+            return change, 2.0 * force
+
+        return attrs.evolve(known, course=course)
+
+
+class MovesTheCentral(WholeImpactTangentialLaw):
+    """Makes a force of normal load alone."""
+
+    api_version: ClassVar[int] = 2
+
+    def whole_impacts(self, scene, normal):
+        known = sliding(scene, normal, where=True, reason="rigid", stops=True)
+        change = known.slip_velocity_change + 1e-3 * scene.normal_speed
+        return (attrs.evolve(known, slip_velocity_change=change),)
+
+
+class WholeOfTheFirst(Whole):
+    """Of a batch the first mass for all."""
+
+    def told(self, known, scene):
+        mass = np.asarray(scene.pair.tangential_mass)
+        share = mass / np.ravel(mass)[0]
+        return attrs.evolve(known, slip_velocity_change=share * known.slip_velocity_change)
+
+
+COUNT = {"impacts": 0}
+
+
+class WholeWears(Whole):
+    """Weaker with every impact that any such law has seen."""
+
+    def told(self, known, scene):
+        COUNT["impacts"] += 1
+        share = 1.0 / (1.0 + 0.01 * COUNT["impacts"])
+        return attrs.evolve(known, slip_velocity_change=share * known.slip_velocity_change)
+
+
+class WholeClaims(Whole):
+    offers: ClassVar[frozenset] = frozenset({"partial_slip"})
+
+
+class WholeOnePercentShort(Whole):
+    """No more than 0.99 of what friction can do."""
+
+    def told(self, known, scene):
+        return attrs.evolve(known, slip_velocity_change=0.99 * known.slip_velocity_change)
+
+
+class NegativeAsAWhole(Whole):
+    def told(self, known, scene):
+        return attrs.evolve(known, friction_work=-known.friction_work)
+
+
+@attrs.frozen
+class Slide(Phase):
+    """Gross slip with a factor on the force and one on its power."""
+
+    force: float
+    power: float
+
+    def respond(self, contact, slip, memo):
+        return PhaseResponse(self.force * contact.force, None, None, ())
+
+    def friction_power(self, contact, slip, velocity, response):
+        return self.power * self.force * contact.force * velocity
+
+
+@attrs.frozen(kw_only=True)
+class Phases(PhasedTangentialLaw):
+    """Slips in one direction for ever."""
+
+    api_version: ClassVar[int] = 2
+    force: ClassVar[float] = 1.0
+    power: ClassVar[float] = 1.0
+
+    def begin(self, velocity, inertia, motion):
+        return Slide(self.force, self.power)
+
+
+class TooStrong(Phases):
+    force: ClassVar[float] = 1.2
+
+
+class TooWeakInTheBooks(Phases):
+    power: ClassVar[float] = 0.5
+
+
+class PhaseOfNan(Phases):
+    force: ClassVar[float] = float("nan")
+
+
+class PushesAlong(Phases):
+    """Speeds slip up."""
+
+    force: ClassVar[float] = -0.5
+
+
+class SlipsWhateverItClaims(Phases):
+    offers: ClassVar[frozenset] = frozenset({"partial_slip"})
+
+
+class PhaseInMetres(Phases):
+    """Weaker in a wide contact, by a constant with a unit."""
+
+    def begin(self, velocity, inertia, motion):
+        return Slide(1.0 / (1.0 + 100.0 * motion.maximum_radius), self.power)
+
+
+IMPACTS = {"count": 0}
+
+
+class Wears(Phases):
+    """Weaker with every impact that any such law has seen."""
+
+    def begin(self, velocity, inertia, motion):
+        IMPACTS["count"] += 1
+        return Slide(1.0 / (1.0 + 0.01 * IMPACTS["count"]), self.power)
+
+
+#: Each with the check meant for it, and words of what the check says of it.
+BROKEN = [
+    (OtherwiseAtOnce, "all_steps", "differs by"),
+    (KnowsTooMuch, "whole_impacts", "off the law's own run (by Symplectic)"),
+    (KnowsHalfTheWork, "whole_impacts", "off the energy lost in the law's own run"),
+    (KnowsAnotherCourse, "whole_impacts", "along the course psi is"),
+    (ShortImpulse, "whole_impacts", "'grazing': psi2 is 0.0"),
+    (ShortImpulse, "sliding_impulse", "0.01 off mu (1 + e) v1 M_n/M_t (grazing)"),
+    (WholeNotOdd, "impact_odd", "(as whole impacts)"),
+    (WholeInMetres, "impact_units", "(as whole impacts)"),
+    (WholeTooStrong, "impact_bounds", "energy from nothing (as whole impacts)"),
+    (WholeWithoutBooks, "impact_books", "of the energy is in no book (as whole impacts)"),
+    (WholeBeyondCoulomb, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.74 of mu P_max"),
+    (WholeBeyondCoulomb, "whole_impact_form", "the force along its course gives an impulse of"),
+    (NegativeAsAWhole, "whole_impact_form", "the friction work is -"),
+    (MovesTheCentral, "impact_central", "psi1 = 0, chi = 0.4: UNBALANCED The contact slips inf"),
+    (WholeOfTheFirst, "impact_batch", "(as whole impacts)"),
+    (WholeWears, "impact_repeatable", "run twice, ends differently (as whole impacts)"),
+    (WholeClaims, "impact_reference", "off (as whole impacts)"),
+    (WholeOnePercentShort, "sliding_impulse", "0.01 off mu (1 + e) v1 M_n/M_t (as whole impacts)"),
+    (TooStrong, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.2"),
+    (TooWeakInTheBooks, "impact_books", "UNRESOLVED The energy books miss"),
+    (PhaseOfNan, "impact_odd", "UNRESOLVED Newton's method fails"),
+    (PushesAlong, "impact_bounds", "energy from nothing (by Events)"),
+    (SlipsWhateverItClaims, "impact_reference", "off (by Events)"),
+    (PhaseInMetres, "impact_units", "differs by"),
+    (Wears, "impact_repeatable", "run twice, ends differently"),
+]
