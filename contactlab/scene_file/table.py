@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
 import numpy as np
 
-from contactlab.checks import FINITE, Real, Rule, real, refuse
+from contactlab.checks import FINITE, Real, Rule, nearest, real, refuse
 
 Made = TypeVar("Made")
 
@@ -99,8 +98,7 @@ class Table:
 def nearest_of(name: str, known: Iterable[str]) -> str:
     """Return a hint: the nearest known name, and all of them."""
     names = list(known)
-    nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-    return (f"did you mean {nearest[0]!r}? " if nearest else "") + f"known: {', '.join(names)}"
+    return f"{nearest(name, names)}known: {', '.join(names)}"
 
 
 def number_list(path: str, value: object, *, remedy: str) -> Real:
