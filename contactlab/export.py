@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 from collections.abc import Callable
@@ -11,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.files import write_table, written
 from contactlab.plain import plain
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
@@ -60,7 +60,9 @@ def write_json(result: ImpactResult, path: str | Path) -> None:
     if result.history is not None:
         columns = result.history.columns() | result.history.fields
         content["history"] = {name: plain(np.asarray(column)) for name, column in columns.items()}
-    Path(path).write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    text = json.dumps(content, indent=2, allow_nan=False) + "\n"
+    with written(path) as stream:
+        stream.write(text)
 
 
 def write_csv(result: ImpactResult, path: str | Path) -> None:
@@ -69,7 +71,7 @@ def write_csv(result: ImpactResult, path: str | Path) -> None:
     headings = [
         f"{name} ({unit_in(unit, result.scene)})" if unit else name for name, unit, _ in COLUMNS
     ]
-    _write_table(path, headings, list(zip(*table, strict=True)))
+    write_table(path, headings, list(zip(*table, strict=True)))
 
 
 def write_history_csv(result: ImpactResult, path: str | Path) -> None:
@@ -85,7 +87,7 @@ def write_history_csv(result: ImpactResult, path: str | Path) -> None:
         raise ValueError("result: has no history of a single impact; run(scene, history=True)")
     columns = history.columns()
     headings = [f"{name} ({unit_in(history.unit(name), result.scene)})" for name in columns]
-    _write_table(path, headings, list(zip(*columns.values(), strict=True)))
+    write_table(path, headings, list(zip(*columns.values(), strict=True)))
 
 
 def write_npz(result: ImpactResult, path: str | Path) -> None:
@@ -96,7 +98,7 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
     if result.history is not None:
         columns = result.history.columns() | result.history.fields
         arrays |= {f"history_{name}": column for name, column in columns.items()}
-    with Path(path).open("wb") as stream:  # a path that ends otherwise would get .npz added
+    with written(path, binary=True) as stream:  # a path that ends otherwise would get .npz added
         np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
 
 
@@ -108,10 +110,3 @@ def unit_in(unit: str, scene: Scene) -> str:
 def _spread(value: Any, shape: tuple[int, ...]) -> list[Any]:
     items = np.broadcast_to(np.asarray(value, dtype=object), shape).ravel().tolist()
     return [math.nan if item is None else getattr(item, "name", item) for item in items]
-
-
-def _write_table(path: str | Path, headings: list[str], rows: list[tuple[Any, ...]]) -> None:
-    with Path(path).open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(headings)
-        writer.writerows(rows)

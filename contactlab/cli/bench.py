@@ -10,7 +10,6 @@ Examples
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 from pathlib import Path
 
@@ -20,6 +19,7 @@ from contactlab.analysis.bench_methods import methods
 from contactlab.analysis.work_precision import Benchmark, Row, bench
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table, time
+from contactlab.files import write_table
 from contactlab.plain import plain
 
 
@@ -78,7 +78,4 @@ def _report(benchmark: Benchmark) -> str:
 
 def _write_csv(path: Path, benchmark: Benchmark) -> None:
     names = [field.name for field in attrs.fields(Row)]
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(names)
-        writer.writerows([getattr(row, name) for name in names] for row in benchmark.rows)
+    write_table(path, names, ([getattr(row, name) for name in names] for row in benchmark.rows))

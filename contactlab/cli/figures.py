@@ -9,11 +9,11 @@ Examples
 from __future__ import annotations
 
 import argparse
-import csv
 from pathlib import Path
 
 from contactlab.analysis.paper_figures import FIGURES, FigureData
 from contactlab.cli import arguments as shared
+from contactlab.files import write_table
 from contactlab.scene_file import LawChoice
 
 
@@ -62,11 +62,11 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _write_csv(path: Path, data: FigureData) -> None:
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["curve", data.parameter or "parameter", data.x, data.y])
-        for name, parameter, x, y in data.rows():
-            writer.writerow([name, "" if parameter != parameter else parameter, x, y])
+    rows = (
+        [name, "" if parameter != parameter else parameter, x, y]
+        for name, parameter, x, y in data.rows()
+    )
+    write_table(path, ["curve", data.parameter or "parameter", data.x, data.y], rows)
 
 
 def _numbers(text: str) -> list[int]:

@@ -10,7 +10,6 @@ Examples
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import sys
 from pathlib import Path
@@ -23,6 +22,7 @@ from contactlab.analysis.stability_map import Region
 from contactlab.analysis.stability_outcome import RAISED, WRONG, Outcome
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
+from contactlab.files import write_table
 from contactlab.plain import plain
 
 #: Failures listed one by one under the table; all of them are in the CSV and the JSON.
@@ -107,7 +107,4 @@ def _write_csv(path: Path, found: Stability) -> None:
     """Write a row for each outcome; of the map, for what is wrong or raised."""
     listed = [*found.outcomes, *(item for region in found.regions for item in region.failures)]
     names = [field.name for field in attrs.fields(Outcome)]
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(names)
-        writer.writerows([getattr(item, name) for name in names] for item in listed)
+    write_table(path, names, ([getattr(item, name) for name in names] for item in listed))

@@ -8,6 +8,8 @@ import json
 import numpy as np
 import pytest
 
+from contactlab.cli import progress
+
 RIGID = ("--tangential", "coulomb", "--integrator", "symplectic")
 PSI = ("--psi1", "6", "--chi", "1", *RIGID)
 
@@ -78,7 +80,8 @@ def test_sweep(run, short_sweep):
     assert "SUCCESS" in run("run", short_sweep).out
 
 
-def test_progress_is_on_stderr_and_only_when_asked(run, short_sweep):
+def test_progress_is_on_stderr_and_only_when_asked(run, short_sweep, monkeypatch):
+    monkeypatch.setattr(progress, "QUIET", 0.0)
     quiet = run("run", short_sweep, "--json")
     shown = run("run", short_sweep, "--json", "--progress")
     assert quiet.err == ""
