@@ -74,16 +74,17 @@ def check_outputs(arguments: argparse.Namespace) -> None:
     distinct({"SCENE.toml": given.get("scene"), **outputs})
 
 
-def attempt(*writings: Callable[[], object]) -> int:
-    """Do all the writing of results that can be done, and return the status of the command.
+def save(*writings: tuple[Path | None, Callable[[Path], object]]) -> int:
+    """Write the files that are asked for, and return the status of the command.
 
-    What cannot be written is said on stderr: after long work it must not take the rest of the
-    results with it.
+    A file that cannot be written is said on stderr: after long work it must not take the other
+    files, and what is printed, with it.
     """
     status = OK
-    for write in writings:
+    for path, write in writings:
         try:
-            write()
+            if path is not None:
+                write(path)
         except OSError as error:
             print(f"contactlab: error: {error}", file=sys.stderr)
             status = FAILED

@@ -73,14 +73,14 @@ def execute(arguments: argparse.Namespace) -> int:
         result = simulation.sweep(scene, progress=progress)
     else:
         result = simulation.run(scene, history=bool(arguments.history))
-    if arguments.out:
-        WRITERS[arguments.out.suffix.lower()](result, arguments.out)
-    if arguments.history:
-        export.write_history_csv(result, arguments.history)
+    saved = shared.save(
+        (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
+        (arguments.history, lambda path: export.write_history_csv(result, path)),
+    )
     varied: Mapping[str, Any] = file.varied if file else {}
     if not arguments.json:
         print(describe(result, title=file.title if file else "", varied=varied))
-    return report(result, as_json=arguments.json, varied=varied)
+    return max(saved, report(result, as_json=arguments.json, varied=varied))
 
 
 def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Scene:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
+import errno
 import json
 
 import numpy as np
 import pytest
 
 from contactlab.cli import progress
+from contactlab.cli import run as run_command
 
 RIGID = ("--tangential", "coulomb", "--integrator", "symplectic")
 PSI = ("--psi1", "6", "--chi", "1", *RIGID)
@@ -178,3 +180,32 @@ def test_failed_run_still_reports_and_has_status_1(run):
     assert json.loads(ran.out)["psi2"] is None
     assert ran.err.startswith("contactlab: failed:")
     assert len(ran.err.splitlines()) == 1
+
+
+def test_two_outputs_that_are_one_file_are_refused_before_the_run(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    ran = run("run", *PSI, "--out", "a.csv", "--history", "./a.csv")
+    assert ran.status == 2
+    assert "--out, --history" in ran.err
+    assert list(tmp_path.iterdir()) == []
+    scene = tmp_path / "scene.csv"
+    scene.write_text("[nondimensional]\npsi1 = 6\nchi = 1\n")
+    assert run("run", scene, "--out", scene).status == 2
+    assert scene.read_text().startswith("[nondimensional]")
+
+
+@pytest.mark.parametrize("command", ["run", "sweep"])
+def test_a_file_that_cannot_be_written_does_not_take_the_answer_with_it(
+    run, tmp_path, monkeypatch, command
+):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device", "a.csv")
+
+    monkeypatch.setitem(run_command.WRITERS, ".csv", full)
+    psi1 = "6" if command == "run" else "6:7:2"
+    words = ("--psi1", psi1, "--chi", "1", *RIGID, "--json", "--out", tmp_path / "a.csv")
+    ran = run(command, *words)
+    assert ran.status == 1
+    assert np.ravel(json.loads(ran.out)["psi2"])[0] == pytest.approx(2.0)
+    assert len(ran.err.splitlines()) == 1
+    assert "No space left" in ran.err
