@@ -123,6 +123,8 @@ def real(argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "")
 def whole(argument: str, value: object, *, least: int = 1, most: int = 10_000_000) -> int:
     """Return ``value`` as an int between ``least`` and ``most``, or refuse it."""
     rule = f"must be a whole number from {least} to {most}"
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
         raise refuse(argument, value, rule)
     if not least <= value <= most:
