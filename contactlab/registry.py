@@ -64,6 +64,8 @@ class Registry:
     def __init__(self) -> None:
         self._loaded: dict[str, tuple[type[Law], PluginInfo]] = {}
         self._remarked: set[str] = set()
+        self._found: set[tuple[str, str, str, str]] = set()
+        self._stamp: object = None
         self._origins: WeakKeyDictionary[type[Law], PluginInfo | None] = WeakKeyDictionary()
 
     @cached_property
@@ -79,17 +81,13 @@ class Registry:
 
     def installed(self) -> list[PluginInfo]:
         """Return every law found, sorted by kind and name, without importing any."""
-        from importlib import metadata  # 20 ms that only those who look for laws pay
-
+        stamp = _stamp()
+        if stamp != self._stamp:
+            self._found, self._stamp = _entry_points(), stamp
+        blocked = blocked_names()
         infos = {
-            PluginInfo(
-                name=point.name,
-                distribution=(point.dist and point.dist.name) or "unknown",
-                version=(point.dist and point.dist.version) or "unknown",
-                module=point.value,
-                blocked=point.name in blocked_names(),
-            )
-            for point in metadata.entry_points(group=GROUP)
+            PluginInfo(name, distribution, version, module, name in blocked)
+            for name, distribution, version, module in self._found
         }
         self._remark({info.name for info in infos})
         return sorted(infos, key=lambda info: (_rank(info.kind), info.name, info.distribution))
@@ -255,6 +253,34 @@ class Registry:
 def blocked_names() -> set[str]:
     """Return the names in ``CONTACTLAB_BLOCK_PLUGINS``, separated by commas or blanks."""
     return set(os.environ.get(BLOCK_VARIABLE, "").replace(",", " ").split())
+
+
+def _stamp() -> object:
+    """Return what changes where something is installed: the folders of the path, and when."""
+    stamps = []
+    for folder in sys.path:
+        try:
+            stamps.append((folder, os.stat(folder or ".").st_mtime_ns))
+        except OSError:
+            stamps.append((folder, 0))
+    return stamps
+
+
+def _entry_points() -> set[tuple[str, str, str, str]]:
+    """Return name, distribution, version and module of every entry point of the group."""
+    from importlib import metadata  # 20 ms that only those who look for laws pay
+
+    origins: dict[int, tuple[str, str]] = {}
+    found = set()
+    for point in metadata.entry_points(group=GROUP):
+        if id(point.dist) not in origins:  # a file is read for each name and each version
+            about: Any = point.dist.metadata if point.dist else {}
+            origins[id(point.dist)] = (
+                about.get("Name") or "unknown",
+                about.get("Version") or "unknown",
+            )
+        found.add((point.name, *origins[id(point.dist)], point.value))
+    return found
 
 
 @contextlib.contextmanager

@@ -150,6 +150,17 @@ def test_whatever_a_hook_or_an_import_raises_is_a_broken_plugin(registry, instal
         registry.create("tangential.other")
 
 
+def test_what_is_installed_meanwhile_is_found_and_what_is_known_is_not_read_again(
+    registry, install, law_source, monkeypatch
+):
+    assert MINE not in registry.names()
+    install("late", "late_law", law_source, MINE)
+    assert MINE in registry.names()
+    monkeypatch.setattr(metadata, "entry_points", None)
+    assert MINE in registry.names()
+    assert registry.create(MINE) is not None
+
+
 def test_an_interruption_is_still_one(registry, install):
     install("slow", "slow_law", "raise KeyboardInterrupt", MINE)
     with pytest.raises(KeyboardInterrupt):
