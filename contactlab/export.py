@@ -1,4 +1,9 @@
-"""Results as files: JSON, CSV, npz. One table of columns serves all three."""
+"""Results as files: JSON, CSV, npz. One table of columns serves all three.
+
+To add a column is a line in ``COLUMNS``: files, ``--quantity``, measured values and figures
+take it from there, an angle in degrees too. Tables for reading show those that are named below
+it. To add a form of file is a writer and a line in ``WRITERS``.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +20,7 @@ from contactlab.plain import plain
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 
-#: Column name, unit, and where it comes from. Tables and files read this one list.
+#: Column name, unit, and where it comes from.
 COLUMNS: tuple[tuple[str, str, Callable[[ImpactResult], Any]], ...] = (
     ("psi1", "1", lambda result: result.psi1),
     ("chi", "1", lambda result: result.scene.chi),
@@ -38,6 +43,17 @@ COLUMNS: tuple[tuple[str, str, Callable[[ImpactResult], Any]], ...] = (
     ("friction_work", "J", lambda result: result.energy.friction_work),
     ("energy_imbalance", "J", lambda result: result.energy.imbalance),
     ("status", "", lambda result: result.status),
+)  # fmt: skip
+
+#: Columns of the table of a sweep, and of a comparison of single impacts; those that are
+#: undefined for every impact are left out.
+SWEEP_TABLE = (
+    "psi1", "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg",
+    "rebound_spin", "friction_work",
+)  # fmt: skip
+COMPARISON_TABLE = (
+    "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg", "rebound_spin",
+    "contact_time", "friction_work", "energy_imbalance",
 )  # fmt: skip
 
 
@@ -100,6 +116,10 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
         arrays |= {f"history_{name}": column for name, column in columns.items()}
     with written(path, binary=True) as stream:  # a path that ends otherwise would get .npz added
         np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
+
+
+#: Form of file by the end of its name.
+WRITERS = {".json": write_json, ".csv": write_csv, ".npz": write_npz}
 
 
 def unit_in(unit: str, scene: Scene) -> str:

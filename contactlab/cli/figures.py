@@ -9,11 +9,12 @@ Examples
 from __future__ import annotations
 
 import argparse
+import functools
 from pathlib import Path
 
 from contactlab.analysis.paper_figures import FIGURES, FigureData
 from contactlab.cli import arguments as shared
-from contactlab.files import write_table
+from contactlab.files import unwritable, write_table
 from contactlab.scene_file import LawChoice
 
 
@@ -45,16 +46,17 @@ def execute(arguments: argparse.Namespace) -> int:
         raise ValueError(
             f"--out {arguments.out}: no folder can be made: {error.strerror}"
         ) from None
+    if why_not := unwritable(arguments.out / "figure-1.csv"):
+        raise ValueError(f"--out {arguments.out}: {why_not}")
     from contactlab.figures.files import save  # matplotlib only when drawing
-    from contactlab.figures.paper import FIGURES as DRAWINGS
+    from contactlab.figures.paper import draw
 
     progress = shared.progress(arguments.progress, "figures")
     for done, number in enumerate(arguments.only, start=1):
         data = FIGURES[number](simulation)
         numbers, picture = (arguments.out / f"figure-{number}{end}" for end in (".csv", ".png"))
         _write_csv(numbers, data)
-        draw = DRAWINGS[number]
-        save(picture, lambda axes, draw=draw, data=data: draw(axes, data))  # type: ignore[misc]
+        save(picture, functools.partial(draw, data=data))
         print(picture, numbers, sep="\n")
         if progress is not None:
             progress(done, len(arguments.only))

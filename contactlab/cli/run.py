@@ -22,13 +22,12 @@ import numpy as np
 from contactlab import export
 from contactlab.cli import arguments as shared
 from contactlab.cli.report import describe
+from contactlab.export import WRITERS
 from contactlab.plain import plain
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.status import Status
-
-WRITERS = {".json": export.write_json, ".csv": export.write_csv, ".npz": export.write_npz}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -16,8 +16,9 @@ import numpy as np
 
 from contactlab.checks import refuse
 from contactlab.cli import arguments as shared
-from contactlab.cli.run import WRITERS, report
+from contactlab.cli.run import report
 from contactlab.cli.table import table
+from contactlab.export import WRITERS
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.scene_file import LawChoice, read_scene

@@ -9,8 +9,8 @@ import json
 import numpy as np
 import pytest
 
+from contactlab import export
 from contactlab.cli import progress
-from contactlab.cli import run as run_command
 
 RIGID = ("--tangential", "coulomb", "--integrator", "symplectic")
 PSI = ("--psi1", "6", "--chi", "1", *RIGID)
@@ -201,7 +201,7 @@ def test_a_file_that_cannot_be_written_does_not_take_the_answer_with_it(
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device", "a.csv")
 
-    monkeypatch.setitem(run_command.WRITERS, ".csv", full)
+    monkeypatch.setitem(export.WRITERS, ".csv", full)
     psi1 = "6" if command == "run" else "6:7:2"
     words = ("--psi1", psi1, "--chi", "1", *RIGID, "--json", "--out", tmp_path / "a.csv")
     ran = run(command, *words)
