@@ -5,10 +5,11 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+import warnings
 from collections.abc import Iterator
 from functools import cached_property
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import attrs
@@ -18,6 +19,9 @@ import pluggy
 from contactlab import hookspecs
 from contactlab.checks import nearest, refuse
 from contactlab.contracts.law import API_VERSION, Law
+
+if TYPE_CHECKING:
+    from importlib import metadata
 
 GROUP = "contactlab"
 BLOCK_VARIABLE = "CONTACTLAB_BLOCK_PLUGINS"
@@ -29,7 +33,7 @@ class PluginError(RuntimeError):
 
 
 class PluginWarning(UserWarning):
-    """Something said about plug-ins has no effect, such as blocking one that is not there."""
+    """A word about plug-ins without effect: one is blocked that is not there, or unreadable."""
 
 
 @attrs.frozen
@@ -92,24 +96,11 @@ class Registry:
         self._remark({info.name for info in infos})
         return sorted(infos, key=lambda info: (_rank(info.kind), info.name, info.distribution))
 
-    def unknown_blocked(self) -> list[str]:
-        """Return a sentence for each name that is blocked and not installed; once, then no more."""
-        if not blocked_names():  # looking at what is installed takes a while
-            return []
-        import warnings
-
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            self.installed()
-        return [str(item.message) for item in caught if item.category is PluginWarning]
-
     def _remark(self, known: set[str]) -> None:
         """Warn of each name that is blocked and not installed: a slip of the pen blocks nothing."""
         unknown = blocked_names() - known - self._remarked
         self._remarked |= unknown
         for name in sorted(unknown):
-            import warnings
-
             hint = nearest(name, known).strip()
             text = f"{BLOCK_VARIABLE} names {name!r}, which is not installed; {hint}"
             warnings.warn(text.rstrip("; "), PluginWarning, stacklevel=4)
@@ -270,17 +261,36 @@ def _entry_points() -> set[tuple[str, str, str, str]]:
     """Return name, distribution, version and module of every entry point of the group."""
     from importlib import metadata  # 20 ms that only those who look for laws pay
 
+    try:
+        points = list(metadata.entry_points(group=GROUP))
+    except Exception:  # a single unreadable distribution, anybody's, spoils the common reading
+        points = [point for found in metadata.distributions() for point in _points_of(found)]
     origins: dict[int, tuple[str, str]] = {}
     found = set()
-    for point in metadata.entry_points(group=GROUP):
+    for point in points:
         if id(point.dist) not in origins:  # a file is read for each name and each version
-            about: Any = point.dist.metadata if point.dist else {}
-            origins[id(point.dist)] = (
-                about.get("Name") or "unknown",
-                about.get("Version") or "unknown",
-            )
+            origins[id(point.dist)] = _name_and_version(point.dist)
         found.add((point.name, *origins[id(point.dist)], point.value))
     return found
+
+
+def _name_and_version(distribution: metadata.Distribution | None) -> tuple[str, str]:
+    """Return name and version as far as they are written down and can be read."""
+    about: Any = {}
+    with contextlib.suppress(Exception):
+        about = distribution.metadata if distribution else {}
+    return about.get("Name") or "unknown", about.get("Version") or "unknown"
+
+
+def _points_of(distribution: metadata.Distribution) -> list[metadata.EntryPoint]:
+    """Return a distribution's entry points of the group; none, with a warning, if unreadable."""
+    try:
+        return list(distribution.entry_points.select(group=GROUP))
+    except Exception as error:
+        where = getattr(distribution, "_path", "a distribution")
+        text = f"the entry points of {where} cannot be read and are passed over: {_short(error)}"
+        warnings.warn(text, PluginWarning, stacklevel=5)
+        return []
 
 
 @contextlib.contextmanager

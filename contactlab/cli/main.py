@@ -10,8 +10,9 @@ import os
 import re
 import sys
 import traceback
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, NoReturn
+import warnings
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import contactlab
 from contactlab.cli.arguments import (
@@ -22,7 +23,7 @@ from contactlab.cli.arguments import (
     check_outputs,
 )
 from contactlab.cli.terminal import fitted
-from contactlab.registry import REGISTRY
+from contactlab.registry import PluginWarning
 from contactlab.status import Status
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
     words = sys.argv[1:] if arguments is None else list(arguments)
     parsed = argparse.Namespace(command="", traceback=False)
-    with fitted():
+    with fitted(), _warned():
         try:
             status = _execute(_join_negative_numbers(words), parsed)
             sys.stdout.flush()
@@ -94,10 +95,25 @@ def _execute(words: list[str], parsed: argparse.Namespace) -> int:
     except SystemExit as stop:  # argparse has printed help, version or the error
         return stop.code if isinstance(stop.code, int) else BAD_INPUT
     check_outputs(parsed)
-    for sentence in REGISTRY.unknown_blocked():
-        print(f"contactlab: warning: {sentence}", file=sys.stderr)
     status: int = parsed.execute(parsed)
     return status
+
+
+@contextlib.contextmanager
+def _warned() -> Iterator[None]:
+    """Show what the registry warns of in one line, as errors are."""
+    with warnings.catch_warnings():
+        usual = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *where: Any) -> None:
+            if issubclass(category, PluginWarning):
+                print(f"contactlab: warning: {message}", file=sys.stderr)
+            else:
+                usual(message, category, *where)
+
+        warnings.simplefilter("always", PluginWarning)
+        warnings.showwarning = show  # type: ignore[assignment]
+        yield
 
 
 def _leave_stdout() -> None:

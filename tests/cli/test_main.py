@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import signal
 import subprocess
@@ -28,6 +29,28 @@ def test_help_of_every_command_has_examples(run, command):
     assert ran.status == 0
     assert "examples:" in ran.out
     assert f"contactlab {command}" in ran.out
+
+
+def test_only_the_subcommand_that_is_named_is_imported():
+    probe = (
+        "import sys; from contactlab.cli.main import main; main(sys.argv[1:]);"
+        "print(*(name for name in sys.modules if name.startswith('contactlab.cli.')))"
+    )
+    for words, needed in ((["--version"], set()), (["plugins", "list"], {"plugins"})):
+        done = subprocess.run(
+            [sys.executable, "-c", probe, *words], capture_output=True, text=True, check=True
+        )
+        modules = {name.rpartition(".")[2] for name in done.stdout.splitlines()[-1].split()}
+        assert modules & set(module.COMMANDS) == needed
+
+
+def test_help_lists_every_command_with_its_summary(run):
+    for words in (["--help"], ["-h"], ["--traceback", "-h"]):
+        out = " ".join(run(*words).out.split())
+        for command in module.COMMANDS:
+            imported = importlib.import_module(f"contactlab.cli.{command}")
+            summary = " ".join(imported.__doc__.partition("\n\n")[0].split())
+            assert f"{command} {summary}" in out
 
 
 def test_no_command_and_an_unknown_one(run):

@@ -70,6 +70,7 @@ def test_blocked_law_is_marked(run, monkeypatch):
 )
 def test_a_blocked_name_that_is_not_installed_is_remarked_on(run, monkeypatch, command):
     monkeypatch.setattr(REGISTRY, "_remarked", set())
+    monkeypatch.setattr(REGISTRY, "_loaded", {})
     monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "tangential.coulom")
     ran = run(*command)
     assert ran.status == 0

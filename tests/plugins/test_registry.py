@@ -161,6 +161,27 @@ def test_what_is_installed_meanwhile_is_found_and_what_is_known_is_not_read_agai
     assert registry.create(MINE) is not None
 
 
+@pytest.mark.parametrize("content", [b"[contactlab]\ntangential.x\n", b"[contactlab]\n\xff = x\n"])
+def test_a_distribution_that_cannot_be_read_stops_nothing(
+    registry, install, law_source, content, tmp_path
+):
+    install("good", "good_law", law_source, MINE)
+    install("unreadable", "unreadable_law", "", "tangential.other")
+    (tmp_path / "unreadable-1.5.dist-info" / "entry_points.txt").write_bytes(content)
+    with pytest.warns(PluginWarning, match=r"unreadable-1.5.dist-info cannot be read"):
+        assert registry.create(MINE) is not None
+    assert {MINE, "tangential.coulomb"} <= set(registry.names())
+
+
+def test_a_distribution_without_its_papers(registry, install, law_source, tmp_path):
+    install("bare", "bare_law", law_source, MINE)
+    papers = tmp_path / "bare-1.5.dist-info" / "METADATA"
+    papers.write_bytes(b"Name: \xff\n")
+    assert registry.info(MINE).distribution == "unknown"
+    papers.unlink()
+    assert registry.create(MINE) is not None
+
+
 def test_an_interruption_is_still_one(registry, install):
     install("slow", "slow_law", "raise KeyboardInterrupt", MINE)
     with pytest.raises(KeyboardInterrupt):
