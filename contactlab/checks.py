@@ -53,15 +53,18 @@ GYRATION = Rule(
 )
 
 
+def shown(value: object, *, most: int = 80) -> str:
+    """Return a value for a message, of at most so many characters."""
+    try:
+        text = repr(value)
+    except Exception:  # an integer of too many digits, lists in lists in lists, anybody's class
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= most else text[: most - 3] + "..."
+
+
 def refuse(argument: str, value: object, rule: str, remedy: str = "") -> ValueError:
     """Return the error for a bad argument: name, value, rule and remedy in one sentence."""
-    try:
-        shown = repr(value)
-    except Exception:  # an integer of too many digits, lists in lists in lists, anybody's class
-        shown = f"a {type(value).__name__}"
-    if len(shown) > 80:
-        shown = shown[:77] + "..."
-    return ValueError(f"{argument} = {shown}: {rule}" + (f"; {remedy}" if remedy else ""))
+    return ValueError(f"{argument} = {shown(value)}: {rule}" + (f"; {remedy}" if remedy else ""))
 
 
 def nearest(name: str, known: Iterable[str], *, cutoff: float = 0.5) -> str:

@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Iterator
 from functools import cached_property
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import attrs
@@ -19,21 +19,14 @@ import pluggy
 from contactlab import hookspecs
 from contactlab.checks import nearest, refuse
 from contactlab.contracts.law import API_VERSION, Law
+from contactlab.installed import GROUP, PluginWarning, entry_points, short, stamp
 
-if TYPE_CHECKING:
-    from importlib import metadata
-
-GROUP = "contactlab"
 BLOCK_VARIABLE = "CONTACTLAB_BLOCK_PLUGINS"
 KINDS = ("normal", "tangential", "integrator")
 
 
 class PluginError(RuntimeError):
     """A plug-in is broken or at odds with another; names plug-in and distribution."""
-
-
-class PluginWarning(UserWarning):
-    """A word about plug-ins without effect: one is blocked that is not there, or unreadable."""
 
 
 @attrs.frozen
@@ -85,9 +78,9 @@ class Registry:
 
     def installed(self) -> list[PluginInfo]:
         """Return every law found, sorted by kind and name, without importing any."""
-        stamp = _stamp()
-        if stamp != self._stamp:
-            self._found, self._stamp = _entry_points(), stamp
+        now = stamp()
+        if now != self._stamp:
+            self._found, self._stamp = entry_points(), now
         blocked = blocked_names()
         infos = {
             PluginInfo(name, distribution, version, module, name in blocked)
@@ -221,7 +214,7 @@ class Registry:
             # pluggy leaves a plug-in that failed validation registered.
             if self._manager.is_registered(module):
                 self._manager.unregister(module)
-            raise PluginError(f"{source} does not fit the hooks: {_short(error)}") from error
+            raise PluginError(f"{source} does not fit the hooks: {short(error)}") from error
         if not self._manager.get_hookcallers(module):
             self._manager.unregister(module)
             raise PluginError(
@@ -246,53 +239,6 @@ def blocked_names() -> set[str]:
     return set(os.environ.get(BLOCK_VARIABLE, "").replace(",", " ").split())
 
 
-def _stamp() -> object:
-    """Return what changes where something is installed: the folders of the path, and when."""
-    stamps = []
-    for folder in sys.path:
-        try:
-            stamps.append((folder, os.stat(folder or ".").st_mtime_ns))
-        except OSError:
-            stamps.append((folder, 0))
-    return stamps
-
-
-def _entry_points() -> set[tuple[str, str, str, str]]:
-    """Return name, distribution, version and module of every entry point of the group."""
-    from importlib import metadata  # 20 ms that only those who look for laws pay
-
-    try:
-        points = list(metadata.entry_points(group=GROUP))
-    except Exception:  # a single unreadable distribution, anybody's, spoils the common reading
-        points = [point for found in metadata.distributions() for point in _points_of(found)]
-    origins: dict[int, tuple[str, str]] = {}
-    found = set()
-    for point in points:
-        if id(point.dist) not in origins:  # a file is read for each name and each version
-            origins[id(point.dist)] = _name_and_version(point.dist)
-        found.add((point.name, *origins[id(point.dist)], point.value))
-    return found
-
-
-def _name_and_version(distribution: metadata.Distribution | None) -> tuple[str, str]:
-    """Return name and version as far as they are written down and can be read."""
-    about: Any = {}
-    with contextlib.suppress(Exception):
-        about = distribution.metadata if distribution else {}
-    return about.get("Name") or "unknown", about.get("Version") or "unknown"
-
-
-def _points_of(distribution: metadata.Distribution) -> list[metadata.EntryPoint]:
-    """Return a distribution's entry points of the group; none, with a warning, if unreadable."""
-    try:
-        return list(distribution.entry_points.select(group=GROUP))
-    except Exception as error:
-        where = getattr(distribution, "_path", "a distribution")
-        text = f"the entry points of {where} cannot be read and are passed over: {_short(error)}"
-        warnings.warn(text, PluginWarning, stacklevel=5)
-        return []
-
-
 @contextlib.contextmanager
 def _guarded(failed: str) -> Iterator[None]:
     """Keep a plug-in's code from ending the program, writing among data or changing settings.
@@ -306,7 +252,7 @@ def _guarded(failed: str) -> Iterator[None]:
     except KeyboardInterrupt:
         raise
     except BaseException as error:
-        raise PluginError(f"{failed}: {_short(error)}") from error
+        raise PluginError(f"{failed}: {short(error)}") from error
 
 
 def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
@@ -327,10 +273,6 @@ def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
 
 def _rank(kind: str) -> int:
     return KINDS.index(kind) if kind in KINDS else len(KINDS)
-
-
-def _short(error: BaseException) -> str:
-    return f"{type(error).__name__}: {error}"
 
 
 REGISTRY = Registry()

@@ -6,7 +6,7 @@ import functools
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
-from contactlab.checks import nearest
+from contactlab.checks import nearest, shown
 
 Named = TypeVar("Named", bound=Callable[..., Any])
 
@@ -90,12 +90,12 @@ def misfit(
                 )
     for value in values[own + len(placed) :]:
         most = f"at most {len(placed)} without a name" if placed else "every one by name"
-        return ArgumentError(f"{name}: {_shown(value)} is one too many; it takes {most}; {remedy}")
+        return ArgumentError(f"{name}: {shown(value)} is one too many; it takes {most}; {remedy}")
     for key in given:
         if key in named:
             return ArgumentError(
-                f"{name}: {key} is given twice, as {_shown(given[key])} by its place and as "
-                f"{_shown(named[key])} by its name; {remedy}"
+                f"{name}: {key} is given twice, as {shown(given[key])} by its place and as "
+                f"{shown(named[key])} by its name; {remedy}"
             )
     needed = [key for key in known if parameters[key].default is inspect.Parameter.empty]
     missing = [key for key in needed if key not in given and key not in named]
@@ -103,11 +103,3 @@ def misfit(
         word = "are" if len(missing) > 1 else "is"
         return ArgumentError(f"{name}: {', '.join(missing)} {word} missing; {remedy}")
     return None
-
-
-def _shown(value: object) -> str:
-    try:
-        text = repr(value)
-    except Exception:  # anybody's class
-        text = f"a {type(value).__name__}"
-    return text if len(text) <= 60 else text[:57] + "..."

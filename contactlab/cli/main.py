@@ -23,7 +23,7 @@ from contactlab.cli.arguments import (
     check_outputs,
 )
 from contactlab.cli.terminal import fitted
-from contactlab.registry import PluginWarning
+from contactlab.installed import PluginWarning
 from contactlab.status import Status
 
 if TYPE_CHECKING:

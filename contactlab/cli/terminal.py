@@ -12,7 +12,7 @@ import io
 import re
 import sys
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, TextIO
 
 #: Characters that a terminal obeys, or that change the direction of writing; not tab and newline.
@@ -73,6 +73,11 @@ class Printed:
         self.overwrite("")
         self._stream.write(self._fit(text))
         return len(text)
+
+    def writelines(self, lines: Iterable[str]) -> None:
+        """Write several texts."""
+        for line in lines:
+            self.write(line)
 
     def overwrite(self, text: str) -> None:
         """Put ``text`` in place of the last line of progress; an empty one leaves none."""

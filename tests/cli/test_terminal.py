@@ -37,6 +37,7 @@ def test_everything_printed_goes_through_it(monkeypatch):
     with fitted():
         print("ψ", EVIL)
         print("°", EVIL, file=sys.stderr)
+        sys.stderr.writelines([EVIL])
         assert not sys.stdout.isatty()
     assert sys.stdout is out
     for stream, first in ((out, b"psi "), (err, b"deg ")):

@@ -8,7 +8,7 @@ import pytest
 
 import contactlab
 from contactlab import PluginError
-from contactlab.registry import PluginWarning
+from contactlab.installed import PluginWarning
 
 MINE = "tangential.mine"
 
