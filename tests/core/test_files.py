@@ -115,13 +115,13 @@ def test_a_link_stays_a_link(old, tmp_path):
 @pytest.mark.skipif(os.name == "nt", reason="POSIX files")
 def test_what_is_no_file_is_not_written_to(tmp_path):
     os.mkfifo(tmp_path / "pipe.csv")
-    (tmp_path / "full.csv").symlink_to("/dev/full")
+    (tmp_path / "device.csv").symlink_to(os.devnull)
     (tmp_path / "folder.csv").mkdir()
-    for name in ("pipe.csv", "full.csv", "folder.csv"):
+    for name in ("pipe.csv", "device.csv", "folder.csv"):
         assert "not a regular file" in unwritable(tmp_path / name)
         with pytest.raises(OSError, match="not a regular file"), written(tmp_path / name):
             pass
-    assert stat.S_ISCHR(os.stat("/dev/full").st_mode)
+    assert stat.S_ISCHR(os.stat(os.devnull).st_mode)
     assert unwritable(tmp_path / "none" / "a.csv") == f"there is no folder {tmp_path / 'none'}"
     assert unwritable(tmp_path / "a.csv") == ""
 
