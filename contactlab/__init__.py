@@ -16,6 +16,7 @@ from contactlab.rebounds import rebound
 from contactlab.registry import REGISTRY, PluginError
 from contactlab.result import ImpactError, ImpactResult
 from contactlab.scene import Scene
+from contactlab.signatures import named_arguments
 from contactlab.simulation import Simulation
 from contactlab.status import Status
 
@@ -43,6 +44,7 @@ __all__ = [
 ]
 
 
+@named_arguments("create('tangential.annulus', annuli=50)")
 def create(name: str, **options: Any) -> Any:
     """Return a new law by name: ``create("tangential.annulus", annuli=50)``.
 
@@ -56,6 +58,7 @@ def create(name: str, **options: Any) -> Any:
     return REGISTRY.create(name, **options)
 
 
+@named_arguments("read_scene('scene.toml')")
 def read_scene(path: str | Path) -> SceneFile:
     """Read a scene or a sweep, its laws and its measured values from a TOML file.
 

@@ -17,11 +17,13 @@ from contactlab.checks import (
     real,
     refuse,
 )
+from contactlab.signatures import named_arguments
 
 #: K of a solid homogeneous sphere: K² = 2/5.
 SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)
 
 
+@named_arguments("Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)")
 @attrs.frozen(init=False, kw_only=True)
 class Material:
     """A linear elastic, isotropic material.
@@ -89,6 +91,7 @@ def _material() -> Any:
     return attrs.field(validator=_is_material)
 
 
+@named_arguments("Sphere(0.0127, steel)")
 @attrs.frozen
 class Sphere:
     """An elastic sphere.
@@ -131,6 +134,7 @@ class Sphere:
         object.__setattr__(self, "mass", real("mass", solid, rule=POSITIVE))
 
 
+@named_arguments("HalfSpace(steel)")
 @attrs.frozen
 class HalfSpace:
     """An elastic body with a plane surface, so large that it does not move."""
@@ -138,6 +142,7 @@ class HalfSpace:
     material: Material = _material()
 
 
+@named_arguments("Pair.of(Sphere(0.0127, steel), HalfSpace(glass))")
 @attrs.frozen(kw_only=True)
 class Pair:
     """What the laws need to know of two bodies in contact: theory §1.

@@ -7,7 +7,7 @@ person can mend the input without reading any code.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple, TypeAlias
 
 import attrs
@@ -18,6 +18,19 @@ from numpy.typing import NDArray
 Real: TypeAlias = float | NDArray[np.float64]
 #: A yes or no, or an array of them.
 Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
+
+
+#: Words for symbols and other names that people try; more than one where it depends.
+SYMBOLS: dict[str, tuple[str, ...]] = {
+    "mu": ("friction_coefficient",), "friction": ("friction_coefficient",),
+    "nu": ("poisson_ratio",), "E": ("young_modulus",), "G": ("shear_modulus",),
+    "rho": ("density",), "R": ("radius",), "r": ("radius",), "diameter": ("radius",),
+    "m": ("mass",), "M": ("mass",), "K": ("gyration_ratio",),
+    "v": ("tangential_velocity", "speed"), "vx": ("tangential_velocity",),
+    "v1": ("normal_speed",), "vn": ("normal_speed",), "vz": ("normal_speed",),
+    "omega": ("spin",), "w": ("spin",), "e": ("restitution",),
+    "angle": ("angle_deg",), "psi": ("psi1",), "dt": ("steps",), "n": ("steps",),
+}  # fmt: skip
 
 
 class Rule(NamedTuple):
@@ -40,12 +53,32 @@ GYRATION = Rule(
 )
 
 
+def shown(value: object, *, most: int = 80) -> str:
+    """Return a value for a message, of at most so many characters."""
+    try:
+        text = repr(value)
+    except Exception:  # an integer of too many digits, lists in lists in lists, anybody's class
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= most else text[: most - 3] + "..."
+
+
 def refuse(argument: str, value: object, rule: str, remedy: str = "") -> ValueError:
     """Return the error for a bad argument: name, value, rule and remedy in one sentence."""
-    shown = repr(value)
-    if len(shown) > 80:
-        shown = shown[:77] + "..."
-    return ValueError(f"{argument} = {shown}: {rule}" + (f"; {remedy}" if remedy else ""))
+    return ValueError(f"{argument} = {shown(value)}: {rule}" + (f"; {remedy}" if remedy else ""))
+
+
+def nearest(name: str, known: Iterable[str], *, cutoff: float = 0.5) -> str:
+    """Return "did you mean ...? " with the known name most like ``name``, or nothing.
+
+    A symbol of the paper, or of everybody's, stands for the word used here: mu for
+    friction_coefficient.
+    """
+    import difflib  # only for those who misspell
+
+    names = list(known)
+    meant = [word for word in SYMBOLS.get(name, ()) if word in names]
+    meant += difflib.get_close_matches(name, names, n=1, cutoff=cutoff)
+    return f"did you mean {meant[0]!r}? " if meant else ""
 
 
 def real(argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "") -> Real:
@@ -96,6 +129,8 @@ def real(argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "")
 def whole(argument: str, value: object, *, least: int = 1, most: int = 10_000_000) -> int:
     """Return ``value`` as an int between ``least`` and ``most``, or refuse it."""
     rule = f"must be a whole number from {least} to {most}"
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
         raise refuse(argument, value, rule)
     if not least <= value <= most:

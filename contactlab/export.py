@@ -1,8 +1,12 @@
-"""Results as files: JSON, CSV, npz. One table of columns serves all three."""
+"""Results as files: JSON, CSV, npz. One table of columns serves all three.
+
+To add a column is a line in ``COLUMNS``: files, ``--quantity``, measured values and figures
+take it from there, an angle in degrees too. Tables for reading show those that are named below
+it. To add a form of file is a writer and a line in ``WRITERS``.
+"""
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 from collections.abc import Callable
@@ -11,11 +15,12 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.files import write_table, written
 from contactlab.plain import plain
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 
-#: Column name, unit, and where it comes from. Tables and files read this one list.
+#: Column name, unit, and where it comes from.
 COLUMNS: tuple[tuple[str, str, Callable[[ImpactResult], Any]], ...] = (
     ("psi1", "1", lambda result: result.psi1),
     ("chi", "1", lambda result: result.scene.chi),
@@ -40,6 +45,17 @@ COLUMNS: tuple[tuple[str, str, Callable[[ImpactResult], Any]], ...] = (
     ("status", "", lambda result: result.status),
 )  # fmt: skip
 
+#: Columns of the table of a sweep, and of a comparison of single impacts; those that are
+#: undefined for every impact are left out.
+SWEEP_TABLE = (
+    "psi1", "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg",
+    "rebound_spin", "friction_work",
+)  # fmt: skip
+COMPARISON_TABLE = (
+    "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg", "rebound_spin",
+    "contact_time", "friction_work", "energy_imbalance",
+)  # fmt: skip
+
 
 def to_dict(result: ImpactResult) -> dict[str, Any]:
     """Return everything but the history as plain numbers, lists and text."""
@@ -61,7 +77,9 @@ def write_json(result: ImpactResult, path: str | Path) -> None:
     if result.history is not None:
         columns = result.history.columns() | result.history.fields
         content["history"] = {name: plain(np.asarray(column)) for name, column in columns.items()}
-    Path(path).write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    text = json.dumps(content, indent=2, allow_nan=False) + "\n"
+    with written(path) as stream:
+        stream.write(text)
 
 
 def write_csv(result: ImpactResult, path: str | Path) -> None:
@@ -70,7 +88,7 @@ def write_csv(result: ImpactResult, path: str | Path) -> None:
     headings = [
         f"{name} ({unit_in(unit, result.scene)})" if unit else name for name, unit, _ in COLUMNS
     ]
-    _write_table(path, headings, list(zip(*table, strict=True)))
+    write_table(path, headings, list(zip(*table, strict=True)))
 
 
 def write_history_csv(result: ImpactResult, path: str | Path) -> None:
@@ -86,7 +104,7 @@ def write_history_csv(result: ImpactResult, path: str | Path) -> None:
         raise ValueError("result: has no history of a single impact; run(scene, history=True)")
     columns = history.columns()
     headings = [f"{name} ({unit_in(history.unit(name), result.scene)})" for name in columns]
-    _write_table(path, headings, list(zip(*columns.values(), strict=True)))
+    write_table(path, headings, list(zip(*columns.values(), strict=True)))
 
 
 def write_npz(result: ImpactResult, path: str | Path) -> None:
@@ -97,8 +115,12 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
     if result.history is not None:
         columns = result.history.columns() | result.history.fields
         arrays |= {f"history_{name}": column for name, column in columns.items()}
-    with Path(path).open("wb") as stream:  # a path that ends otherwise would get .npz added
+    with written(path, binary=True) as stream:  # a path that ends otherwise would get .npz added
         np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
+
+
+#: Form of file by the end of its name.
+WRITERS = {".json": write_json, ".csv": write_csv, ".npz": write_npz}
 
 
 def unit_in(unit: str, scene: Scene) -> str:
@@ -109,10 +131,3 @@ def unit_in(unit: str, scene: Scene) -> str:
 def _spread(value: Any, shape: tuple[int, ...]) -> list[Any]:
     items = np.broadcast_to(np.asarray(value, dtype=object), shape).ravel().tolist()
     return [math.nan if item is None else getattr(item, "name", item) for item in items]
-
-
-def _write_table(path: str | Path, headings: list[str], rows: list[tuple[Any, ...]]) -> None:
-    with Path(path).open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(headings)
-        writer.writerows(rows)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import refuse
+from contactlab.checks import nearest, refuse
 from contactlab.export import COLUMNS, unit_in
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
@@ -65,8 +64,5 @@ def quantity_named(name: str, *, where: str = "quantity") -> Quantity:
     """
     if name in QUANTITIES:
         return QUANTITIES[name]
-    nearest = difflib.get_close_matches(name, QUANTITIES, n=1, cutoff=0.5)
-    hint = f"did you mean {nearest[0]!r}? " if nearest else ""
-    raise refuse(
-        where, name, "is not a quantity of a result", f"{hint}known: {', '.join(QUANTITIES)}"
-    )
+    remedy = f"{nearest(name, QUANTITIES)}known: {', '.join(QUANTITIES)}"
+    raise refuse(where, name, "is not a quantity of a result", remedy)

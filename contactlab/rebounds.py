@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.checks import POSITIVE, Real, Rule, real, refuse
+from contactlab.signatures import named_arguments
 
 if TYPE_CHECKING:
     from contactlab.result import ImpactResult
@@ -32,6 +33,7 @@ CHI = Rule(
 LARGEST = 1e5
 
 
+@named_arguments("rebound(1.2, 1.4412)")
 def rebound(psi1: object, chi: object, *, tolerance: float = 1e-5) -> Real:
     """Return the tangential rebound psi2 of elastic spheres, for any number of impacts at once.
 

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import contextlib
 import os
+import sys
+import warnings
+from collections.abc import Iterator
 from functools import cached_property
 from types import ModuleType
 from typing import Any
 from weakref import WeakKeyDictionary
 
 import attrs
+import numpy as np
 import pluggy
 
 from contactlab import hookspecs
-from contactlab.checks import refuse
+from contactlab.checks import nearest, refuse
 from contactlab.contracts.law import API_VERSION, Law
+from contactlab.installed import GROUP, PluginWarning, entry_points, short, stamp
 
-GROUP = "contactlab"
 BLOCK_VARIABLE = "CONTACTLAB_BLOCK_PLUGINS"
 KINDS = ("normal", "tangential", "integrator")
 
@@ -40,6 +44,11 @@ class PluginInfo:
         """The part of the name before the dot."""
         return self.name.partition(".")[0]
 
+    @property
+    def malformed(self) -> bool:
+        """Whether the name is not a kind, a dot and a name; no such law can be made."""
+        return self.kind not in KINDS or not self.name.partition(".")[2]
+
 
 class Registry:
     """The laws installed in this environment.
@@ -51,6 +60,9 @@ class Registry:
 
     def __init__(self) -> None:
         self._loaded: dict[str, tuple[type[Law], PluginInfo]] = {}
+        self._remarked: set[str] = set()
+        self._found: set[tuple[str, str, str, str]] = set()
+        self._stamp: object = None
         self._origins: WeakKeyDictionary[type[Law], PluginInfo | None] = WeakKeyDictionary()
 
     @cached_property
@@ -66,19 +78,25 @@ class Registry:
 
     def installed(self) -> list[PluginInfo]:
         """Return every law found, sorted by kind and name, without importing any."""
-        from importlib import metadata  # 20 ms that only those who look for laws pay
-
+        now = stamp()
+        if now != self._stamp:
+            self._found, self._stamp = entry_points(), now
+        blocked = blocked_names()
         infos = {
-            PluginInfo(
-                name=point.name,
-                distribution=point.dist.name if point.dist else "unknown",
-                version=point.dist.version if point.dist else "unknown",
-                module=point.value,
-                blocked=point.name in blocked_names(),
-            )
-            for point in metadata.entry_points(group=GROUP)
+            PluginInfo(name, distribution, version, module, name in blocked)
+            for name, distribution, version, module in self._found
         }
+        self._remark({info.name for info in infos})
         return sorted(infos, key=lambda info: (_rank(info.kind), info.name, info.distribution))
+
+    def _remark(self, known: set[str]) -> None:
+        """Warn of each name that is blocked and not installed: a slip of the pen blocks nothing."""
+        unknown = blocked_names() - known - self._remarked
+        self._remarked |= unknown
+        for name in sorted(unknown):
+            hint = nearest(name, known).strip()
+            text = f"{BLOCK_VARIABLE} names {name!r}, which is not installed; {hint}"
+            warnings.warn(text.rstrip("; "), PluginWarning, stacklevel=4)
 
     def names(self, kind: str | None = None) -> list[str]:
         """Return the names of laws that may be made, of one kind or of all."""
@@ -86,7 +104,7 @@ class Registry:
             {
                 info.name
                 for info in self.installed()
-                if not info.blocked and kind in (None, info.kind)
+                if not (info.blocked or info.malformed) and kind in (None, info.kind)
             }
         )
 
@@ -108,6 +126,11 @@ class Registry:
             )
         if not found:
             raise self._unknown(name)
+        if found[0].malformed:
+            source = f"{name!r} of {found[0].distribution} {found[0].version}"
+            raise PluginError(
+                f"{source}: the name must be one of {', '.join(KINDS)}, a dot, a name"
+            )
         if found[0].blocked:
             raise refuse("name", name, f"is blocked by {BLOCK_VARIABLE}", "unset it to use the law")
         return found[0]
@@ -141,12 +164,8 @@ class Registry:
         known = inspect.signature(law).parameters
         for option, value in options.items():
             if option not in known:
-                import difflib  # only for those who misspell
-
-                near = difflib.get_close_matches(option, known, n=1)
-                hint = f"did you mean {near[0]!r}? " if near else ""
-                has = ", ".join(known) or "no options"
-                raise refuse(option, value, f"{name} does not know it", f"{hint}it has {has}")
+                remedy = f"{nearest(option, known)}it has {', '.join(known) or 'no options'}"
+                raise refuse(option, value, f"{name} does not know it", remedy)
         for option, parameter in known.items():
             if parameter.default is parameter.empty and option not in options:
                 raise ValueError(
@@ -178,19 +197,15 @@ class Registry:
 
     def _load(self, info: PluginInfo) -> type[Law]:
         source = f"{info.name!r} of {info.distribution} {info.version}"
-        try:
-            from importlib import metadata
+        from importlib import metadata
 
+        with _guarded(f"{source} could not be imported"):
             module = metadata.EntryPoint(info.name, info.module, GROUP).load()
-        except (Exception, SystemExit) as error:
-            raise PluginError(f"{source} could not be imported: {_short(error)}") from error
         self._register(module, info, source)
         others = [plugin for plugin in self._manager.get_plugins() if plugin is not module]
         ask = self._manager.subset_hook_caller("contactlab_law", others)
-        try:
+        with _guarded(f"{source} raised when asked for its law"):
             law = ask(name=info.name)
-        except Exception as error:
-            raise PluginError(f"{source} raised when asked for its law: {_short(error)}") from error
         return _checked(law, info, source)
 
     def _register(self, module: ModuleType, info: PluginInfo, source: str) -> None:
@@ -203,7 +218,7 @@ class Registry:
             # pluggy leaves a plug-in that failed validation registered.
             if self._manager.is_registered(module):
                 self._manager.unregister(module)
-            raise PluginError(f"{source} does not fit the hooks: {_short(error)}") from error
+            raise PluginError(f"{source} does not fit the hooks: {short(error)}") from error
         if not self._manager.get_hookcallers(module):
             self._manager.unregister(module)
             raise PluginError(
@@ -211,16 +226,13 @@ class Registry:
             )
 
     def _unknown(self, name: str) -> ValueError:
-        import difflib  # only for those who misspell
-
         kind, _, short = str(name).rpartition(".")
         names = self.names(kind if kind in KINDS else None)
         others = [known for known in self.names() if known.endswith(f".{short}")]
-        nearest = others or difflib.get_close_matches(name, names, n=1, cutoff=0.5)
         if kind in KINDS and others:
             hint = f"{short!r} is a law of another kind, {others[0]!r}; "
         else:
-            hint = f"did you mean {nearest[0]!r}? " if nearest else ""
+            hint = nearest(name, others or names, cutoff=0.0 if others else 0.5)
         return refuse(
             "name", name, "no such law is installed", f"{hint}installed: {', '.join(names)}"
         )
@@ -229,6 +241,22 @@ class Registry:
 def blocked_names() -> set[str]:
     """Return the names in ``CONTACTLAB_BLOCK_PLUGINS``, separated by commas or blanks."""
     return set(os.environ.get(BLOCK_VARIABLE, "").replace(",", " ").split())
+
+
+@contextlib.contextmanager
+def _guarded(failed: str) -> Iterator[None]:
+    """Keep a plug-in's code from ending the program, writing among data or changing settings.
+
+    Whatever it raises but an interruption becomes a ``PluginError``; what it prints goes to
+    stderr, for stdout may be read by a program; numpy's handling of errors is put back.
+    """
+    try:
+        with np.errstate(), contextlib.redirect_stdout(sys.stderr):
+            yield
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        raise PluginError(f"{failed}: {short(error)}") from error
 
 
 def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
@@ -249,10 +277,6 @@ def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
 
 def _rank(kind: str) -> int:
     return KINDS.index(kind) if kind in KINDS else len(KINDS)
-
-
-def _short(error: BaseException) -> str:
-    return f"{type(error).__name__}: {error}"
 
 
 REGISTRY = Registry()

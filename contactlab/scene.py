@@ -11,6 +11,7 @@ import numpy as np
 from contactlab import batch
 from contactlab.bodies import HalfSpace, Pair, Sphere
 from contactlab.checks import NON_NEGATIVE, POSITIVE, Real, quantity, real, refuse
+from contactlab.signatures import named_arguments
 
 #: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s: numbers
 #: formed from smaller ones are no longer held to sixteen digits.
@@ -32,6 +33,7 @@ def _is_pair(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
         raise refuse(attribute.name, value, "must be a Pair", "or leave it out")
 
 
+@named_arguments("Scene(ball, plate, friction_coefficient=0.2, normal_speed=1.0)")
 @attrs.frozen
 class Scene:
     """One oblique impact, or a batch of them, in SI units.
@@ -142,6 +144,7 @@ class Scene:
             )
 
     @classmethod
+    @named_arguments("Scene.nondimensional(psi1=1.2, chi=1.4412)")
     def nondimensional(cls, *, psi1: Any, chi: Any) -> Scene:
         """Return the scene of the paper's own two parameters, eqs (29) and (38).
 

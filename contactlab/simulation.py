@@ -24,6 +24,7 @@ from contactlab.normal_motion import FailedMotion, normal_motion
 from contactlab.plan import Answer, Plan, answers, make_plan
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
+from contactlab.signatures import named_arguments
 from contactlab.status import Status
 
 #: Impacts of a sweep advanced together: enough to hide the cost of a call, few enough that
@@ -43,6 +44,7 @@ class Prepared(NamedTuple):
     plan: Plan
 
 
+@named_arguments("Simulation(tangential='annulus', integrator='symplectic')")
 @attrs.frozen(kw_only=True, init=False)
 class Simulation:
     """A normal law, a tangential law and an integrator, composed.

@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.analysis.interrupts import uninterrupted
 from contactlab.checks import refuse
 from contactlab.quantities import quantity_named
 from contactlab.result import ImpactResult
@@ -194,13 +195,8 @@ def _failure(name: str, result: ImpactResult) -> str:
 
 
 def _run(simulation: Simulation, scene: Scene) -> ImpactResult:
-    if not scene.shape:
-        return simulation.run(scene)
-    result = simulation.sweep(scene)
-    # A sweep keeps what is done when it is interrupted; half a comparison is of no use.
-    if any(status is Status.INTERRUPTED for status in result.status):
-        raise KeyboardInterrupt
-    return result
+    # Half a comparison is of no use.
+    return uninterrupted(simulation.sweep(scene)) if scene.shape else simulation.run(scene)
 
 
 def _timed(name: str, simulation: Simulation, scene: Scene, *, history: bool) -> LawRun:

@@ -1,4 +1,8 @@
-"""The numbers behind Figs 1-4 of the paper."""
+"""The numbers behind Figs 1-4 of the paper.
+
+To add a figure is a function ``figure_5`` here, for the numbers, and one of the same name in
+``contactlab.figures.paper``, which draws them: the command finds both by their name.
+"""
 
 from __future__ import annotations
 
@@ -98,8 +102,10 @@ def figure_4(simulation: Simulation) -> FigureData:
 
 
 FIGURES: Mapping[int, Callable[[Simulation], FigureData]] = {
-    1: figure_1, 2: figure_2, 3: figure_3, 4: figure_4,
-}  # fmt: skip
+    int(name.removeprefix("figure_")): function
+    for name, function in list(globals().items())
+    if name.startswith("figure_")
+}
 
 
 def chi_of_gyration(gyration_ratio: float) -> float:

@@ -8,6 +8,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.analysis.interrupts import uninterrupted
 from contactlab.bodies import HalfSpace, Material, Sphere
 from contactlab.closed_forms import hertz_scales, rigid_body_rebound
 from contactlab.registry import REGISTRY
@@ -101,7 +102,7 @@ def _rigid() -> Finding:
     chi = 49 / 34
     psi1 = np.linspace(-8.0, 8.0, 65)
     sim = Simulation(tangential="coulomb", integrator="symplectic")
-    psi2 = sim.sweep(Scene.nondimensional(psi1=psi1, chi=chi)).psi2
+    psi2 = uninterrupted(sim.sweep(Scene.nondimensional(psi1=psi1, chi=chi))).psi2
     worst = float(np.max(np.abs(psi2 - rigid_body_rebound(psi1, chi))))
     return Finding(
         what="coulomb: psi2", against="slip, then rolling", difference=worst, bound=1e-12
@@ -121,7 +122,8 @@ def _reference(
     )
     worst = 0.0
     for chi, expected in REFERENCE_PSI2.items():
-        psi2 = sim.sweep(Scene.nondimensional(psi1=np.array(REFERENCE_PSI1), chi=chi)).psi2
+        batch = Scene.nondimensional(psi1=np.array(REFERENCE_PSI1), chi=chi)
+        psi2 = uninterrupted(sim.sweep(batch)).psi2
         worst = float(np.max(np.append(np.abs(psi2 - np.array(expected)), worst)))
     numbers = ", ".join(f"{key}={value}" for key, value in (options | settings).items())
     return Finding(
@@ -139,7 +141,7 @@ def _experiment() -> Finding:
     scene = Scene(
         Sphere(2.5e-3, oxide), HalfSpace(glass), 0.092, 3.9 * np.cos(angle), 3.9 * np.sin(angle)
     )
-    found: Any = Simulation().sweep(scene).tangential_restitution
+    found: Any = uninterrupted(Simulation().sweep(scene)).tangential_restitution
     return Finding(
         what="exact law: e_t of aluminium oxide on glass",
         against="Kharaz et al. (2001), 11 angles",

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.analysis.bench_methods import Method, scenes
+from contactlab.analysis.interrupts import uninterrupted
 from contactlab.registry import REGISTRY
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
@@ -80,11 +81,15 @@ class Row:
 
 @attrs.frozen(kw_only=True)
 class Benchmark:
-    """Rows, and for each method the order observed in its rms error."""
+    """Rows, and for each method the order observed in its rms error.
+
+    ``complete`` is False where the budget ran out or, then ``interrupted``, on Ctrl-C.
+    """
 
     rows: tuple[Row, ...]
     orders: dict[str, float]
     complete: bool
+    interrupted: bool = False
 
     def front(self) -> list[Row]:
         """Return the Pareto front: rows that no other beats in both error and time."""
@@ -116,27 +121,41 @@ def bench(
         Seconds after which no further rung is begun; ``complete`` then is False.
     progress : callable, optional
         Called as ``progress(done, total)`` after each rung.
+
+    Returns
+    -------
+    Benchmark
+        Interrupting (Ctrl-C) keeps the rungs that are done.
     """
     given = scenes(quick=quick)
     exact = [_exact(scene) for scene in given]
     rungs = [(method, rung) for method in methods for rung in method.rungs(quick=quick)]
     started, rows, slow = time.perf_counter(), [], set[str]()
     limit = SLOW_QUICK if quick else SLOW
-    for done, (method, rung) in enumerate(rungs, start=1):
-        if time.perf_counter() - started > budget:
-            break
-        rows.append(
-            _left_out(method, rung) if method.name in slow else _row(method, rung, given, exact)
-        )
-        if rows[-1].time_s > limit:
-            slow.add(method.name)
-        if progress is not None:
-            progress(done, len(rungs))
+    interrupted = False
+    try:
+        for done, (method, rung) in enumerate(rungs, start=1):
+            if time.perf_counter() - started > budget:
+                break
+            rows.append(
+                _left_out(method, rung) if method.name in slow else _row(method, rung, given, exact)
+            )
+            if rows[-1].time_s > limit:
+                slow.add(method.name)
+            if progress is not None:
+                progress(done, len(rungs))
+    except KeyboardInterrupt:
+        interrupted = True
     orders = {
         method.name: _order([row for row in rows if row.method == method.name])
         for method in methods
     }
-    return Benchmark(rows=tuple(rows), orders=orders, complete=len(rows) == len(rungs))
+    return Benchmark(
+        rows=tuple(rows),
+        orders=orders,
+        complete=len(rows) == len(rungs),
+        interrupted=interrupted,
+    )
 
 
 def _exact(scene: Scene) -> ImpactResult:
@@ -234,7 +253,7 @@ def _sweep_time(simulation: Simulation) -> float:
     least = np.inf
     for _ in range(2):
         before = time.perf_counter()
-        simulation.sweep(batch)
+        uninterrupted(simulation.sweep(batch))
         least = min(least, time.perf_counter() - before)
     return least / SWEEP
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from contactlab.cli.progress import progress as progress  # the subcommands' own
+from contactlab.files import distinct, unwritable
 from contactlab.registry import KINDS
 
 #: Exit statuses; the last two are what a shell reports of a program ended by a signal.
@@ -42,10 +43,14 @@ def setting(text: str) -> tuple[str, Any]:
     path, equals, value = text.partition("=")
     if not equals or not path.strip() or not value.strip():
         raise argparse.ArgumentTypeError(f"{text!r}: write it as tangential.annuli=50")
+    import tomllib  # only for those who set an option
+
     try:
         return path.strip(), tomllib.loads(f"value = {value.strip()}")["value"]
     except tomllib.TOMLDecodeError:
         return path.strip(), value.strip()  # a word needs no quotes on the command line
+    except (RecursionError, ValueError) as error:  # too deep, or of too many digits
+        raise argparse.ArgumentTypeError(f"{path.strip()}: {error}") from None
 
 
 def file_of(*suffixes: str) -> Callable[[str], Path]:
@@ -55,11 +60,35 @@ def file_of(*suffixes: str) -> Callable[[str], Path]:
         path = Path(text)
         if path.suffix.lower() not in suffixes:
             raise argparse.ArgumentTypeError(f"{text!r}: must end in {' or '.join(suffixes)}")
-        if not path.parent.is_dir():
-            raise argparse.ArgumentTypeError(f"{text!r}: there is no folder {str(path.parent)!r}")
+        if why_not := unwritable(path):
+            raise argparse.ArgumentTypeError(f"{text!r}: {why_not}")
         return path
 
     return convert
+
+
+def check_outputs(arguments: argparse.Namespace) -> None:
+    """Refuse two outputs that are the same file, or one that is the scene."""
+    given = vars(arguments)
+    outputs = {f"--{name}": path for name, path in given.items() if isinstance(path, Path)}
+    distinct({"SCENE.toml": given.get("scene"), **outputs})
+
+
+def save(*writings: tuple[Path | None, Callable[[Path], object]]) -> int:
+    """Write the files that are asked for, and return the status of the command.
+
+    A file that cannot be written is said on stderr: after long work it must not take the other
+    files, and what is printed, with it.
+    """
+    status = OK
+    for path, write in writings:
+        try:
+            if path is not None:
+                write(path)
+        except OSError as error:
+            print(f"contactlab: error: {error}", file=sys.stderr)
+            status = FAILED
+    return status
 
 
 def add_laws(parser: argparse.ArgumentParser, *, many: bool = False) -> None:
@@ -119,17 +148,3 @@ def check_budget(seconds: float) -> None:
     """Refuse a budget that is not positive."""
     if seconds <= 0.0:
         raise ValueError(f"--budget {seconds:g}: must be positive, in seconds")
-
-
-def progress(asked: bool | None, what: str) -> Callable[[int, int], object] | None:
-    """Return a function that shows progress on stderr, or None."""
-    if asked is None:
-        asked = sys.stderr.isatty()
-    if not asked:
-        return None
-
-    def show(done: int, total: int) -> None:
-        end = "\n" if done == total or not sys.stderr.isatty() else "\r"
-        print(f"{what}: {done}/{total}", end=end, file=sys.stderr, flush=True)
-
-    return show

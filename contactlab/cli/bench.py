@@ -10,8 +10,8 @@ Examples
 from __future__ import annotations
 
 import argparse
-import csv
 import json
+import sys
 from pathlib import Path
 
 import attrs
@@ -20,7 +20,11 @@ from contactlab.analysis.bench_methods import methods
 from contactlab.analysis.work_precision import Benchmark, Row, bench
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table, time
+from contactlab.files import write_table
 from contactlab.plain import plain
+
+#: Why a report may not be complete.
+BUDGET = "the budget ran out"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,15 +42,22 @@ def execute(arguments: argparse.Namespace) -> int:
         budget=arguments.budget,
         progress=shared.progress(arguments.progress, "bench"),
     )
-    if arguments.csv:
-        _write_csv(arguments.csv, benchmark)
-    if arguments.figure:
-        from contactlab.figures.files import save  # matplotlib only when drawing
-        from contactlab.figures.work_precision import work_precision
-
-        save(arguments.figure, lambda axes: work_precision(axes, benchmark), wide=True)
+    saved = shared.save(
+        (arguments.csv, lambda path: _write_csv(path, benchmark)),
+        (arguments.figure, lambda path: _draw(path, benchmark)),
+    )
     print(json.dumps(_content(benchmark), indent=2) if arguments.json else _report(benchmark))
-    return shared.OK
+    return shared.INTERRUPTED if benchmark.interrupted else saved
+
+
+def _draw(path: Path, benchmark: Benchmark) -> None:
+    if not benchmark.rows:
+        print("no figure drawn: nothing was measured", file=sys.stderr)
+        return
+    from contactlab.figures.files import save  # matplotlib only when drawing
+    from contactlab.figures.work_precision import work_precision
+
+    save(path, lambda axes: work_precision(axes, benchmark), wide=True)
 
 
 def _content(benchmark: Benchmark) -> dict[str, object]:
@@ -73,12 +84,11 @@ def _report(benchmark: Benchmark) -> str:
     orders = [[name, order] for name, order in benchmark.orders.items() if order == order]
     if orders:
         text += "\n\n" + table(["method", "order observed"], orders, digits=3)
-    return text if benchmark.complete else text + "\n\nnot complete: the budget ran out"
+    if benchmark.complete:
+        return text
+    return f"{text}\n\nnot complete: {'interrupted' if benchmark.interrupted else BUDGET}"
 
 
 def _write_csv(path: Path, benchmark: Benchmark) -> None:
     names = [field.name for field in attrs.fields(Row)]
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(names)
-        writer.writerows([getattr(row, name) for name in names] for row in benchmark.rows)
+    write_table(path, names, ([getattr(row, name) for name in names] for row in benchmark.rows))

@@ -14,9 +14,11 @@ import inspect
 import itertools
 import json
 import sys
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
-from contactlab.analysis.compare import compare
+from contactlab.analysis.compare import Comparison, compare
 from contactlab.analysis.compare_export import to_dict, write_csv
 from contactlab.cli import arguments as shared
 from contactlab.cli import side_by_side
@@ -61,10 +63,7 @@ def execute(arguments: argparse.Namespace) -> int:
         progress=shared.progress(arguments.progress, "runs"),
     )
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
-    if arguments.figure:
-        from contactlab.cli.drawing import draw_comparison  # matplotlib only when drawing
-
-        draw_comparison(arguments.figure, comparison, quantities)
+    saved = shared.save((arguments.figure, lambda path: _draw(path, comparison, quantities)))
     if arguments.json:
         content = to_dict(comparison, quantities) | {"title": file.title}
         print(json.dumps(content, indent=2, allow_nan=False))
@@ -75,7 +74,13 @@ def execute(arguments: argparse.Namespace) -> int:
     failures = comparison.failures()
     for sentence in failures:
         print(f"contactlab compare: failed: {sentence}", file=sys.stderr)
-    return shared.FAILED if failures else shared.OK
+    return shared.FAILED if failures else saved
+
+
+def _draw(path: Path, comparison: Comparison, quantities: Sequence[str]) -> None:
+    from contactlab.cli.drawing import draw_comparison  # matplotlib only when drawing
+
+    draw_comparison(path, comparison, quantities)
 
 
 def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation]:

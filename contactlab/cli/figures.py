@@ -9,11 +9,12 @@ Examples
 from __future__ import annotations
 
 import argparse
-import csv
+import functools
 from pathlib import Path
 
 from contactlab.analysis.paper_figures import FIGURES, FigureData
 from contactlab.cli import arguments as shared
+from contactlab.files import unwritable, write_table
 from contactlab.scene_file import LawChoice
 
 
@@ -45,16 +46,17 @@ def execute(arguments: argparse.Namespace) -> int:
         raise ValueError(
             f"--out {arguments.out}: no folder can be made: {error.strerror}"
         ) from None
+    if why_not := unwritable(arguments.out / "figure-1.csv"):
+        raise ValueError(f"--out {arguments.out}: {why_not}")
     from contactlab.figures.files import save  # matplotlib only when drawing
-    from contactlab.figures.paper import FIGURES as DRAWINGS
+    from contactlab.figures.paper import draw
 
     progress = shared.progress(arguments.progress, "figures")
     for done, number in enumerate(arguments.only, start=1):
         data = FIGURES[number](simulation)
         numbers, picture = (arguments.out / f"figure-{number}{end}" for end in (".csv", ".png"))
         _write_csv(numbers, data)
-        draw = DRAWINGS[number]
-        save(picture, lambda axes, draw=draw, data=data: draw(axes, data))  # type: ignore[misc]
+        save(picture, functools.partial(draw, data=data))
         print(picture, numbers, sep="\n")
         if progress is not None:
             progress(done, len(arguments.only))
@@ -62,11 +64,11 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _write_csv(path: Path, data: FigureData) -> None:
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["curve", data.parameter or "parameter", data.x, data.y])
-        for name, parameter, x, y in data.rows():
-            writer.writerow([name, "" if parameter != parameter else parameter, x, y])
+    rows = (
+        [name, "" if parameter != parameter else parameter, x, y]
+        for name, parameter, x, y in data.rows()
+    )
+    write_table(path, ["curve", data.parameter or "parameter", data.x, data.y], rows)
 
 
 def _numbers(text: str) -> list[int]:

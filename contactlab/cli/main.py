@@ -3,18 +3,31 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import difflib
 import importlib
 import os
 import re
 import sys
 import traceback
-from collections.abc import Sequence
-from typing import NoReturn
+import warnings
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import contactlab
-from contactlab.cli.arguments import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
+from contactlab.cli.arguments import (
+    BAD_INPUT,
+    BROKEN_PIPE,
+    FAILED,
+    INTERRUPTED,
+    check_outputs,
+)
+from contactlab.cli.terminal import fitted
+from contactlab.installed import PluginWarning
 from contactlab.status import Status
+
+if TYPE_CHECKING:
+    from _typeshed import SupportsWrite
 
 #: A new subcommand is a module of this package and its name here.
 COMMANDS = ("run", "sweep", "compare", "bench", "stability", "validate", "figures", "plugins")
@@ -41,37 +54,90 @@ class Parser(argparse.ArgumentParser):
             message += f"; did you mean {near[0]!r}?" if near else ""
         self.exit(BAD_INPUT, f"{self.prog}: error: {message} (see {self.prog} --help)\n")
 
+    def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:
+        """Print help or an error; argparse's own keeps silent where it cannot be written."""
+        print(message, end="", file=sys.stderr if file is None else file)
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
     words = sys.argv[1:] if arguments is None else list(arguments)
+    parsed = argparse.Namespace(command="", traceback=False)
+    with fitted(), _warned():
+        try:
+            status = _execute(_join_negative_numbers(words), parsed)
+            sys.stdout.flush()
+        except KeyboardInterrupt:
+            print("contactlab: interrupted", file=sys.stderr)
+            return INTERRUPTED
+        except BrokenPipeError:
+            _leave_stdout()  # the reader has gone, as with "| head"
+            return BROKEN_PIPE
+        except (ValueError, contactlab.PluginError, contactlab.ImpactError, OSError) as error:
+            if parsed.traceback:
+                traceback.print_exc()
+            name = f"contactlab {parsed.command}".strip()
+            print(f"{name}: error: {_one_line(error)}", file=sys.stderr)
+            if isinstance(error, OSError):
+                _leave_stdout()
+            if isinstance(error, contactlab.ImpactError) and error.status is Status.INTERRUPTED:
+                return INTERRUPTED
+            return BAD_INPUT if isinstance(error, ValueError) else FAILED
+    return status
+
+
+def _execute(words: list[str], parsed: argparse.Namespace) -> int:
+    """Read the words into ``parsed`` and do what they say."""
     try:
-        parsed, unknown = _parser().parse_known_args(_join_negative_numbers(words))
+        _, unknown = _parser(_needed(words)).parse_known_args(words, parsed)
         if unknown:
             parsed.parser.error(f"unrecognized arguments: {' '.join(unknown)}")
     except SystemExit as stop:  # argparse has printed help, version or the error
         return stop.code if isinstance(stop.code, int) else BAD_INPUT
-    try:
-        status: int = parsed.execute(parsed)
-        sys.stdout.flush()
-    except KeyboardInterrupt:
-        print("contactlab: interrupted", file=sys.stderr)
-        return INTERRUPTED
-    except BrokenPipeError:
-        # The reader has gone, as with "| head"; the flush at exit must not fail in its turn.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return BROKEN_PIPE
-    except (ValueError, contactlab.PluginError, contactlab.ImpactError, OSError) as error:
-        if parsed.traceback:
-            traceback.print_exc()
-        print(f"contactlab {parsed.command}: error: {_one_line(error)}", file=sys.stderr)
-        if isinstance(error, contactlab.ImpactError) and error.status is Status.INTERRUPTED:
-            return INTERRUPTED
-        return BAD_INPUT if isinstance(error, ValueError) else FAILED
+    check_outputs(parsed)
+    status: int = parsed.execute(parsed)
     return status
 
 
-def _parser() -> argparse.ArgumentParser:
+@contextlib.contextmanager
+def _warned() -> Iterator[None]:
+    """Show what the registry warns of in one line, as errors are."""
+    with warnings.catch_warnings():
+        usual = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *where: Any) -> None:
+            if issubclass(category, PluginWarning):
+                print(f"contactlab: warning: {message}", file=sys.stderr)
+            else:
+                usual(message, category, *where)
+
+        warnings.simplefilter("always", PluginWarning)
+        warnings.showwarning = show  # type: ignore[assignment]
+        yield
+
+
+def _leave_stdout() -> None:
+    """Let the flush at exit not fail in its turn, if it is stdout that cannot be written to."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        with contextlib.suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _needed(words: Sequence[str]) -> Sequence[str]:
+    """Return the subcommands that the parser needs to know: the one named, or all for help."""
+    for word in words:
+        if word in COMMANDS:
+            return (word,)
+        if word.startswith("--v") or word.startswith("--t"):
+            continue
+        return COMMANDS
+    return ()
+
+
+def _parser(names: Sequence[str]) -> argparse.ArgumentParser:
+    """Return the parser with some subcommands; only their modules are imported."""
     raw = argparse.RawDescriptionHelpFormatter
     parser = Parser(
         prog="contactlab",
@@ -86,7 +152,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(
         dest="command", metavar="COMMAND", required=True, parser_class=Parser
     )
-    for name in COMMANDS:
+    for name in names:
         module = importlib.import_module(f"contactlab.cli.{name}")
         summary, _, examples = str(module.__doc__).partition("\n\n")
         examples = examples.replace("Examples\n--------", "examples:")

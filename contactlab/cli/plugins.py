@@ -10,10 +10,8 @@ Examples
 from __future__ import annotations
 
 import argparse
-import difflib
 import inspect
 import json
-import sys
 from collections import Counter
 from typing import Any
 
@@ -21,7 +19,7 @@ from contactlab.cli.arguments import FAILED, OK, add_progress, progress
 from contactlab.cli.table import table
 from contactlab.composition import WAYS
 from contactlab.contracts import Integrator, TangentialLaw
-from contactlab.registry import BLOCK_VARIABLE, REGISTRY, PluginInfo, blocked_names
+from contactlab.registry import REGISTRY, PluginInfo
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -48,15 +46,11 @@ def execute(arguments: argparse.Namespace) -> int:
         print(json.dumps(entries, indent=2))
         return 0
     keys = ("name", "kind", "distribution", "version")
-    rows = [[entry[key] for key in keys] for entry in entries]
+    rows = [[str(entry[key]) for key in keys] for entry in entries]
     for row, entry in zip(rows, entries, strict=True):
-        row[0] = f"{row[0]} (blocked)" if entry["blocked"] else row[0]
+        for word in ("blocked", "malformed"):
+            row[0] += f" ({word})" if entry[word] else ""
     print(table(keys, rows))
-    known = [info.name for info in REGISTRY.installed()]
-    for name in sorted(blocked_names().difference(known)):
-        nearest = difflib.get_close_matches(name, known, n=1)
-        hint = f"; did you mean {nearest[0]!r}?" if nearest else ""
-        print(f"{BLOCK_VARIABLE} names {name!r}, which is not installed{hint}", file=sys.stderr)
     return 0
 
 
@@ -114,4 +108,5 @@ def _entry(info: PluginInfo) -> dict[str, str | bool]:
         "version": info.version,
         "module": info.module,
         "blocked": info.blocked,
+        "malformed": info.malformed,
     }

@@ -9,16 +9,11 @@ from typing import Any
 import numpy as np
 
 from contactlab.cli.table import number, table, time
+from contactlab.export import SWEEP_TABLE
 from contactlab.quantities import QUANTITIES
 from contactlab.result import ImpactResult
 from contactlab.scene_file.entries import entry_unit
 from contactlab.status import Status
-
-#: Columns of the table of a sweep; those that are undefined for every impact are left out.
-SWEEP_COLUMNS = (
-    "psi1", "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg",
-    "rebound_spin", "friction_work",
-)  # fmt: skip
 
 #: Different sentences about failed impacts that are shown.
 SENTENCES = 3
@@ -113,7 +108,7 @@ def _energy(result: ImpactResult) -> list[Row]:
 
 def _sweep(result: ImpactResult, varied: Mapping[str, Any]) -> list[str]:
     columns = {_heading(name, entry_unit(name)): values for name, values in varied.items()}
-    for name in SWEEP_COLUMNS:
+    for name in SWEEP_TABLE:
         values = QUANTITIES[name].of(result)
         if name not in varied and not np.isnan(values).all():
             columns[_heading(name, QUANTITIES[name].unit_in(result.scene))] = values

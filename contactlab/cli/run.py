@@ -23,13 +23,12 @@ import numpy as np
 from contactlab import export
 from contactlab.cli import arguments as shared
 from contactlab.cli.report import describe
+from contactlab.export import WRITERS
 from contactlab.plain import plain
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.status import Status
-
-WRITERS = {".json": export.write_json, ".csv": export.write_csv, ".npz": export.write_npz}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -83,14 +82,14 @@ def execute(arguments: argparse.Namespace) -> int:
             result = simulation.run(
                 scene, history=bool(arguments.history), estimate_error=arguments.estimate
             )
-    if arguments.out:
-        WRITERS[arguments.out.suffix.lower()](result, arguments.out)
-    if arguments.history:
-        export.write_history_csv(result, arguments.history)
+    saved = shared.save(
+        (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
+        (arguments.history, lambda path: export.write_history_csv(result, path)),
+    )
     varied: Mapping[str, Any] = file.varied if file else {}
     if not arguments.json:
         print(describe(result, title=file.title if file else "", varied=varied))
-    return report(result, as_json=arguments.json, varied=varied)
+    return max(saved, report(result, as_json=arguments.json, varied=varied))
 
 
 def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Scene:

@@ -9,15 +9,10 @@ import numpy as np
 
 from contactlab.analysis.compare import Agreement, Comparison
 from contactlab.cli.table import number, table, time
+from contactlab.export import COMPARISON_TABLE
 from contactlab.quantities import QUANTITIES
 from contactlab.scene_file import SceneFile
 from contactlab.scene_file.entries import entry_unit
-
-#: Compared on a single impact; those that are undefined for its scene are left out.
-SINGLE = (
-    "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg", "rebound_spin",
-    "contact_time", "friction_work", "energy_imbalance",
-)  # fmt: skip
 
 
 def default_quantities(comparison: Comparison) -> list[str]:
@@ -30,7 +25,7 @@ def default_quantities(comparison: Comparison) -> list[str]:
     laws = comparison.names
     return [
         name
-        for name in SINGLE
+        for name in COMPARISON_TABLE
         if name == "psi2" or not all(np.isnan(comparison.values(name, law)) for law in laws)
     ]
 

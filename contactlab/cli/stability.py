@@ -10,7 +10,6 @@ Examples
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import sys
 from pathlib import Path
@@ -19,10 +18,12 @@ import attrs
 
 from contactlab.analysis.bench_methods import methods
 from contactlab.analysis.stability import Stability, stability
+from contactlab.analysis.stability_cases import Case
 from contactlab.analysis.stability_map import Region
-from contactlab.analysis.stability_outcome import RAISED, WRONG, Outcome
+from contactlab.analysis.stability_outcome import RAISED, WRONG, Outcome, judge
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
+from contactlab.files import write_table
 from contactlab.plain import plain
 
 #: Failures listed one by one under the table; all of them are in the CSV and the JSON.
@@ -39,26 +40,46 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Run the report; a single silently wrong answer makes it fail."""
     shared.check_budget(arguments.budget)
-    found = stability(
-        methods(arguments.law),
-        quick=arguments.quick,
-        budget=arguments.budget,
-        progress=shared.progress(arguments.progress, "stability"),
+    kept: list[Outcome] = []
+
+    def judged(case: Case) -> Outcome:
+        kept.append(judge(case))
+        return kept[-1]
+
+    why_not = "the budget ran out"
+    try:
+        found = stability(
+            methods(arguments.law),
+            quick=arguments.quick,
+            budget=arguments.budget,
+            progress=shared.progress(arguments.progress, "stability"),
+            judged=judged,
+        )
+    except KeyboardInterrupt:
+        # What is done of the map is listed with the other outcomes.
+        found, why_not = Stability(outcomes=tuple(kept), regions=(), complete=False), "interrupted"
+    saved = shared.save(
+        (arguments.csv, lambda path: _write_csv(path, found)),
+        (arguments.figure, lambda path: _draw(path, found, why_not)),
     )
-    if arguments.csv:
-        _write_csv(arguments.csv, found)
-    if arguments.figure and not found.regions:
-        print("no map drawn: the budget ran out before it", file=sys.stderr)
-    elif arguments.figure:
-        from contactlab.figures.stability import draw_regions  # matplotlib only when drawing
-
-        draw_regions(arguments.figure, found.regions)
-    print(json.dumps(_content(found), indent=2) if arguments.json else report(found))
-    return shared.FAILED if found.failures() else shared.OK
+    content = json.dumps(_content(found), indent=2) if arguments.json else report(found, why_not)
+    print(content)
+    if why_not == "interrupted":
+        return shared.INTERRUPTED
+    return shared.FAILED if found.failures() else saved
 
 
-def report(found: Stability) -> str:
-    """Return the table, the failures and the totals."""
+def _draw(path: Path, found: Stability, why_not: str) -> None:
+    if not found.regions:
+        print(f"no map drawn: {why_not} before it was done", file=sys.stderr)
+        return
+    from contactlab.figures.stability import draw_regions  # matplotlib only when drawing
+
+    draw_regions(path, found.regions)
+
+
+def report(found: Stability, why_not: str = "the budget ran out") -> str:
+    """Return the table, the failures and the totals; ``why_not`` is said if not complete."""
     families = list(dict.fromkeys(item.family for item in found.outcomes))
     names = list(dict.fromkeys(item.method for item in found.outcomes))
     errors = [[name, *(found.worst(name, family) for family in families)] for name in names]
@@ -81,7 +102,7 @@ def report(found: Stability) -> str:
         "the others are counted as coarse."
     )
     if not found.complete:
-        parts.append("not complete: the budget ran out")
+        parts.append(f"not complete: {why_not}")
     return "\n\n".join(parts)
 
 
@@ -107,7 +128,4 @@ def _write_csv(path: Path, found: Stability) -> None:
     """Write a row for each outcome; of the map, for what is wrong or raised."""
     listed = [*found.outcomes, *(item for region in found.regions for item in region.failures)]
     names = [field.name for field in attrs.fields(Outcome)]
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(names)
-        writer.writerows([getattr(item, name) for name in names] for item in listed)
+    write_table(path, names, ([getattr(item, name) for name in names] for item in listed))

@@ -18,8 +18,9 @@ import numpy as np
 
 from contactlab.checks import refuse
 from contactlab.cli import arguments as shared
-from contactlab.cli.run import WRITERS, report
+from contactlab.cli.run import report
 from contactlab.cli.table import table
+from contactlab.export import WRITERS
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.scene_file import LawChoice, read_scene
@@ -57,17 +58,15 @@ def execute(arguments: argparse.Namespace) -> int:
     simulation = choice.set(dict(arguments.settings)).simulation()
     with contextlib.redirect_stdout(sys.stderr):  # what a plug-in prints is not our output
         result = simulation.sweep(scene, progress=shared.progress(arguments.progress, "impacts"))
-    if arguments.out:
-        WRITERS[arguments.out.suffix.lower()](result, arguments.out)
+    saved = shared.save((arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)))
     if arguments.csv:
         print("psi1,chi,psi2,status")
         for psi1, chi, psi2, status in _rows(result):
             print(f"{psi1!r},{chi!r},{psi2!r},{status}")
-        return report(result)
-    if arguments.json:
-        return report(result, as_json=True, varied=file.varied if file else {})
-    print(table(["psi1", "chi", "psi2", "status"], _rows(result)))
-    return report(result)
+    elif not arguments.json:
+        print(table(["psi1", "chi", "psi2", "status"], _rows(result)))
+    varied = file.varied if file else {}
+    return max(saved, report(result, as_json=arguments.json, varied=varied))
 
 
 def numbers(text: str) -> Any:

@@ -9,7 +9,14 @@ from matplotlib.axes import Axes
 
 from contactlab.analysis.compare import Agreement, Comparison
 from contactlab.analysis.paper_figures import scaled_forces
-from contactlab.figures.style import MEASURED_COLOUR, friction_limit, label, law_style, zero_line
+from contactlab.figures.style import (
+    MEASURED_COLOUR,
+    friction_limit,
+    label,
+    law_style,
+    verbatim,
+    zero_line,
+)
 from contactlab.quantities import QUANTITIES
 from contactlab.scene_file.entries import entry_unit
 
@@ -26,7 +33,7 @@ def laws_over_sweep(
     """Draw a quantity over the sweep, one curve a law, with measured points if there are any."""
     varied, x = _abscissa(comparison, agreement)
     for number, name in enumerate(comparison.names):
-        axes.plot(x, comparison.values(quantity, name), label=name, **law_style(number))
+        axes.plot(x, comparison.values(quantity, name), label=verbatim(name), **law_style(number))
     if agreement is not None:
         measured = agreement.measured
         axes.errorbar(
@@ -34,7 +41,7 @@ def laws_over_sweep(
             measured.values,
             xerr=measured.x_error,
             yerr=measured.error,
-            label=measured.label,
+            label=verbatim(measured.label),
             **POINTS,
         )
     axes.set_xlabel(label(varied, entry_unit(varied)))
@@ -81,7 +88,7 @@ def forces_over_contact(axes: Axes, comparison: Comparison) -> Axes:
         if not drawn:
             friction_limit(axes, time, normal)
             drawn = True
-        axes.plot(time, tangential, label=run.name, **law_style(number))
+        axes.plot(time, tangential, label=verbatim(run.name), **law_style(number))
     axes.set_xlabel(r"time over duration of contact $t/t_{\mathrm{c}}$")
     axes.set_ylabel(r"tangential force $F/(\mu P_{\max})$")
     axes.set_xlim(0.0, 1.0)

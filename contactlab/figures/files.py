@@ -10,6 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from contactlab.figures.style import HEIGHT, RESOLUTION, WIDTH, styled
+from contactlab.files import written
 
 
 def save(
@@ -35,4 +36,10 @@ def save(
             rows, columns, sharex="col", gridspec_kw={"height_ratios": heights}, squeeze=False
         )
         draw(axes[0, 0] if rows == columns == 1 else axes)
-        figure.savefig(path, dpi=RESOLUTION)
+        save_png(figure, path)
+
+
+def save_png(figure: Figure, path: str | Path, **options: Any) -> None:
+    """Write a figure as PNG, whole or not at all; options are those of ``savefig``."""
+    with written(path, binary=True) as stream:
+        figure.savefig(stream, format="png", dpi=RESOLUTION, **options)

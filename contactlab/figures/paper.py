@@ -22,6 +22,12 @@ from contactlab.figures.style import (
 SOLID_CHI_RANGE = (3.5 / 3.0, 3.5 / 2.0)  # nu = 0.5 and nu = 0 in eq. (38)
 
 
+def draw(axes: Axes, data: FigureData) -> Axes:
+    """Draw a figure of the paper from its numbers, with the function of its name."""
+    drawn: Axes = globals()[f"figure_{data.number}"](axes, data)
+    return drawn
+
+
 def figure_1(axes: Axes, data: FigureData) -> Axes:
     """Draw the forces over the contact at several angles of incidence."""
     _forces(axes, data)
@@ -78,10 +84,6 @@ def figure_4(axes: Axes, data: FigureData) -> Axes:
     axes.legend(title=rf"$\psi_1$ = {FIXED_PSI1}", loc="upper right")
     return axes
 
-
-FIGURES: Mapping[int, Callable[[Axes, FigureData], Axes]] = {
-    1: figure_1, 2: figure_2, 3: figure_3, 4: figure_4,
-}  # fmt: skip
 
 _BESIDE: Mapping[str, Any] = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
 

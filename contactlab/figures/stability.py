@@ -24,7 +24,8 @@ from contactlab.analysis.stability_map import (
     ONE_WRONG,
     Region,
 )
-from contactlab.figures.style import ORDERED_MAP, QUIET, RESOLUTION, styled
+from contactlab.figures.files import save_png
+from contactlab.figures.style import ORDERED_MAP, QUIET, styled
 
 #: Errors over the range at which the colour changes: whole decades.
 DECADES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
@@ -78,7 +79,7 @@ def draw_regions(path: Path, regions: Sequence[Region]) -> None:
         if any(np.any(region.state == ONE_RAISED) for region in regions):
             entries.insert(2, Patch(color=RAISED_COLOUR, label="raised"))
         figure.legend(handles=entries, loc="outside upper center", ncols=2)
-        figure.savefig(path, dpi=RESOLUTION)
+        save_png(figure, path)
 
 
 def _rank(integrator: str) -> tuple[int, str]:

@@ -72,6 +72,11 @@ def label(name: str, unit: str = "1") -> str:
     return words + shown
 
 
+def verbatim(text: str) -> str:
+    """Return text of a file, or a name, as it is to be drawn: a dollar begins no formula."""
+    return text.replace("$", r"\$")
+
+
 def ordered_colours(count: int) -> list[Any]:
     """Return colours for ``count`` things in order."""
     colours = mpl.colormaps[ORDERED_MAP]

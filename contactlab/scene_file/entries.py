@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from typing import Any
+
+from contactlab.checks import nearest
 
 MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density")
 SPHERE_KEYS = ("radius", "mass", "gyration_ratio", "material")
@@ -46,8 +47,7 @@ def entry_path(name: str, *, where: str = "") -> str:
         If there is no such entry; ``where`` is the dotted path of the table that named it.
     """
     if name not in ENTRIES:
-        nearest = difflib.get_close_matches(name, ENTRIES, n=1, cutoff=0.5)
-        hint = f"did you mean {nearest[0]!r}? " if nearest else ""
+        hint = nearest(name, ENTRIES)
         short = ", ".join((*IMPACT_KEYS, *NONDIMENSIONAL_KEYS))
         raise ValueError(
             f"{where}{name}: is not an entry of a scene; {hint}"

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import stat
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,7 +12,7 @@ from typing import Any
 
 import attrs
 
-from contactlab.checks import Real, real
+from contactlab.checks import Real, real, refuse
 from contactlab.scene import Scene
 from contactlab.scene_file.build import build_scene
 from contactlab.scene_file.entries import entry_path, replaced
@@ -22,6 +24,8 @@ from contactlab.scene_file.table import Table
 SECTIONS = (
     "about", "sphere", "target", "impact", "nondimensional", "sweep", "simulation", "measured",
 )  # fmt: skip
+#: Largest file, in bytes: a sweep of a million numbers fits; and deepest nesting.
+LARGEST, DEEPEST = 32_000_000, 20
 ABOUT_KEYS = ("title", "citation", "notes")
 
 
@@ -71,7 +75,11 @@ def read_scene(path: str | Path) -> SceneFile:
         If the file cannot be read, is not TOML (with the line), has an unknown key (with the
         nearest known one), or holds a value that is of the wrong type or not physical.
     """
+    if not isinstance(path, str | os.PathLike) or not isinstance(os.fspath(path), str):
+        raise refuse("path", path, "must be the path of a scene file", "such as 'scene.toml'")
     file = Path(path)
+    if "\0" in str(path):
+        raise refuse("path", path, "must not hold a null character")
     document = _document(file)
     try:
         root = Table(document, "", known=SECTIONS)
@@ -99,8 +107,30 @@ def _scene_with(tables: Mapping[str, Any], entries: Mapping[str, Any]) -> Scene:
 
 
 def _document(file: Path) -> dict[str, Any]:
+    text = _text(file)
     try:
-        text = file.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{file}, {_place(str(error), text)}") from None
+    except ValueError as error:  # a number of thousands of digits
+        raise ValueError(f"{file}: {error}") from None
+    except RecursionError:
+        document = None
+    if document is None or _deep(document):
+        raise ValueError(f"{file}: is nested more than {DEEPEST} deep; no scene file is")
+    return document
+
+
+def _text(file: Path) -> str:
+    """Return the text of a regular file of a size to be expected of a scene."""
+    try:
+        status = os.stat(file)
+        if not stat.S_ISREG(status.st_mode):  # a pipe may never end, or never begin
+            raise ValueError(f"{file}: cannot be read: is not a regular file")
+        if status.st_size > LARGEST:
+            size, most = status.st_size / 1e6, LARGEST / 1e6
+            raise ValueError(f"{file}: is too large: {size:.0f} MB, a scene has at most {most:.0f}")
+        return file.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
     except FileNotFoundError:
         remedy = "give the path of a scene in TOML"
         if file.suffix in (".csv", ".json", ".npz", ".png"):
@@ -112,10 +142,15 @@ def _document(file: Path) -> dict[str, Any]:
         ) from None
     except OSError as error:
         raise ValueError(f"{file}: cannot be read: {error.strerror}") from None
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{file}, {_place(str(error), text)}") from None
+
+
+def _deep(document: Mapping[str, Any]) -> bool:
+    """Return whether tables and lists are nested deeper than ``DEEPEST``."""
+    level: list[Any] = [document]
+    for _ in range(DEEPEST):
+        inner = (value.values() if isinstance(value, dict) else value for value in level)
+        level = [item for items in inner for item in items if isinstance(item, dict | list)]
+    return bool(level)
 
 
 def _place(message: str, text: str) -> str:

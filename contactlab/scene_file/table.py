@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
 import numpy as np
 
-from contactlab.checks import FINITE, Real, Rule, real, refuse
+from contactlab.checks import FINITE, Real, Rule, nearest, real, refuse
 
 Made = TypeVar("Made")
 
@@ -99,13 +98,13 @@ class Table:
 def nearest_of(name: str, known: Iterable[str]) -> str:
     """Return a hint: the nearest known name, and all of them."""
     names = list(known)
-    nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-    return (f"did you mean {nearest[0]!r}? " if nearest else "") + f"known: {', '.join(names)}"
+    return f"{nearest(name, names)}known: {', '.join(names)}"
 
 
 def number_list(path: str, value: object, *, remedy: str) -> Real:
     """Return ``value`` as an array of shape (n,), or refuse it."""
-    if not isinstance(value, list | np.ndarray) or any(isinstance(item, bool) for item in value):
+    plain = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    if not plain or any(isinstance(item, bool) for item in value):  # type: ignore[attr-defined]
         raise refuse(path, value, "must be a list of numbers", remedy)
     array = real(path, value, remedy=remedy)
     if np.ndim(array) != 1:

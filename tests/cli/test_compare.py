@@ -94,6 +94,13 @@ def test_figure(run, request, tmp_path, scene):
     assert path.stat().st_size > 20_000
 
 
+def test_a_dollar_in_a_label_begins_no_formula(run, measured, tmp_path):
+    text = measured.read_text(encoding="utf-8") + "label = 'a $\\foo$ for 3 $'\n"
+    measured.write_text(text, encoding="utf-8")
+    ran = run("compare", measured, *BOTH, "--figure", tmp_path / "figure.png")
+    assert (ran.status, ran.err) == (0, "")
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

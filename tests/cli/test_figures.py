@@ -41,6 +41,14 @@ def test_every_figure_as_png_and_csv(run, tmp_path):
         assert all(np.isfinite(float(list(row.values())[-1])) for row in rows)
 
 
+def test_every_figure_with_numbers_can_be_drawn():
+    from contactlab.figures import paper
+
+    drawn = {name for name in vars(paper) if name.startswith("figure_")}
+    assert drawn == {f"figure_{number}" for number in FIGURES}
+    assert list(FIGURES) == [1, 2, 3, 4]
+
+
 def test_only_some(run, tmp_path):
     assert run("figures", "--out", tmp_path, "--only", "2", *FEW).status == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["figure-2.csv", "figure-2.png"]

@@ -6,7 +6,10 @@ import json
 import subprocess
 import sys
 
+import pytest
+
 import contactlab
+from contactlab.registry import REGISTRY, PluginInfo
 
 
 def test_list_as_json(run):
@@ -62,12 +65,29 @@ def test_blocked_law_is_marked(run, monkeypatch):
     assert run("run", "--psi1", "1", "--chi", "1", "--tangential", "coulomb").status == 2
 
 
-def test_a_blocked_name_that_is_not_installed_is_remarked_on(run, monkeypatch):
+@pytest.mark.parametrize(
+    "command", [("plugins", "list", "--json"), ("run", "--psi1", "6", "--chi", "1", "--json")]
+)
+def test_a_blocked_name_that_is_not_installed_is_remarked_on(run, monkeypatch, command):
+    monkeypatch.setattr(REGISTRY, "_remarked", set())
+    monkeypatch.setattr(REGISTRY, "_loaded", {})
     monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "tangential.coulom")
-    ran = run("plugins", "list")
+    ran = run(*command)
     assert ran.status == 0
+    assert json.loads(ran.out)
+    assert len(ran.err.splitlines()) == 1
+    assert ran.err.startswith("contactlab: warning: ")
     assert "'tangential.coulom', which is not installed" in ran.err
     assert "did you mean 'tangential.coulomb'" in ran.err
+
+
+def test_a_malformed_name_is_marked(run, monkeypatch):
+    odd = PluginInfo(
+        name="tangential.", distribution="odd", version="1", module="odd", blocked=False
+    )
+    monkeypatch.setattr(REGISTRY, "installed", lambda: [odd])
+    assert "tangential. (malformed)" in run("plugins", "list").out
+    assert json.loads(run("plugins", "list", "--json").out)[0]["malformed"] is True
 
 
 def test_show_says_what_a_law_does_and_takes(run):

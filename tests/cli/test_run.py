@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import csv
+import errno
 import json
 
 import numpy as np
 import pytest
+
+from contactlab import export
+from contactlab.cli import progress
 
 RIGID = ("--tangential", "coulomb", "--integrator", "symplectic")
 PSI = ("--psi1", "6", "--chi", "1", *RIGID)
@@ -79,7 +83,8 @@ def test_sweep(run, short_sweep):
     assert "SUCCESS" in run("run", short_sweep).out
 
 
-def test_progress_is_on_stderr_and_only_when_asked(run, short_sweep):
+def test_progress_is_on_stderr_and_only_when_asked(run, short_sweep, monkeypatch):
+    monkeypatch.setattr(progress, "QUIET", 0.0)
     quiet = run("run", short_sweep, "--json")
     shown = run("run", short_sweep, "--json", "--progress")
     assert quiet.err == ""
@@ -174,3 +179,32 @@ def test_failed_run_still_reports_and_has_status_1(run):
     assert json.loads(ran.out)["psi2"] is None
     assert ran.err.startswith("contactlab: failed:")
     assert len(ran.err.splitlines()) == 1
+
+
+def test_two_outputs_that_are_one_file_are_refused_before_the_run(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    ran = run("run", *PSI, "--out", "a.csv", "--history", "./a.csv")
+    assert ran.status == 2
+    assert "--out, --history" in ran.err
+    assert list(tmp_path.iterdir()) == []
+    scene = tmp_path / "scene.csv"
+    scene.write_text("[nondimensional]\npsi1 = 6\nchi = 1\n")
+    assert run("run", scene, "--out", scene).status == 2
+    assert scene.read_text().startswith("[nondimensional]")
+
+
+@pytest.mark.parametrize("command", ["run", "sweep"])
+def test_a_file_that_cannot_be_written_does_not_take_the_answer_with_it(
+    run, tmp_path, monkeypatch, command
+):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device", "a.csv")
+
+    monkeypatch.setitem(export.WRITERS, ".csv", full)
+    psi1 = "6" if command == "run" else "6:7:2"
+    words = ("--psi1", psi1, "--chi", "1", *RIGID, "--json", "--out", tmp_path / "a.csv")
+    ran = run(command, *words)
+    assert ran.status == 1
+    assert np.ravel(json.loads(ran.out)["psi2"])[0] == pytest.approx(2.0)
+    assert len(ran.err.splitlines()) == 1
+    assert "No space left" in ran.err

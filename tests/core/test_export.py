@@ -7,7 +7,16 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation
-from contactlab.export import to_dict, write_csv, write_history_csv, write_json, write_npz
+from contactlab.export import (
+    COMPARISON_TABLE,
+    SWEEP_TABLE,
+    to_dict,
+    write_csv,
+    write_history_csv,
+    write_json,
+    write_npz,
+)
+from contactlab.quantities import QUANTITIES
 
 SIM = Simulation(tangential="coulomb", integrator="symplectic")
 SINGLE = Scene.nondimensional(psi1=2.0, chi=1.4411764706)
@@ -62,6 +71,10 @@ def test_a_file_gets_the_name_asked_for_and_angles_keep_their_unit(tmp_path):
     headings = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()[0]
     assert "local_rebound_angle (rad)" in headings
     assert "normal_velocity (1)" in headings
+
+
+def test_the_tables_for_reading_name_columns():
+    assert set(SWEEP_TABLE) | set(COMPARISON_TABLE) <= set(QUANTITIES)
 
 
 def test_npz_round_trip(tmp_path):

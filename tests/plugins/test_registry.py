@@ -3,10 +3,12 @@
 import sys
 from importlib import metadata
 
+import numpy as np
 import pytest
 
 import contactlab
 from contactlab import PluginError
+from contactlab.installed import PluginWarning
 
 MINE = "tangential.mine"
 
@@ -124,6 +126,83 @@ def test_a_broken_plugin_says_so_and_harms_nobody(registry, install, source, mes
     assert registry.create("tangential.coulomb") is not None
 
 
+def test_a_plugin_cannot_end_the_program_print_among_data_or_change_settings(
+    registry, install, law_source, capsys
+):
+    spoilt = "import numpy, sys\nprint('hello')\nnumpy.seterr(all='raise')\n" + law_source
+    asked = "    print('asked')\n    numpy.seterr(all='raise')\n    return Mine"
+    install("loud", "loud_law", spoilt.replace("    return Mine", asked), MINE)
+    before = np.geterr()
+    assert type(registry.create(MINE)).__name__ == "Mine"
+    assert np.geterr() == before
+    caught = capsys.readouterr()
+    assert (caught.out, caught.err) == ("", "hello\nasked\n")
+
+
+@pytest.mark.parametrize("raised", ["SystemExit(3)", "GeneratorExit()", "BaseException('x')"])
+def test_whatever_a_hook_or_an_import_raises_is_a_broken_plugin(registry, install, raised):
+    hook = "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): raise "
+    install("hook", "hook_law", hook + raised, MINE)
+    install("imported", "imported_law", f"raise {raised}", "tangential.other")
+    with pytest.raises(PluginError, match="raised when asked"):
+        registry.create(MINE)
+    with pytest.raises(PluginError, match="could not be imported"):
+        registry.create("tangential.other")
+
+
+def test_what_is_installed_meanwhile_is_found_and_what_is_known_is_not_read_again(
+    registry, install, law_source, monkeypatch
+):
+    assert MINE not in registry.names()
+    install("late", "late_law", law_source, MINE)
+    assert MINE in registry.names()
+    monkeypatch.setattr(metadata, "entry_points", None)
+    assert MINE in registry.names()
+    assert registry.create(MINE) is not None
+
+
+@pytest.mark.parametrize("content", [b"[contactlab]\ntangential.x\n", b"[contactlab]\n\xff = x\n"])
+def test_a_distribution_that_cannot_be_read_stops_nothing(
+    registry, install, law_source, content, tmp_path
+):
+    install("good", "good_law", law_source, MINE)
+    install("unreadable", "unreadable_law", "", "tangential.other")
+    (tmp_path / "unreadable-1.5.dist-info" / "entry_points.txt").write_bytes(content)
+    with pytest.warns(PluginWarning, match=r"unreadable-1.5.dist-info cannot be read"):
+        assert registry.create(MINE) is not None
+    assert {MINE, "tangential.coulomb"} <= set(registry.names())
+
+
+def test_a_distribution_without_its_papers(registry, install, law_source, tmp_path):
+    install("bare", "bare_law", law_source, MINE)
+    papers = tmp_path / "bare-1.5.dist-info" / "METADATA"
+    papers.write_bytes(b"Name: \xff\n")
+    assert registry.info(MINE).distribution == "unknown"
+    papers.unlink()
+    assert registry.create(MINE) is not None
+
+
+def test_an_interruption_is_still_one(registry, install):
+    install("slow", "slow_law", "raise KeyboardInterrupt", MINE)
+    with pytest.raises(KeyboardInterrupt):
+        registry.create(MINE)
+
+
+@pytest.mark.parametrize(
+    "name", ["tangential.", "", "nodot", ".annulus", "tangental.mine", "a.b.c"]
+)
+def test_a_malformed_name_stops_nothing(registry, install, law_source, name):
+    install("odd", "odd_law", law_source, name, MINE)
+    found = {info.name: info for info in registry.installed() if info.distribution == "odd"}
+    assert found[MINE].malformed is False
+    assert all(info.malformed for known, info in found.items() if known != MINE)
+    assert name not in registry.names()
+    assert contactlab.Simulation(tangential=registry.create(MINE)) is not None
+    if name in found:
+        with pytest.raises(PluginError, match=r"odd 1\.5: the name must be"):
+            registry.create(name)
+
+
 def test_the_traceback_of_a_broken_plugin_is_kept(registry, install):
     install("broken", "broken_law", "1/0", MINE)
     with pytest.raises(PluginError) as caught:
@@ -147,7 +226,9 @@ def test_wrong_interface_version_wrong_kind_and_abstract_laws(registry, install,
 def test_blocked_names_are_refused_and_not_imported(registry, install, monkeypatch):
     install("broken", "broken_law", "1/0", MINE)
     monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", f"{MINE}, normal.other")
-    assert MINE not in registry.names()
+    with pytest.warns(PluginWarning, match=r"'normal.other', .* did you mean 'normal.hertz'"):
+        assert MINE not in registry.names()
+    assert MINE not in registry.names()  # said once
     with pytest.raises(ValueError, match="CONTACTLAB_BLOCK_PLUGINS"):
         registry.create(MINE)
     assert "broken_law" not in sys.modules

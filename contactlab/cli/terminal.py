@@ -1,0 +1,106 @@
+"""The two streams of a command, made fit to be seen on any terminal.
+
+Text from a scene file or of a plug-in may hold control characters, which would move the cursor
+or change colours, and symbols that an ASCII terminal has not. Whatever is printed, by anyone,
+goes through ``Printed``, which writes both in letters.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+import sys
+import unicodedata
+from collections.abc import Iterable, Iterator
+from typing import Any, TextIO
+
+#: Characters that a terminal obeys, or that change the direction of writing; not tab and newline.
+OBEYED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
+#: Symbols in letters, for terminals without them; the micro sign is not the letter mu.
+LETTERS = {
+    "\N{MICRO SIGN}": "u", "\N{GREEK SMALL LETTER MU}": "mu", "\N{GREEK SMALL LETTER NU}": "nu",
+    "\N{GREEK SMALL LETTER RHO}": "rho", "ψ": "psi", "χ": "chi", "ω": "omega", "κ": "kappa",
+    "ζ": "zeta", "τ": "tau", "π": "pi", "Δ": "Delta", "°": "deg", "±": "+-", "≤": "<=", "≥": ">=",
+    "≈": "~", "\N{MULTIPLICATION SIGN}": "x", "·": ".", "√": "sqrt", "∞": "inf", "→": "->",
+    "\N{MINUS SIGN}": "-", "\N{EN DASH}": "-", "—": "-", "\N{LEFT SINGLE QUOTATION MARK}": "'",
+    "\N{RIGHT SINGLE QUOTATION MARK}": "'", "“": '"', "”": '"', "\N{FRACTION SLASH}": "/",
+    "ß": "ss", "ø": "o",
+}  # fmt: skip
+
+
+def safe(text: str) -> str:
+    """Return text with the characters that a terminal obeys written out, ESC as ``x1b``."""
+    return OBEYED.sub(lambda found: found[0].encode("unicode_escape").decode("ascii"), text)
+
+
+def fitting(text: str, encoding: str) -> str:
+    """Return text with what ``encoding`` has not put in letters."""
+    try:
+        text.encode(encoding)
+    except UnicodeEncodeError:
+        return "".join(_letters(character, encoding) for character in text)
+    return text
+
+
+def _letters(character: str, encoding: str) -> str:
+    """Return the nearest to a character that ``encoding`` has, at worst a question mark."""
+    with contextlib.suppress(UnicodeEncodeError):
+        character.encode(encoding)
+        return character
+    parts = unicodedata.normalize("NFKD", LETTERS.get(character, character))
+    near = "".join(LETTERS.get(part, part) for part in parts)
+    return near.encode(encoding, "ignore").decode(encoding) or "?"
+
+
+class Printed:
+    """A text stream that passes on only what the stream below can show.
+
+    Parameters
+    ----------
+    stream : text stream
+        Where the text goes; of everything but ``write`` it decides.
+    line : list
+        The stream with an unfinished line of progress, if there is one; shared by the two
+        streams of a command, so that whatever is printed first wipes the line out.
+    """
+
+    def __init__(self, stream: TextIO, line: list[TextIO]) -> None:
+        self._stream, self._line = stream, line
+
+    def write(self, text: str) -> int:
+        """Write text, after the line of progress has been wiped out."""
+        self.overwrite("")
+        self._stream.write(self._fit(text))
+        return len(text)
+
+    def writelines(self, lines: Iterable[str]) -> None:
+        """Write several texts."""
+        for line in lines:
+            self.write(line)
+
+    def overwrite(self, text: str) -> None:
+        """Put ``text`` in place of the last line of progress; an empty one leaves none."""
+        for stream in self._line:
+            stream.write("\r\x1b[K")
+            stream.flush()
+        self._line[:] = [self._stream] if text else []
+        if text:
+            self._stream.write(self._fit(text))
+            self._stream.flush()
+
+    def _fit(self, text: str) -> str:
+        return fitting(safe(text), getattr(self._stream, "encoding", None) or "utf-8")
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
+@contextlib.contextmanager
+def fitted() -> Iterator[None]:
+    """Put ``Printed`` over stdout and stderr inside a ``with`` block."""
+    line: list[TextIO] = []
+    # A program without a terminal may have no streams; print would then take stdout for stderr.
+    out, err = (Printed(stream or io.StringIO(), line) for stream in (sys.stdout, sys.stderr))
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        yield

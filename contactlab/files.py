@@ -1,0 +1,118 @@
+"""Output files: each is written beside its place and renamed, so that it is whole or not there.
+
+Every file that contactlab writes goes through ``written``. A full disk, an error or a killed
+process leaves the file that was there before as it was; only a killed process leaves a file
+``.contactlab-*.part`` behind.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import os
+import stat
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+#: Permissions of a new file, before the umask takes its share.
+NEW_FILE = 0o666
+
+
+@contextlib.contextmanager
+def written(path: str | Path, *, binary: bool = False) -> Iterator[Any]:
+    """Return a stream whose content takes the place of ``path`` when the block ends well.
+
+    Text is UTF-8 without translation of line ends, as ``csv`` asks for. The new file has the
+    permissions of the old one; a symbolic link stays, and what it points to is replaced.
+
+    Parameters
+    ----------
+    path : str or Path
+    binary : bool
+        Whether the stream takes bytes.
+
+    Raises
+    ------
+    OSError
+        With the path, if it cannot be written to the end; the old file then is as it was.
+    """
+    why_not = unwritable(path)
+    if why_not:
+        raise OSError(f"{path}: {why_not}")
+    target = os.path.realpath(path)
+    beside = os.path.join(os.path.dirname(target), f".contactlab-{os.urandom(6).hex()}.part")
+    try:
+        handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, NEW_FILE)
+        form: Any = {"mode": "wb"} if binary else {"mode": "w", "encoding": "utf-8", "newline": ""}
+        try:
+            with open(handle, **form) as stream:
+                yield stream
+                stream.flush()
+                os.fsync(stream.fileno())
+            _resemble(beside, target)
+            os.replace(beside, target)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                os.unlink(beside)
+            raise
+    except OSError as error:
+        if error.errno is not None and error.filename in (None, beside):
+            error.filename, error.filename2 = str(path), None
+        raise
+
+
+def write_table(
+    path: str | Path, headings: Sequence[str], rows: Iterable[Sequence[object]]
+) -> None:
+    """Write a CSV file of a line of headings, and rows."""
+    with written(path) as stream:
+        writer = csv.writer(stream)
+        writer.writerow(headings)
+        writer.writerows(rows)
+
+
+def unwritable(path: str | Path) -> str:
+    """Return why a file could not be written at ``path``, as far as can be known beforehand."""
+    target = os.path.realpath(path)
+    folder = os.path.dirname(target)
+    try:
+        if not stat.S_ISREG(os.stat(target).st_mode):
+            return "is not a regular file; give the name of a file"
+        if not os.access(target, os.W_OK):
+            return "is protected against writing"
+    except (OSError, ValueError) as error:  # what is not there yet may be written
+        if not isinstance(error, FileNotFoundError):
+            return str(getattr(error, "strerror", error))
+    if not os.path.isdir(folder):
+        return f"there is no folder {folder}"
+    if not os.access(folder, os.W_OK):
+        return f"nothing can be written in the folder {folder}"
+    return ""
+
+
+def distinct(outputs: Mapping[str, str | Path | None]) -> None:
+    """Refuse two outputs, keyed by their names for the message, that are one file.
+
+    Raises
+    ------
+    ValueError
+        With both names.
+    """
+    seen: dict[str, str] = {}
+    for name, path in outputs.items():
+        if path is None:
+            continue
+        place = os.path.normcase(os.path.realpath(path))
+        if place in seen:
+            raise ValueError(f"{seen[place]}, {name}: {path} is the same file; give two")
+        seen[place] = name
+
+
+def _resemble(new: str, old: str) -> None:
+    """Give a new file the owner and the permissions of the old one, as far as is allowed."""
+    with contextlib.suppress(OSError, AttributeError):  # there may be no old one, or no chown
+        status = os.stat(old)
+        with contextlib.suppress(PermissionError):
+            os.chown(new, status.st_uid, status.st_gid)
+        os.chmod(new, stat.S_IMODE(status.st_mode))

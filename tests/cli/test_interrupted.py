@@ -1,0 +1,101 @@
+"""Ctrl-C in the middle of a report keeps what is done, says so, and ends with 130."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import pytest
+
+from contactlab.analysis import validation, work_precision
+from contactlab.analysis.bench_methods import Method
+from contactlab.cli import bench, figures, stability
+from contactlab.simulation import Simulation
+
+RIGID = [Method(tangential="coulomb", integrator="symplectic")]
+
+
+def interrupting(function, after):
+    """Return ``function`` as interrupted in its call number ``after`` + 1."""
+    calls = []
+
+    def interrupted(*arguments, **keywords):
+        calls.append(None)
+        if len(calls) > after:
+            raise KeyboardInterrupt
+        return function(*arguments, **keywords)
+
+    return interrupted
+
+
+def rows(path):
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def test_bench(run, monkeypatch, tmp_path):
+    monkeypatch.setattr(bench, "methods", lambda _: RIGID)
+    monkeypatch.setattr(work_precision, "_row", interrupting(work_precision._row, 2))
+    table, picture = tmp_path / "b.csv", tmp_path / "b.png"
+    ran = run("bench", "--quick", "--csv", table, "--figure", picture)
+    assert ran.status == 130
+    assert ran.out.endswith("not complete: interrupted\n")
+    assert [row["method"] for row in rows(table)] == ["coulomb / symplectic"] * 2
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    monkeypatch.setattr(work_precision, "_row", interrupting(work_precision._row, 0))
+    ran = run("bench", "--quick", "--json", "--figure", tmp_path / "none.png")
+    assert ran.status == 130
+    content = json.loads(ran.out)
+    assert (content["rows"], content["complete"]) == ([], False)
+    assert not (tmp_path / "none.png").exists()
+
+
+def test_a_sweep_that_is_interrupted_within_a_study_ends_the_study(run, monkeypatch):
+    """A sweep returns what is done; its time, and its gaps, are not those of the law."""
+    monkeypatch.setattr(Simulation, "run", interrupting(Simulation.run, 0))
+    with pytest.raises(KeyboardInterrupt):
+        work_precision._sweep_time(Simulation(tangential="coulomb", integrator="symplectic"))
+    monkeypatch.setattr(validation, "_checks", lambda: iter([validation._rigid]))
+    ran = run("validate")
+    assert (ran.status, ran.out) == (130, "")
+
+
+@pytest.mark.parametrize("after", [0, 7])
+def test_stability(run, monkeypatch, tmp_path, after):
+    monkeypatch.setattr(stability, "methods", lambda _: RIGID)
+    monkeypatch.setattr(stability, "judge", interrupting(stability.judge, after))
+    table, picture = tmp_path / "s.csv", tmp_path / "s.png"
+    ran = run("stability", "--quick", "--csv", table, "--figure", picture)
+    assert ran.status == 130
+    assert ran.out.endswith("not complete: interrupted\n")
+    assert f"{after} runs tried" in ran.out
+    assert len(rows(table)) == after
+    assert not picture.exists()
+    assert "no map drawn: interrupted" in ran.err
+
+
+def test_stability_on_its_map(run, monkeypatch, tmp_path):
+    monkeypatch.setattr(stability, "methods", lambda _: RIGID)
+    judge = stability.judge
+
+    def judged(case):
+        if case.family == "map" and case.options["integrator"]["steps"] > 20:
+            raise KeyboardInterrupt
+        return judge(case)
+
+    monkeypatch.setattr(stability, "judge", judged)
+    ran = run("stability", "--quick", "--csv", tmp_path / "s.csv")
+    assert ran.status == 130
+    assert sum(row["family"] == "map" for row in rows(tmp_path / "s.csv")) > 0
+
+
+def test_figures(run, monkeypatch, tmp_path):
+    drawn = dict(figures.FIGURES)
+
+    def interrupted(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(figures, "FIGURES", drawn | {4: interrupted})
+    ran = run("figures", "--out", tmp_path, "--only", "2,4", "--tangential", "coulomb")
+    assert ran.status == 130
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["figure-2.csv", "figure-2.png"]
+    assert "interrupted" in ran.err

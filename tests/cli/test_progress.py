@@ -1,0 +1,83 @@
+"""The line of progress: one line, with time left, and nothing for what is soon done."""
+
+from __future__ import annotations
+
+import io
+import sys
+
+import pytest
+
+from contactlab.cli import progress as module
+from contactlab.cli.progress import progress, span
+from contactlab.cli.terminal import fitted
+
+
+class Screen(io.StringIO):
+    """A terminal, or a file, that keeps what is written to it."""
+
+    encoding = "ascii"
+
+    def __init__(self, *, terminal):
+        super().__init__()
+        self._terminal = terminal
+
+    def isatty(self):
+        return self._terminal
+
+
+@pytest.fixture
+def work(monkeypatch):
+    """Return a function that does ``count`` things of ``each`` s and returns what is seen."""
+
+    def do(count, each, *, terminal, asked=None, each_time=lambda: None):
+        clock = [100.0]
+        screen = Screen(terminal=terminal)
+        monkeypatch.setattr(sys, "stderr", screen)
+        monkeypatch.setattr(sys, "stdout", screen)
+        monkeypatch.setattr(module.time, "perf_counter", lambda: clock[0])
+        with fitted():
+            show = progress(asked, "things")
+            for done in range(1, count + 1):
+                clock[0] += each
+                each_time()
+                if show is not None:
+                    show(done, count)
+        return screen.getvalue()
+
+    return do
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_short_work_says_nothing(work, terminal):
+    assert "things" not in work(100, 0.019, terminal=terminal, asked=True)
+
+
+def test_one_line_on_a_terminal_wiped_out_at_the_end(work):
+    seen = work(100, 0.5, terminal=True)
+    assert "\n" not in seen
+    states = seen.split("\r\x1b[K")
+    assert "things: 10 % (10/100), 45 s left" in states
+    assert states[-1] == ""
+    assert 90 < len(states) < 110
+    assert len(work(10_000, 0.001, terminal=True).split("\r\x1b[K")) < 110  # not one an item
+
+
+def test_what_is_printed_meanwhile_stands_by_itself(work):
+    seen = work(10, 1.0, terminal=True, each_time=lambda: print("done"))
+    assert "left\r\x1b[Kdone\n" in seen
+    assert "leftdone" not in seen
+
+
+def test_elsewhere_a_line_now_and_then_and_only_when_asked(work):
+    assert work(100, 0.5, terminal=False) == ""
+    lines = work(100, 0.5, terminal=False, asked=True).splitlines()
+    assert lines[0] == "things: 4 % (4/100), 48 s left"
+    assert lines[-1] == "things: 100 % (100/100), took 50 s"
+    assert len(lines) == 6
+    assert work(100, 0.5, terminal=True, asked=False) == ""
+
+
+def test_times():
+    assert [span(seconds) for seconds in (0.2, 89.0, 600.0, 7200.0)] == [
+        "0 s", "89 s", "10 min", "2.0 h",
+    ]  # fmt: skip

@@ -1,0 +1,151 @@
+"""Files are written whole or not at all."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import stat
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+from contactlab import files
+from contactlab.files import distinct, unwritable, written
+
+OLD = "old and whole\n"
+
+
+@pytest.fixture
+def old(tmp_path):
+    path = tmp_path / "result.csv"
+    path.write_text(OLD)
+    return path
+
+
+def names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_an_error_in_the_middle_leaves_the_old_file_and_no_other(old):
+    def half():
+        with written(old) as stream:
+            stream.write("new")
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with pytest.raises(OSError, match="No space left") as caught:
+        half()
+    assert str(old) in str(caught.value)
+    assert old.read_text() == OLD
+    assert names(old.parent) == ["result.csv"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX limits")
+def test_a_file_that_cannot_be_written_to_its_end_leaves_the_old_one(old):
+    """A limit on the size of files fails a write as a full disk does: in the middle."""
+    done = python(
+        f"""
+        import resource
+        resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
+        try:
+            with written({str(old)!r}) as stream:
+                stream.write("x" * 1_000_000)
+        except OSError as error:
+            print("refused:", error)
+        """
+    )
+    assert done.stdout.startswith("refused:")
+    assert str(old) in done.stdout
+    assert old.read_text() == OLD
+    assert names(old.parent) == ["result.csv"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_killed_in_the_middle_leaves_the_old_file(old):
+    done = python(
+        f"""
+        with written({str(old)!r}) as stream:
+            stream.write("x" * 1_000_000)
+            stream.flush()
+            os.kill(os.getpid(), {int(signal.SIGKILL)})
+        """
+    )
+    assert done.returncode == -signal.SIGKILL
+    assert old.read_text() == OLD
+
+
+def python(code):
+    head = "import os\nfrom contactlab.files import written\n"
+    program = head + textwrap.dedent(code)
+    return subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX permissions")
+def test_permissions_are_those_of_the_old_file_or_of_the_umask(old, tmp_path):
+    old.chmod(0o640)
+    before = os.umask(0o027)
+    try:
+        for path in (old, tmp_path / "new.csv"):
+            with written(path) as stream:
+                stream.write("new")
+    finally:
+        os.umask(before)
+    assert stat.S_IMODE(old.stat().st_mode) == 0o640
+    assert stat.S_IMODE((tmp_path / "new.csv").stat().st_mode) == 0o640
+    assert old.read_text() == "new"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX links")
+def test_a_link_stays_a_link(old, tmp_path):
+    link = tmp_path / "link.csv"
+    link.symlink_to(old)
+    with written(link, binary=True) as stream:
+        stream.write(b"new")
+    assert link.is_symlink()
+    assert old.read_text() == "new"
+    with written(tmp_path / "link.csv") as stream:
+        stream.write("newer")
+    assert old.read_text() == "newer"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX files")
+def test_what_is_no_file_is_not_written_to(tmp_path):
+    os.mkfifo(tmp_path / "pipe.csv")
+    (tmp_path / "device.csv").symlink_to(os.devnull)
+    (tmp_path / "folder.csv").mkdir()
+    for name in ("pipe.csv", "device.csv", "folder.csv"):
+        assert "not a regular file" in unwritable(tmp_path / name)
+        with pytest.raises(OSError, match="not a regular file"), written(tmp_path / name):
+            pass
+    assert stat.S_ISCHR(os.stat(os.devnull).st_mode)
+    assert unwritable(tmp_path / "none" / "a.csv") == f"there is no folder {tmp_path / 'none'}"
+    assert unwritable(tmp_path / "a.csv") == ""
+
+
+def test_a_folder_or_file_that_may_not_be_written(old, monkeypatch):
+    monkeypatch.setattr(files.os, "access", lambda path, _: path != str(old.parent))
+    assert "folder" in unwritable(old)
+    monkeypatch.setattr(files.os, "access", lambda path, _: path != str(old))
+    assert "protected" in unwritable(old)
+    with pytest.raises(OSError, match="protected"), written(old):
+        pass
+
+
+def test_two_outputs_that_are_one_file_are_refused(old, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    other = tmp_path / "other.csv"
+    distinct({"--out": old, "--history": other, "--figure": None})
+    same = [str(old), "./result.csv", "result.csv"]
+    if os.name != "nt":
+        (tmp_path / "link.csv").symlink_to(old)
+        (tmp_path / "ahead.csv").symlink_to(tmp_path / "not-yet.csv")
+        same.append("link.csv")
+        with pytest.raises(ValueError, match="--history"):
+            distinct({"--out": "not-yet.csv", "--history": "ahead.csv"})
+    for spelling in same:
+        with pytest.raises(ValueError, match=r"--out.*--history.*the same file"):
+            distinct({"--out": old, "--history": spelling})
