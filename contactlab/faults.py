@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts.law import Law
-from contactlab.contracts.normal import NormalContact
 from contactlab.status import Status
 
 
@@ -48,11 +47,6 @@ def malformed(value: Any, shape: tuple[int, ...]) -> bool:
             return True
         return value.shape != shape and not _broadcasts(value.shape, shape)
     return isinstance(value, bool) or not isinstance(value, float | int | np.floating | np.integer)
-
-
-def unsound(contact: NormalContact, shape: tuple[int, ...]) -> bool:
-    """Return whether a normal contact is malformed or not finite: then its law is to blame."""
-    return any(malformed(part, shape) or not np.all(np.isfinite(part)) for part in contact)
 
 
 def told(law: Law, what: str, step: int, time: Any = None) -> str:

@@ -60,7 +60,10 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
     """
     if isinstance(law, ClosedFormNormalLaw):
         with faults.blaming(law):
-            return law.motion(scene)
+            motion = law.motion(scene)
+            if not isinstance(motion, NormalMotion):
+                raise TypeError(f"motion returned {faults.shown(motion)}, which is no NormalMotion")
+            return motion
     plain = (*attrs.astuple(scene.pair), scene.normal_speed)
     if scene.shape and all(isinstance(number, float) for number in plain):
         one = attrs.evolve(scene, friction_coefficient=0.0, tangential_velocity=0.0, spin=0.0)

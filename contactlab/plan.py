@@ -11,6 +11,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab import faults
 from contactlab.checks import Real
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
@@ -146,22 +147,45 @@ def answers(
     if history == "fields" and not always:
         return []
     if not shape:
-        if normal.status is Status.SUCCESS:
-            for known in tangential.whole_impacts(scene, normal):
-                if known.where:
-                    return [Answer(ONE, known)]
-        return []
+        if normal.status is not Status.SUCCESS:
+            return []
+        for known in tangential.whole_impacts(scene, normal):
+            if known.where:
+                return [Answer(ONE, _sound(known, tangential, shape))]
+        return _not_marched(tangential) if always else []
     left = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
     left = np.array(np.broadcast_to(left, shape))
     found = []
     for known in tangential.whole_impacts(scene, normal):
         where = left & np.broadcast_to(known.where, shape)
         if where.any():
-            found.append(Answer(where, known))
+            found.append(Answer(where, _sound(known, tangential, shape)))
             left &= ~where
+    if always and left.any():
+        return _not_marched(tangential)
     if history and shape and left.any() and not always:
         return []
     return found
+
+
+def _sound(known: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> WholeImpact:
+    """Return an answer that is made of real numbers.
+
+    Raises
+    ------
+    LawFaultError
+        If it is not.
+    """
+    for entry in (known.slip_velocity_change, known.friction_work):
+        if faults.malformed(entry, shape):
+            told = faults.told(law, f"the answer {faults.shown(entry)} to a whole impact", 1)
+            raise faults.LawFaultError(Status.MALFORMED, told)
+    return known
+
+
+def _not_marched(law: TangentialLaw) -> list[Answer]:
+    told = faults.told(law, "no answer to some impacts, and no other way to run them", 1)
+    raise faults.LawFaultError(Status.MALFORMED, told)
 
 
 def make_plan(
@@ -237,9 +261,9 @@ def _error(
 ) -> Any:
     """Return the declared numerical error of psi2, an array of the scene's shape."""
     if not scene.shape and not marched:
-        psi1 = abs(scene.psi1)
-        largest = max(1.0, psi1) if math.isfinite(psi1) else 1.0
-        return np.array(CLOSED_FORM * largest + normal.accuracy * 4.0 * scene.chi)
+        alone = abs(float(scene.psi1))
+        most = max(1.0, alone) if math.isfinite(alone) else 1.0
+        return np.array(CLOSED_FORM * most + normal.accuracy * 4.0 * float(scene.chi))
     with np.errstate(all="ignore"):
         psi1 = np.abs(scene.psi1)
         largest = np.maximum(1.0, np.where(np.isfinite(psi1), psi1, 1.0))

@@ -118,12 +118,10 @@ class Scene:
             vast = (unit > 0.0) & ~np.isfinite(np.divide(slip, unit + (unit == 0.0)))
             lost = np.any((np.asarray(self.friction_coefficient) > 0.0) & (unit == 0.0))
         if not np.all(np.isfinite(slip_energy)):
-            name, value = "tangential_velocity", self.tangential_velocity
-            if self.sphere is None:
-                name, value = "psi1, chi", (value, self.chi)
+            si = self.sphere is not None
             raise refuse(
-                name,
-                value,
+                "tangential_velocity" if si else "psi1, chi",
+                self.tangential_velocity if si else (self.psi1, self.chi),
                 "the kinetic energy of slip must be finite",
                 "give less; from 4 chi - 1 on psi1 falls by 4 chi",
             )

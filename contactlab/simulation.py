@@ -336,7 +336,7 @@ class Simulation:
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a plug-in may not end the process
-            told = faults.raised(error)
+            told = faults.told(self.integrator, faults.raised(error), 1)
             return TangentialMotion.nothing(scene.shape, Status.LAW_RAISED, told), True
 
 

@@ -6,7 +6,7 @@ import math
 from abc import abstractmethod
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
+from functools import lru_cache
 from typing import Any, ClassVar, NamedTuple, Self, TypeAlias
 
 import attrs
@@ -71,7 +71,9 @@ class TangentialMotion:
     @classmethod
     def numbers(cls) -> tuple[str, ...]:
         """Return the names of the entries that are numbers."""
-        return _numbers(cls)
+        kind: Any = cls
+        names: tuple[str, ...] = _numbers(kind)
+        return names
 
     @classmethod
     def joined(cls, motions: Sequence[Self], shape: tuple[int, ...]) -> Self:
@@ -131,8 +133,8 @@ class TangentialMotion:
         )
 
 
-@cache
-def _numbers(kind: type[TangentialMotion]) -> tuple[str, ...]:
+@lru_cache
+def _numbers(kind: Any) -> tuple[str, ...]:
     others = ("status", "detail", "counters")
     return tuple(field.name for field in attrs.fields(kind) if field.name not in others)
 

@@ -48,7 +48,8 @@ def work_precision(axes: Axes, benchmark: Benchmark) -> Axes:
             f"≤ {FLOOR:.0e}: rounding", (0.01, FLOOR), xycoords=("axes fraction", "data"),
             va="center", color="#555555", fontsize=8.5,
         )  # fmt: skip
-    _legends(axes, laws, list(dict.fromkeys(row.method.split(" / ")[1] for row in benchmark.rows)))
+    marched = [row.method for row in benchmark.rows if " / " in row.method]
+    _legends(axes, laws, list(dict.fromkeys(method.split(" / ")[1] for method in marched)))
     return axes
 
 

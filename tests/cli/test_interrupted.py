@@ -12,7 +12,7 @@ from contactlab.analysis.bench_methods import Method
 from contactlab.cli import bench, figures, stability
 from contactlab.simulation import Simulation
 
-RIGID = [Method(tangential="coulomb", integrator="symplectic")]
+STEPPED = [Method(tangential="springs", integrator="symplectic")]
 
 
 def interrupting(function, after):
@@ -33,13 +33,13 @@ def rows(path):
 
 
 def test_bench(run, monkeypatch, tmp_path):
-    monkeypatch.setattr(bench, "methods", lambda _: RIGID)
+    monkeypatch.setattr(bench, "methods", lambda _: STEPPED)
     monkeypatch.setattr(work_precision, "_row", interrupting(work_precision._row, 2))
     table, picture = tmp_path / "b.csv", tmp_path / "b.png"
     ran = run("bench", "--quick", "--csv", table, "--figure", picture)
     assert ran.status == 130
     assert ran.out.endswith("not complete: interrupted\n")
-    assert [row["method"] for row in rows(table)] == ["coulomb / symplectic"] * 2
+    assert [row["method"] for row in rows(table)] == ["springs / symplectic"] * 2
     assert picture.read_bytes().startswith(b"\x89PNG")
     monkeypatch.setattr(work_precision, "_row", interrupting(work_precision._row, 0))
     ran = run("bench", "--quick", "--json", "--figure", tmp_path / "none.png")
@@ -51,7 +51,7 @@ def test_bench(run, monkeypatch, tmp_path):
 
 def test_a_sweep_that_is_interrupted_within_a_study_ends_the_study(run, monkeypatch):
     """A sweep returns what is done; its time, and its gaps, are not those of the law."""
-    monkeypatch.setattr(Simulation, "run", interrupting(Simulation.run, 0))
+    monkeypatch.setattr(Simulation, "_outcome", interrupting(Simulation._outcome, 0))
     with pytest.raises(KeyboardInterrupt):
         work_precision._sweep_time(Simulation(tangential="coulomb", integrator="symplectic"))
     monkeypatch.setattr(validation, "_checks", lambda: iter([validation._rigid]))
@@ -61,7 +61,7 @@ def test_a_sweep_that_is_interrupted_within_a_study_ends_the_study(run, monkeypa
 
 @pytest.mark.parametrize("after", [0, 7])
 def test_stability(run, monkeypatch, tmp_path, after):
-    monkeypatch.setattr(stability, "methods", lambda _: RIGID)
+    monkeypatch.setattr(stability, "methods", lambda _: STEPPED)
     monkeypatch.setattr(stability, "judge", interrupting(stability.judge, after))
     table, picture = tmp_path / "s.csv", tmp_path / "s.png"
     ran = run("stability", "--quick", "--csv", table, "--figure", picture)
@@ -74,7 +74,7 @@ def test_stability(run, monkeypatch, tmp_path, after):
 
 
 def test_stability_on_its_map(run, monkeypatch, tmp_path):
-    monkeypatch.setattr(stability, "methods", lambda _: RIGID)
+    monkeypatch.setattr(stability, "methods", lambda _: STEPPED)
     judge = stability.judge
 
     def judged(case):

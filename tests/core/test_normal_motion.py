@@ -213,9 +213,16 @@ def test_second_order_in_steps_under_any_normal_law(normal, integrator):
 
 
 @pytest.mark.parametrize("normal", SMOOTH.values(), ids=SMOOTH)
-@pytest.mark.parametrize("law", [RescaledSpring(), "springs"])
-def test_adaptive_keeps_its_tolerance_under_any_normal_law(normal, law):
-    slips, tolerances, errors = (0.1, 0.23), (1e-3, 1e-4, 1e-5), []
+@pytest.mark.parametrize(
+    ("law", "tolerances"),
+    [
+        # Of first order: the reference itself is no better than 1e-5.
+        pytest.param(RescaledSpring(), (1e-2, 1e-3, 1e-4), marks=pytest.mark.slow),
+        ("springs", (1e-3, 1e-4, 1e-5)),
+    ],
+)
+def test_adaptive_keeps_its_tolerance_under_any_normal_law(normal, law, tolerances):
+    slips, errors = (0.1, 0.23), []
 
     def answer(integrator, slip):
         sim = Simulation(normal=normal, tangential=law, integrator=integrator)

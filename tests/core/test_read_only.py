@@ -34,7 +34,7 @@ class Writer(SteppedTangentialLaw):
     def start(self, scene, normal):
         if self.what == "scene":
             scene.tangential_velocity[0] *= 0.5
-        return None
+        return
 
     def advance(self, state, increment, before, after):
         if self.what in ("force", "radius", "friction_load"):

@@ -93,9 +93,7 @@ def test_relative_imbalance_never_raises(name, psi1, shape):
 def test_users_who_ask_numpy_to_raise(name, psi1, batch):
     given = np.array([psi1, 1.2, -psi1]) if batch else psi1
     with np.errstate(all="raise"):
-        simulation = Simulation(
-            tangential=contactlab.create(f"tangential.{name}", **ALL[name])
-        )
+        simulation = Simulation(tangential=contactlab.create(f"tangential.{name}", **ALL[name]))
         result = simulation.run(Scene.nondimensional(psi1=given, chi=CHI)).check()
         numbers = [result.psi2, result.energy.relative_imbalance, str(result.plan), repr(result)]
     first = np.ravel(numbers[0])[0]

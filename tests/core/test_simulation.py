@@ -157,9 +157,9 @@ def test_plan_says_of_a_batch_what_is_done(law, digits):
 
 @pytest.mark.parametrize("normal", ["hertz", LinearSpring()])
 def test_a_law_without_force_is_never_marched(normal):
-    left_out = Simulation(
-        normal=normal, tangential="frictionless", integrator="symplectic"
-    ).plan(scene())
+    left_out = Simulation(normal=normal, tangential="frictionless", integrator="symplectic").plan(
+        scene()
+    )
     assert "makes no force" in str(left_out)
     assert not left_out.marched
 

@@ -60,8 +60,6 @@ def test_force_stays_below_the_limit_of_the_friction_load(name, integrator, slip
     assert (np.abs(history.tangential_force) <= limit * allowed).all()
     pulled = (history.normal_force < 0.0) & (load > 0.0) & (history.contact_radius > 0.0)
     if abs(slip) > 1.0:
-        sense = np.sign(slip)
-        assert (sense * history.tangential_force[pulled] >= 0.0).all()
         assert (np.abs(history.tangential_force[pulled]) > 0.5 * limit[pulled]).any()
 
 

@@ -71,9 +71,7 @@ def test_closed_form_motion_keeps_energy_and_time(phase):
     assert [scaled.approach, scaled.radius, scaled.rate] == pytest.approx(
         [approach, contact.radius, rate], abs=1e-14
     )
-    exact, _ = quad(
-        lambda x: motion.scaled_at(x).time_rate, 0.0, phase, epsabs=1e-13, epsrel=1e-13
-    )
+    exact, _ = quad(lambda x: motion.scaled_at(x).time_rate, 0.0, phase, epsabs=1e-13, epsrel=1e-13)
     assert time == pytest.approx(exact, abs=1e-12)
 
 

@@ -1,0 +1,53 @@
+"""``run(estimate_error=True)``: an estimate of the error, for laws that declare none too."""
+
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Scene, Simulation
+from tests.outside_laws import RescaledSpring
+
+CHI = 49.0 / 34.0
+#: A dozen impacts.
+PSI1 = np.array([0.1, 0.4, 0.7, 0.9, 1.2, 1.7, 2.3, 3.1, 0.5, 1.2, 2.2, 4.0])
+CHIS = np.array([CHI] * 8 + [3.0] * 4)
+SCENE = Scene.nondimensional(psi1=PSI1, chi=CHIS)
+RESOLUTIONS = {"coarse": (60, 15), "finer": (200, 50)}
+FINE = (12_000, 400)
+
+
+def simulation(name, steps, parts):
+    integrator = contactlab.create("integrator.symplectic", steps=steps)
+    if name == "rescaled":
+        return Simulation(tangential=RescaledSpring(), integrator=integrator)
+    word = {"springs": "springs", "mindlin_cap": None}.get(name, "annuli")
+    options = {word: parts} if word else {}
+    law = contactlab.create(f"tangential.{name}", **options)
+    return Simulation(tangential=law, integrator=integrator)
+
+
+def true(name):
+    if name in ("springs", "sharp_annulus", "annulus"):
+        return Simulation().run(SCENE).check().psi2
+    return simulation(name, *FINE).run(SCENE).check().psi2
+
+
+@pytest.mark.parametrize("name", ["springs", "sharp_annulus", "annulus", "mindlin_cap", "rescaled"])
+def test_the_estimate_is_within_a_factor_of_three_mostly(name):
+    exact, ratios = true(name), []
+    for steps, parts in RESOLUTIONS.values():
+        result = simulation(name, steps, parts).run(SCENE, estimate_error=True).check()
+        with np.errstate(divide="ignore"):
+            ratios.append(result.psi2_error_estimate / np.abs(result.psi2 - exact))
+    ratio = np.concatenate(ratios)
+    good = (ratio > 1.0 / 3.0) & (ratio < 3.0)
+    assert good.mean() >= 0.9, np.array2string(np.sort(ratio), precision=2)
+
+
+def test_what_is_known_has_the_declared_error():
+    result = Simulation(tangential="springs").run(
+        Scene.nondimensional(psi1=np.array([0.0, 1.2, 9.0]), chi=CHI), estimate_error=True
+    )
+    assert result.psi2_error_estimate[[0, 2]].tolist() == result.plan.psi2_error[[0, 2]].tolist()
+    assert 0.0 < result.psi2_error_estimate[1] < 0.01
+    assert Simulation().run(Scene.nondimensional(psi1=1.2, chi=CHI)).psi2_error_estimate is None
