@@ -17,7 +17,7 @@ from contactlab.cli.arguments import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
 from contactlab.status import Status
 
 #: A new subcommand is a module of this package and its name here.
-COMMANDS = ("run", "sweep", "compare", "bench", "stability", "validate", "figures", "plugins")
+COMMANDS = ("run", "sweep", "compare", "bench", "stability", "validate", "figures", "plugins", "guide")
 
 EPILOG = """examples:
   contactlab run --psi1 1.2 --chi 1.4412
