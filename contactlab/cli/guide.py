@@ -13,7 +13,6 @@ from __future__ import annotations
 import argparse
 import difflib
 import re
-from importlib import resources
 
 from contactlab.checks import refuse
 
@@ -64,6 +63,8 @@ def text(topic: str) -> str:
     ValueError
         If there is no such topic, with the nearest match.
     """
+    from importlib import resources  # only those who read the guide pay for it
+
     name = topic.removesuffix(".md")
     if name not in TOPICS:
         nearest = difflib.get_close_matches(name, TOPICS, n=1, cutoff=0.4)
@@ -80,7 +81,7 @@ def summary(topic: str) -> str:
 def sections(markdown: str) -> dict[str, str]:
     """Return the numbered sections of a topic by their numbers, each from its heading on."""
     starts = list(SECTION.finditer(markdown))
-    ends = [start.start() for start in starts[1:]] + [len(markdown)]
+    ends = [*(start.start() for start in starts), len(markdown)][1:]
     return {
         start[1]: markdown[start.start() : end] for start, end in zip(starts, ends, strict=True)
     }

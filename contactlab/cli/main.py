@@ -17,7 +17,9 @@ from contactlab.cli.arguments import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
 from contactlab.status import Status
 
 #: A new subcommand is a module of this package and its name here.
-COMMANDS = ("run", "sweep", "compare", "bench", "stability", "validate", "figures", "plugins", "guide")
+COMMANDS = (
+    "run", "sweep", "compare", "bench", "stability", "validate", "figures", "plugins", "guide",
+)  # fmt: skip
 
 EPILOG = """examples:
   contactlab run --psi1 1.2 --chi 1.4412
@@ -25,6 +27,7 @@ EPILOG = """examples:
   contactlab compare examples/kharaz2001.toml --figure kharaz.png
   contactlab figures --out figures
   contactlab plugins list
+  contactlab guide choosing
 
 exit status: 0 success, 1 a run failed, 2 bad input, 130 interrupted
 """
