@@ -25,7 +25,8 @@ from contactlab import (
     plan,
     result,
 )
-from contactlab.cli.guide import SECTION, TOPICS, summary, text
+from contactlab.analysis.validation import REFERENCE_PSI2
+from contactlab.cli.guide import SECTION, TOPICS, sections, summary, text
 from contactlab.testing import Verdict, check_law
 
 ROOT = Path(__file__).parents[2]
@@ -127,6 +128,23 @@ def test_sections_cited_within_the_theory_resolve():
     known = set(SECTION.findall(text("theory")))
     own = re.sub(r"§\d+\.\d+", "", text("theory"))  # sections of the paper
     assert set(re.findall(r"§(\d+)", own)) <= known
+
+
+def rows(section):
+    """The rows of numbers in the tables of a section of the theory."""
+    for line in sections(text("theory"))[section].splitlines():
+        cells = line.strip("| ").split(" | ")
+        with contextlib.suppress(ValueError):
+            yield [49 / 34 if cell == "49/34" else float(cell) for cell in cells]
+
+
+def test_tables_of_the_theory_are_those_of_the_code():
+    reference = {round(row[0], 6): tuple(row[1:]) for row in rows("5")}
+    for chi, psi2 in REFERENCE_PSI2.items():
+        assert reference[round(chi, 6)] == psi2
+    shifts = {row[0]: [abs(cell) for cell in row[1:]] for row in rows("9")}
+    for strength, line in zip(cautions.COUPLING_LAMBDA, cautions.COUPLING_SHIFT, strict=True):
+        assert strength == 0.0 or shifts[strength] == list(line[1:])
 
 
 def test_references_of_the_theory_are_numbered_and_all_cited():
