@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     from _typeshed import SupportsWrite
 
 #: A new subcommand is a module of this package and its name here.
-COMMANDS = ("run", "sweep", "compare", "bench", "stability", "validate", "figures", "plugins")
+COMMANDS = (
+    "run", "sweep", "compare", "bench", "stability", "validate", "figures", "plugins", "guide",
+)  # fmt: skip
 
 EPILOG = """examples:
   contactlab run --psi1 1.2 --chi 1.4412
@@ -38,6 +40,7 @@ EPILOG = """examples:
   contactlab compare examples/kharaz2001.toml --figure kharaz.png
   contactlab figures --out figures
   contactlab plugins list
+  contactlab guide choosing
 
 exit status: 0 success, 1 a run failed, 2 bad input, 130 interrupted
 """

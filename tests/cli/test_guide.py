@@ -1,0 +1,62 @@
+"""``contactlab guide``: topics, one topic, one section."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from contactlab.cli.guide import TOPICS
+
+
+def test_the_list_has_a_line_a_topic(run):
+    ran = run("guide")
+    assert ran.status == 0
+    listed = ran.out.split("\n\n")[0].splitlines()
+    assert [line.split()[0] for line in listed] == list(TOPICS)
+    assert all(len(line) < 105 and line.endswith(".") for line in listed)
+
+
+@pytest.mark.parametrize("topic", TOPICS)
+def test_a_topic_is_printed(run, topic):
+    ran = run("guide", topic)
+    assert ran.status == 0
+    assert ran.err == ""
+    assert ran.out.startswith("# ")
+    assert run("guide", f"{topic}.md").out == ran.out
+
+
+def test_a_section_is_printed_alone(run):
+    ran = run("guide", "theory", "5")
+    assert ran.status == 0
+    assert ran.out.startswith("## 5. ")
+    assert "## 6. " not in ran.out
+    assert run("guide", "theory", "§5").out == ran.out
+
+
+def test_an_unknown_topic_is_refused_with_the_nearest(run):
+    ran = run("guide", "teory")
+    assert (ran.status, ran.out) == (2, "")
+    assert "did you mean 'theory'?" in ran.err
+    assert len(ran.err.splitlines()) == 1
+
+
+@pytest.mark.parametrize("words", [("theory", "99"), ("theory", "five"), ("choosing", "1")])
+def test_an_unknown_section_is_refused(run, words):
+    ran = run("guide", *words)
+    assert (ran.status, ran.out) == (2, "")
+    assert f"section = {words[1]!r}" in ran.err
+
+
+def test_the_guide_imports_no_law_no_scipy_no_matplotlib():
+    probe = (
+        "import sys; from contactlab.cli.main import main; main(['guide', 'theory']);"
+        "heavy = [name for name in sys.modules if name.partition('.')[0] in"
+        "  ('scipy', 'matplotlib') or name.startswith('contactlab_')]; sys.exit(repr(heavy)"
+        "  if heavy else 0)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-X", "utf8", "-c", probe], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
