@@ -232,7 +232,11 @@ def make_plan(
     if marched.any():
         text = f"tangential motion: {integrator!r} over {tangential!r}"
         computed.append(Sentence(text, marched))
-        cautions += list(integrator.remarks(normal, tangential, scene))
+        if marched.all():
+            cautions += list(integrator.remarks(normal, tangential, scene))
+        else:
+            some = normal.take(marched), tangential, scene.take(marched)
+            cautions += list(integrator.remarks(*some))
         cautions += _coarse(scene, error, marched, tangential, integrator)
     computed += _said(error, parted)
     if not history:

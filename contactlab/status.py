@@ -14,7 +14,7 @@ class Status(Enum):
     UNSETTLED = "The tangential law found no division into stick and slip that passes its tests."
     UNRESOLVED = "The motion could not be followed to the tolerance asked for."
     UNBALANCED = "The energy books do not balance: energy came from nothing, or went nowhere."
-    NOT_SEPARATED = "The bodies were still in contact when the step limit was reached."
+    NOT_SEPARATED = "The bodies did not part: the contact was given up."
     MALFORMED = "A law's answer is not made of real numbers, or not of the batch's shape."
     LAW_RAISED = "A law raised an error in the middle of the run."
     INTERRUPTED = "The run was interrupted; this impact was not computed."

@@ -16,10 +16,20 @@ LARGEST_GAIN = 0.1
 LARGEST_NORMAL = 1e-9
 
 
-def broken_invariants(result: ImpactResult, bound: float, *, passive: bool = True) -> list[str]:
+def broken_invariants(
+    result: ImpactResult, bound: float, *, passive: bool = True, books_bound: float = 0.0
+) -> list[str]:
     """Return the laws of physics (theory §7) that a result breaks beyond what is declared.
 
-    ``passive`` is False for a law whose model itself makes energy.
+    Parameters
+    ----------
+    result : ImpactResult
+    bound : float
+        Declared error of psi2, over its range.
+    passive : bool
+        False for a law whose model itself makes energy.
+    books_bound : float
+        Declared imbalance of the books, over the energy at the start.
     """
     scene, motion = result.scene, result.motion
     _, width, speed = range_of(scene)
@@ -42,7 +52,8 @@ def broken_invariants(result: ImpactResult, bound: float, *, passive: bool = Tru
     books = result.energy
     scale = 0.5 * float(scene.pair.normal_mass * scene.normal_speed**2)
     scale += float(scene.pair.tangential_mass) * width * speed
-    if not abs(float(books.imbalance)) <= max(bound, BOOKS) * scale:
+    allowed_books = max(bound, BOOKS, min(books_bound, LARGEST_GAIN))
+    if not abs(float(books.imbalance)) <= allowed_books * scale:
         broken.append("energy books do not close")
     if float(books.friction_work) < -allowed * scale:
         broken.append("friction does work on the bodies")

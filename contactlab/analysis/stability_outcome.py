@@ -110,7 +110,8 @@ def _judged(
     if np.isnan(bound):  # of a stranger's law nothing is declared: only the invariants are held
         bound, expected = UNDECLARED, None
     passive = case.method.tangential not in ACTIVE
-    wrong = broken_invariants(result, bound, passive=passive)
+    books = simulation.tangential.books_bound
+    wrong = broken_invariants(result, bound, passive=passive, books_bound=books)
     error = np.nan
     if expected is not None:
         away = abs(float(result.motion.slip_velocity_change) - expected)
