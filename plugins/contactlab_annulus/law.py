@@ -112,7 +112,7 @@ class Annulus(AllStepsTangentialLaw):
         """Return the force (22) after the step."""
         scales, memory = state
         radius: Any = after.radius / scales.radius
-        pressure = scales.pressure(radius, increment.friction_load)
+        pressure = scales.pressure(radius, after.friction_load)
         solve = one.advance if isinstance(memory, one.Memory) else many.advance
         slip: Any = increment.displacement * scales.displacement
         force, work, settled, memory = solve(self._tables(), memory, slip, radius, pressure)
@@ -125,7 +125,7 @@ class Annulus(AllStepsTangentialLaw):
         radius = steps.contact.radius / scales.radius
         course = blocks.Course(
             radius=radius,
-            pressure=scales.pressure(radius, steps.friction_load),
+            pressure=scales.pressure(radius, steps.contact.friction_load),
             drift=steps.drift * scales.displacement,
             kick=steps.kick * scales.force / scene.pair.tangential_mass,
         )

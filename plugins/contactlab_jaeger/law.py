@@ -107,7 +107,7 @@ class ProfileLaw(AllStepsTangentialLaw):
         """Return the force after the step."""
         shape, scales, memory = state
         radius = step.plain(after.radius) / scales.radius
-        pressure = scales.pressure(radius, step.plain(increment.friction_load))
+        pressure = scales.pressure(radius, step.plain(after.friction_load))
         radius, pressure = step.common(radius, shape), step.common(pressure, shape)
         moved = increment.displacement * scales.displacement
         if not shape:
@@ -132,7 +132,7 @@ class ProfileLaw(AllStepsTangentialLaw):
         radius = steps.contact.radius / scales.radius
         course = whole.Course(
             radius=radius,
-            pressure=scales.pressure(radius, steps.friction_load),
+            pressure=scales.pressure(radius, steps.contact.friction_load),
             drift=steps.drift * scales.displacement,
             kick=steps.kick * (scales.force / scene.pair.tangential_mass),
         )

@@ -10,6 +10,12 @@ import numpy as np
 from contactlab.contracts import NormalContact, NormalMotion, Steps
 
 
+#: A sample acts for the time in which its load has the exact impulse of the step. So tangential
+#: and normal impulse are in the exact ratio wherever the contact slips all over. Near the ends
+#: of contact that is not the step's own time, but not further from it than these factors.
+LEAST_KICK, MOST_KICK = 0.5, 2.0
+
+
 def midpoints(normal: NormalMotion, count: int) -> Steps:
     """Return ``count`` steps of the contact's duration, each sampled in its middle."""
     halves = np.array(normal.phase(np.linspace(0.0, 1.0, 2 * count + 1)))
@@ -22,12 +28,14 @@ def midpoints(normal: NormalMotion, count: int) -> Steps:
 
 
 def endpoints(normal: NormalMotion, count: int) -> Steps:
-    """Return the same steps sampled at their ends; the friction load is centred there.
+    """Return the same steps sampled at their ends.
 
-    The half step before the first sample and the one after the last have a neighbour's force.
+    The half steps after first touch and before separation have the force of their neighbours.
     """
     fractions = np.linspace(0.0, 1.0, count + 1)
-    edges = np.concatenate(([0.0], fractions[1:-1] + 0.5 / count, [1.0]))  # count + 1 of them
+    # Ends of the times in which the samples act; the last sample, at separation, has no load.
+    edges = np.concatenate(([0.0], fractions[1:-1] + 0.5 / count, [1.0]))
+    edges[max(count - 1, 1)] = 1.0
     phases = np.array(normal.phase(np.concatenate((fractions[1:], edges))))
     phases[[count - 1, -1]] = np.pi
     impulse = np.asarray(normal.at(_column(phases[count:], normal)).load_impulse)
@@ -42,11 +50,16 @@ def _steps(normal: NormalMotion, phases: Any, kick: Any, load_impulse: Any) -> S
     time, approach, rate, contact, _ = normal.at(_column(phases, normal))
     drift = np.array(time)
     drift[1:] -= time[:-1]
+    load = np.asarray(contact.friction_load)
+    with np.errstate(all="ignore"):
+        even = load_impulse / load
+    even = np.where(load > 0.0, even, kick)
+    kick = np.clip(even, LEAST_KICK * kick, MOST_KICK * kick)
     full = np.zeros_like(drift + kick)  # what all impacts share may lack the batch's axes
     steps = Steps(
         contact=NormalContact(*(full + entry for entry in contact)),
         drift=drift,
-        kick=kick,
+        kick=full + kick,
         friction_load=full + load_impulse / kick,
         time=full + time,
         approach=full + approach,

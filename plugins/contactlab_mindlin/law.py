@@ -133,7 +133,7 @@ class MindlinCap(SteppedTangentialLaw):
     ) -> tuple[TangentialResponse, State]:
         """Return the force after the step, and the work of the mean force on the slip."""
         stiffness: Any = state.modulus * after.radius
-        cap = state.friction_coefficient * increment.friction_load
+        cap = state.friction_coefficient * after.friction_load
         compliance = (stiffness > 0.0) / (stiffness + (stiffness == 0.0))
         if self.form == "displacement":
             trial = state.held + increment.displacement
@@ -141,7 +141,7 @@ class MindlinCap(SteppedTangentialLaw):
             force, slip = stiffness * held, trial - held
         else:
             shrunk: Any = 1.0
-            mean = 0.5 * (stiffness + state.modulus * before.radius)  # second order in the step
+            mean = state.modulus * _mean_radius(before.radius, after.radius)
             if self.form == "increment_rescaled":
                 wide = before.radius + (before.radius == 0.0)
                 shrinks = after.radius < before.radius
@@ -155,6 +155,13 @@ class MindlinCap(SteppedTangentialLaw):
         if not shape:
             force, held, work = float(force), float(held), float(work)
         return TangentialResponse(force, work), State(*state[:2], held, force)
+
+
+def _mean_radius(before: Any, after: Any) -> Any:
+    """Return the mean contact radius over a step in which its square changes evenly."""
+    total = before + after
+    squares = before * before + before * after + after * after
+    return (2.0 / 3.0) * squares / (total + (total == 0.0))
 
 
 def _cut(value: Real, limit: Real) -> Any:
