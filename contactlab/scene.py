@@ -16,6 +16,8 @@ from contactlab.signatures import named_arguments
 #: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s: numbers
 #: formed from smaller ones are no longer held to sixteen digits.
 LEAST_ENERGY = LEAST_VELOCITY = 1e-290
+#: Least momentum that friction can take, mu times that of the normal motion, in N s.
+LEAST_IMPULSE = 1e-285
 
 
 def _is_sphere(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
@@ -115,6 +117,8 @@ class Scene:
             slip: Any = np.abs(self.slip_velocity)
             slip_energy: Any = 0.5 * self.pair.tangential_mass * np.square(slip)
             tiny = (np.maximum(unit, slip) < LEAST_VELOCITY) & (unit > 0.0) & (slip > 0.0)
+            momentum: Any = self.friction_coefficient * self.pair.normal_mass * self.normal_speed
+            tiny |= (momentum < LEAST_IMPULSE) & (slip > 0.0) & (unit > 0.0) & (slip < 1e9 * unit)
             vast = (unit > 0.0) & ~np.isfinite(np.divide(slip, unit + (unit == 0.0)))
             lost = np.any((np.asarray(self.friction_coefficient) > 0.0) & (unit == 0.0))
         if not np.all(np.isfinite(slip_energy)):

@@ -49,11 +49,10 @@ def contact(matrix_stick, matrix_slip, radius, moved, beta, sign, stuck):
     raise RuntimeError("division into stick and slip did not settle")
 
 
-def radii_and_rates(fraction):
-    """Return beta and V at fractions of the duration, from T(x) by quadrature (theory §3).
+def radii(steps):
+    """Return beta after each of ``steps`` even steps, from T(x) by quadrature (theory §3).
 
-    sqrt(zeta) = beta = sin x, V = cos x g(beta), dT/dx = 2 beta/g(beta); the second half mirrors
-    the first.
+    sqrt(zeta) = beta = sin x, dT/dx = 2 beta/g(beta); the second half mirrors the first.
     """
     points, weights = np.polynomial.legendre.leggauss(60)
 
@@ -64,38 +63,33 @@ def radii_and_rates(fraction):
     def passed(x):
         return (pace(0.5 * x[:, None] * (1.0 + points)) * weights).sum(axis=1) * 0.5 * x
 
+    fraction = np.arange(1, steps + 1) / steps
     half = np.minimum(fraction, 1.0 - fraction) * DURATION
     x = np.sqrt(half) * 1.05 + 1e-300
     for _ in range(60):
         x = np.clip(x - (passed(x) - half) / pace(x), 0.5 * x, 0.5 * np.pi)
-    beta = np.where(half > 0.0, np.sin(x), 0.0)
-    rate = np.sqrt(np.maximum(1.0 - beta**5, 0.0))
-    return beta, np.where(fraction <= 0.5, rate, -rate)
+    return np.where(half > 0.0, np.sin(x), 0.0)
 
 
 def along_the_exact_motion(psi1, chi, *, annuli, steps):
     """Return what ``impact`` does, with the contact (30)-(32) given and not marched.
 
-    The last step ends at separation: there are ``steps`` of them whatever psi1. Force and normal
-    force act for the same time, that in which the normal force has its exact impulse.
+    The last step ends at separation: there are ``steps`` of them whatever psi1. Steps are such
+    that the normal force has its exact impulse, as it has where (31) is marched.
     """
     matrix_stick, matrix_slip = 0.5 * influence(annuli), shape(annuli)
     radius = (np.arange(1, annuli + 1) - 0.5) / annuli
     weight = (np.arange(1, annuli + 1) / annuli) ** 2
-    step, psi = DURATION / steps, float(psi1)
+    betas, psi = radii(steps), float(psi1)
+    step = 2.0 / np.sum(1.25 * betas**3)
     xi, sign, stuck = np.zeros(annuli), np.zeros(annuli), np.zeros(annuli, bool)
     forces = []
-    fraction = np.arange(1, steps + 1) / steps
-    ends = np.concatenate(([0.0], fraction[:-2] + 0.5 / steps, [1.0]))
-    rates = radii_and_rates(ends)[1]
-    betas = radii_and_rates(fraction)[0]
-    acts = np.append((rates[:-1] - rates[1:]) / (1.25 * betas[:-1] ** 3), step)
-    for beta, kick in zip(betas, acts, strict=True):
+    for beta in betas:
         moved = xi + psi * step
         phi, sign, stuck = contact(matrix_stick, matrix_slip, radius, moved, beta, sign, stuck)
         xi = matrix_stick @ phi
         force = weight @ phi
-        psi -= 1.25 * np.pi * chi * force * kick
+        psi -= 1.25 * np.pi * chi * force * step
         forces.append(0.5 * np.pi * force)
     return psi, np.array(forces)
 
