@@ -23,13 +23,12 @@ def main() -> int:
         command.add_argument(
             "--workers", type=int, default=1, help="processes; 0 for one a core (1)"
         )
-    timing = commands.add_parser("bench", help="print the time an impact takes")
-    for command in (building, verifying, timing):
         command.add_argument("--file", type=Path, default=SHIPPED, help="the table")
+    commands.add_parser("bench", help="print the time an impact takes")
     asked = parser.parse_args()
     if asked.command == "build":
         return _build(asked)
-    return _verify(asked) if asked.command == "verify" else _bench(asked)
+    return _verify(asked) if asked.command == "verify" else _bench()
 
 
 def _workers(asked: argparse.Namespace) -> int:
@@ -60,10 +59,10 @@ def _verify(asked: argparse.Namespace) -> int:
     return 0 if rows[-1].largest <= asked.bound else 1
 
 
-def _bench(asked: argparse.Namespace) -> int:
+def _bench() -> int:
     from contactlab_tabulated.bench import bench
 
-    for name, nanoseconds in bench(read(asked.file)):
+    for name, nanoseconds in bench():
         print(f"{name:30} {nanoseconds:8.0f} ns an impact")
     return 0
 

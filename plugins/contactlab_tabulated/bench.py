@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab_tabulated import evaluate
 from contactlab_tabulated.coordinates import LARGEST_CHI
-from contactlab_tabulated.derivatives import gradient
-from contactlab_tabulated.scalar import ScalarTable
-from contactlab_tabulated.table import Table
+from contactlab_tabulated.function import rebound
 
 Array = NDArray[np.float64]
 
@@ -28,21 +26,20 @@ def mixed(count: int) -> tuple[Array, Array]:
     return rng.uniform(0.0, 1.05 * np.maximum(1.0, 4.0 * chi - 1.0)), chi
 
 
-def bench(table: Table) -> list[tuple[str, float]]:
+def bench() -> list[tuple[str, float]]:
     """Return names and nanoseconds an impact, the least of some repeats."""
     rows = []
     for count in SIZES:
         psi1, chi = mixed(count)
-        least = _least(lambda p=psi1, c=chi: evaluate.rebound(table, p, c))  # type: ignore[misc]
+        least = _least(partial(rebound, psi1, chi))
         rows.append((f"{count} together", 1e9 * least / count))
-    least = _least(lambda: gradient(table, psi1, chi))
-    rows.append((f"derivatives, {count} together", 1e9 * least / count))
-    one = ScalarTable(table).rebound
+    least = _least(partial(rebound, psi1, chi, derivatives=True))
+    rows.append((f"{count} with derivatives", 1e9 * least / count))
     pairs = list(zip(psi1[:SINGLES].tolist(), chi[:SINGLES].tolist(), strict=True))
 
     def singly() -> None:
         for pair in pairs:
-            one(*pair)
+            rebound(*pair)
 
     rows.append(("one at a time", 1e9 * _least(singly) / SINGLES))
     return rows

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from contactlab_tabulated import cuts as curves
 from contactlab_tabulated.coordinates import REGIONS, Cuts
 from contactlab_tabulated.exact import exact
-from contactlab_tabulated.fit import NODES, Cell, fit
-from contactlab_tabulated.table import DEEPEST, Provenance, Table, write
+from contactlab_tabulated.fit import Cell, fit
+from contactlab_tabulated.table import DEEPEST, NODES, Provenance, Table, write
 
 Array = NDArray[np.float64]
 Solve = Callable[[Array, Array], Array]

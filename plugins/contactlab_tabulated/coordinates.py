@@ -51,6 +51,10 @@ STUCK_POWERS = tuple(range(9))
 FIRST_POWER = 5
 
 
+#: Impacts whose places are found together: larger arrays would be new memory at every step.
+TOGETHER = 1 << 15
+
+
 class Cuts(NamedTuple):
     """chi of both cuts by increasing powers: of abs(psi1) and of t, zeros included."""
 
@@ -132,20 +136,30 @@ class Places(NamedTuple):
 
 def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
     """Return the places of impacts with chi <= LARGEST_CHI, but for those slipping throughout."""
-    below, light = speed <= 1.0, chi < 0.5
-    slips = (speed < 4.0 * chi - 1.0) & ~below
-    found = [
-        *_small(np.flatnonzero(below & light), speed, chi),
-        *_stuck_first(np.flatnonzero(below & ~light), speed, chi, cuts),
-        *_slip_first(np.flatnonzero(slips), speed, chi, cuts),
-    ]
-    found = [part for part in found if part.who.size]
+    found: list[Part] = []
+    for first in range(0, speed.size, TOGETHER):
+        block = slice(first, first + TOGETHER)
+        for part in _parts(speed[block], chi[block], cuts):
+            if part.who.size:
+                part.who[:] += first
+                found.append(part)
     if not found:
         none = np.empty(0)
         return Places((), (), np.empty(0, dtype=np.intp), none, none, none, none)
     regions, who, *columns = zip(*found, strict=True)
     count = tuple(part.who.size for part in found)
     return Places(regions, count, np.concatenate(who), *map(np.concatenate, columns))
+
+
+def _parts(speed: Array, chi: Array, cuts: Cuts) -> tuple[Part, ...]:
+    """Return the places of some impacts, each region apart."""
+    below, light = speed <= 1.0, chi < 0.5
+    slips = (speed < 4.0 * chi - 1.0) & ~below
+    return (
+        *_small(np.flatnonzero(below & light), speed, chi),
+        *_stuck_first(np.flatnonzero(below & ~light), speed, chi, cuts),
+        *_slip_first(np.flatnonzero(slips), speed, chi, cuts),
+    )
 
 
 def _small(who: Rows, speed: Array, chi: Array) -> tuple[Part, Part]:

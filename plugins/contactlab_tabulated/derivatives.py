@@ -31,7 +31,7 @@ from contactlab_tabulated.coordinates import (
     slope,
 )
 from contactlab_tabulated.evaluate import BLOCK, patches, powers, stretches
-from contactlab_tabulated.table import Table
+from contactlab_tabulated.table import NODES, Table
 
 Array = NDArray[np.float64]
 
@@ -67,14 +67,13 @@ def gradient(table: Table, speed: Array, chi: Array) -> tuple[Array, Array]:
 def _slopes(table: Table, here: Places) -> Slopes:
     patch = patches(table, here)
     order = np.argsort(patch, kind="stable")
-    count = table.terms.shape[1]
     result = Slopes(np.empty_like(here.a), np.empty_like(here.a), np.empty_like(here.a))
-    factor = np.arange(1, count)[:, None]
+    factor = np.arange(1, NODES)[:, None]
     for number, part in stretches(patch):
         who = order[part]
         wide, high = table.scales[0][number], table.scales[1][number]
-        x = powers(wide * here.a[who] - table.corners[0][number], count)
-        y = powers(high * here.b[who] - table.corners[1][number], count)
+        x = powers(wide * here.a[who] - table.corners[0][number])
+        y = powers(high * here.b[who] - table.corners[1][number])
         terms = table.terms[number]
         rows = terms @ y
         result.g[who] = np.einsum("kn,kn->n", rows, x)

@@ -20,11 +20,10 @@ from contactlab_tabulated.coordinates import (
     impact,
     measure,
 )
+from contactlab_tabulated.table import NODES
 
 Array = NDArray[np.float64]
 
-#: Nodes and powers of each coordinate.
-NODES = 12
 #: d psi2/d psi1 = g_t/(5 t^4): its error may be this many times that of psi2.
 SLOPE_PER_VALUE = 2000.0
 #: The slope of a polynomial's last terms is some SLOPE times their size, over the cell's width.

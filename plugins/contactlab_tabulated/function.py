@@ -109,7 +109,8 @@ def _signed(psi1: Array, chi: Array) -> Array:
     """Return psi2, shape (impacts,)."""
     tabulated = chi <= LARGEST_CHI
     if tabulated.all():
-        return np.asarray(np.copysign(1.0, psi1) * _tabulated(np.abs(psi1), chi))
+        psi2 = _tabulated(np.abs(psi1), chi)
+        return np.negative(psi2, out=psi2, where=psi1 < 0.0)
     psi2 = beyond(psi1, chi, ~tabulated)
     psi2[tabulated] = _signed(psi1[tabulated], chi[tabulated])
     return psi2

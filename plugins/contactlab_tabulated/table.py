@@ -19,6 +19,8 @@ Rows = NDArray[np.intp]
 
 SHIPPED = Path(__file__).with_name("elastic.npz")
 FORMAT = 1
+#: Chebyshev nodes of a cell in each coordinate, and powers in its patch.
+NODES = 12
 #: Cells are found in a grid of 2^DEEPEST by 2^DEEPEST for each region.
 DEEPEST = 6
 
