@@ -18,6 +18,7 @@ def main() -> int:
     verifying = commands.add_parser("verify", help="compare with fresh exact impacts")
     verifying.add_argument("--count", type=int, default=10_000, help="impacts (10000)")
     verifying.add_argument("--seed", type=int, default=1)
+    verifying.add_argument("--alone", action="store_true", help="solve each impact alone: slow")
     verifying.add_argument("--bound", type=float, default=1e-9, help="largest error (1e-9)")
     for command in (building, verifying):
         command.add_argument(
@@ -49,7 +50,9 @@ def _verify(asked: argparse.Namespace) -> int:
 
     table = read(asked.file)
     print(f"{asked.file}: {table.provenance}")
-    rows = verify(table, count=asked.count, seed=asked.seed, workers=_workers(asked))
+    rows = verify(
+        table, count=asked.count, seed=asked.seed, workers=_workers(asked), alone=asked.alone
+    )
     print(f"{'errors of max(1, psi1)':30} {'count':>7} {'largest':>8} {'rms':>8}  at psi1, chi")
     for row in rows:
         print(

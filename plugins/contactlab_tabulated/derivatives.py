@@ -35,8 +35,8 @@ from contactlab_tabulated.table import NODES, Table
 
 Array = NDArray[np.float64]
 
-#: A place nearer to a cut than this, in parts of its region's root, is taken to be this far.
-NEAREST = 1e-12
+#: A place nearer to a cut than this, in its region's root, is taken to be this far: the limit.
+NEAREST = 1e-9
 
 
 class Slopes(NamedTuple):
@@ -55,6 +55,7 @@ def gradient(table: Table, speed: Array, chi: Array) -> tuple[Array, Array]:
         here = places(speed[block], chi[block], table.cuts)
         if not here.who.size:
             continue
+        np.maximum(here.b, NEAREST, out=here.b)
         slopes = _slopes(table, here)
         for region, part in here.parts():
             who = first + here.who[part]
@@ -137,5 +138,5 @@ def _main(
         by_chi = by_b / (cut - 0.5)
         return along - b * moves * by_chi, by_chi
     top = LARGEST_CHI if stuck else CUT_TOP
-    by_chi = by_b / (2.0 * np.maximum(b, NEAREST)) / (top - cut)
+    by_chi = by_b / (2.0 * b) / (top - cut)
     return along - (1.0 - b * b) * moves * by_chi, by_chi

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from contactlab.checks import POSITIVE, real, refuse
 from contactlab_tabulated import evaluate
-from contactlab_tabulated.beyond import beyond
 from contactlab_tabulated.coordinates import LARGEST_CHI
 from contactlab_tabulated.derivatives import gradient
 from contactlab_tabulated.scalar import ScalarTable
@@ -111,8 +110,12 @@ def _signed(psi1: Array, chi: Array) -> Array:
     if tabulated.all():
         psi2 = _tabulated(np.abs(psi1), chi)
         return np.negative(psi2, out=psi2, where=psi1 < 0.0)
-    psi2 = beyond(psi1, chi, ~tabulated)
+    from contactlab_tabulated.exact import together  # no law before it is needed
+
+    psi2 = np.empty_like(psi1)
     psi2[tabulated] = _signed(psi1[tabulated], chi[tabulated])
+    beyond = ~tabulated
+    psi2[beyond] = np.copysign(1.0, psi1[beyond]) * together(np.abs(psi1[beyond]), chi[beyond])
     return psi2
 
 
