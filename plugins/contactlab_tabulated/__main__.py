@@ -56,7 +56,7 @@ def _verify(asked: argparse.Namespace) -> int:
     print(f"{'errors of max(1, psi1)':30} {'count':>7} {'largest':>8} {'rms':>8}  at psi1, chi")
     for row in rows:
         print(
-            f"{row.name:30} {row.count:7} {row.largest:8.1e} {row.rms:8.1e}  "
+            f"{row.name:30} {row.draws:7} {row.largest:8.1e} {row.rms:8.1e}  "
             f"{row.psi1!r}, {row.chi!r}"
         )
     return 0 if rows[-1].largest <= asked.bound else 1

@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab_tabulated import cuts as curves
+from contactlab_tabulated import start
 from contactlab_tabulated.coordinates import REGIONS, Cuts
 from contactlab_tabulated.exact import exact
-from contactlab_tabulated.fit import Cell, fit
+from contactlab_tabulated.fit import Cell, begins_at_one, fit
 from contactlab_tabulated.table import DEEPEST, NODES, Provenance, Table, write
 
 Array = NDArray[np.float64]
@@ -119,8 +120,9 @@ def _batch(progress: Progress, tolerance: float, solve: Solve) -> None:
     psi1 = np.stack([place[0] for place in places])
     chi = np.stack([place[1] for place in places])
     psi2 = solve(psi1.ravel(), chi.ravel()).reshape(psi1.shape)
-    for cell, *values in zip(cells, psi1, chi, psi2, strict=True):
-        patch = fit(cell, *values)
+    for cell, p, x, answers in zip(cells, psi1, chi, psi2, strict=True):
+        slope = start.slope(cell, progress.cuts, solve) if begins_at_one(cell) else None
+        patch = fit(cell, p, x, answers, slope)
         most = max(patch.error_a, patch.error_b)
         along_a = patch.error_a > max(tolerance, MINOR * most) and cell.level_a < DEEPEST
         along_b = patch.error_b > max(tolerance, MINOR * most) and cell.level_b < DEEPEST
@@ -133,9 +135,7 @@ def _batch(progress: Progress, tolerance: float, solve: Solve) -> None:
             progress.terms.append(patch.terms)
 
 
-def _shared(
-    share: Callable[..., Iterable[Array]], workers: int, psi1: Array, chi: Array
-) -> Array:
+def _shared(share: Callable[..., Iterable[Array]], workers: int, psi1: Array, chi: Array) -> Array:
     """Return exact answers, computed by several processes."""
     parts = 8 * workers
     return np.concatenate(

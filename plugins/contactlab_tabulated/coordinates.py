@@ -1,10 +1,12 @@
 """Coordinates in which the elastic rebound is smooth: regions, each mapped to a unit square.
 
 With delta = abs(abs(psi1) - 1) and epsilon = abs(2 chi - 1), psi2 = psi1 (-1 + epsilon g), and g
-is tabulated (theory §10); far from psi1 = 1 at chi < 1/2 delta stands in place of epsilon. Where gross slip comes first, or nearly so, it ends at V = 1 - delta/epsilon
-(theory §2), and the radius that sticks then is about t = (delta/epsilon)^(1/5): there g is smooth
-in t and chi. Two regions are divided by a cut, on which the sign of the last slip changes: below
-it g is analytic, above it g is smooth in the square root of the distance.
+is tabulated (theory §10); far from psi1 = 1 at chi < 1/2 delta stands in place of epsilon.
+
+Where gross slip comes first, or nearly so, it ends at V = 1 - delta/epsilon (theory §2), and the
+radius that sticks then is about t = (delta/epsilon)^(1/5): there g is smooth in t and chi. Two
+regions are divided by a cut, on which the sign of the last slip changes: below it g is analytic,
+above it g is smooth in the square root of the distance.
 """
 
 from __future__ import annotations
@@ -115,10 +117,10 @@ class Part(NamedTuple):
 
 
 class Places(NamedTuple):
-    """Impacts by region: ``count`` of each of ``regions``, one region after another."""
+    """Impacts by region: ``sizes`` of each of ``regions``, one region after another."""
 
     regions: tuple[int, ...]
-    count: tuple[int, ...]
+    sizes: tuple[int, ...]
     who: Rows
     a: Array
     b: Array
@@ -127,10 +129,8 @@ class Places(NamedTuple):
 
     def parts(self) -> list[tuple[int, slice]]:
         """Return regions, and where they are in the arrays."""
-        stops = np.cumsum(self.count).tolist()
-        slices = [
-            slice(stop - count, stop) for count, stop in zip(self.count, stops, strict=True)
-        ]
+        stops = np.cumsum(self.sizes).tolist()
+        slices = [slice(stop - size, stop) for size, stop in zip(self.sizes, stops, strict=True)]
         return list(zip(self.regions, slices, strict=True))
 
 
@@ -147,8 +147,8 @@ def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
         none = np.empty(0)
         return Places((), (), np.empty(0, dtype=np.intp), none, none, none, none)
     regions, who, *columns = zip(*found, strict=True)
-    count = tuple(part.who.size for part in found)
-    return Places(regions, count, np.concatenate(who), *map(np.concatenate, columns))
+    sizes = tuple(part.who.size for part in found)
+    return Places(regions, sizes, np.concatenate(who), *map(np.concatenate, columns))
 
 
 def _parts(speed: Array, chi: Array, cuts: Cuts) -> tuple[Part, ...]:
@@ -237,9 +237,7 @@ def _divided(
     parts = []
     for region, k in zip(regions, (np.flatnonzero(~on), np.flatnonzero(on)), strict=True):
         x, edge = chi[k], cut[k]
-        if region == regions[0]:
-            b = (x - 0.5) / (edge - 0.5)
-        else:
-            b = np.sqrt((x - edge) / (top - edge))
+        below = region == regions[0]
+        b = (x - 0.5) / (edge - 0.5) if below else np.sqrt((x - edge) / (top - edge))
         parts.append(Part(region, who[k], a[k], b, p[k], 2.0 * x - 1.0))
     return parts[0], parts[1]

@@ -18,7 +18,6 @@ from contactlab_tabulated.coordinates import (
     SLIP_BACK,
     SLIP_LATE,
     SLIP_LONG,
-    SLIP_ON,
     SMALL_FAR,
     SMALL_NEAR,
     STUCK_BACK,
@@ -59,7 +58,14 @@ def gradient(table: Table, speed: Array, chi: Array) -> tuple[Array, Array]:
         slopes = _slopes(table, here)
         for region, part in here.parts():
             who = first + here.who[part]
-            place = Part(region, *(column[part] for column in here[2:]))
+            place = Part(
+                region,
+                here.who[part],
+                here.a[part],
+                here.b[part],
+                here.speed[part],
+                here.measure[part],
+            )
             local = Slopes(*(column[part] for column in slopes))
             by_psi1[who], by_chi[who] = _of_psi2(place, local, table.cuts)
     return by_psi1, by_chi

@@ -91,17 +91,30 @@ def _chebyshev() -> Array:
 
 def missing_powers(cell: Cell) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Return the powers of a and of b that g lacks; only cells at a = 0 or b = 0 can tell."""
-    t_cells = cell.region in (SMALL_NEAR, SLIP_BACK, SLIP_ON)
     root_cells = cell.region in (STUCK_ON, SLIP_ON)
-    of_a = tuple(range(1, FIRST_POWER)) if t_cells and cell.i == 0 else ()
+    of_a = tuple(range(1, FIRST_POWER)) if begins_at_one(cell) else ()
     return of_a, (1,) if root_cells and cell.j == 0 else ()
 
 
-def fit(cell: Cell, psi1: Array, chi: Array, psi2: Array) -> Fit:
+def begins_at_one(cell: Cell) -> bool:
+    """Return whether the cell begins at psi1 = 1, so that its first coordinate is t from 0."""
+    return cell.region in (SMALL_NEAR, SLIP_BACK, SLIP_ON) and cell.i == 0
+
+
+def fit(cell: Cell, psi1: Array, chi: Array, psi2: Array, slope: Array | None = None) -> Fit:
     """Return the patch of a cell; its errors are those of psi2/psi1.
 
     An error is the sum of the last two Chebyshev coefficients, or what is left at the nodes
     where powers are missing. Near chi = 1/2 rounding spoils g, but not what g is needed for.
+
+    Parameters
+    ----------
+    cell : Cell
+    psi1, chi, psi2 : ndarray, shape (NODES, NODES)
+        Exact impacts at the cell's nodes.
+    slope : ndarray, shape (NODES,)
+        For cells that begin at psi1 = 1: the coefficient of t^5 in g at each node of b, which
+        is too small a part of g to be found from the nodes.
     """
     bounce = psi2 / psi1 + 1.0
     scale = measure(cell.region, psi1, chi)
@@ -110,32 +123,40 @@ def fit(cell: Cell, psi1: Array, chi: Array, psi2: Array) -> Fit:
     error_a = np.abs(coefficients[-2:]).sum()
     error_b = np.abs(coefficients[:, -2:]).sum()
     missing_a, missing_b = missing_powers(cell)
+    along_a = _solve(g, missing_a, _local(cell, slope))
     if missing_a:
-        error_a = max(error_a, (np.abs(_misfit(g, missing_a)) * scale).max())
+        error_a = max(error_a, (np.abs(_basis() @ along_a - g) * scale).max())
     if missing_b:
-        error_b = max(error_b, (np.abs(_misfit(g.T, missing_b).T) * scale).max())
-    terms = _solve(_solve(g, missing_a).T, missing_b).T
+        misfit = _basis() @ _solve(g.T, missing_b) - g.T
+        error_b = max(error_b, (np.abs(misfit.T) * scale).max())
+    terms = _solve(along_a.T, missing_b).T
     error_a *= max(1.0, _steepness(cell) / SLOPE_PER_VALUE)
     return Fit(np.ascontiguousarray(terms), float(error_a), float(error_b))
 
 
-def _powers(missing: tuple[int, ...]) -> list[int]:
-    return [power for power in range(NODES) if power not in missing]
+def _local(cell: Cell, slope: Array | None) -> Array | None:
+    """Return the coefficient of x^5 for that of t^5."""
+    if slope is None:
+        return None
+    width = (1.0 if cell.region == SMALL_NEAR else CUT_END) * 0.5**cell.level_a
+    return np.asarray(slope * width**FIRST_POWER)
 
 
-def _solve(values: Array, missing: tuple[int, ...]) -> Array:
-    """Return terms by powers along the first axis."""
-    powers = _powers(missing)
+@cache
+def _basis() -> Array:
+    return np.asarray(chebyshev_nodes()[:, None] ** np.arange(NODES))
+
+
+def _solve(values: Array, missing: tuple[int, ...], first: Array | None = None) -> Array:
+    """Return terms by powers along the first axis; ``first`` are those of FIRST_POWER."""
     terms = np.zeros_like(values)
-    basis = chebyshev_nodes()[:, None] ** np.array(powers)
-    terms[powers] = np.linalg.lstsq(basis, values, rcond=None)[0]
+    if first is not None:
+        terms[FIRST_POWER] = first
+        missing = (*missing, FIRST_POWER)
+    powers = [power for power in range(NODES) if power not in missing]
+    left = values - _basis() @ terms
+    terms[powers] = np.linalg.lstsq(_basis()[:, powers], left, rcond=None)[0]
     return terms
-
-
-def _misfit(values: Array, missing: tuple[int, ...]) -> Array:
-    """Return what the terms along the first axis leave at the nodes."""
-    basis = chebyshev_nodes()[:, None] ** np.arange(NODES)
-    return basis @ _solve(values, missing) - values
 
 
 def _steepness(cell: Cell) -> float:

@@ -37,7 +37,9 @@ def _scalars() -> ScalarTable:
 @overload
 def rebound(psi1: object, chi: object, *, derivatives: Literal[False] = False) -> Real: ...
 @overload
-def rebound(psi1: object, chi: object, *, derivatives: Literal[True]) -> tuple[Real, Real, Real]: ...
+def rebound(
+    psi1: object, chi: object, *, derivatives: Literal[True]
+) -> tuple[Real, Real, Real]: ...
 def rebound(
     psi1: object, chi: object, *, derivatives: bool = False
 ) -> Real | tuple[Real, Real, Real]:

@@ -85,9 +85,10 @@ class Table:
 
 def write(path: Path, table: Table) -> None:
     """Write a table with its checksum."""
-    content = _content(table)
+    content: dict[str, Any] = _content(table)
     with path.open("wb") as file:
-        np.savez_compressed(file, **content, checksum=np.array(_checksum(content)))
+        checksum = np.array(_checksum(content))
+        np.savez_compressed(file, checksum=checksum, **content)
 
 
 def read(path: Path) -> Table:
@@ -100,7 +101,7 @@ def read(path: Path) -> Table:
     """
     remedy = "install contactlab anew, or build the table: python -m contactlab_tabulated build"
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             content = {name: file[name] for name in file.files}
         checksum = str(content.pop("checksum"))
         if int(content["format"]) != FORMAT or checksum != _checksum(content):

@@ -55,7 +55,7 @@ class Errors(NamedTuple):
     """Errors of psi2, of max(1, psi1)."""
 
     name: str
-    count: int
+    draws: int
     largest: float
     rms: float
     psi1: float
@@ -126,7 +126,9 @@ def verify(
         share = map
         if workers > 1:
             share = stack.enter_context(ProcessPoolExecutor(workers)).map  # type: ignore[assignment]
-        for done, (part, answers) in enumerate(zip(parts, share(exact if alone else together, *given), strict=True), 1):
+        for done, (part, answers) in enumerate(
+            zip(parts, share(exact if alone else together, *given), strict=True), 1
+        ):
             truth[part] = answers
             left = (time.monotonic() - began) * (len(parts) - done) / done
             print(f"{min(done * BATCH, count)} impacts, {left:.0f} s left", file=sys.stderr)

@@ -40,7 +40,7 @@ def test_reference_table(chi, psi1, value):
 
 def test_fresh_impacts():
     """A third of them on or beside singular curves."""
-    rows = verify(shipped(), count=1500, seed=20)
+    rows = verify(shipped(), count=3000, seed=20)
     assert {row.name for row in rows} > {*NAMES, "all"}
     assert max(row.largest for row in rows) < BOUND
     assert rows[-1].rms < 0.1 * BOUND
@@ -77,7 +77,7 @@ def test_limits():
     assert rebound(1.0, 0.5) == -1.0
     assert rebound(1e300, 2.0) == 1e300
     assert rebound(7.0, 1.25) == 2.0
-    assert rebound(1e-300, 1.4411764705882353) == pytest.approx(0.231692e-300, rel=1e-5, abs=0.0)
+    assert rebound(1e-300, 1.4411764705882353) == pytest.approx(0.23167e-300, rel=1e-5, abs=0.0)
     assert rebound(0.9, 1e-12) == pytest.approx(0.9, abs=4.1e-12)
 
 
@@ -98,12 +98,16 @@ def seams(count):
     chi = LARGEST_CHI * (0.01 + 0.99 * np.linspace(0.0, 1.0, 40 * count))
     for border in (np.ones_like(chi), 4.0 * chi - 1.0, np.abs(2.0 * chi - 1.0) + 1.0, 2.0 * chi):
         pairs += [np.stack((np.abs(border + side), chi)) for side in (-step, step)]
-    for side in (-step, step):
-        pairs.append(np.stack((unit, np.full(count, 0.5 + side))))
-        pairs.append(np.stack((unit, polynomial(made.cuts.stuck, unit) + side)))
-        t = CUT_END * unit
+    t = CUT_END * unit
+
+    def beside(side):
         cut = np.minimum(polynomial(made.cuts.slip, t) + side, LARGEST_CHI)
-        pairs.append(np.stack((1.0 + t**5 * (2.0 * cut - 1.0), cut)))
+        yield np.stack((unit, np.full(count, 0.5 + side)))
+        yield np.stack((unit, polynomial(made.cuts.stuck, unit) + side))
+        yield np.stack((1.0 + t**5 * (2.0 * cut - 1.0), cut))
+
+    for both in zip(beside(-step), beside(step), strict=True):
+        pairs += both
     return pairs
 
 
@@ -118,22 +122,23 @@ def test_continuous_across_every_seam():
 
 
 def test_slope_is_continuous_at_psi1_of_one_and_at_full_slip():
-    """C¹ there, though the regions beside share nothing (theory §10)."""
+    """C¹ there, though the regions beside share no patch (theory §10)."""
     chi = np.linspace(0.01, LARGEST_CHI, 400)
     chi = chi[np.abs(chi - 0.5) > 1e-3]
     for border in (np.ones_like(chi), np.maximum(1.0, 4.0 * chi - 1.0)):
-        before = rebound(border - 1e-12, chi, derivatives=True)
-        after = rebound(border + 1e-12, chi, derivatives=True)
+        # what lies between is delta^(3/5): 4e-10 of it
+        before = rebound(border * (1.0 - 2e-16), chi, derivatives=True)
+        after = rebound(border * (1.0 + 2e-16), chi, derivatives=True)
         for one, other in zip(before[1:], after[1:], strict=True):
             assert np.abs(one - other).max() < 1e-6
 
 
 def test_derivatives_against_differences_of_exact_impacts():
-    psi1, chi, _ = draw(300, 24, shipped().cuts)
+    psi1, chi, _ = draw(150, 24, shipped().cuts)
     curves = np.array([psi1, psi1 - 1.0, psi1 - 4.0 * chi + 1.0, chi, chi - 0.5, chi - LARGEST_CHI])
     far = np.abs(curves).min(axis=0) > 1e-3
     psi1, chi = psi1[far], chi[far]
-    assert psi1.size > 100
+    assert psi1.size > 50
     h = 5e-5
 
     def difference(x, y):
@@ -150,7 +155,13 @@ def test_derivatives_against_differences_of_exact_impacts():
 
 def test_derivatives_are_those_of_the_table():
     psi1, chi = (np.abs(values) for values in mixed(4000, 25))
-    away = (np.abs(psi1 - 1.0) > 1e-2) & (np.abs(chi - 0.5) > 1e-2) & (chi < 2.49) & (chi > 0.01)
+    away = (
+        (psi1 < 4.0 * chi - 1.1)
+        & (np.abs(psi1 - 1.0) > 1e-2)
+        & (np.abs(chi - 0.5) > 1e-2)
+        & (chi < 2.49)
+        & (chi > 0.01)
+    )
     psi1, chi = psi1[away] + 1e-3, chi[away]
     _, by_psi1, by_chi = rebound(psi1, chi, derivatives=True)
     h = 1e-5
