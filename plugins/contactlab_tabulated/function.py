@@ -53,8 +53,9 @@ def rebound(
         Eq. (38), broadcast against ``psi1``; positive. Up to 2.5 from the table, to 1e-9 of
         max(1, |psi1|); beyond by the exact solution of many impacts, to the same.
     derivatives : bool
-        Whether d psi2/d psi1 and d psi2/d chi are wanted too, to 1e-6 (theory: psi2 is C¹);
-        chi up to 2.5 only.
+        Whether d psi2/d psi1 and d psi2/d chi are wanted too, to 1e-6, for chi up to 2.5. Just
+        above psi1 = 1 (by less than 3e-5) and for chi from 1.83 to 1.92 d psi2/d psi1 is known
+        to 5e-5 only: there slip changes sign again and again, and what that does to psi2 is 1e-10.
 
     Returns
     -------
