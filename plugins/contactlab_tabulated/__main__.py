@@ -25,7 +25,7 @@ def main() -> int:
             "--workers", type=int, default=1, help="processes; 0 for one a core (1)"
         )
         command.add_argument("--file", type=Path, default=SHIPPED, help="the table")
-    commands.add_parser("bench", help="print the time an impact takes")
+    commands.add_parser("bench", help="print the processor time an impact takes")
     asked = parser.parse_args()
     if asked.command == "build":
         return _build(asked)
@@ -66,7 +66,7 @@ def _bench() -> int:
     from contactlab_tabulated.bench import bench
 
     for name, nanoseconds in bench():
-        print(f"{name:30} {nanoseconds:8.0f} ns an impact")
+        print(f"{name:30} {nanoseconds:8.0f} ns of processor time")
     return 0
 
 
