@@ -9,7 +9,6 @@ import numpy as np
 
 from contactlab.contracts import NormalContact, NormalMotion, Steps
 
-
 #: All steps are stretched alike so that the samples of the load add up to its exact impulse:
 #: gross slip throughout is then exact, and the energy books of the scheme close as before. They
 #: are stretched by no more than this over the square of their number, which leaves the second order:

@@ -1,0 +1,337 @@
+"""The tabulated rebound against fresh exact impacts, and against itself."""
+
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import rebounds
+from contactlab_tabulated import build, evaluate, rebound, table
+from contactlab_tabulated.coordinates import (
+    CUT_END,
+    LARGEST_CHI,
+    NAMES,
+    impact,
+    places,
+    polynomial,
+)
+from contactlab_tabulated.cuts import _bisect
+from contactlab_tabulated.exact import exact
+from contactlab_tabulated.fit import missing_powers
+from contactlab_tabulated.function import shipped
+from contactlab_tabulated.verify import draw, verify
+from tests.reference import TABLE
+
+BOUND = 1e-9
+
+
+def mixed(count, seed):
+    return draw(count, seed, shipped().cuts)[:2]
+
+
+@pytest.mark.parametrize(("chi", "psi1", "value"), [row for row in TABLE if row[0] <= LARGEST_CHI])
+def test_reference_table(chi, psi1, value):
+    """Theory §5, ten digits."""
+    assert rebound(psi1, chi) == pytest.approx(value, abs=1e-10)
+
+
+def test_fresh_impacts():
+    """A third of them on or beside singular curves."""
+    rows = verify(shipped(), count=2000, seed=20)
+    assert {row.name for row in rows} > {*NAMES, "all"}
+    assert max(row.largest for row in rows) < BOUND
+    assert rows[-1].rms < 0.1 * BOUND
+
+
+@pytest.mark.slow
+def test_many_fresh_impacts():
+    assert verify(shipped(), count=20_000, seed=21)[-1].largest < BOUND
+
+
+def test_odd_to_the_last_bit():
+    psi1, chi = mixed(5000, 22)
+    assert np.array_equal(rebound(-psi1, chi), -rebound(psi1, chi))
+    for pair in zip(psi1[:200].tolist(), chi[:200].tolist(), strict=True):
+        assert rebound(-pair[0], pair[1]) == -rebound(*pair)
+    both = rebound(np.array([-1.0, 1.0])[:, None] * psi1[:9], chi[:9], derivatives=True)
+    assert np.array_equal(both[1][0], both[1][1])
+    assert np.array_equal(both[2][0], -both[2][1])
+
+
+def test_bounds():
+    """No gain of energy, and no more impulse than full slip gives."""
+    psi1, chi = mixed(200_000, 23)
+    chi[::7] *= 10.0 ** -np.linspace(0.0, 15.0, chi[::7].size)
+    psi2 = rebound(psi1, chi)
+    assert np.all(np.abs(psi2) <= psi1)
+    assert np.all(psi1 - psi2 <= 4.0 * chi * (1.0 + 1e-15) + 1e-15 * psi1)
+    assert np.all(psi2 <= psi1)
+
+
+def test_limits():
+    assert rebound(0.0, 1.0) == 0.0
+    assert rebound(0.6, 0.5) == -0.6
+    assert rebound(1.0, 0.5) == -1.0
+    assert rebound(1e300, 2.0) == 1e300
+    assert rebound(7.0, 1.25) == 2.0
+    assert rebound(1e-300, 1.4411764705882353) == pytest.approx(0.23167e-300, rel=1e-5, abs=0.0)
+    assert rebound(0.9, 1e-12) == pytest.approx(0.9, abs=4.1e-12)
+
+
+def seams(count):
+    """Both sides of every line where one region, or one patch, ends and another begins."""
+    made = shipped()
+    unit = np.linspace(0.0, 1.0, count)
+    step = 1e-13
+    pairs = []
+    for region, level_a, level_b, i, j in made.cells.tolist():
+        a, b = (i + unit) / 2**level_a, (j + unit) / 2**level_b
+        for edge in (i / 2**level_a, j / 2**level_b):
+            along_a = edge == i / 2**level_a
+            for side in (-step, step):
+                here = np.clip(np.full(count, edge + side), 0.0, 1.0)
+                place = (here, b) if along_a else (a, here)
+                pairs.append(np.stack(impact(region, *place, made.cuts)))
+    chi = LARGEST_CHI * (0.01 + 0.99 * np.linspace(0.0, 1.0, 40 * count))
+    for border in (np.ones_like(chi), 4.0 * chi - 1.0, np.abs(2.0 * chi - 1.0) + 1.0, 2.0 * chi):
+        pairs += [np.stack((np.abs(border + side), chi)) for side in (-step, step)]
+    t = CUT_END * unit
+
+    def beside(side):
+        cut = np.minimum(polynomial(made.cuts.slip, t) + side, LARGEST_CHI)
+        yield np.stack((unit, np.full(count, 0.5 + side)))
+        yield np.stack((unit, polynomial(made.cuts.stuck, unit) + side))
+        yield np.stack((1.0 + t**5 * (2.0 * cut - 1.0), cut))
+
+    for both in zip(beside(-step), beside(step), strict=True):
+        pairs += both
+    return pairs
+
+
+def test_continuous_across_every_seam():
+    pairs = seams(25)
+    for one, other in zip(pairs[::2], pairs[1::2], strict=True):
+        inside = (one[1] <= LARGEST_CHI) & (other[1] <= LARGEST_CHI)
+        inside &= (one[1] > 0.0) & (other[1] > 0.0)
+        first, second = (rebound(*side[:, inside]) for side in (one, other))
+        scale = np.maximum(1.0, one[0, inside])
+        assert np.max(np.abs(first - second) / scale, initial=0.0) < BOUND
+
+
+def test_slope_is_continuous_at_psi1_of_one_and_at_full_slip():
+    """C¹ there, though the regions beside share no patch (theory §10)."""
+    chi = np.linspace(0.01, LARGEST_CHI, 400)
+    chi = chi[np.abs(chi - 0.5) > 1e-3]
+    for border in (np.ones_like(chi), np.maximum(1.0, 4.0 * chi - 1.0)):
+        # what lies between is delta^(3/5): 4e-10 of it
+        before = rebound(border * (1.0 - 2e-16), chi, derivatives=True)
+        after = rebound(border * (1.0 + 2e-16), chi, derivatives=True)
+        for one, other in zip(before[1:], after[1:], strict=True):
+            hard = (chi > 1.83) & (chi < 1.92)
+            assert np.abs(one - other)[~hard].max() < 1e-6
+            assert np.abs(one - other)[hard].max() < 5e-5
+
+
+def test_derivatives_against_differences_of_exact_impacts():
+    psi1, chi, _ = draw(80, 24, shipped().cuts)
+    curves = np.array([psi1, psi1 - 1.0, psi1 - 4.0 * chi + 1.0, chi, chi - 0.5, chi - LARGEST_CHI])
+    far = np.abs(curves).min(axis=0) > 1e-3
+    psi1, chi = psi1[far], chi[far]
+    assert psi1.size > 25
+    h = 5e-5
+
+    def difference(x, y):
+        near, wide = (
+            exact(psi1 + n * h * x, chi + n * h * y) - exact(psi1 - n * h * x, chi - n * h * y)
+            for n in (1, 2)
+        )
+        return (8.0 * near - wide) / (12.0 * h)
+
+    _, by_psi1, by_chi = rebound(psi1, chi, derivatives=True)
+    assert np.abs(by_psi1 - difference(1, 0)).max() < 1e-6
+    assert np.abs(by_chi - difference(0, 1)).max() < 1e-6
+
+
+def test_derivatives_are_those_of_the_table():
+    psi1, chi = (np.abs(values) for values in mixed(4000, 25))
+    away = (
+        (psi1 < 4.0 * chi - 1.1)
+        & (np.abs(psi1 - 1.0) > 1e-2)
+        & (np.abs(chi - 0.5) > 1e-2)
+        & (chi < 2.49)
+        & (chi > 0.01)
+    )
+    psi1, chi = psi1[away] + 1e-3, chi[away]
+    _, by_psi1, by_chi = rebound(psi1, chi, derivatives=True)
+    h = 1e-5
+    change = (rebound(psi1 + h, chi) - rebound(psi1 - h, chi)) / (2.0 * h)
+    assert np.abs(by_psi1 - change).max() < 2e-6
+    change = (rebound(psi1, chi + h) - rebound(psi1, chi - h)) / (2.0 * h)
+    assert np.abs(by_chi - change).max() < 5e-6
+
+
+def test_scalar_gathered_and_sorted_agree(monkeypatch):
+    psi1, chi = mixed(3000, 26)
+    gathered = rebound(psi1, chi)
+    monkeypatch.setattr(evaluate, "FEW", 0)
+    assert np.abs(rebound(psi1, chi) - gathered).max() < 2e-12
+    monkeypatch.setattr(evaluate, "BLOCK", 700)
+    monkeypatch.setattr(evaluate, "STRETCH", 3)
+    assert np.abs(rebound(psi1, chi) - gathered).max() < 2e-12
+    singly = [rebound(*pair) for pair in zip(psi1.tolist(), chi.tolist(), strict=True)]
+    assert np.abs(np.array(singly) - gathered).max() < 2e-12
+
+
+def test_places_and_impacts_are_each_others_inverse():
+    made = shipped()
+    psi1, chi = mixed(3000, 27)
+    here = places(psi1, chi, made.cuts)
+    for region, part in here.parts():
+        a, b = here.a[part], here.b[part]
+        assert ((a >= 0.0) & (a <= 1.0) & (b >= 0.0) & (b <= 1.0)).all()
+        back = impact(region, a, b, made.cuts)
+        assert np.abs(back[0] - psi1[here.who[part]]).max() < 1e-14 * 10
+        assert np.abs(back[1] - chi[here.who[part]]).max() < 1e-14 * 10
+
+
+@pytest.mark.parametrize("psi1", [0.2, 0.8])
+def test_the_last_slip_changes_sign_at_the_cut(psi1):
+    cut = polynomial(shipped().cuts.stuck, np.array([psi1])).item()
+    assert _bisect(lambda psi1, _: psi1, psi1, (1.4, 1.9)) == pytest.approx(cut, abs=1e-5)
+
+
+def test_patches_cover_every_region_and_lack_the_powers_that_g_lacks():
+    from contactlab_tabulated.fit import Cell
+
+    made = shipped()
+    assert made.grid.min() == 0
+    for row, terms in zip(made.cells.tolist(), made.terms, strict=True):
+        of_a, of_b = missing_powers(Cell(*row))
+        assert not terms[list(of_a)].any()
+        assert not terms[:, list(of_b)].any()
+
+
+def test_a_damaged_file_is_refused(tmp_path):
+    path = tmp_path / "elastic.npz"
+    made = shipped()
+    terms = made.terms.copy()
+    terms[3, 2, 1] = np.nextafter(terms[3, 2, 1], 1.0)
+    with np.load(table.SHIPPED) as file:
+        content = {name: file[name] for name in file.files}
+    np.savez(path, **{**content, "terms": terms})
+    with pytest.raises(ValueError, match="checksum"):
+        table.read(path)
+    shutil.copy(table.SHIPPED, path)
+    assert np.array_equal(table.read(path).terms, made.terms)
+    path.write_bytes(path.read_bytes()[:-1000])
+    with pytest.raises(ValueError, match="no table that can be trusted"):
+        table.read(path)
+
+
+def test_file_is_small_and_tells_where_it_came_from():
+    assert table.SHIPPED.stat().st_size <= 400_000
+    made = shipped().provenance
+    assert made.version
+    assert made.built > "2026"
+    assert 0.0 < made.tolerance <= BOUND
+
+
+def test_beyond_the_table():
+    psi1 = np.linspace(0.0, 10.0, 41)
+    seam = [rebound(psi1, chi) for chi in (LARGEST_CHI, np.nextafter(LARGEST_CHI, 3.0))]
+    assert np.abs(seam[0] - seam[1]).max() < 5e-9
+    chi = np.array([1.0, 3.0])
+    assert np.array_equal(rebound(2.0, chi), [rebound(2.0, 1.0), rebound(2.0, 3.0)])
+    assert rebound(-2.0, 3.0) == -rebound(2.0, 3.0)
+
+
+def test_shapes():
+    assert type(rebound(1, 1)) is float
+    assert rebound([1.0, 2.0], [[1.0], [2.0], [0.3]]).shape == (3, 2)
+    values = rebound(1.2, [1.44], derivatives=True)
+    assert [value.shape for value in values] == [(1,)] * 3
+    assert all(type(value) is float for value in rebound(1.2, 1.44, derivatives=True))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        ({"psi1": np.nan, "chi": 1.0}, "psi1"),
+        ({"psi1": 1.0, "chi": 0.0}, "chi"),
+        ({"psi1": 1.0, "chi": -1.0}, "chi"),
+        ({"psi1": np.inf, "chi": 1.0}, "psi1"),
+        ({"psi1": [1.0, 2.0], "chi": [1.0, 2.0, 3.0]}, "shapes"),
+        ({"psi1": 1.0, "chi": 3.0, "derivatives": True}, "2.5"),
+    ],
+)
+def test_refusals(arguments, word):
+    with pytest.raises(ValueError, match=word):
+        rebound(**arguments)
+
+
+def test_contactlab_rebound_uses_the_table_up_to_its_tolerance(monkeypatch):
+    psi1, chi = np.array([0.3, 1.2, 2.0, 5.0, 1.1]), np.array([1.0, 1.44, 3.0, 2.0, 0.3])
+    low = chi <= LARGEST_CHI
+    mixture = contactlab.rebound(psi1, chi)
+    assert np.array_equal(mixture[low], rebound(psi1[low], chi[low]))
+    values = contactlab.rebound(psi1[low], chi[low], derivatives=True)
+    for one, other in zip(values, rebound(psi1[low], chi[low], derivatives=True), strict=True):
+        assert np.array_equal(one, other)
+
+    def refuse_to_answer(*_, **__):
+        raise AssertionError("the table was asked")
+
+    monkeypatch.setattr(rebounds, "_installed", lambda: refuse_to_answer)
+    assert np.abs(contactlab.rebound(psi1, chi, tolerance=1e-9) - mixture).max() < 1e-5
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "rebound.elastic")
+    assert np.abs(contactlab.rebound(psi1, chi) - mixture).max() < 1e-5
+    with pytest.raises(ValueError, match="derivatives"):
+        contactlab.rebound(1.2, 1.44, derivatives=True)
+
+
+def test_nothing_is_loaded_before_it_is_called():
+    probe = (
+        "import sys, contactlab; contactlab.rebound; "
+        "assert not [m for m in sys.modules if m.startswith(('contactlab_', 'scipy'))]; "
+        "contactlab.rebound(1.2, 1.44); "
+        "assert 'contactlab_tabulated' in sys.modules; "
+        "assert not [m for m in sys.modules if m.startswith(('contactlab_fronts', 'scipy'))]"
+    )
+    subprocess.run([sys.executable, "-c", probe], check=True)
+
+
+def test_a_build_goes_on_where_it_was_interrupted(tmp_path, monkeypatch):
+    """With the table itself in place of exact impacts: two ways to the same coarse table."""
+    made = shipped()
+    calls = []
+
+    def solve(psi1, chi):
+        calls.append(psi1.size)
+        if len(calls) == interrupted:
+            raise KeyboardInterrupt
+        return evaluate.rebound(made, psi1, chi)
+
+    monkeypatch.setattr(build, "exact", solve)
+    monkeypatch.setattr(build, "BATCH", 4)
+    monkeypatch.setattr(build.curves, "find", lambda: made.cuts)
+    interrupted = 0
+    build.build(tmp_path / "whole.npz", tolerance=1e-6)
+    whole, of_whole = table.read(tmp_path / "whole.npz"), len(calls)
+    calls.clear()
+    interrupted = of_whole // 2
+    with pytest.raises(KeyboardInterrupt):
+        build.build(tmp_path / "part.npz", tolerance=1e-6)
+    interrupted = 0
+    calls.clear()
+    build.build(tmp_path / "part.npz", tolerance=1e-6)
+    part = table.read(tmp_path / "part.npz")
+    assert len(calls) < of_whole
+    assert np.array_equal(part.cells, whole.cells)
+    assert np.array_equal(part.terms, whole.terms)
+    assert not list(tmp_path.glob("*.part.npz"))
+    psi1, chi = mixed(3000, 28)
+    error = np.abs(evaluate.rebound(part, psi1, chi) - rebound(psi1, chi)) / np.maximum(1.0, psi1)
+    assert 1e-9 < error.max() < 1e-5
