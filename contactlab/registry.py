@@ -22,6 +22,8 @@ from contactlab.contracts.law import API_VERSION, Law
 from contactlab.installed import GROUP, PluginWarning, entry_points, short, stamp
 
 BLOCK_VARIABLE = "CONTACTLAB_BLOCK_PLUGINS"
+#: Names that are not of laws, and may be blocked too.
+OTHER_GROUPS = ("rebound.",)
 KINDS = ("normal", "tangential", "integrator")
 
 
@@ -91,7 +93,8 @@ class Registry:
 
     def _remark(self, known: set[str]) -> None:
         """Warn of each name that is blocked and not installed: a slip of the pen blocks nothing."""
-        unknown = blocked_names() - known - self._remarked
+        others = {name for name in blocked_names() if name.startswith(OTHER_GROUPS)}
+        unknown = blocked_names() - known - others - self._remarked
         self._remarked |= unknown
         for name in sorted(unknown):
             hint = nearest(name, known).strip()

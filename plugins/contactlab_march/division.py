@@ -11,7 +11,7 @@ from contactlab.contracts import NormalContact, NormalMotion, Steps
 
 #: All steps are stretched alike so that the samples of the load add up to its exact impulse:
 #: gross slip throughout is then exact, and the energy books of the scheme close as before. They
-#: are stretched by no more than this over the square of their number, which leaves the second order:
+#: are stretched by no more than this over their number squared, which leaves the second order:
 #: smooth loads need less, one that begins as the root of time would need ever more.
 MOST_STRETCH = 1.0
 
