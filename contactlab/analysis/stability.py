@@ -26,7 +26,7 @@ from contactlab.declared import COARSE
 
 #: A case of more work than this, in steps of one part, is skipped: what is tried does not depend
 #: on the machine.
-LARGEST, QUICK_LARGEST = 4_000_000.0, 12_000.0
+LARGEST, QUICK_LARGEST = 300_000.0, 12_000.0
 #: What a method takes where a case does not say, for the estimate of its work.
 DEFAULT_STEPS, DEFAULT_TOLERANCE = 200, 1e-4
 
