@@ -18,10 +18,9 @@ from contactlab.contracts import (
 from contactlab_fronts.gross import GrossMotion
 from contactlab_fronts.laid import Laid
 from contactlab_fronts.locked import Locked
-from contactlab_fronts.profile import Piece
+from contactlab_fronts.profile import Memo, Piece
 
 Array = NDArray[np.float64]
-Memo = tuple[Array, ...]
 Profile = tuple[Piece, ...]
 
 
@@ -110,10 +109,7 @@ class EdgeSlip(FrontPhase):
         sign, piece = self.sign, self.profile[-1]
         if event == 0:
             return np.asarray(sign * velocity - contact.rate)
-        if event == 1:
-            inner = piece.inner_q + sign * piece.inner_f
-            return np.asarray(contact.approach - sign * slip - inner)
-        return piece.depth(sign, contact, slip, response.memo)
+        return piece.left(sign, contact, slip) if event == 1 else response.memo[0]
 
     def follow(
         self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None
@@ -125,9 +121,7 @@ class EdgeSlip(FrontPhase):
         if event == 2:
             return slipping(-sign, self.profile)
         c, _ = self.division(contact, state.slip)
-        inner_f = sign * (contact.approach - c * c) - state.slip
-        inner_force = state.force - sign * (contact.force - c**3)
-        locked = Locked(sign, c * c, inner_f, inner_force)
+        locked = Locked.between(c * c, sign, contact, state.slip, state.force)
         return sticking(sign, (*self.profile, locked), state, contact)
 
     def division(self, contact: ScaledContact, slip: float) -> tuple[float, int]:
@@ -141,10 +135,9 @@ class EdgeSlip(FrontPhase):
     ) -> Array:
         """1.5 (s psi - V) times the integral of zeta - s² over the slip zone.
 
-        The zone comes from how deep it is, zeta - q at the front: of the front itself only the
-        force is known to rounding.
+        The zone comes from how deep it is: of the front itself only the force is known to rounding.
         """
-        depth = self.profile[-1].depth(self.sign, contact, slip, response.memo)
+        depth = response.memo[0]
         b = contact.radius
         c = np.sqrt(np.maximum(contact.approach - depth, 0.0))
         width = depth / (b + c)
@@ -183,7 +176,8 @@ class GrossSlip(FrontPhase):
         self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None
     ) -> Phase:
         """Re-stick, all at once."""
-        locked = Locked(self.sign, 0.0, self.sign * contact.approach - state.slip, 0.0)
+        force = self.sign * contact.force
+        locked = Locked.between(0.0, self.sign, contact, state.slip, force)
         return sticking(self.sign, (locked,), state, contact)
 
     def closed_form(
@@ -220,7 +214,7 @@ class Balanced(FrontPhase):
 
 def slipping(sign: int, profile: Profile) -> Phase:
     """Return the slip phase of this sign: pieces of the same sign are swept at once."""
-    while profile and profile[-1].swept(sign):
+    while profile and profile[-1].sign == sign:
         profile = profile[:-1]
     return EdgeSlip.through(sign, profile) if profile else GrossSlip(sign)
 
