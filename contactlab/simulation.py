@@ -159,7 +159,8 @@ class Simulation:
                 "for one impact use run",
             )
         if chunk is None:
-            chunk = CHUNK if self.integrator.together else CHUNK_ONE_BY_ONE
+            together = self.integrator.together(self.tangential)
+            chunk = CHUNK if together else CHUNK_ONE_BY_ONE
         size, step = batch.shape[0], whole("chunk", chunk)
         plans: list[Plan] = []
         motions: list[Motion] = []
@@ -311,7 +312,7 @@ class Simulation:
         motion, raised = self._attempt(normal, scene, recorder)
         if not shape or recorder or np.all(motion.status):
             return motion
-        if not (raised or self.integrator.together):  # each was followed by itself
+        if self.integrator.own_statuses and not raised:
             return motion
         if size <= FEW:
             places = list(np.ndindex(shape))

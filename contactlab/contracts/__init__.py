@@ -11,6 +11,8 @@ from contactlab.contracts.motion import (
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalContact, NormalLaw
 from contactlab.contracts.phases import (
     ClosedPhase,
+    ManyImpacts,
+    ManyPhasedTangentialLaw,
     Path,
     Phase,
     PhasedTangentialLaw,
@@ -38,6 +40,8 @@ __all__ = [
     "ClosedPhase",
     "Increment",
     "Integrator",
+    "ManyImpacts",
+    "ManyPhasedTangentialLaw",
     "Law",
     "NormalContact",
     "NormalLaw",

@@ -150,7 +150,8 @@ class Integrator(Law):
     4. ``order`` is the order of convergence in the step that the class declares for smooth
        laws; None where there are no steps.
     5. Batch shapes pass through: a batch gives what its impacts give one by one. Where one
-       fails the batch may be given up: a simulation then hands over each by itself.
+       fails the batch may be given up, a simulation then hands over each by itself; not with
+       ``own_statuses``, which says that a failure within a batch is that of the impact alone.
     6. ``tangential_contract`` and ``normal_contract`` are the classes of the laws that it runs.
     7. ``psi2_error`` is a bound of the numerical error of psi2, from what the tangential law
        declares; NaN, the default, where nothing is declared.
@@ -162,13 +163,16 @@ class Integrator(Law):
     order: ClassVar[int | None] = None
     #: False if each impact of a batch has instants of its own: no history of a batch then.
     common_instants: ClassVar[bool] = True
-    #: False if the impacts of a batch are followed one after another: a sweep hands over few.
-    together: ClassVar[bool] = True
+    own_statuses: ClassVar[bool] = False
 
     @property
     def accuracy(self) -> float | None:
         """Error of psi2 over max(1, |psi1|) that it keeps to in time; None without control."""
         return None
+
+    def together(self, tangential: TangentialLaw) -> bool:
+        """Return False if impacts of a batch are followed one by one: a sweep hands over few."""
+        return True
 
     def remarks(
         self,

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab import faults
+from contactlab.checks import Real
 from contactlab.collocation import lobatto, row, rows
 from contactlab.contracts import (
     ClosedFormMotion,
@@ -97,6 +98,14 @@ def follow(
     return Followed(failure, walk.state, tuple(walk.pieces), solves, status)
 
 
+def books_miss(velocity: Real, inertia: Real, change: Real, work: Real) -> Any:
+    """Return by what part of the tangential energy friction work is not the loss of energy."""
+    # Over the velocity, as its square may be too large for a number.
+    scale = np.maximum(velocity, LEAST_AUDITED)
+    lost = change * ((velocity + 0.5 * change) / scale)
+    return abs(lost + inertia * (work / scale)) / (0.5 * scale)
+
+
 class _Walk:
     """One impact on its way: what is done, and the panel to try next."""
 
@@ -129,10 +138,7 @@ class _Walk:
 
     def audit(self, velocity: float) -> str:
         """Return a complaint if friction work is not the loss of energy."""
-        # Over the velocity, as its square may be too large for a number.
-        scale = max(velocity, LEAST_AUDITED)
-        change, work = self.state.change, self.inertia * (self.state.work / scale)
-        missing = abs(change * ((velocity + 0.5 * change) / scale) + work) / (0.5 * scale)
+        missing = float(books_miss(velocity, self.inertia, self.state.change, self.state.work))
         if missing <= BOOKS:
             return ""
         return f"The energy books miss {missing:.1e} of the tangential energy."

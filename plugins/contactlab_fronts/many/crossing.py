@@ -14,7 +14,7 @@ NEVER = 2.0
 #: Margins start at zero where a phase begins at an event; less than this is rounding.
 ROUNDING = 1e-10
 #: Steps of the Illinois method; they narrow a crossing to 1e-9 of the panel.
-NARROWINGS = 4
+NARROWINGS = 10
 
 
 def value(weights: Array, values: Array) -> Array:

@@ -40,7 +40,7 @@ SETTLED, CONVERGED = 1e-3, 1e-2
 
 #: Tolerance of the work, over the energy at first touch. Near the centre it is as the square root
 #: of the distance where the force is as its cube, and never as accurate.
-WORK = 1e-8
+WORK = 1e-7
 
 
 def advance(impacts: Impacts, who: Rows, tolerance: float, *, laid: bool, fitted: bool) -> None:

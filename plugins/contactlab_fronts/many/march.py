@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.collocation import lobatto
-from contactlab.contracts import ClosedFormMotion
+from contactlab.contracts import ClosedFormMotion, ManyImpacts
 from contactlab_fronts.many import edge_slip, stuck
 from contactlab_fronts.many.impacts import DONE, EDGE_SLIP, GROSS_SLIP, STUCK, Impacts
 
@@ -14,20 +14,42 @@ Array = NDArray[np.float64]
 
 #: Impacts in one call: an array of 8 nodes of them fits in the cache next to the processor.
 BLOCK = 2000
+#: Impacts of which the memory is kept at one time: some 50 MB. Beyond this chi there is more of
+#: it for each impact, about as sqrt(chi).
+CHUNK, CHUNK_CHI = 10_000, 30.0
+#: Up to here answers were checked against those of one impact.
+LARGEST_CHI = 1e4
+#: Distance of the velocity from 1 below which the centre slips too soon after first touch; and of
+#: it and of 2 chi, below which nearly all is at the limit of slip at all times.
+ALMOST_ONE, ALMOST_BALANCED = 1e-6, 1e-2
 #: Rounds: an impact takes some 30, and as sqrt(chi) for large chi; about ten times that.
 ROUNDS, ROUNDS_PER_SWING = 200, 40
 
 
-def march(velocity: Array, inertia: Array, motion: ClosedFormMotion, tolerance: float) -> Impacts:
-    """Return impacts of scaled velocity > 0, followed to their end; unfinished if given up."""
-    impacts = Impacts(velocity, inertia, motion, lobatto(stuck.NODES))
-    swings = np.sqrt(0.5 * inertia.max(initial=0.0) * motion.scaled_mass)
+def march(
+    velocity: Array, inertia: Array, motion: ClosedFormMotion, tolerance: float
+) -> ManyImpacts:
+    """Return the answers to impacts of scaled velocity > 0 that do not slip throughout."""
+    change, work = np.zeros_like(velocity), np.zeros_like(velocity)
+    solved = np.zeros(velocity.shape, dtype=bool)
+    panels = 0
+    chi, away = 0.5 * inertia * motion.scaled_mass, np.abs(velocity - 1.0)
+    hard = (away < ALMOST_ONE) | (chi > LARGEST_CHI)
+    hard |= velocity >= np.maximum(1.0, 4.0 * chi - 1.0)
+    hard |= (away < ALMOST_BALANCED) & (np.abs(2.0 * chi - 1.0) < ALMOST_BALANCED)
+    rest = np.flatnonzero(~hard)
+    chunk = int(CHUNK * np.sqrt(CHUNK_CHI / chi[rest].max(initial=CHUNK_CHI)))
     with np.errstate(under="ignore"):
-        for _ in range(ROUNDS + int(ROUNDS_PER_SWING * swings)):
-            if not _round(impacts, tolerance):
-                break
-    impacts.doing[~np.isfinite(impacts.change + impacts.work)] = STUCK
-    return impacts
+        for first in range(0, rest.size, chunk):
+            part = rest[first : first + chunk]
+            impacts = Impacts(velocity[part], inertia[part], motion, lobatto(stuck.NODES))
+            rounds = ROUNDS + int(ROUNDS_PER_SWING * np.sqrt(chi[part].max()))
+            while rounds and _round(impacts, tolerance):
+                rounds -= 1
+            change[part], work[part] = impacts.change, impacts.work
+            solved[part] = (impacts.doing == DONE) & np.isfinite(impacts.change + impacts.work)
+            panels += int(impacts.panels.sum())
+    return ManyImpacts(change, work, solved, panels)
 
 
 def _round(impacts: Impacts, tolerance: float) -> bool:
