@@ -26,9 +26,6 @@ from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.status import Status
 
-#: Impacts of a sweep advanced together: enough to hide the cost of a call, few enough that
-#: an interruption loses little. Without a gain, where they are followed one by one, fewer.
-CHUNK, CHUNK_ONE_BY_ONE = 1000, 20
 #: So many impacts of a batch that failed are tried one by one; more are halved first.
 FEW = 8
 #: Friction work over the energy at the start is this many times less accurate than psi2.
@@ -136,7 +133,8 @@ class Simulation:
             Called as ``progress(done, total)`` after each chunk.
         chunk : int, optional
             Impacts advanced together, which bounds the memory and what an interruption
-            loses; 1000, or 20 under an integrator that follows them one by one.
+            loses; as many as the integrator asks for: 1000 of most, 20 where they are followed
+            one by one.
 
         Returns
         -------
@@ -159,8 +157,7 @@ class Simulation:
                 "for one impact use run",
             )
         if chunk is None:
-            together = self.integrator.together(self.tangential)
-            chunk = CHUNK if together else CHUNK_ONE_BY_ONE
+            chunk = self.integrator.chunk(self.tangential)
         size, step = batch.shape[0], whole("chunk", chunk)
         plans: list[Plan] = []
         motions: list[Motion] = []

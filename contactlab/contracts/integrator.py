@@ -22,6 +22,10 @@ from contactlab.scene import Scene
 from contactlab.status import Status
 
 
+#: Impacts of a sweep handed over together, unless the integrator says otherwise.
+CHUNK = 1000
+
+
 class Sample(NamedTuple):
     """One instant of an impact, as handed to an observer."""
 
@@ -170,9 +174,12 @@ class Integrator(Law):
         """Error of psi2 over max(1, |psi1|) that it keeps to in time; None without control."""
         return None
 
-    def together(self, tangential: TangentialLaw) -> bool:
-        """Return False if impacts of a batch are followed one by one: a sweep hands over few."""
-        return True
+    def chunk(self, tangential: TangentialLaw) -> int:
+        """Return how many impacts a sweep should hand over at a time.
+
+        Enough to hide the cost of a call, few enough that an interruption loses little.
+        """
+        return CHUNK
 
     def remarks(
         self,

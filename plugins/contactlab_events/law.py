@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeGuard
 
 import attrs
 import numpy as np
@@ -30,6 +30,9 @@ TOLERANCES = Rule(
     lambda value: np.ndim(value) == 0 and 1e-12 <= value <= 1e-3,
     "must be one number between 1e-12 and 1e-3",
 )
+
+#: Impacts of a sweep at a time: together they gain until some thousands, one by one nothing.
+TOGETHER, ONE_BY_ONE = 4000, 20
 
 
 @attrs.frozen(kw_only=True)
@@ -63,11 +66,13 @@ class Events(Integrator):
         """The error aimed at."""
         return self.tolerance
 
-    def together(self, tangential: TangentialLaw) -> bool:
+    def chunk(self, tangential: TangentialLaw) -> int:
+        """Return many impacts if they are followed together."""
+        return TOGETHER if self._together(tangential) else ONE_BY_ONE
+
+    def _together(self, law: TangentialLaw) -> TypeGuard[ManyPhasedTangentialLaw]:
         """Return whether the law follows many impacts in one call, as accurately as is asked."""
-        if not isinstance(tangential, ManyPhasedTangentialLaw):
-            return False
-        return tangential.finest_together <= self.tolerance
+        return isinstance(law, ManyPhasedTangentialLaw) and law.finest_together <= self.tolerance
 
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return the tolerance, and what the law declares for itself."""
@@ -87,8 +92,7 @@ class Events(Integrator):
         assert isinstance(law, PhasedTangentialLaw)
         assert isinstance(normal, ClosedFormMotion)
         left, parts = np.ones(shape, dtype=bool), []
-        if self.together(law) and left.size >= FEWEST and observer is None:
-            assert isinstance(law, ManyPhasedTangentialLaw)
+        if left.size >= FEWEST and observer is None and self._together(law):
             known, motion = together(law, normal, self.tolerance)
             left, parts = ~known, [(known, motion)]
         runs = []

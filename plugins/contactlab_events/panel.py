@@ -8,7 +8,6 @@ from typing import NamedTuple
 import attrs
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgesv
 
 from contactlab.collocation import ON_NODE, Nodes, rows
 from contactlab.contracts import ClosedFormMotion, Phase, PhaseResponse, PhaseState, ScaledContact
@@ -210,7 +209,7 @@ def newton(
 def _update(
     residual: Array, response: PhaseResponse, inertia: float, time_matrix: Array, nodes: Nodes
 ) -> Array:
-    """Solve the linear system of Newton's method; the residual is overwritten."""
+    """Solve the linear system of Newton's method; a singular one has no answer."""
     stiffness, gathered = response.stiffness, response.gathered
     if stiffness is not None:
         matrix = (time_matrix * stiffness).dot(time_matrix)
@@ -220,7 +219,10 @@ def _update(
         return residual
     matrix *= inertia
     matrix += nodes.identity
-    return np.asarray(dgesv(matrix, residual, 1, 1)[2])
+    try:
+        return np.linalg.solve(matrix, residual)
+    except np.linalg.LinAlgError:
+        return np.full_like(residual, np.nan)
 
 
 def _shift(margin: Array, spot: Array, length: float) -> float:
