@@ -21,7 +21,6 @@ from contactlab.contracts.tangential import TangentialLaw
 from contactlab.scene import Scene
 from contactlab.status import Status
 
-
 #: Impacts of a sweep handed over together, unless the integrator says otherwise.
 CHUNK = 1000
 

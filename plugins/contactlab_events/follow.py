@@ -20,7 +20,7 @@ from contactlab.contracts import (
 )
 from contactlab.status import Status
 from contactlab_events.forecast import too_many
-from contactlab_events.panel import Overshot, PanelPath, Solved, newton
+from contactlab_events.panel import PanelPath, Solved, newton
 from contactlab_events.search import first_event
 
 Array = NDArray[np.float64]
@@ -189,44 +189,33 @@ class _Walk:
             return complaint
         if self.rejects > REJECT_CAP or self.length < min(SHORTEST_PANEL, 0.5 * left):
             return "Newton's method fails on the shortest panel allowed."
-        solved = self._solve(self.length, self.guess, self.aim)
+        given = self.phase, self.motion, self.nodes, self.state, self.length, self.inertia
+        solved = newton(*given, self.guess, fit=self.aim)
+        self.solves += 1
         self.rejects += 1
         aim, self.guess, self.aim = self.aim, None, None
         if solved is None:
             self.length *= 0.5
             return ""
-        found: tuple[int, float] | None
-        if aim is not None and isinstance(solved, Solved):
-            if self._resolved(solved):
+        resolved = self._resolved(solved)
+        if aim is not None:
+            if resolved:
                 self._accept(solved, aim, 1.0, rooted=True)
             else:
                 self.length = 0.5 * solved.length
             return ""
-        good = False
-        if isinstance(solved, Overshot):
-            found = solved.event, solved.tau
+        found = first_event(self.nodes, self.phase, solved)
+        if found is not None and found[1] == 0.0:
+            if resolved or self.length < SURELY_RESOLVED:
+                self._turn(found[0])
+                return self._stand_still()
+            found = None
+        if resolved:
+            event, stop = (None, 1.0) if found is None else found
+            self._accept(solved, event, stop, rooted=False)
         else:
-            found = first_event(self.nodes, self.phase, solved)
-            good = self._resolved(solved)
-            if found is not None and found[1] == 0.0:
-                if good or self.length < SURELY_RESOLVED:
-                    self._turn(found[0])
-                    return self._stand_still()
-                found = None
-            if good:
-                event, stop = (None, 1.0) if found is None else found
-                self._accept(solved, event, stop, rooted=False)
-                return ""
-        self._retry(solved, found)
+            self._retry(solved, found)
         return ""
-
-    def _solve(
-        self, length: float, guess: Array | None, aim: int | None
-    ) -> Solved | Overshot | None:
-        self.solves += 1
-        return newton(
-            self.phase, self.motion, self.nodes, self.state, length, self.inertia, guess, fit=aim
-        )
 
     def _resolved(self, solved: Solved) -> bool:
         """Say whether the highest Legendre terms of the force are small."""
@@ -236,7 +225,7 @@ class _Walk:
         largest = self.inertia * solved.length * max(abs(one), abs(two))
         return bool(largest <= self.tail * scale)
 
-    def _retry(self, solved: Solved | Overshot, found: tuple[int, float] | None) -> None:
+    def _retry(self, solved: Solved, found: tuple[int, float] | None) -> None:
         """Set out another panel, shorter, after one that was not accepted."""
         if found is None:
             self.length *= 0.5
@@ -247,8 +236,7 @@ class _Walk:
             self.length *= part
             self.aim = event
         elif part < 0.97:
-            beyond = 1.15 if isinstance(solved, Overshot) else 1.03
-            part = max(min(1.0, part * beyond), LEAST_PART)
+            part = max(1.03 * part, LEAST_PART)
             self.guess = rows(self.nodes, part * self.nodes.points) @ solved.change
             self.length *= part
         else:

@@ -48,7 +48,7 @@ class Impact(NamedTuple):
         A law is odd, and linear for small velocities.
         """
         speed, factor = abs(self.velocity), np.where(np.less(self.velocity, 0.0), -1.0, 1.0)
-        slow = (0.0 < speed) & (speed < law.linear_below) & (self.inertia > LEAST_INERTIA)
+        slow = (speed > 0.0) & (speed < law.linear_below) & (self.inertia > LEAST_INERTIA)
         part = np.where(slow, speed / (law.linear_below or 1.0), 1.0)
         return np.where(slow, law.linear_below, speed), factor * part
 

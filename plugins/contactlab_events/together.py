@@ -35,10 +35,10 @@ def together(
         change[known], work[known] = found.change, found.work
         known[known] = found.solved
         known &= books_miss(speed, inertia, change, work) < BOOKS
-        change, work = impact.answer(factor, change, work)
+        gained, lost = np.broadcast_arrays(*impact.answer(factor, change, work))
     return known, TangentialMotion(
-        slip_velocity_change=change[known],
-        friction_work=work[known],
+        slip_velocity_change=gained[known],
+        friction_work=lost[known],
         status=np.full(np.count_nonzero(known), Status.SUCCESS, dtype=object),
         counters={"panels": found.panels, "solves": found.panels},
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import attrs
 import numpy as np
 from numpy.typing import NDArray
@@ -79,9 +81,12 @@ class Stuck(FrontPhase):
 
 @attrs.frozen(eq=False)
 class EdgeSlip(FrontPhase):
-    """Springs outside the front slip; the front works through the outermost piece."""
+    """Springs outside the front slip; the front works through the outermost piece.
 
-    sign: int
+    Of many impacts ``sign`` is an array, and the profile their outermost pieces as one.
+    """
+
+    sign: Any
     profile: Profile
     rough: tuple[bool, ...]
     span: float | None
@@ -147,7 +152,7 @@ class EdgeSlip(FrontPhase):
 
 @attrs.frozen(eq=False)
 class GrossSlip(FrontPhase):
-    """The whole contact slips; Coulomb's force."""
+    """The whole contact slips; Coulomb's force, while s psi > V."""
 
     sign: int
 
@@ -160,17 +165,6 @@ class GrossSlip(FrontPhase):
     def division(self, contact: ScaledContact, slip: float) -> tuple[float, int]:
         """Return a front at the centre."""
         return 0.0, self.sign
-
-    def margin(
-        self,
-        event: int,
-        contact: ScaledContact,
-        slip: Array,
-        velocity: Array,
-        response: PhaseResponse,
-    ) -> Array:
-        """Slip goes on while s psi > V."""
-        return np.asarray(self.sign * velocity - contact.rate)
 
     def follow(
         self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None
