@@ -88,7 +88,7 @@ def lobatto(count: int) -> Nodes:
         second=int(np.searchsorted(fine, points[1])),
         to_fine=np.ascontiguousarray(to_fine.T),
         slope=2.0 * np.array(slopes) @ to_coefficients,
-        legendre=to_coefficients,
+        legendre=np.asarray(to_coefficients),
         tail=np.ascontiguousarray(to_coefficients[-2:]),
         powers=np.stack([_powers(row) for row in rows_of_identity], axis=1),
         plain=(points, np.ones(count)),

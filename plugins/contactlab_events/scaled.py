@@ -22,8 +22,8 @@ class Run(NamedTuple):
     impact: Impact
     followed: Followed
     factor: float
-    slip_velocity_change: float
-    friction_work: float
+    slip_velocity_change: Real
+    friction_work: Real
     status: Status
     failure: str
 

@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import Mask, Real
+from contactlab.checks import Real
 from contactlab.contracts import Path, ScaledContact
 from contactlab_fronts.profile import Front, Memo, Piece
 
@@ -117,7 +117,7 @@ class Laid(Piece):
         depth = sign * (slip - (old_slip + slip_rate * move))
         return Front(c, force, (depth, y))
 
-    def flat(self, sign: Any) -> Mask:
+    def flat(self, sign: Any) -> Any:
         """Name the centre, and a piece that began when slip of this sign stopped."""
         return (self.inner_q == 0.0) | (sign == self.began)
 

@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import Mask, Real
+from contactlab.checks import Real
 from contactlab.contracts import ScaledContact
 from contactlab_fronts.profile import Front, Memo, Piece
 
@@ -44,6 +44,6 @@ class Locked(Piece):
         force += self.base
         return Front(c, force, (contact.approach - q,))
 
-    def flat(self, sign: Any) -> Mask:
+    def flat(self, sign: Any) -> Any:
         """Only the centre is reached like a square root."""
         return self.inner_q == 0.0

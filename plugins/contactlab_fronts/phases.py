@@ -95,7 +95,7 @@ class EdgeSlip(FrontPhase):
     def through(cls, sign: int, profile: Profile) -> EdgeSlip:
         """Return edge slip of this sign on a profile with at least one piece."""
         piece = profile[-1]
-        return cls(sign, profile, (False, piece.flat(sign), False), piece.span(sign))
+        return cls(sign, profile, (False, bool(piece.flat(sign)), False), piece.span(sign))
 
     def respond(self, contact: ScaledContact, slip: Array, memo: Memo) -> PhaseResponse:
         """Return the force of profile and slip zone; dF/dD = 1.5 c."""

@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import Mask, Real
+from contactlab.checks import Real
 from contactlab.contracts import ScaledContact
 
 Array = NDArray[np.float64]
@@ -62,7 +62,7 @@ class Piece(ABC):
         """Return the front of slip with this sign, where s (f(q) + D) = zeta - q."""
 
     @abstractmethod
-    def flat(self, sign: Any) -> Mask:
+    def flat(self, sign: Any) -> Any:
         """Say whether a front of this sign rushes to the inner end like a square root."""
 
     def left(self, sign: Any, contact: ScaledContact, slip: Any) -> Any:

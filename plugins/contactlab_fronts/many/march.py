@@ -21,7 +21,7 @@ CHUNK, CHUNK_CHI = 10_000, 30.0
 LARGEST_CHI = 1e4
 #: Distance of the velocity from 1 below which the centre slips too soon after first touch; and of
 #: it and of 2 chi, below which nearly all is at the limit of slip at all times.
-ALMOST_ONE, ALMOST_BALANCED = 1e-6, 1e-2
+ALMOST_ONE, ALMOST_BALANCED = 1e-6, 2e-2
 #: Rounds: an impact takes some 30, and as sqrt(chi) for large chi; about ten times that.
 ROUNDS, ROUNDS_PER_SWING = 200, 40
 

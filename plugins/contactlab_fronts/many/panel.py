@@ -108,12 +108,13 @@ def solve(
     tail *= inertia
     known = contact, slip, first + change, response
     power = time * slipping.friction_power(*known)
+    work = nodes.integral @ power
     lost = np.abs(nodes.tail @ power).sum(axis=0) * inertia
     energy = np.maximum(impacts.first[who], LEAST_AUDITED) ** 2
     margins: Any = tuple(slipping.margin(event, *known) for event in range(3))
     return Panel(
-        start, length, contact, first + change, change, slip, response.force, nodes.integral @ power,
-        margins, update, tail, lost / energy, fitted,
+        start, length, contact, first + change, change, slip, response.force, work, margins,
+        update, tail, lost / energy, fitted,
     )  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """Sticking while the contact grows: a linear equation, one panel of high order.
 
-d(psi)/dT = -inertia F, dF/dT = 1.5 u psi (theory §5), so that psi at the nodes solves one small system.
+d(psi)/dT = -inertia F, dF/dT = 1.5 u psi (theory §5), so that psi at the nodes solves one small
+system.
 """
 
 from __future__ import annotations
