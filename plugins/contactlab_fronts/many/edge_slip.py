@@ -41,9 +41,6 @@ SETTLED, CONVERGED = 1e-3, 1e-2
 #: Part of the tolerance aimed at: most panels are far better, and with this the worst are nearly as
 #: good as those of one impact.
 SAFETY = 0.1
-#: Tolerance of the work, over the energy at first touch. Near the centre it is as the square root
-#: of the distance where the force is as its cube, and never as accurate.
-WORK = 1e-7
 
 
 def advance(impacts: Impacts, who: Rows, tolerance: float, *, laid: bool, fitted: bool) -> None:
@@ -66,9 +63,8 @@ def advance(impacts: Impacts, who: Rows, tolerance: float, *, laid: bool, fitted
     impacts.panels[who] += 1
 
     converged = panel.update < CONVERGED * limit
-    rough = np.maximum(panel.tail / limit, panel.work_tail / WORK) + 1e-300
-    growth = 0.9 * rough ** (-1.0 / NODES)
-    good = converged & (rough < 1.0)
+    growth = 0.9 * (limit / (panel.tail + 1e-300)) ** (1.0 / NODES)
+    good = converged & (panel.tail < limit)
     shorter = np.where(converged, np.clip(growth, 0.2, 0.8), 0.5)
 
     tau, event, leaves = _events(panel, impacts.idle[who] > MOST_IDLE)

@@ -26,8 +26,6 @@ FEWEST_ITERATIONS = 4
 #: Moves of a fitted end in one iteration, in parts of the panel.
 LARGEST_MOVE = 0.3
 SHORTEST = 1e-9
-#: Scaled velocity whose energy work is compared with, if there is less.
-LEAST_AUDITED = 0.1
 
 
 class Panel(NamedTuple):
@@ -44,7 +42,6 @@ class Panel(NamedTuple):
     margins: tuple[Array, Array, Array]  # of the events of ``EdgeSlip``
     update: Array  # last move of the velocity, (impacts,)
     tail: Array  # what the nodes cannot resolve of the velocity, (impacts,)
-    work_tail: Array  # and of the work, over the energy at first touch
     fitted: bool
 
     def phase(self, columns: Rows, tau: Array) -> Array:
@@ -107,14 +104,11 @@ def solve(
     tail = np.abs(nodes.tail @ rate).sum(axis=0)
     tail *= inertia
     known = contact, slip, first + change, response
-    power = time * slipping.friction_power(*known)
-    work = nodes.integral @ power
-    lost = np.abs(nodes.tail @ power).sum(axis=0) * inertia
-    energy = np.maximum(impacts.first[who], LEAST_AUDITED) ** 2
+    work = nodes.integral @ (time * slipping.friction_power(*known))
     margins: Any = tuple(slipping.margin(event, *known) for event in range(3))
     return Panel(
         start, length, contact, first + change, change, slip, response.force, work, margins,
-        update, tail, lost / energy, fitted,
+        update, tail, fitted,
     )  # fmt: skip
 
 
