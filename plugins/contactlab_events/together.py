@@ -12,8 +12,9 @@ from contactlab_events.scaled import scaled
 
 Flags = NDArray[np.bool_]
 
-#: Fewer impacts take longer together than one by one.
-FEWEST = 40
+#: Fewer impacts take longer together than one by one: a call of some hundred panels costs what it
+#: costs, however many impacts are in it.
+FEWEST = 64
 #: Books that miss by more, over the tangential energy, are not taken: an event was misplaced, or
 #: the law is not as exact here as it is one by one.
 BOOKS = 3e-7

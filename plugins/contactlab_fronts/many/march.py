@@ -18,7 +18,7 @@ BLOCK = 2000
 #: it for each impact, about as sqrt(chi).
 CHUNK, CHUNK_CHI = 10_000, 30.0
 #: Up to here answers were checked against those of one impact.
-LARGEST_CHI = 1e4
+LARGEST_CHI = 1e3
 #: Distance of the velocity from 1 below which the centre slips too soon after first touch; and of
 #: it and of 2 chi, below which nearly all is at the limit of slip at all times.
 ALMOST_ONE, ALMOST_BALANCED = 1e-6, 2e-2
