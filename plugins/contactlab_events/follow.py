@@ -33,6 +33,9 @@ LONGEST_PANELS = (0.9, 0.4, 0.15)
 #: LEAST_AUDITED if psi1 is less. Work is less accurate than motion, most of all near psi1 = 1
 #: and for small psi1; an event missed shows at 1e-2 and above.
 BOOKS = 1e-3
+#: Books that miss by more are suspect, and those of shorter panels may be better: next to psi1 = 1
+#: and chi = 1/2, where psi and V differ by rounding, an event mistaken showed at 1e-6.
+SUSPECT = 5e-7
 LEAST_AUDITED = 0.1
 SHORTEST_PANEL = 1e-9
 #: Beyond this chi the shortest panels are taken at once: they need a third fewer solves there,
@@ -81,21 +84,30 @@ def follow(
     tolerance: float,
 ) -> Followed:
     """Follow one impact of scaled velocity >= 0 to the end of contact."""
-    solves, status = 0, Status.SUCCESS
+    solves, best = 0, None
     dense = 0.5 * inertia * motion.scaled_mass > DENSE_CHI
     for longest in LONGEST_PANELS[-1:] if dense else LONGEST_PANELS:
         walk = _Walk(law, motion, inertia, velocity, tolerance, longest)
+        missing, status = 0.0, Status.UNRESOLVED
         try:
-            failure = walk.go() or walk.audit(velocity)
-            status = Status.UNRESOLVED if failure else Status.SUCCESS
+            failure = walk.go()
+            if not failure:
+                missing = float(books_miss(velocity, inertia, walk.state.change, walk.state.work))
+                if not missing <= BOOKS:
+                    failure = f"The energy books miss {missing:.1e} of the tangential energy."
         except Exception as error:
             what = f"{faults.raised(error)}, at x = {walk.state.x:.6g}"
             failure = faults.told(law, what, len(walk.pieces) + 1)
             status = Status.LAW_RAISED
         solves += walk.solves
-        if status is not Status.UNRESOLVED:
-            break
-    return Followed(failure, walk.state, tuple(walk.pieces), solves, status)
+        status = status if failure else Status.SUCCESS
+        found = Followed(failure, walk.state, tuple(walk.pieces), solves, status)
+        if status is Status.LAW_RAISED or (not failure and missing <= SUSPECT + 10.0 * tolerance):
+            return found
+        if best is None or best[1].failure or (not failure and missing < best[0]):
+            best = missing, found
+    assert best is not None
+    return best[1]._replace(solves=solves)
 
 
 def books_miss(velocity: Real, inertia: Real, change: Real, work: Real) -> Any:
@@ -135,13 +147,6 @@ class _Walk:
             if failure:
                 return f"{failure} In phase {type(self.phase).__name__} at x = {self.state.x:.9g}."
         return ""
-
-    def audit(self, velocity: float) -> str:
-        """Return a complaint if friction work is not the loss of energy."""
-        missing = float(books_miss(velocity, self.inertia, self.state.change, self.state.work))
-        if missing <= BOOKS:
-            return ""
-        return f"The energy books miss {missing:.1e} of the tangential energy."
 
     def _enter(self, phase: Phase) -> None:
         """Begin a phase: its first panel, and no guess of its motion."""
