@@ -34,8 +34,8 @@ LONGEST_PANELS = (0.9, 0.4, 0.15)
 #: and for small psi1; an event missed shows at 1e-2 and above.
 BOOKS = 1e-3
 #: Books that miss by more are suspect, and those of shorter panels may be better: next to psi1 = 1
-#: and chi = 1/2, where psi and V differ by rounding, an event mistaken showed at 1e-6.
-SUSPECT = 5e-7
+#: and chi = 1/2, where psi and V differ by rounding, a mistaken event showed at 1e-7 and above.
+SUSPECT = 2e-8
 LEAST_AUDITED = 0.1
 SHORTEST_PANEL = 1e-9
 #: Beyond this chi the shortest panels are taken at once: they need a third fewer solves there,
