@@ -55,7 +55,7 @@ class FailingSpring(SteppedTangentialLaw):
     at: int = 7
     raises: bool = False
 
-    def start(self, scene: Scene, normal: NormalMotion) -> int:
+    def start(self, scene: Scene, normal: NormalMotion) -> int:  # noqa: ARG002
         """Return that no step was taken."""
         if self.raises and self.at == 0:
             raise ArithmeticError("as it was asked to")
@@ -65,8 +65,8 @@ class FailingSpring(SteppedTangentialLaw):
         self,
         state: int,
         increment: Increment,
-        before: NormalContact,
-        after: NormalContact,
+        before: NormalContact,  # noqa: ARG002
+        after: NormalContact,  # noqa: ARG002
     ) -> tuple[TangentialResponse, int]:
         """Answer with no force, until it fails."""
         nothing = 0.0 * increment.displacement
@@ -84,7 +84,7 @@ class Unyielding(SteppedTangentialLaw):
     api_version: ClassVar[int] = 2
     calls: Counter[str] = attrs.field(factory=Counter, eq=False, repr=False)
 
-    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:  # noqa: ARG002
         """Return next to infinity."""
         return 1e300
 
@@ -95,8 +95,8 @@ class Unyielding(SteppedTangentialLaw):
         self,
         state: None,
         increment: Increment,
-        before: NormalContact,
-        after: NormalContact,
+        before: NormalContact,  # noqa: ARG002
+        after: NormalContact,  # noqa: ARG002
     ) -> tuple[TangentialResponse, None]:
         """Answer with no force, so many times."""
         _count(self.calls)
@@ -111,16 +111,16 @@ class Recurring(Phase):
     calls: Counter[str] = attrs.field(factory=Counter, eq=False, repr=False)
     rough: tuple[bool, ...] = (False,)
 
-    def respond(self, contact: ScaledContact, slip: Any, memo: Any) -> PhaseResponse:
+    def respond(self, contact: ScaledContact, slip: Any, memo: Any) -> PhaseResponse:  # noqa: ARG002
         """Return no force."""
         _count(self.calls)
         return PhaseResponse(0.0 * contact.force, None, None, ())
 
-    def margin(self, event: int, contact: Any, slip: Any, velocity: Any, response: Any) -> Any:
+    def margin(self, event: int, contact: Any, slip: Any, velocity: Any, response: Any) -> Any:  # noqa: ARG002
         """Return that the event is over."""
         return -1.0 - 0.0 * slip
 
-    def follow(self, event: int, state: Any, contact: Any, path: Any) -> Phase:
+    def follow(self, event: int, state: Any, contact: Any, path: Any) -> Phase:  # noqa: ARG002
         """Return the same phase."""
         _count(self.calls)
         return self
@@ -132,7 +132,7 @@ class Endless(PhasedTangentialLaw):
 
     api_version: ClassVar[int] = 2
 
-    def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
+    def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:  # noqa: ARG002
         """Begin."""
         return Recurring()
 
