@@ -35,8 +35,11 @@ class Nodes(NamedTuple):
         Values at nodes @ ``to_fine`` are values at the finer points.
     slope : array, shape (n,)
         ``slope @ f`` is f'(0).
-    tail : array, shape (2, n)
-        The two highest Legendre coefficients.
+    legendre, tail : arrays, shape (n, n) and (2, n)
+        All coefficients of Legendre's polynomials in 2 tau - 1, and the two highest.
+    powers : array, shape (n, n)
+        ``powers @ (legendre @ f)`` are the coefficients of powers of 2 tau - 1, lowest first. The
+        two matrices in one would lose digits, half of them at 20 nodes.
     plain, rooted : tuple of two arrays
         (x - origin)/length at the nodes, and its derivative: even, or with nodes crowded
         as (1 - tau)² at the end, which makes (1 - x)^1.5 a polynomial.
@@ -50,7 +53,9 @@ class Nodes(NamedTuple):
     second: int
     to_fine: Array
     slope: Array
+    legendre: Array
     tail: Array
+    powers: Array
     plain: tuple[Array, Array]
     rooted: tuple[Array, Array]
     identity: Array
@@ -83,11 +88,19 @@ def lobatto(count: int) -> Nodes:
         second=int(np.searchsorted(fine, points[1])),
         to_fine=np.ascontiguousarray(to_fine.T),
         slope=2.0 * np.array(slopes) @ to_coefficients,
+        legendre=np.asarray(to_coefficients),
         tail=np.ascontiguousarray(to_coefficients[-2:]),
+        powers=np.stack([_powers(row) for row in rows_of_identity], axis=1),
         plain=(points, np.ones(count)),
         rooted=(points * (2.0 - points), 2.0 * (1.0 - points)),
         identity=rows_of_identity,
     )
+
+
+def _powers(coefficients: Array) -> Array:
+    """Return coefficients of powers, as many, from those of Legendre's polynomials."""
+    found = legendre.leg2poly(coefficients)
+    return np.asarray(np.pad(found, (0, coefficients.size - found.size)))
 
 
 def rows(nodes: Nodes, tau: Array) -> Array:

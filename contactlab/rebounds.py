@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.checks import POSITIVE, Real, Rule, real, refuse
 from contactlab.signatures import named_arguments
-
-if TYPE_CHECKING:
-    from contactlab.result import ImpactResult
 
 Array = NDArray[np.float64]
 
@@ -23,12 +20,10 @@ Array = NDArray[np.float64]
 GROUP, TABLE = "contactlab.rebound", "elastic"
 #: Up to this chi, and for tolerances above this, the table answers: it holds psi2 to 1e-9.
 TABULATED_CHI, TABULATED = 2.5, 1e-9
-#: All impacts together reach 1e-6; below it each is solved on its own, which reaches 1e-9.
-TOGETHER = 1e-6
-#: So few are solved one by one whatever the tolerance: together they would take longer.
-FEW = 4
-#: Looser tolerances save no more time.
-LOOSEST = 1e-4
+#: So few are solved one by one: together they would take longer.
+FEW = 64
+#: Whatever is asked for: an answer is then the same, to 1e-10, in an array and alone.
+EXACT = 1e-9
 TOLERANCE = Rule(
     lambda value: (value >= 1e-9) & (value < 1.0), "must lie between 1e-9 and 1, of max(1, |psi1|)"
 )
@@ -68,9 +63,7 @@ def rebound(
     chi : float or array_like
         Eq. (38), broadcast against ``psi1``; positive, at most 1e4.
     tolerance : float
-        Error aimed at, of max(1, |psi1|), from 1e-9, for which all impacts are solved; most
-        answers are ten times better. Below 1e-6 impacts that are not tabulated are solved one
-        by one, some milliseconds each.
+        Error aimed at, of max(1, |psi1|), from 1e-9. Answers are that good whatever is asked.
     derivatives : bool
         Whether d psi2/d psi1 and d psi2/d chi are wanted too, for chi up to 2.5; they are
         tabulated to 1e-6, whatever the tolerance (5e-5 for psi1 just above 1, chi 1.83 to 1.92).
@@ -80,10 +73,8 @@ def rebound(
     psi2 : float or ndarray
         Tangential velocity of the contact after the impact, in the sense of ``psi1``: negative
         is reversed for positive psi1. Odd in psi1 to the last bit. A float if both are scalars.
-        With ``derivatives`` a tuple (psi2, d psi2/d psi1, d psi2/d chi).
-        For chi > 2.5 and in arrays of more than four, what else is in the array changes an
-        answer by less than a hundredth of ``tolerance``; fewer are solved one by one, and more
-        accurately.
+        With ``derivatives`` a tuple (psi2, d psi2/d psi1, d psi2/d chi). What else is in an array
+        changes an answer by less than 1e-10.
 
     Raises
     ------
@@ -171,32 +162,25 @@ def _exact(psi1: Array, chi: Array, tolerance: float) -> Array:
     from contactlab.registry import REGISTRY  # no law before it is needed
 
     law = REGISTRY.create("tangential.fronts")
-    if tolerance < TOGETHER:
-        return _signed(psi1, _one_by_one(psi1, chi, tolerance).check())
     if psi1.size <= FEW:
-        result = _one_by_one(psi1, chi, tolerance)
-        if not result.failures:
-            return _signed(psi1, result)
+        return _one_by_one(psi1, chi)
     psi2: Array
-    psi2, solved = law.rebound(psi1, chi, min(tolerance, LOOSEST))
+    psi2, solved = law.rebound(psi1, chi, tolerance)
     if not solved.all():
         left = ~solved
-        psi2[left] = _signed(psi1[left], _one_by_one(psi1[left], chi[left], tolerance).check())
+        psi2[left] = _one_by_one(psi1[left], chi[left])
     return psi2
 
 
-def _one_by_one(psi1: Array, chi: Array, tolerance: float) -> ImpactResult:
-    """Return the results of the exact solution for abs(psi1), event by event."""
+def _one_by_one(psi1: Array, chi: Array) -> Array:
+    """Return psi2 by the exact solution for abs(psi1), event by event."""
     from contactlab.registry import REGISTRY
     from contactlab.scene import Scene
     from contactlab.simulation import Simulation
 
-    integrator = REGISTRY.create("integrator.events", tolerance=tolerance)
+    integrator = REGISTRY.create("integrator.events", tolerance=EXACT)
     exact = Simulation(tangential="fronts", integrator=integrator)
     # Beyond, the energy of slip may not fit into a float.
     incidence = np.minimum(np.abs(psi1), LARGEST)
-    return exact.run(Scene.nondimensional(psi1=incidence, chi=chi))
-
-
-def _signed(psi1: Array, result: ImpactResult) -> Array:
+    result = exact.run(Scene.nondimensional(psi1=incidence, chi=chi)).check()
     return np.asarray(np.copysign(1.0, psi1) * (np.abs(psi1) + result.psi_change))

@@ -27,9 +27,6 @@ from contactlab.scene import Scene
 from contactlab.signatures import named_arguments
 from contactlab.status import Status
 
-#: Impacts of a sweep advanced together: enough to hide the cost of a call, few enough that
-#: an interruption loses little. Without a gain, where they are followed one by one, fewer.
-CHUNK, CHUNK_ONE_BY_ONE = 1000, 20
 #: So many impacts of a batch that failed are tried one by one; more are halved first.
 FEW = 8
 #: Friction work over the energy at the start is this many times less accurate than psi2.
@@ -138,7 +135,8 @@ class Simulation:
             Called as ``progress(done, total)`` after each chunk.
         chunk : int, optional
             Impacts advanced together, which bounds the memory and what an interruption
-            loses; 1000, or 20 under an integrator that follows them one by one.
+            loses; as many as the integrator asks for: 1000 of most, 20 where they are followed
+            one by one.
 
         Returns
         -------
@@ -161,7 +159,7 @@ class Simulation:
                 "for one impact use run",
             )
         if chunk is None:
-            chunk = CHUNK if self.integrator.together else CHUNK_ONE_BY_ONE
+            chunk = self.integrator.chunk(self.tangential)
         size, step = batch.shape[0], whole("chunk", chunk)
         plans: list[Plan] = []
         motions: list[Motion] = []
@@ -313,7 +311,7 @@ class Simulation:
         motion, raised = self._attempt(normal, scene, recorder)
         if not shape or recorder or np.all(motion.status):
             return motion
-        if not (raised or self.integrator.together):  # each was followed by itself
+        if self.integrator.own_statuses and not raised:
             return motion
         if size <= FEW:
             places = list(np.ndindex(shape))

@@ -11,6 +11,8 @@ from contactlab.contracts.motion import (
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalContact, NormalLaw
 from contactlab.contracts.phases import (
     ClosedPhase,
+    ManyImpacts,
+    ManyPhasedTangentialLaw,
     Path,
     Phase,
     PhasedTangentialLaw,
@@ -39,6 +41,8 @@ __all__ = [
     "Increment",
     "Integrator",
     "Law",
+    "ManyImpacts",
+    "ManyPhasedTangentialLaw",
     "NormalContact",
     "NormalLaw",
     "NormalMotion",

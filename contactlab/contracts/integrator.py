@@ -21,6 +21,9 @@ from contactlab.contracts.tangential import TangentialLaw
 from contactlab.scene import Scene
 from contactlab.status import Status
 
+#: Impacts of a sweep handed over together, unless the integrator says otherwise.
+CHUNK = 1000
+
 
 class Sample(NamedTuple):
     """One instant of an impact, as handed to an observer."""
@@ -152,7 +155,8 @@ class Integrator(Law):
     4. ``order`` is the order of convergence in the step that the class declares for smooth
        laws; None where there are no steps.
     5. Batch shapes pass through: a batch gives what its impacts give one by one. Where one
-       fails the batch may be given up: a simulation then hands over each by itself.
+       fails the batch may be given up, a simulation then hands over each by itself; not with
+       ``own_statuses``, which says that a failure within a batch is that of the impact alone.
     6. ``tangential_contract`` and ``normal_contract`` are the classes of the laws that it runs.
     7. ``psi2_error`` is a bound of the numerical error of psi2, from what the tangential law
        declares; NaN, the default, where nothing is declared.
@@ -164,13 +168,19 @@ class Integrator(Law):
     order: ClassVar[int | None] = None
     #: False if each impact of a batch has instants of its own: no history of a batch then.
     common_instants: ClassVar[bool] = True
-    #: False if the impacts of a batch are followed one after another: a sweep hands over few.
-    together: ClassVar[bool] = True
+    own_statuses: ClassVar[bool] = False
 
     @property
     def accuracy(self) -> float | None:
         """Error of psi2 over max(1, |psi1|) that it keeps to in time; None without control."""
         return None
+
+    def chunk(self, tangential: TangentialLaw) -> int:
+        """Return how many impacts a sweep should hand over at a time.
+
+        Enough to hide the cost of a call, few enough that an interruption loses little.
+        """
+        return CHUNK
 
     def remarks(
         self,

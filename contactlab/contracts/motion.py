@@ -144,5 +144,5 @@ class ClosedFormMotion(NormalMotion):
         """Return the scaled motion of one impact at one phase, as floats."""
 
     @abstractmethod
-    def phase_at_rate(self, rate: float) -> float:
-        """Return the phase at which V = ``rate``, of one impact; V falls throughout."""
+    def phase_at_rate(self, rate: Real) -> Real:
+        """Return the phase at which V = ``rate``, a float or an array; V falls throughout."""

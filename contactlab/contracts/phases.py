@@ -172,6 +172,27 @@ class Phase(ABC):
         return None
 
 
+class ManyImpacts(NamedTuple):
+    """Answers to many impacts, arrays of shape (impacts,); scaled as all here.
+
+    Attributes
+    ----------
+    change : array
+        Of velocity, over the whole impact.
+    work : array
+        Added up from tractions and slip.
+    solved : array of bool
+        False where it was given up: the other entries mean nothing there.
+    panels : int
+        Panels solved, of all impacts together.
+    """
+
+    change: Array
+    work: Array
+    solved: NDArray[np.bool_]
+    panels: int
+
+
 class PhasedTangentialLaw(TangentialLaw):
     """A tangential law that is smooth between events it can name.
 
@@ -204,3 +225,33 @@ class PhasedTangentialLaw(TangentialLaw):
         with negative slip velocity, and see clause 2.
         """
         return {}
+
+
+class ManyPhasedTangentialLaw(PhasedTangentialLaw):
+    """A phased law that can also follow many impacts in one call, which is faster.
+
+    Contract
+    --------
+    1. ``impacts_together`` gives, to ``tolerance`` times max(1, velocity), what its phases give
+       one by one, or says that it gave up; it does not raise for a numerical failure.
+    2. An answer depends on the other impacts of the call by less than 1e-10.
+    3. It holds down to the tolerance ``finest_together``; an integrator that is to be better
+       follows impacts one by one.
+    """
+
+    finest_together: ClassVar[float]
+
+    @abstractmethod
+    def impacts_together(
+        self, velocity: Array, inertia: Array, motion: ClosedFormMotion, tolerance: float
+    ) -> ManyImpacts:
+        """Return the answers to many impacts.
+
+        Parameters
+        ----------
+        velocity, inertia : ndarray, shape (impacts,)
+            Finite and positive.
+        motion : ClosedFormMotion
+            Of a batch; only what is scaled is asked of it.
+        tolerance : float
+        """

@@ -183,7 +183,7 @@ class SpoiledMotion(ClosedFormMotion):
         at, *others = self.motion.scaled_at(phase)
         return ScaledContact(at, *(factor * other for other in others))
 
-    def phase_at_rate(self, rate: float) -> float:
+    def phase_at_rate(self, rate: Real) -> Real:
         """Return that of the other motion."""
         return self.motion.phase_at_rate(rate)
 

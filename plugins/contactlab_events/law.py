@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeGuard
 
 import attrs
 import numpy as np
@@ -13,6 +13,7 @@ from contactlab.contracts import (
     ClosedFormMotion,
     ClosedFormNormalLaw,
     Integrator,
+    ManyPhasedTangentialLaw,
     NormalMotion,
     Observer,
     PhasedTangentialLaw,
@@ -22,12 +23,16 @@ from contactlab.contracts import (
 from contactlab.scene import Scene
 from contactlab_events.dense import show
 from contactlab_events.scaled import Run, scaled
+from contactlab_events.together import FEWEST, together
 
 #: Rounding allows no more than the first; with the second the answer still has three digits.
 TOLERANCES = Rule(
     lambda value: np.ndim(value) == 0 and 1e-12 <= value <= 1e-3,
     "must be one number between 1e-12 and 1e-3",
 )
+
+#: Impacts of a sweep at a time: together they gain until some thousands, one by one nothing.
+TOGETHER, ONE_BY_ONE = 4000, 20
 
 
 @attrs.frozen(kw_only=True)
@@ -52,7 +57,7 @@ class Events(Integrator):
     resolution: ClassVar[str | None] = "tolerance"
     tangential_contract: ClassVar[Any] = PhasedTangentialLaw
     normal_contract: ClassVar[Any] = ClosedFormNormalLaw
-    together: ClassVar[bool] = False
+    own_statuses: ClassVar[bool] = True
 
     tolerance: float = quantity("1", rule=TOLERANCES, default=1e-9)
 
@@ -60,6 +65,14 @@ class Events(Integrator):
     def accuracy(self) -> float:
         """The error aimed at."""
         return self.tolerance
+
+    def chunk(self, tangential: TangentialLaw) -> int:
+        """Return many impacts if they are followed together."""
+        return TOGETHER if self._together(tangential) else ONE_BY_ONE
+
+    def _together(self, law: TangentialLaw) -> TypeGuard[ManyPhasedTangentialLaw]:
+        """Return whether the law follows many impacts in one call, as accurately as is asked."""
+        return isinstance(law, ManyPhasedTangentialLaw) and law.finest_together <= self.tolerance
 
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return the tolerance, and what the law declares for itself."""
@@ -78,18 +91,25 @@ class Events(Integrator):
         law, shape = tangential, scene.shape
         assert isinstance(law, PhasedTangentialLaw)
         assert isinstance(normal, ClosedFormMotion)
-        places = list(np.ndindex(shape)) if shape else [None]
+        left, parts = np.ones(shape, dtype=bool), []
+        if left.size >= FEWEST and observer is None and self._together(law):
+            known, motion = together(law, normal, self.tolerance)
+            left, parts = ~known, [(known, motion)]
         runs = []
-        for place in places:
-            motion = normal if place is None else normal.take(place)
-            assert isinstance(motion, ClosedFormMotion)
-            with faults.blaming(motion.law):
-                impact = scaled(motion)
+        for place in map(tuple, np.argwhere(left).tolist()):
+            one = normal.take(place) if shape else normal
+            assert isinstance(one, ClosedFormMotion)
+            with faults.blaming(one.law):
+                impact = scaled(one)
             runs.append(impact.run(law, self.tolerance))
         if observer is not None:
             show(shape, law, runs, observer)
         motions = [_motion(run) for run in runs]
-        return TangentialMotion.joined(motions, shape) if shape else motions[0]
+        if not shape:
+            return motions[0]
+        if runs:
+            parts.append((left, TangentialMotion.joined(motions, (len(runs),))))
+        return TangentialMotion.merged(parts, shape)
 
 
 def _motion(run: Run) -> TangentialMotion:

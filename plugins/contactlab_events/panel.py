@@ -8,7 +8,6 @@ from typing import NamedTuple
 import attrs
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgesv
 
 from contactlab.collocation import ON_NODE, Nodes, rows
 from contactlab.contracts import ClosedFormMotion, Phase, PhaseResponse, PhaseState, ScaledContact
@@ -18,11 +17,6 @@ Array = NDArray[np.float64]
 NEWTON_CAP = 25
 #: Newton's method is quadratic: after a relative update this small, the error is rounding.
 LAST_UPDATE = 1e-7
-#: From this update on, a panel that runs far past an event shows it, and is given up.
-PEEK_UPDATE = 0.1
-PEEK_PART = 0.8
-#: Margins at the first nodes may still be zero, from the event that began the phase.
-PEEK_FROM = 3
 #: Radians of the fastest oscillation that one panel may hold.
 LONGEST_SWING = 9.0
 #: A fitted length is not moved for less than this, relative; nor by more than half.
@@ -43,14 +37,6 @@ class Solved(NamedTuple):
     force: Array
     time_matrix: Array
     length: float
-
-
-class Overshot(NamedTuple):
-    """A panel given up because ``event`` comes early in it, about at ``tau``."""
-
-    event: int
-    tau: float
-    change: Array
 
 
 @attrs.frozen(eq=False, slots=False)
@@ -139,7 +125,7 @@ def newton(
     guess: Array | None,
     *,
     fit: int | None = None,
-) -> Solved | Overshot | None:
+) -> Solved | None:
     """Solve a panel of given length or, with ``fit``, of the length at which that event ends it.
 
     Returns None if Newton's method does not converge or the panel is too long for its nodes.
@@ -156,7 +142,6 @@ def newton(
     # a float to the power of 2 raises OverflowError
     first_size = float(change.dot(change)) / count + start.velocity * start.velocity + TINY
     memo: tuple[Array, ...] = ()
-    peek = fit is None and bool(phase.rough) and not phase.linear
     last = False
     for step in range(NEWTON_CAP):
         time_matrix = grid.time_matrix
@@ -198,11 +183,6 @@ def newton(
                 length += shift
                 grid = _Grid.of(motion, nodes, spacing, start, length)
                 update = max(update, 1e-3 * abs(shift) / length)
-        elif peek and update < PEEK_UPDATE and step:
-            peek = False
-            found = glance(phase, grid.contact, slip, start.velocity + change, response, nodes)
-            if found is not None:
-                return Overshot(found[0], found[1], change)
         last = update < LAST_UPDATE or phase.linear
     return None
 
@@ -210,7 +190,7 @@ def newton(
 def _update(
     residual: Array, response: PhaseResponse, inertia: float, time_matrix: Array, nodes: Nodes
 ) -> Array:
-    """Solve the linear system of Newton's method; the residual is overwritten."""
+    """Solve the linear system of Newton's method; a singular one has no answer."""
     stiffness, gathered = response.stiffness, response.gathered
     if stiffness is not None:
         matrix = (time_matrix * stiffness).dot(time_matrix)
@@ -220,34 +200,13 @@ def _update(
         return residual
     matrix *= inertia
     matrix += nodes.identity
-    return np.asarray(dgesv(matrix, residual, 1, 1)[2])
+    try:
+        return np.linalg.solve(matrix, residual)
+    except np.linalg.LinAlgError:
+        return np.full_like(residual, np.nan)
 
 
 def _shift(margin: Array, spot: Array, length: float) -> float:
     """Return how much longer a panel must be for ``margin`` to end at zero, by a secant."""
     one, two = margin[-2:].tolist()
     return float(two * (1.0 - spot[-2].item()) * length / (one - two)) if one != two else np.inf
-
-
-def glance(
-    phase: Phase,
-    contact: ScaledContact,
-    slip: Array,
-    velocity: Array,
-    response: PhaseResponse,
-    nodes: Nodes,
-) -> tuple[int, float] | None:
-    """Return (event, about where) if one comes early, or roughly, in a panel not yet solved."""
-    best: tuple[int, float] | None = None
-    points = nodes.points.tolist()
-    for event, rough in enumerate(phase.rough):
-        margin = phase.margin(event, contact, slip, velocity, response).tolist()
-        for k in range(PEEK_FROM, len(margin)):
-            if margin[k] < 0.0:
-                a, b = margin[k - 1], margin[k]
-                left, right = points[k - 1], points[k]
-                tau = left + (right - left) * (a / (a - b) if a > 0.0 else 0.0)
-                if (rough or tau < PEEK_PART) and (best is None or tau < best[1]):
-                    best = event, tau
-                break
-    return best

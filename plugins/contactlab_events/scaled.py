@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import numpy as np
+
+from contactlab.checks import Real
 from contactlab.contracts import ClosedFormMotion, PhasedTangentialLaw, PhaseState
 from contactlab.status import Status
 from contactlab_events.follow import Followed, follow
@@ -19,71 +22,74 @@ class Run(NamedTuple):
     impact: Impact
     followed: Followed
     factor: float
-    slip_velocity_change: float
-    friction_work: float
+    slip_velocity_change: Real
+    friction_work: Real
     status: Status
     failure: str
 
 
 class Impact(NamedTuple):
-    """One impact in scaled units, and what leads back to SI.
+    """One impact in scaled units, or a batch, and what leads back to SI.
 
     ``velocity_unit`` is mu v1/kappa (29), ``force_unit`` mu P_max; both 0 without friction.
     """
 
     motion: ClosedFormMotion
-    velocity: float
-    inertia: float
-    slip_velocity: float
-    velocity_unit: float
-    force_unit: float
-    time_unit: float
+    velocity: Any
+    inertia: Any
+    slip_velocity: Any
+    velocity_unit: Any
+    force_unit: Any
+    time_unit: Any
+
+    def posed(self, law: PhasedTangentialLaw) -> tuple[Real, Real]:
+        """Return the velocity >= 0 to solve for, and the factor that leads back from it.
+
+        A law is odd, and linear for small velocities.
+        """
+        speed, factor = abs(self.velocity), np.where(np.less(self.velocity, 0.0), -1.0, 1.0)
+        slow = (speed > 0.0) & (speed < law.linear_below) & (self.inertia > LEAST_INERTIA)
+        part = np.where(slow, speed / (law.linear_below or 1.0), 1.0)
+        return np.where(slow, law.linear_below, speed), factor * part
+
+    def answer(self, factor: Real, change: Real, work: Real) -> tuple[Real, Real]:
+        """Return change of slip velocity and friction work in SI."""
+        # A tiny factor stands for a huge friction coefficient: each unit takes its own.
+        velocity_unit, force_unit = factor * self.velocity_unit, factor * self.force_unit
+        with np.errstate(invalid="ignore", over="ignore"):
+            done = velocity_unit * self.time_unit * force_unit * work
+        # Without work there is none, however large its unit.
+        return velocity_unit * change, np.where(np.equal(work, 0.0), 0.0, done)
 
     def run(self, law: PhasedTangentialLaw, tolerance: float) -> Run:
-        """Follow the impact; a law is odd, so the velocity goes in without its sign."""
-        speed = abs(self.velocity)
-        factor = -1.0 if self.velocity < 0.0 else 1.0
-        if 0.0 < speed < law.linear_below and self.inertia > LEAST_INERTIA:
-            speed, factor = law.linear_below, factor * (speed / law.linear_below)
+        """Follow one impact."""
+        speed, factor = map(float, self.posed(law))
+        status, failure = Status.SUCCESS, ""
+        followed = Followed("", PhaseState(math.pi, 0.0, 0.0, speed, 0.0, 0.0, 0.0), (), 0)
         if not (math.isfinite(speed) and math.isfinite(self.inertia) and self.inertia > 0.0):
             ended = PhaseState(0.0, 0.0, math.nan, math.nan, math.nan, math.nan, math.nan)
             followed = Followed("", ended, (), 0)
             status, failure = Status.NON_FINITE, "psi1 or chi is not finite and positive."
-        elif speed == 0.0 or self.force_unit == 0.0:  # nothing moves, or nothing resists
-            ended = PhaseState(math.pi, 0.0, 0.0, speed, 0.0, 0.0, 0.0)
-            followed = Followed("", ended, (), 0)
-            status, failure = Status.SUCCESS, ""
-        else:
+        elif speed != 0.0 and self.force_unit != 0.0:  # something moves, and something resists
             followed = follow(law, self.motion, self.inertia, speed, tolerance)
             status, failure = followed.status, followed.failure
-        state = followed.state
-        usable = math.nan if status is not Status.SUCCESS else 1.0
-        # A tiny factor stands for a huge friction coefficient: each unit takes its own.
-        velocity_unit, force_unit = factor * self.velocity_unit, factor * self.force_unit
-        # Without work there is none, however large its unit.
-        work_unit = velocity_unit * self.time_unit * force_unit if state.work != 0.0 else 0.0
-        return Run(
-            impact=self,
-            followed=followed,
-            factor=factor,
-            slip_velocity_change=usable * factor * state.change * self.velocity_unit,
-            friction_work=usable * state.work * work_unit,
-            status=status,
-            failure=failure,
-        )
+        usable = 1.0 if status is Status.SUCCESS else math.nan
+        change, work = self.answer(factor, followed.state.change, followed.state.work)
+        return Run(self, followed, factor, usable * change, usable * work, status, failure)
 
 
 def scaled(motion: ClosedFormMotion) -> Impact:
-    """Return one impact in scaled units."""
+    """Return one impact in scaled units, or a batch of them."""
     scene = motion.scene
-    speed, kappa = float(scene.normal_speed), float(scene.pair.stiffness_ratio)
-    friction, slip_velocity = float(scene.friction_coefficient), float(scene.slip_velocity)
-    force, approach = float(motion.maximum_force), float(motion.maximum_approach)
+    speed, kappa = scene.normal_speed, scene.pair.stiffness_ratio
+    friction, slip_velocity = scene.friction_coefficient, scene.slip_velocity
+    force, approach = motion.maximum_force, motion.maximum_approach
     unit = friction * speed / kappa
+    none = unit == 0.0
     return Impact(
         motion=motion,
-        velocity=slip_velocity / unit if unit else 0.0,
-        inertia=kappa * (force / speed) * (approach / speed) / float(scene.pair.tangential_mass),
+        velocity=slip_velocity / (unit + none) * (1.0 - none),
+        inertia=kappa * (force / speed) * (approach / speed) / scene.pair.tangential_mass,
         slip_velocity=slip_velocity,
         velocity_unit=unit,
         force_unit=friction * force,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,36 +15,55 @@ Array = NDArray[np.float64]
 RATE_STEP = 1e-5
 
 
-class GrossMotion(ClosedPhase):
-    """Force = share · P, to the end of slip or of contact: psi falls in proportion to V.
+class Slide(NamedTuple):
+    """Gross slip of one or many impacts: whether it stops, V there, and what it changed.
 
     Change of velocity = share · inertia · mass · (V - V_0), theory §1; slip of sign s ends
-    where s psi falls to V, both linear in V, so that the end is known too.
+    where s psi falls to V, both linear in V, so that the end is known too. Work is the integral
+    of (s psi - V) P over T, and P dT = -mass dV.
     """
+
+    stops: Any
+    rate: Any
+    gained: Any
+    work: Any
+
+    @classmethod
+    def along(
+        cls, motion: ClosedFormMotion, inertia: Any, share: Any, first: ScaledContact, velocity: Any
+    ) -> Slide:
+        """Return slip with the force ``share`` · P from the contact ``first`` on."""
+        last = motion.scaled_at(np.pi).rate
+        ratio = inertia * motion.scaled_mass
+        # below 1 the margin only grows
+        spread = np.where(ratio > 1.0, ratio - 1.0, np.inf)
+        stop = np.minimum((ratio * first.rate - share * velocity) / spread, first.rate)
+        stops = (ratio > 1.0) & (stop > last)
+        # to the end, V = -1: from the energy 1 - V², as the difference would cancel
+        late = ~stops & (first.rate < 0.0)
+        rate = np.where(stops, stop, last)
+        rest = first.approach * first.force / (1.0 - np.minimum(first.rate, 0.0))
+        fall = np.where(late, rest, first.rate - rate)
+        gained = -share * ratio * fall
+        mean = share * (velocity + 0.5 * gained) - 0.5 * (first.rate + rate)
+        return cls(stops, rate, gained, motion.scaled_mass * fall * mean)
+
+
+class GrossMotion(ClosedPhase):
+    """Force = share · P, to the end of slip or of contact: psi falls in proportion to V."""
 
     def __init__(
         self, share: float, state: PhaseState, motion: ClosedFormMotion, inertia: float
     ) -> None:
         first = motion.scaled_at(state.x)
-        last = motion.scaled_at(np.pi).rate
-        ratio = inertia * motion.scaled_mass
-        self.share, self.ratio, self.first, self.start = share, ratio, first.rate, state
-        self.event = None
-        x = np.pi
-        if ratio > 1.0:  # below, the margin only grows
-            stop = min((ratio * first.rate - share * state.velocity) / (ratio - 1.0), first.rate)
-            if stop > last:
-                last, self.event = stop, 0
-                x = max(motion.phase_at_rate(last), state.x)
-        fall = first.rate - last
-        if self.event is None and first.rate < 0.0:
-            # to the end, V = -1: from the energy 1 - V², as the difference would cancel
-            fall = first.approach * first.force / (1.0 - first.rate)
-        gained = -share * ratio * fall
+        slide = Slide.along(motion, inertia, share, first, state.velocity)
+        self.share, self.first, self.start = share, first.rate, state
+        self.ratio = inertia * motion.scaled_mass
+        self.event = 0 if slide.stops else None
+        x = max(float(motion.phase_at_rate(slide.rate)), state.x) if slide.stops else np.pi
         normal, before = motion.scaled_at(x), motion.scaled_at(x - RATE_STEP)
         rate = (normal.force - before.force) / (RATE_STEP * before.time_rate)
-        # Work is the integral of (s psi - V) P over T, and P dT = -mass dV.
-        mean = share * (state.velocity + 0.5 * gained) - 0.5 * (first.rate + last)
+        gained = float(slide.gained)
         self.end = PhaseState(
             x=x,
             slip=state.slip,
@@ -50,7 +71,7 @@ class GrossMotion(ClosedPhase):
             velocity=state.velocity + gained,
             force=share * normal.force,
             force_rate=share * rate,
-            work=state.work + motion.scaled_mass * fall * mean,
+            work=state.work + float(slide.work),
         )
 
     def states(self, contact: ScaledContact) -> tuple[Array, Array]:

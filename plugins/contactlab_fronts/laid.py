@@ -2,33 +2,32 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.checks import Real
 from contactlab.contracts import Path, ScaledContact
-from contactlab_fronts.profile import Front, Piece
+from contactlab_fronts.profile import Front, Memo, Piece
 
 Array = NDArray[np.float64]
 
-FRONT_CAP = 12
-HALVING_CAP = 60
-#: Newton's method dances on rounding error near an end; moving more than this it is lost.
-LOST_PART = 1e-4
-#: Squared length of a Newton move that needs no second look; at 1e-7 psi2 would lose 1e-8.
-FRONT_MOVE = 1e-12
+#: Moves of Newton's method from the first guess of a front, kept between bounds: where the edge
+#: almost slipped the level is nearly stationary. Of many impacts each later call takes one move:
+#: their panels iterate by themselves. Of one impact it is exact: its panel takes Newton's method.
+FIRST_MOVES, LATER_MOVES = 6, 1
+EXACT_MOVES = 60
+#: Squared length of moves that need no further look; at 1e-7 psi2 would lose 1e-8.
+EXACT_MOVE = 1e-12
+#: A front may leave its piece a little while a panel reaches beyond it, in parts of the piece.
+LEEWAY, LEAST_PART = 0.2, 1e-6
 #: A root's slope below this part of its mean is rounding error at the very end of the piece.
 STEEP_PART = 0.1
+#: Part of a piece, in the guess of a front, by which an end is pushed out of the way.
+ONE_STEEP, BOTH_STEEP = 0.5, 1.0 / (1.0 + 2.0**0.5)
 TINY = 1e-300
-
-
-class _Edge(NamedTuple):
-    """One end of the piece: slip and approach when the edge of contact was there."""
-
-    slip: float
-    approach: float
 
 
 @attrs.frozen(eq=False)
@@ -40,120 +39,94 @@ class Laid(Piece):
     """
 
     path: Path
-    start: float
-    stop: float
-    began: int
-    ended: int
-    inner: _Edge
-    outer: _Edge
-    inner_q: float
-    inner_f: float
+    start: Real
+    stop: Real
+    began: Real
+    ended: Real
+    inner_q: Real
+    inner_f: Real
+    outer_q: Real
+    outer_f: Real
+
+    sign = 0.0
 
     @classmethod
     def along(cls, path: Path, start: float, stop: float, began: int, ended: int) -> Laid:
         """Return the piece laid down along ``path``."""
-        ends = path.fields(np.array([start, stop])).T.tolist()
-        inner, outer = (_Edge(end[0], end[2]) for end in ends)
-        inner_q = inner.approach if start > 0.0 else 0.0
-        return cls(path, start, stop, began, ended, inner, outer, inner_q, -inner.slip)
+        slip, _, q = path.fields(np.array([start, stop]))[:3].tolist()
+        centre = start == 0.0  # where rounding leaves a little of q
+        inner_q = 0.0 if centre else q[0]
+        return cls(path, start, stop, began, ended, inner_q, -slip[0], q[1], -slip[1])
 
-    def front(
-        self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]
-    ) -> Front:
-        """Find, by Newton's method, the x at which the edge was where the front is now."""
+    def front(self, sign: Any, contact: ScaledContact, slip: Array, memo: Memo) -> Front:
+        """Find, by Newton's method, the phase y at which the edge was where the front is now.
+
+        There s D - zeta had its present value, the level. At an end where slip of this sign
+        stopped or begins that is flat in y, so that moves are made in the square root of its
+        distance from the nearer end; a steep end is pushed out of the way.
+        """
         level = sign * slip
         level -= contact.approach
-        low = sign * self.outer.slip - self.outer.approach
-        high = sign * self.inner.slip - self.inner.approach
         start, stop = self.start, self.stop
         length = stop - start
-        drop = max(high - low, TINY)
+        high = -(sign * self.inner_f + self.inner_q)
+        low = -(sign * self.outer_f + self.outer_q)
+        drop = np.maximum(high - low, TINY)
         turning, flat = sign == self.ended, self.flat(sign)
-        # Where the level has a double root at an end, its square root from there is solved for.
-        steep = STEEP_PART * drop**0.5 / length
-        if turning:
-            below = np.sqrt(np.maximum(level - low, 0.0))
-        if flat:
-            above = np.sqrt(np.maximum(high - level, 0.0))
+        low, high = np.where(turning, low, low - drop), np.where(flat, high, high + drop)
+        lowest = start + np.where(flat, LEAST_PART, -LEEWAY) * length
+        below, above = _root(level - low), _root(high - level)
+        inside, steep = above < below, -STEEP_PART * drop**0.5 / length
         if memo:
-            y = memo[0]
-        elif turning and flat:
-            upper = above / (above + below + TINY)
-            y = stop - length * (1.0 - upper)
-        elif turning:
-            y = stop - (length / drop**0.5) * below
-        elif flat:
-            y = start + (length / drop**0.5) * above
+            y = np.minimum(np.maximum(memo[1], lowest), stop)
         else:
-            y = start + length * ((high - level) / drop)
-        floor = start + 1e-6 * length if flat else start - 0.2 * length
-        y = np.minimum(np.maximum(y, floor), stop)
-        for _ in range(FRONT_CAP):
+            first = np.where(flat, 0.0, np.where(turning, ONE_STEEP, BOTH_STEEP))
+            last = np.where(turning, 1.0, 1.0 - np.where(flat, ONE_STEEP, BOTH_STEEP))
+            part = (above / (above + below + TINY) - first) / (last - first)
+            y = np.minimum(np.maximum(start + length * part, lowest), stop)
+        inner, outer = lowest, stop
+        many = slip.ndim > 1
+        if many:
+            moves = LATER_MOVES if memo else FIRST_MOVES
+        for _ in range(moves if many else EXACT_MOVES):
             old_slip, old_force, q, c, slip_rate, q_rate = self.path.fields(y)
-            here = sign * old_slip - q
+            here = sign * old_slip
+            here -= q
             fall = sign * slip_rate - q_rate
-            if turning:
-                root = np.sqrt(np.maximum(here - low, 0.0))
-                move = (below - root) * (root + root) / np.minimum(fall, -steep * root - TINY)
-            if flat:
-                root = np.sqrt(np.maximum(high - here, 0.0))
-                other = (root - above) * (root + root) / np.minimum(fall, -steep * root - TINY)
-                move = np.where(above < below, other, move) if turning else other
-            elif not turning:
-                move = (level - here) / (fall - TINY)
+            under, over = _root(here - low), _root(high - here)
+            root = np.where(inside, over, under)
+            move = np.where(inside, over - above, below - under)
+            move *= 2.0 * root
+            move /= np.minimum(fall, steep * root - TINY)
             new = y + move
-            np.maximum(new, floor, out=new)
-            np.minimum(new, stop, out=new)
-            move = new - y
-            y = new
-            if move.dot(move) < FRONT_MOVE:
+            if not (many and memo):  # the level falls with y: stay between what was seen so far
+                ahead = here > level
+                inner, outer = np.where(ahead, y, inner), np.where(ahead, outer, y)
+                outside = (new < inner) | (new > outer)
+                new = np.where(outside, 0.5 * (inner + outer), new)
+            np.minimum(np.maximum(new, lowest, out=new), stop, out=new)
+            move, y = new - y, new
+            if not many and move.dot(move) < EXACT_MOVE:
                 break
-        else:
-            lost = np.abs(move) > LOST_PART * length
-            if lost.any():
-                y = np.where(lost, self._halving(sign, level, floor), y)
-                old_slip, old_force, q, c, slip_rate, q_rate = self.path.fields(y)
-                move = np.where(lost, 0.0, move)
         gap = contact.radius - c
         force = slip - old_slip
         force *= 1.5 * c
         force += old_force
         force += (0.5 * sign) * gap * gap * (contact.radius + contact.radius + c)
-        return Front(c, force, (y, old_slip + slip_rate * move))
+        # s (D - D when the front was the edge) is zeta - q there
+        depth = sign * (slip - (old_slip + slip_rate * move))
+        return Front(c, force, (depth, y))
 
-    def _halving(self, sign: int, level: Array, floor: float) -> Array:
-        """Find the same x by halving, between Newton steps: slower, and always right.
-
-        Needed where the edge almost began to slip as the piece was laid down: the level is
-        nearly stationary there, and Newton's method leaps.
-        """
-        low, high = np.full_like(level, floor), np.full_like(level, self.stop)
-        y = 0.5 * (low + high)
-        for _ in range(HALVING_CAP):
-            slip, _, q, _, slip_rate, q_rate = self.path.fields(y)
-            ahead = sign * slip - q - level
-            low, high = np.where(ahead > 0.0, y, low), np.where(ahead > 0.0, high, y)
-            new = y - ahead / (sign * slip_rate - q_rate - TINY)
-            new = np.where((new > low) & (new < high), new, 0.5 * (low + high))
-            move, y = new - y, new
-            if move.dot(move) < FRONT_MOVE**2:
-                break
-        return y
-
-    def depth(
-        self, sign: int, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]
-    ) -> Array:
-        """Return s (D - D when the front was the edge), which is zeta - q there."""
-        return np.asarray(sign * (slip - memo[1]))
-
-    def swept(self, sign: int) -> bool:
-        """Springs laid down one by one slip one by one."""
-        return False
-
-    def flat(self, sign: int) -> bool:
+    def flat(self, sign: Any) -> Any:
         """Name the centre, and a piece that began when slip of this sign stopped."""
-        return self.inner_q == 0.0 or sign == self.began
+        return (self.inner_q == 0.0) | (sign == self.began)
 
     def span(self, sign: int) -> float | None:
         """Take a front from the outer end to go in about as fast as the edge came out."""
-        return self.stop - self.start if sign == self.ended else None
+        return float(self.stop - self.start) if sign == self.ended else None
+
+
+def _root(value: Array) -> Array:
+    """Return the square root, 0 of what is negative."""
+    np.maximum(value, 0.0, out=value)
+    return np.asarray(np.sqrt(value, out=value))

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from contactlab.checks import Real
 from contactlab.contracts import (
     ClosedFormMotion,
+    ManyImpacts,
+    ManyPhasedTangentialLaw,
     NormalMotion,
     Phase,
-    PhasedTangentialLaw,
     ScaledContact,
     WholeImpact,
 )
@@ -35,7 +36,7 @@ NARROW = 4e-9
 
 
 @attrs.frozen(kw_only=True)
-class Fronts(PhasedTangentialLaw):
+class Fronts(ManyPhasedTangentialLaw):
     """The continuum limit of the annulus law, with no discretisation.
 
     Where the contact sticks and where it slips is a short list of fronts; between changes
@@ -52,6 +53,7 @@ class Fronts(PhasedTangentialLaw):
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"elastic_hertz"})
     linear_below: ClassVar[float] = 1e-8
+    finest_together: ClassVar[float] = 1e-9
 
     @property
     def books_bound(self) -> float:
@@ -82,6 +84,14 @@ class Fronts(PhasedTangentialLaw):
         if abs(ratio - 1.0) < BALANCE:
             return Balanced(velocity)
         return Stuck((), 0.0, 0.0, 0)
+
+    def impacts_together(
+        self, velocity: Array, inertia: Array, motion: ClosedFormMotion, tolerance: float
+    ) -> ManyImpacts:
+        """Return the answers to many impacts, followed from event to event in step."""
+        from contactlab_fronts.many.march import march  # not for one impact
+
+        return march(velocity, inertia, motion, tolerance)
 
     def rebound(self, psi1: Array, chi: Array, tolerance: float) -> tuple[Array, NDArray[np.bool_]]:
         """Return psi2 of many elastic impacts at once, and where it was found.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import attrs
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +20,9 @@ from contactlab.contracts import (
 from contactlab_fronts.gross import GrossMotion
 from contactlab_fronts.laid import Laid
 from contactlab_fronts.locked import Locked
-from contactlab_fronts.profile import Piece
+from contactlab_fronts.profile import Memo, Piece
 
 Array = NDArray[np.float64]
-Memo = tuple[Array, ...]
 Profile = tuple[Piece, ...]
 
 
@@ -80,9 +81,12 @@ class Stuck(FrontPhase):
 
 @attrs.frozen(eq=False)
 class EdgeSlip(FrontPhase):
-    """Springs outside the front slip; the front works through the outermost piece."""
+    """Springs outside the front slip; the front works through the outermost piece.
 
-    sign: int
+    Of many impacts ``sign`` is an array, and the profile their outermost pieces as one.
+    """
+
+    sign: Any
     profile: Profile
     rough: tuple[bool, ...]
     span: float | None
@@ -91,7 +95,7 @@ class EdgeSlip(FrontPhase):
     def through(cls, sign: int, profile: Profile) -> EdgeSlip:
         """Return edge slip of this sign on a profile with at least one piece."""
         piece = profile[-1]
-        return cls(sign, profile, (False, piece.flat(sign), False), piece.span(sign))
+        return cls(sign, profile, (False, bool(piece.flat(sign)), False), piece.span(sign))
 
     def respond(self, contact: ScaledContact, slip: Array, memo: Memo) -> PhaseResponse:
         """Return the force of profile and slip zone; dF/dD = 1.5 c."""
@@ -110,10 +114,7 @@ class EdgeSlip(FrontPhase):
         sign, piece = self.sign, self.profile[-1]
         if event == 0:
             return np.asarray(sign * velocity - contact.rate)
-        if event == 1:
-            inner = piece.inner_q + sign * piece.inner_f
-            return np.asarray(contact.approach - sign * slip - inner)
-        return piece.depth(sign, contact, slip, response.memo)
+        return piece.left(sign, contact, slip) if event == 1 else response.memo[0]
 
     def follow(
         self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None
@@ -125,9 +126,7 @@ class EdgeSlip(FrontPhase):
         if event == 2:
             return slipping(-sign, self.profile)
         c, _ = self.division(contact, state.slip)
-        inner_f = sign * (contact.approach - c * c) - state.slip
-        inner_force = state.force - sign * (contact.force - c**3)
-        locked = Locked(sign, c * c, inner_f, inner_force)
+        locked = Locked.between(c * c, sign, contact, state.slip, state.force)
         return sticking(sign, (*self.profile, locked), state, contact)
 
     def division(self, contact: ScaledContact, slip: float) -> tuple[float, int]:
@@ -141,10 +140,9 @@ class EdgeSlip(FrontPhase):
     ) -> Array:
         """1.5 (s psi - V) times the integral of zeta - s² over the slip zone.
 
-        The zone comes from how deep it is, zeta - q at the front: of the front itself only the
-        force is known to rounding.
+        The zone comes from how deep it is: of the front itself only the force is known to rounding.
         """
-        depth = self.profile[-1].depth(self.sign, contact, slip, response.memo)
+        depth = response.memo[0]
         b = contact.radius
         c = np.sqrt(np.maximum(contact.approach - depth, 0.0))
         width = depth / (b + c)
@@ -154,7 +152,7 @@ class EdgeSlip(FrontPhase):
 
 @attrs.frozen(eq=False)
 class GrossSlip(FrontPhase):
-    """The whole contact slips; Coulomb's force."""
+    """The whole contact slips; Coulomb's force, while s psi > V."""
 
     sign: int
 
@@ -168,22 +166,12 @@ class GrossSlip(FrontPhase):
         """Return a front at the centre."""
         return 0.0, self.sign
 
-    def margin(
-        self,
-        event: int,
-        contact: ScaledContact,
-        slip: Array,
-        velocity: Array,
-        response: PhaseResponse,
-    ) -> Array:
-        """Slip goes on while s psi > V."""
-        return np.asarray(self.sign * velocity - contact.rate)
-
     def follow(
         self, event: int, state: PhaseState, contact: ScaledContact, path: Path | None
     ) -> Phase:
         """Re-stick, all at once."""
-        locked = Locked(self.sign, 0.0, self.sign * contact.approach - state.slip, 0.0)
+        force = self.sign * contact.force
+        locked = Locked.between(0.0, self.sign, contact, state.slip, force)
         return sticking(self.sign, (locked,), state, contact)
 
     def closed_form(
@@ -220,7 +208,7 @@ class Balanced(FrontPhase):
 
 def slipping(sign: int, profile: Profile) -> Phase:
     """Return the slip phase of this sign: pieces of the same sign are swept at once."""
-    while profile and profile[-1].swept(sign):
+    while profile and profile[-1].sign == sign:
         profile = profile[:-1]
     return EdgeSlip.through(sign, profile) if profile else GrossSlip(sign)
 

@@ -136,11 +136,10 @@ class HertzMotion(ClosedFormMotion):
         g = math.sqrt(1.0 + square + square * square / (1.0 + u))
         return ScaledContact(phase, square, u, math.cos(phase) * g, u * square, 2.0 * u / g)
 
-    def phase_at_rate(self, rate: float) -> float:
+    def phase_at_rate(self, rate: Real) -> Real:
         """Return x where V = ``rate``; by the tangent, accurate near the greatest compression."""
-        u = max(0.0, (1.0 - rate) * (1.0 + rate)) ** 0.2
-        g = math.sqrt(1.0 + u * u + u**4 / (1.0 + u))
-        return math.atan2(u, rate / g)
+        u = np.maximum(0.0, (1.0 - rate) * (1.0 + rate)) ** 0.2
+        return np.arctan2(u, rate / velocity_factor(u))
 
     def at(self, phase: Real) -> NormalSample:
         """Return the motion at ``phase`` in [0, pi]."""

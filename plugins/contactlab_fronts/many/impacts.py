@@ -1,6 +1,6 @@
 """The state of many impacts, and what follows each event: theory §5.
 
-The phases are those of one impact: ``contactlab_fronts.phases``.
+The phases and their formulas are those of one impact: ``contactlab_fronts.phases``.
 """
 
 from __future__ import annotations
@@ -8,8 +8,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab_fronts.many.hertz import contact, phase_of_rate
-from contactlab_fronts.many.pieces import NO_PIECE, Pieces
+from contactlab.collocation import Nodes
+from contactlab.contracts import ClosedFormMotion
+from contactlab_fronts.gross import Slide
+from contactlab_fronts.locked import Locked
+from contactlab_fronts.many.pieces import LOCKED, NO_PIECE, Pieces
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
@@ -21,28 +24,33 @@ LEAST_RATE = 1e-7
 
 
 class Impacts:
-    """Impacts with |psi1| < max(1, 4 chi - 1), psi1 > 0; scaled (theory §1), one element each.
+    """Impacts of scaled velocity > 0 that do not slip throughout; one element each.
 
     Parameters
     ----------
-    psi1, chi : ndarray, shape (impacts,)
-    terms : int
-        See ``Pieces``.
+    velocity, inertia : ndarray, shape (impacts,)
+        In the units of ``contactlab.contracts.phases``.
+    motion : ClosedFormMotion
+    nodes : Nodes
+        Of panels in which all sticks.
     """
 
-    def __init__(self, psi1: Array, chi: Array, terms: int) -> None:
-        count = psi1.size
-        self.psi1 = psi1
-        self.chi = chi
+    def __init__(
+        self, velocity: Array, inertia: Array, motion: ClosedFormMotion, nodes: Nodes
+    ) -> None:
+        count = velocity.size
+        self.first, self.inertia, self.motion = velocity, inertia, motion
         self.phase = np.zeros(count)
-        self.slip = np.zeros(count)  # D
-        self.change = np.zeros(count)  # psi - psi1
+        self.slip = np.zeros(count)
+        self.change = np.zeros(count)  # of velocity, since first touch
         self.force = np.zeros(count)
-        self.doing = np.where(psi1 > 1.0, GROSS_SLIP, STUCK)
+        self.work = np.zeros(count)
+        self.panels = np.zeros(count, dtype=np.intp)
+        self.doing = np.where(velocity > 1.0, GROSS_SLIP, STUCK)
         self.sign = np.ones(count)  # of the slip, if any
         self.began = np.zeros(count)  # sign of the slip that stopped as sticking began, or 0
         self.outermost = np.full(count, NO_PIECE, dtype=np.intp)
-        self.pieces = Pieces(terms, 2 * count + 64)
+        self.pieces = Pieces(nodes, 2 * count + 64)
         # how the next panel is to be taken
         self.fitted = np.zeros(count, dtype=bool)  # up to the event at the end of the piece
         self.most = np.full(count, np.inf)  # no longer than this
@@ -52,43 +60,29 @@ class Impacts:
 
     def velocity(self, who: Rows) -> Array:
         """Return psi."""
-        return self.psi1[who] + self.change[who]
+        return self.first[who] + self.change[who]
 
     def slide_through(self, who: Rows) -> None:
         """Follow gross slip, in closed form, until it sticks again or the impact ends."""
-        sign, ratio = self.sign[who], 2.0 * self.chi[who]
-        rate = np.where(self.phase[who] == 0.0, 1.0, contact(self.phase[who]).rate)
-        ahead = sign * self.velocity(who)
-        # s psi = V, both linear in V; below ratio 1 slip only gains on it
-        spread = np.where(ratio > 1.0, ratio - 1.0, 1.0)
-        stop = np.minimum((ratio * rate - ahead) / spread, rate)
-        sticks = (ratio > 1.0) & (stop > -1.0)
-        stop = np.where(sticks, stop, -1.0)
-        self.change[who] += sign * ratio * (stop - rate)
+        sign, first = self.sign[who], self.motion.scaled(self.phase[who])
+        slide = Slide.along(self.motion, self.inertia[who], sign, first, self.velocity(who))
+        self.change[who] += slide.gained
+        self.work[who] += slide.work
         self.doing[who] = DONE
-        again = who[sticks]
-        if again.size:
-            phase = np.maximum(phase_of_rate(stop[sticks]), self.phase[again])
-            self.phase[again] = phase
-            self.force[again] = sign[sticks] * contact(phase).radius ** 3
-            self.outermost[again] = NO_PIECE
-            self.lock(again, np.zeros(again.size))
+        again = who[slide.stops]
+        phase = np.asarray(self.motion.phase_at_rate(slide.rate[slide.stops]))
+        self.phase[again] = np.maximum(phase, self.phase[again])
+        self.force[again] = sign[slide.stops] * self.motion.scaled(self.phase[again]).force
+        self.outermost[again] = NO_PIECE
+        self.lock(again, np.zeros(again.size))
 
     def lock(self, who: Rows, front: Array) -> None:
         """Stick again: the slip zone outside ``front`` (q) becomes a locked piece."""
-        if not who.size:
-            return
-        now = contact(self.phase[who])
-        sign = self.sign[who]
+        now, sign = self.motion.scaled(self.phase[who]), self.sign[who]
         front = np.minimum(front, now.approach)
-        self.outermost[who] = self.pieces.add(
-            who.size,
-            self.outermost[who],
-            sign=sign,
-            inner_q=front,
-            inner_f=sign * (now.approach - front) - self.slip[who],
-            base=self.force[who] - sign * now.approach * now.radius,
-        )
+        locked = Locked.between(front, sign, now, self.slip[who], self.force[who])
+        columns = {name: getattr(locked, name) for name in LOCKED}
+        self.outermost[who] = self.pieces.add(self.outermost[who], **columns)
         loading = now.rate > LEAST_RATE
         grows, shrinks = who[loading], who[~loading]
         self.doing[grows] = STUCK

@@ -1,56 +1,74 @@
-"""Rounds of panels until every impact of a chunk has ended."""
+"""Rounds of panels until every impact of an array has ended."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.collocation import lobatto
+from contactlab.contracts import ClosedFormMotion, ManyImpacts
 from contactlab_fronts.many import edge_slip, stuck
-from contactlab_fronts.many.impacts import (
-    DONE,
-    EDGE_SLIP,
-    GROSS_SLIP,
-    STUCK,
-    Impacts,
-)
-from contactlab_fronts.many.pieces import LAID
+from contactlab_fronts.many.impacts import DONE, EDGE_SLIP, GROSS_SLIP, STUCK, Impacts
 
 Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 #: Impacts in one call: an array of 8 nodes of them fits in the cache next to the processor.
 BLOCK = 2000
+#: Impacts of which the memory is kept at one time: some 50 MB. Beyond this chi there is more of
+#: it for each impact, about as sqrt(chi).
+CHUNK, CHUNK_CHI = 10_000, 30.0
+#: Up to here answers were checked against those of one impact.
+LARGEST_CHI = 1e3
+#: Distance of the velocity from 1 below which the centre slips too soon after first touch; and of
+#: it and of 2 chi, below which nearly all is at the limit of slip at all times.
+ALMOST_ONE, ALMOST_BALANCED = 1e-6, 2e-2
 #: Rounds: an impact takes some 30, and as sqrt(chi) for large chi; about ten times that.
 ROUNDS, ROUNDS_PER_SWING = 200, 40
 
 
-def march(psi1: Array, chi: Array, tolerance: float) -> tuple[Array, Flags]:
-    """Return (psi2 - psi1, solved) of impacts that do not slip throughout, psi1 > 0."""
-    impacts = Impacts(psi1, chi, stuck.NODES)
-    rounds = ROUNDS + int(ROUNDS_PER_SWING * np.sqrt(chi.max()))
+def march(
+    velocity: Array, inertia: Array, motion: ClosedFormMotion, tolerance: float
+) -> ManyImpacts:
+    """Return the answers to impacts of scaled velocity > 0 that do not slip throughout."""
+    change, work = np.zeros_like(velocity), np.zeros_like(velocity)
+    solved = np.zeros(velocity.shape, dtype=bool)
+    panels = 0
+    chi, away = 0.5 * inertia * motion.scaled_mass, np.abs(velocity - 1.0)
+    hard = (away < ALMOST_ONE) | (chi > LARGEST_CHI)
+    hard |= velocity >= np.maximum(1.0, 4.0 * chi - 1.0)
+    hard |= (away < ALMOST_BALANCED) & (np.abs(2.0 * chi - 1.0) < ALMOST_BALANCED)
+    rest = np.flatnonzero(~hard)
+    chunk = int(CHUNK * np.sqrt(CHUNK_CHI / chi[rest].max(initial=CHUNK_CHI)))
     with np.errstate(under="ignore"):
-        for _ in range(rounds):
-            if not _round(impacts, tolerance):
-                break
-    return impacts.change, (impacts.doing == DONE) & np.isfinite(impacts.change)
+        for first in range(0, rest.size, chunk):
+            part = rest[first : first + chunk]
+            impacts = Impacts(velocity[part], inertia[part], motion, lobatto(stuck.NODES))
+            rounds = ROUNDS + int(ROUNDS_PER_SWING * np.sqrt(chi[part].max()))
+            while rounds and _round(impacts, tolerance):
+                rounds -= 1
+            change[part], work[part] = impacts.change, impacts.work
+            solved[part] = (impacts.doing == DONE) & np.isfinite(impacts.change + impacts.work)
+            panels += int(impacts.panels.sum())
+    return ManyImpacts(change, work, solved, panels)
 
 
 def _round(impacts: Impacts, tolerance: float) -> bool:
     """Take every impact one panel further; return whether any was left."""
-    impacts.slide_through(np.flatnonzero(impacts.doing == GROSS_SLIP))
+    sliding = np.flatnonzero(impacts.doing == GROSS_SLIP)
+    if sliding.size:
+        impacts.slide_through(sliding)
     sticking = np.flatnonzero(impacts.doing == STUCK)
     for first in range(0, sticking.size, BLOCK):
         stuck.advance(impacts, sticking[first : first + BLOCK])
     slipping = np.flatnonzero(impacts.doing == EDGE_SLIP)
     if not slipping.size:
-        return bool(np.any(impacts.doing <= GROSS_SLIP))
-    on_laid = impacts.pieces["sign"][impacts.outermost[slipping]] == LAID
+        return bool(np.any(impacts.doing < DONE))
+    laid = impacts.pieces["sign"][impacts.outermost[slipping]] == 0.0
     fitted = impacts.fitted[slipping]
-    for laid in (False, True):
+    for is_laid in (False, True):
         for fit in (False, True):
-            who = slipping[(on_laid == laid) & (fitted == fit)]
+            who = slipping[(laid == is_laid) & (fitted == fit)]
             for first in range(0, who.size, BLOCK):
-                edge_slip.advance(
-                    impacts, who[first : first + BLOCK], tolerance, laid=laid, fitted=fit
-                )
+                part = who[first : first + BLOCK]
+                edge_slip.advance(impacts, part, tolerance, laid=is_laid, fitted=fit)
     return True

@@ -1,24 +1,24 @@
-"""One collocation panel of edge slip for many impacts: fixed-point iteration in psi.
+"""One collocation panel of edge slip for many impacts: fixed-point iteration in the velocity.
 
-psi' = -2.5 chi F(zeta, D), D' = psi. Twice integrated, an error shrinks like that of a power
-series, by (omega h)²ⁿ/(2n)! in n iterations: a few do, and cost less than Newton's systems.
+d(velocity)/dT = -inertia F(zeta, D), dD/dT = velocity. Twice integrated, an error shrinks like that
+of a power series, by (omega h)²ⁿ/(2n)! in n iterations: a few do, and cost less than Newton's
+systems.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab_fronts.many.hertz import Contact, contact
+from contactlab.collocation import lobatto
+from contactlab.contracts import ScaledContact
 from contactlab_fronts.many.impacts import Impacts
-from contactlab_fronts.many.nodes import lobatto
+from contactlab_fronts.phases import EdgeSlip
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
-Front = Callable[[Contact, Array], tuple[Array, Array]]
 
 NODES = 8
 ITERATIONS = 12
@@ -33,15 +33,15 @@ class Panel(NamedTuple):
 
     start: Array
     length: Array
-    now: Contact
-    sign: Array
+    contact: ScaledContact
     velocity: Array
-    change: Array  # of psi in this panel
+    change: Array  # of velocity in this panel
     slip: Array
     force: Array
-    front: Array  # q
-    update: Array  # last move of psi, (impacts,)
-    tail: Array  # what the nodes cannot resolve of 2.5 chi F dT/dtau, (impacts,)
+    work: Array  # in this panel
+    margins: tuple[Array, Array, Array]  # of the events of ``EdgeSlip``
+    update: Array  # last move of the velocity, (impacts,)
+    tail: Array  # what the nodes cannot resolve of the velocity, (impacts,)
     fitted: bool
 
     def phase(self, columns: Rows, tau: Array) -> Array:
@@ -51,66 +51,77 @@ class Panel(NamedTuple):
 
 
 def solve(
-    impacts: Impacts,
-    who: Rows,
-    front: Front,
-    length: Array,
-    goal: Array,
-    settled: Array,
-    *,
-    fitted: bool,
+    impacts: Impacts, who: Rows, slipping: EdgeSlip, length: Array, settled: Array, *, fitted: bool
 ) -> Panel:
-    """Solve panels of ``length``; with ``fitted``, up to where zeta - s D falls to ``goal``.
+    """Solve panels.
 
-    A fitted end is one to which the front rushes like a square root: there nodes are crowded
-    as (1 - tau)², in which all is smooth, and the length is found along with psi. ``settled``
-    is the move of psi at which iteration stops.
+    Parameters
+    ----------
+    impacts : Impacts
+    who : ndarray of int
+    slipping : EdgeSlip
+        Their phase.
+    length : ndarray
+        In x; with ``fitted`` the first guess of it.
+    settled : ndarray
+        Move of the velocity at which iteration stops.
+    fitted : bool
+        End panels where the front leaves its piece, to which it rushes like a square root: nodes
+        are crowded as (1 - tau)² there, in which all is smooth, and the length is found along with
+        the velocity.
     """
-    nodes = lobatto(NODES)
-    tau = nodes.points[:, None]
-    spot, spread = (tau * (2.0 - tau), 2.0 - 2.0 * tau) if fitted else (tau, np.ones_like(tau))
-    start, sign, gain = impacts.phase[who], impacts.sign[who], 2.5 * impacts.chi[who]
+    nodes, motion = lobatto(NODES), impacts.motion
+    spot, spread = (part[:, None] for part in (nodes.rooted if fitted else nodes.plain))
+    start, inertia = impacts.phase[who], impacts.inertia[who]
     first, before = impacts.velocity(who), impacts.slip[who]
-    left = np.pi - start
 
-    now = contact(start + length * spot)
-    time = now.pace * (length * spread)
+    contact = motion.scaled(start + length * spot)
+    time = contact.time_rate * (length * spread)
     change = nodes.integral @ time
-    change *= -gain * impacts.force[who]
+    change *= -inertia * impacts.force[who]
+    memo: tuple[Array, ...] = ()
     for iteration in range(ITERATIONS):
-        velocity = first + change
-        slip = nodes.integral @ (time * velocity)
+        slip = nodes.integral @ (time * (first + change))
         slip += before
-        q, force = front(now, slip)
-        rate = time * force
+        response = slipping.respond(contact, slip, memo)
+        memo = response.memo
+        rate = time * response.force
         new = nodes.integral @ rate
-        new *= -gain
+        new *= -inertia
         update = np.abs(new - change).max(axis=0)
         change = new
-        enough = iteration + 1 >= FEWEST_ITERATIONS and bool(np.all(update < settled))
-        if fitted and not enough and 0 < iteration < ITERATIONS - 1:
-            move = _move(now, sign, slip, first + change, goal, length)
+        last = iteration == ITERATIONS - 1
+        if fitted and iteration and not last and not _settled(iteration, update, settled):
+            move = _move(slipping, contact, slip, first + change, length)
             lost = ~np.isfinite(move)
-            length = np.where(lost, length, np.clip(length + move, SHORTEST, left))
-            now = contact(start + length * spot)
-            time = now.pace * (length * spread)
-            # an end that still moves is not settled, whatever psi does
+            length = np.where(lost, length, np.clip(length + move, SHORTEST, np.pi - start))
+            contact = motion.scaled(start + length * spot)
+            time = contact.time_rate * (length * spread)
+            # an end that still moves is not settled, whatever the velocity does
             update = np.where(lost, 1.0, np.maximum(update, np.abs(move)))
-            enough = iteration + 1 >= FEWEST_ITERATIONS and bool(np.all(update < settled))
-        if enough:
+        if _settled(iteration, update, settled):
             break
     tail = np.abs(nodes.tail @ rate).sum(axis=0)
-    tail *= gain
+    tail *= inertia
+    known = contact, slip, first + change, response
+    work = nodes.integral @ (time * slipping.friction_power(*known))
+    margins: Any = tuple(slipping.margin(event, *known) for event in range(3))
     return Panel(
-        start, length, now, sign, first + change, change, slip, force, q, update, tail, fitted
-    )
+        start, length, contact, first + change, change, slip, response.force, work, margins,
+        update, tail, fitted,
+    )  # fmt: skip
+
+
+def _settled(iteration: int, update: Array, settled: Array) -> bool:
+    return iteration + 1 >= FEWEST_ITERATIONS and bool(np.all(update < settled))
 
 
 def _move(
-    now: Contact, sign: Array, slip: Array, velocity: Array, goal: Array, length: Array
+    slipping: EdgeSlip, contact: ScaledContact, slip: Array, velocity: Array, length: Array
 ) -> Array:
-    """Return Newton's move of the end of each panel towards its goal."""
-    excess = now.approach[-1] - sign * slip[-1] - goal
-    slope = (now.rate[-1] - sign * velocity[-1]) * now.pace[-1]
+    """Return Newton's move of the end of each panel towards where the piece is left."""
+    end = ScaledContact(*(column[-1] for column in contact))
+    excess = slipping.profile[-1].left(slipping.sign, end, slip[-1])
+    slope = (end.rate - slipping.sign * velocity[-1]) * end.time_rate
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(np.clip(-excess / slope, -LARGEST_MOVE * length, LARGEST_MOVE * length))

@@ -6,31 +6,48 @@ number of its outermost piece. Rows are never changed: pieces swept away are jus
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
+import attrs
 import numpy as np
 from numpy.typing import NDArray
+
+from contactlab.collocation import Nodes
+from contactlab_fronts.laid import Laid
+from contactlab_fronts.locked import Locked
+from contactlab_fronts.profile import Piece
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
-LAID = 0.0  # stands for the sign of a piece that was laid down while all stuck
 NO_PIECE = -1
-#: Columns of every piece, then those of a piece laid down between two phases.
-COLUMNS = (
-    "sign",  # of the slip out of which it locked, or LAID
-    "inner_q",
-    "inner_f",
-    "base",  # locked: I(c) = base + sign c³
-    "start",  # laid: phases at its inner and outer end
-    "stop",
-    "origin",  # laid: phase and length of the panel whose polynomials it keeps
-    "length",
-    "began",  # laid: sign of the slip that stopped at its inner end, or 0
-    "ended",  # laid: sign of the slip that begins at its outer end, or 0
-    "outer_q",
-    "outer_f",
-)
+LAID = tuple(field.name for field in attrs.fields(Laid) if field.name != "path")
+LOCKED = tuple(field.name for field in attrs.fields(Locked))
+
+
+class Polynomials(NamedTuple):
+    """Panels in which pieces were laid down, as polynomials: the ``Path`` of each piece.
+
+    ``terms``, shape (3, terms, impacts), are coefficients of slip, force and d(slip)/dx by powers
+    of a coordinate that goes from -1 at ``origin`` to 1.
+    """
+
+    origin: Array
+    scale: Array
+    terms: Array
+
+    def fields(self, x: Array) -> Any:
+        """Return slip, force, approach, radius, d(slip)/dx, d(approach)/dx at each x."""
+        spot = (x - self.origin) * self.scale
+        spot -= 1.0
+        terms = self.terms[:, :, None, :]
+        total = terms[:, -1] * spot
+        for power in range(terms.shape[1] - 2, 0, -1):  # Horner's rule
+            total += terms[:, power]
+            total *= spot
+        total += terms[:, 0]
+        c = np.sin(x)
+        return total[0], total[1], c * c, c, total[2] * self.scale, 2.0 * c * np.cos(x)
 
 
 class Pieces:
@@ -38,49 +55,56 @@ class Pieces:
 
     Parameters
     ----------
-    terms : int
-        Number of coefficients of the polynomials of a piece laid down, for D and for F.
+    nodes : Nodes
+        Of the panels in which pieces are laid down.
     room : int
         Rows to begin with; the table doubles when they are used up.
     """
 
-    def __init__(self, terms: int, room: int) -> None:
-        self.terms = terms
-        self.used = 0
-        self.columns = {name: np.zeros(room) for name in COLUMNS}
+    def __init__(self, nodes: Nodes, room: int) -> None:
+        self.nodes, self.used = nodes, 0
         self.inside = np.full(room, NO_PIECE, dtype=np.intp)
-        self.slip = np.zeros((0, terms))
-        self.force = np.zeros((0, terms))
-        self.polynomial = np.zeros(room, dtype=np.intp)
-        self.polynomials = 0
+        self.columns = {name: np.zeros(room) for name in (*LAID, *LOCKED, "origin", "scale")}
+        self.columns["terms"] = np.zeros((room, 3, len(nodes.points)))
 
     def __getitem__(self, name: str) -> Array:
         return self.columns[name]
 
-    def add(self, count: int, inside: Rows, **values: Any) -> Rows:
-        """Append ``count`` pieces and return their rows."""
-        first, last = self.used, self.used + count
+    def add(self, inside: Rows, **values: Any) -> Rows:
+        """Append a piece outside each row of ``inside``, and return their rows.
+
+        Parameters
+        ----------
+        inside : ndarray of int
+        **values : float or array
+            Columns.
+        """
+        first, last = self.used, self.used + inside.size
         while last > self.inside.size:
             self.columns = {name: _doubled(old) for name, old in self.columns.items()}
             self.inside = _doubled(self.inside)
-            self.polynomial = _doubled(self.polynomial)
         self.inside[first:last] = inside
         for name, given in values.items():
             self.columns[name][first:last] = given
         self.used = last
         return np.arange(first, last)
 
-    def keep_polynomials(self, rows: Rows, slip: Array, force: Array) -> None:
-        """Keep the coefficients (terms, pieces) of D and F of pieces just laid down."""
-        first, last = self.polynomials, self.polynomials + rows.size
-        while last > len(self.slip):
-            room = max(2 * len(self.slip), 2 * rows.size)
-            self.slip = np.resize(self.slip, (room, self.terms))
-            self.force = np.resize(self.force, (room, self.terms))
-        self.slip[first:last] = slip.T
-        self.force[first:last] = force.T
-        self.polynomial[rows] = np.arange(first, last)
-        self.polynomials = last
+    def terms(self, slip: Array, force: Array) -> Array:
+        """Return the coefficients of ``Polynomials``, impacts first, from values at the nodes."""
+        nodes = self.nodes
+        found = np.zeros((slip.shape[1], 3, len(nodes.points)))
+        for column, values in enumerate((slip, force)):
+            found[:, column] = (nodes.powers @ (nodes.legendre @ values)).T
+        found[:, 2, :-1] = found[:, 0, 1:] * np.arange(1, len(nodes.points))
+        return found
+
+    def piece(self, rows: Rows, *, laid: bool) -> Piece:
+        """Return the pieces of some rows, all laid down or all locked, as one."""
+        if not laid:
+            return Locked(*(self[name][rows] for name in LOCKED))
+        terms = np.ascontiguousarray(self["terms"][rows].transpose(1, 2, 0))
+        path = Polynomials(self["origin"][rows], self["scale"][rows], terms)
+        return Laid(path, *(self[name][rows] for name in LAID))
 
 
 def _doubled(old: NDArray[Any]) -> NDArray[Any]:

@@ -1,6 +1,7 @@
 """Sticking while the contact grows: a linear equation, one panel of high order.
 
-psi' = -2.5 chi F, F' = 1.5 u psi (theory §5), so that psi at the nodes solves one small system.
+d(psi)/dT = -inertia F, dF/dT = 1.5 u psi (theory §5), so that psi at the nodes solves one small
+system.
 """
 
 from __future__ import annotations
@@ -8,21 +9,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab_fronts.many.hertz import contact
+from contactlab.collocation import lobatto, rows
+from contactlab_fronts.many.crossing import first_crossing, value
 from contactlab_fronts.many.impacts import Impacts
-from contactlab_fronts.many.nodes import basis, first_crossing, lobatto, value
-from contactlab_fronts.many.pieces import LAID
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
-NODES = 14
-#: With 14 nodes and panels of at most 3 radians of the fastest oscillation psi2 comes to 1e-10;
-#: with 4 radians and a length of 1.2, in the same time, to 2.5e-9.
-LONGEST_SWING = 3.0
-LONGEST = 0.8
-#: (dT/dx)² u is at most 1.6; the square of the fastest oscillation in x is 1.5 · 2.5 chi · 1.6.
-FASTEST = 6.0
+#: With 20 nodes a panel holds 4 radians of the fastest oscillation to 1e-12.
+NODES = 20
+LONGEST_SWING = 4.0
+LONGEST = 1.2
+#: (dT/dx)² u is at most 1.6; this times inertia is the square of the fastest oscillation in x.
+FASTEST = 1.5 * 1.6
 #: Pieces thinner than this, in x or in q, hold no force worth knowing, only rounding.
 THINNEST = 1e-7
 THINNEST_RING = 1e-9
@@ -31,11 +30,11 @@ THINNEST_RING = 1e-9
 def advance(impacts: Impacts, who: Rows) -> None:
     """Take one panel, up to the moment at which the edge begins to slip if that comes first."""
     nodes = lobatto(NODES)
-    start, chi = impacts.phase[who], impacts.chi[who]
+    start, inertia = impacts.phase[who], impacts.inertia[who]
     left = 0.5 * np.pi - start
-    length = np.minimum(np.minimum(left, LONGEST), LONGEST_SWING / np.sqrt(FASTEST * chi))
-    now = contact(start + length * nodes.points[:, None])
-    time = now.pace * length
+    length = np.minimum(np.minimum(left, LONGEST), LONGEST_SWING / np.sqrt(FASTEST * inertia))
+    now = impacts.motion.scaled(start + length * nodes.points[:, None])
+    time = now.time_rate * length
     velocity, slip, force = _solve(impacts, who, time, now.radius)
 
     forward = first_crossing(nodes, now.rate - velocity)
@@ -46,7 +45,7 @@ def advance(impacts: Impacts, who: Rows) -> None:
     late = (tau > 1.0) & (length >= left)
     sign = np.where(late, np.where(velocity[-1] < 0.0, -1.0, 1.0), sign)
     slips = late | (tau <= 1.0)
-    weights = basis(nodes, np.minimum(tau, 1.0))
+    weights = rows(nodes, np.minimum(tau, 1.0))
 
     before = np.where(start == 0.0, 0.0, np.sin(start) ** 2)
     end = start + length * np.minimum(tau, 1.0)
@@ -54,10 +53,9 @@ def advance(impacts: Impacts, who: Rows) -> None:
     last_slip = value(weights, slip)
     thick = (end - start > THINNEST) & (after - before > THINNEST_RING)
     laid = who[thick]
-    rows = impacts.pieces.add(
-        laid.size,
+    impacts.outermost[laid] = impacts.pieces.add(
         impacts.outermost[laid],
-        sign=LAID,
+        sign=0.0,
         inner_q=before[thick],
         inner_f=-impacts.slip[laid],
         outer_q=after[thick],
@@ -65,15 +63,13 @@ def advance(impacts: Impacts, who: Rows) -> None:
         start=start[thick],
         stop=end[thick],
         origin=start[thick],
-        length=length[thick],
+        scale=2.0 / length[thick],
         began=impacts.began[laid],
         ended=np.where(slips, sign, 0.0)[thick],
+        terms=impacts.pieces.terms(slip[:, thick], force[:, thick]),
     )
-    impacts.pieces.keep_polynomials(
-        rows, nodes.powers @ slip[:, thick], nodes.powers @ force[:, thick]
-    )
-    impacts.outermost[laid] = rows
     impacts.phase[who] = end
+    impacts.panels[who] += 1
     impacts.change[who] += value(weights, velocity - impacts.velocity(who))
     impacts.slip[who] = last_slip
     impacts.force[who] = value(weights, force)
@@ -87,7 +83,7 @@ def _solve(impacts: Impacts, who: Rows, time: Array, radius: Array) -> tuple[Arr
     integral = lobatto(NODES).integral
     first, force = impacts.velocity(who), impacts.force[who]
     growth = 1.5 * radius * time
-    slowing = np.ascontiguousarray((2.5 * impacts.chi[who] * time).T)[:, None, :] * integral
+    slowing = np.ascontiguousarray((impacts.inertia[who] * time).T)[:, None, :] * integral
     matrix = (slowing @ integral) * np.ascontiguousarray(growth.T)[:, None, :]
     known = -slowing.sum(axis=2) * force[:, None] - matrix.sum(axis=2) * first[:, None]
     matrix += np.eye(NODES)
