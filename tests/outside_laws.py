@@ -264,8 +264,11 @@ class Heun(Integrator):
                         fields=lambda: law.fields(state),  # noqa: B023
                     )
                 )
-        return TangentialMotion(slip_velocity_change=_plain(change), friction_work=_plain(work),
-                                **({"status": np.full(shape, _SUCCESS)} if shape else {}))
+        return TangentialMotion(
+            slip_velocity_change=_plain(change),
+            friction_work=_plain(work),
+            **({"status": np.full(shape, _SUCCESS)} if shape else {}),
+        )
 
     @staticmethod
     def _at(normal, fraction):

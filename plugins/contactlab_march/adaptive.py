@@ -33,7 +33,7 @@ FIRST = 32
 #: Where the steps are doubled the change of psi2 falls by 4 for a smooth law, and by 2 for one
 #: that jumps: the error left is then a third of the last change, or all of it. Less than
 #: this part of the change before it is never believed: two answers may agree by chance.
-BELIEVED = 1.0 / 8.0
+BELIEVED = 1.0 / 6.0
 #: psi2 is rounded to this part of max(1, |psi1|) by sums of many steps.
 ROUNDING = 1e-13
 

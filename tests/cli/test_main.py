@@ -13,7 +13,7 @@ import pytest
 import contactlab
 from contactlab.cli import main as module
 from contactlab.cli import run as run_command
-from contactlab.simulation import CHUNK
+from contactlab.contracts.integrator import CHUNK
 
 COMMAND = [sys.executable, "-m", "contactlab"]
 PSI = ["run", "--psi1", "6", "--chi", "1", "--tangential", "coulomb"]
