@@ -118,8 +118,9 @@ def _judged(
         error = away / width if width > 0.0 else (0.0 if away == 0.0 else np.inf)
         if not error <= bound:
             wrong.append(f"error {error:.2g} of the range, declared {bound:.2g}")
-    off = abs(float(np.asarray(result.normal_restitution)) - 1.0)
-    if "elastic_hertz" in simulation.normal.offers and not off <= LARGEST_NORMAL:
+    off = float(np.asarray(result.normal_restitution)) - 1.0
+    elastic = "elastic_hertz" in simulation.normal.offers
+    if not off <= LARGEST_NORMAL or (elastic and not off >= -LARGEST_NORMAL):
         wrong.append(f"e is off by {off:.2g}")
     return _told(
         case,

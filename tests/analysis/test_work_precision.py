@@ -69,7 +69,7 @@ def test_an_order_is_a_slope_and_a_flat_ladder_has_none():
 
 def test_failed_and_slow_resolutions_are_gaps_never_dropped(monkeypatch):
     monkeypatch.setattr(work_precision, "SLOW_QUICK", 0.0)
-    found = bench([Method(tangential="coulomb", integrator="symplectic")], quick=True)
+    found = bench([Method(tangential="springs", integrator="symplectic")], quick=True)
     assert [entry.status for entry in found.rows] == ["SUCCESS", "NOT_RUN", "NOT_RUN"]
     assert not found.rows[-1].ok
 

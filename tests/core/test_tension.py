@@ -29,7 +29,9 @@ def simulation(name, integrator="symplectic", pull=200.0, reach=2e-7):
     )
 
 
-@pytest.mark.parametrize("integrator", ["symplectic", "paper", "adaptive"])
+@pytest.mark.parametrize(
+    "integrator", ["symplectic", "paper", pytest.param("adaptive", marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("name", LAWS)
 @pytest.mark.parametrize("slip", [0.05, 0.3, 2.0])
 def test_odd_to_the_last_bit(name, integrator, slip):

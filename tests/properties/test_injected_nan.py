@@ -107,12 +107,21 @@ def answer(simulation, scene):
 
 
 METHODS = [method for method in methods() if not method.whole]
-STEPPED = [method for method in METHODS if method.integrator != "events"]
+#: Adaptive steps are those of symplectic, and more of them: tried in the slow tests.
+STEPPED = [
+    pytest.param(
+        method,
+        id=method.name,
+        marks=[pytest.mark.slow] if method.integrator == "adaptive" else [],
+    )
+    for method in METHODS
+    if method.integrator != "events"
+]
 PHASED = [method for method in METHODS if method.integrator == "events"]
 
 
 @pytest.mark.parametrize("value", [NAN, INFINITY])
-@pytest.mark.parametrize("method", STEPPED, ids=lambda method: method.name)
+@pytest.mark.parametrize("method", STEPPED)
 def test_tangential_laws_by_steps(method, value):
     law, integrator = options_of(method)
     for entry in ("force", "friction_work"):
@@ -155,7 +164,7 @@ def test_normal_laws(law, entry, value):
 @pytest.mark.parametrize(
     "entry", ["at.force", "at.radius", "at.friction_load", "at.time", "at.load_impulse"]
 )
-@pytest.mark.parametrize("method", STEPPED, ids=lambda method: method.name)
+@pytest.mark.parametrize("method", STEPPED)
 def test_motions_in_closed_form_by_steps(method, entry, value):
     law, integrator = options_of(method)
     normal = contactlab.create("normal.hertz")
