@@ -20,6 +20,11 @@ from contactlab.scene import Scene
 COARSE = 0.25
 #: What is declared over the largest error measured at an inertia ratio.
 SAFETY = 2.0
+#: Nothing is further off than this, over the range: one annulus may overshoot it a little.
+LARGEST_SHARE = 1.1
+#: Beyond the largest chi measured errors grow at least as this power: the contact oscillates
+#: about sqrt(chi) times.
+LEAST_SLOPE = 0.5
 #: Rounding, over max(1, |psi1|).
 ROUNDING = 1e-12
 
@@ -80,12 +85,12 @@ class ErrorModel:
                 share = share + self._at(scene.chi, self.parts) / float(parts) ** self.power
             psi1 = np.abs(scene.psi1)
             rounding = ROUNDING * np.maximum(1.0, np.where(np.isfinite(psi1), psi1, 1.0))
-            error = np.minimum(SAFETY * share, 1.0) * psi2_range(scene) + rounding
+            error = np.minimum(SAFETY * share, LARGEST_SHARE) * psi2_range(scene) + rounding
         return float(error) if not np.ndim(error) else error
 
     def _at(self, chi: Any, values: tuple[float, ...]) -> Any:
         knots, logs = np.log(self.chi), np.log(values)
         place = np.log(chi)
-        slope = (logs[-1] - logs[-3]) / (knots[-1] - knots[-3])
+        slope = max((logs[-1] - logs[-3]) / (knots[-1] - knots[-3]), LEAST_SLOPE)
         beyond = np.maximum(place - knots[-1], 0.0) * slope
         return np.exp(np.interp(place, knots, logs) + beyond)

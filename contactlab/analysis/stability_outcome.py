@@ -11,7 +11,7 @@ import numpy as np
 from contactlab.analysis.stability_bounds import LARGEST_NORMAL, broken_invariants
 from contactlab.analysis.stability_cases import Case
 from contactlab.analysis.stability_references import ACTIVE, Reference, reference_for
-from contactlab.declared import range_of
+from contactlab.declared import LARGEST_SHARE, range_of
 from contactlab.motion import Motion, sound
 from contactlab.registry import PluginError
 from contactlab.result import ImpactResult
@@ -106,7 +106,7 @@ def _judged(
     scene = result.scene
     unit, width, _ = range_of(scene)
     declared = float(result.plan.psi2_error) * unit
-    bound = min(declared / width + ROUNDING, 1.0) if width > 0.0 else ROUNDING
+    bound = min(declared / width + ROUNDING, LARGEST_SHARE) if width > 0.0 else ROUNDING
     if np.isnan(bound):  # of a stranger's law nothing is declared: only the invariants are held
         bound, expected = UNDECLARED, None
     passive = case.method.tangential not in ACTIVE

@@ -90,7 +90,10 @@ class Annulus(AllStepsTangentialLaw):
         """Return what was measured over elastic Hertz contacts; of others nothing is declared."""
         if "elastic_hertz" not in normal.offers:
             return math.nan
-        return ERRORS.psi2_error(scene, steps, self.annuli)
+        # A step that brings several annuli into contact gives them one displacement to remember:
+        # annuli finer than that are worth no more.
+        finest = float(np.min(steps)) / 2.0
+        return ERRORS.psi2_error(scene, steps, min(self.annuli, finest))
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""

@@ -30,9 +30,13 @@ TOLERANCE = Rule(
 )
 #: Steps that are tried first; then twice as many, until the error is small enough.
 FIRST = 32
-#: Where the steps are doubled the change of psi2 falls by 4 for a smooth law, and by 2 for one
-#: that jumps: the error left is then a third of the last change, or all of it. Less than
-#: this part of the change before it is never believed: two answers may agree by chance.
+#: Where the steps are doubled the change of psi2 falls by 4 for a smooth law: from this ratio on
+#: one is taken for smooth, and the error left is the last change over the ratio less 1.
+SMOOTH = 3.0
+#: A law that jumps is of first order, and its error wanders: the last change and half the one
+#: before it, times this.
+WANDERS = 2.0
+#: Less than this part of the change before is never believed: two answers may agree by chance.
 BELIEVED = 1.0 / 6.0
 #: psi2 is rounded to this part of max(1, |psi1|) by sums of many steps.
 ROUNDING = 1e-13
@@ -170,8 +174,9 @@ class Adaptive(Integrator):
         coarse, middle, fine = (np.asarray(m.slip_velocity_change) for m in motions)
         one, two = np.abs(middle - coarse), np.abs(fine - middle)
         with np.errstate(all="ignore"):
-            ratio = np.clip(np.where(two > 0.0, one / two, 4.0), 2.0, 4.0)
-        return np.maximum(two / (ratio - 1.0), BELIEVED * one)
+            ratio = np.where(two > 0.0, one / two, np.inf)
+            smooth = np.maximum(two / (np.minimum(ratio, 4.0) - 1.0), BELIEVED * one)
+        return np.where(ratio >= SMOOTH, smooth, WANDERS * np.maximum(two, 0.5 * one))
 
 
 def _march(
