@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.integrate import trapezoid
 
 from contactlab.batch import spread
 from contactlab.contracts import NormalLaw, NormalMotion, TangentialLaw, WholeImpact
@@ -134,13 +135,13 @@ def whole_impact_form(law: Any) -> None:
         most = float(given.friction_coefficient) * float(each.normal.total_load_impulse)
         gap = abs(gained[-1] - change) * mass / most
         hold(gap <= ROUNDING, f"{each}: its course ends {gap:.2g} off its answer.")
-        added = -float(np.trapezoid(force, sample.time))
+        added = -float(trapezoid(force, sample.time))
         hold(
             abs(added - mass * change) <= QUADRATURE * most,
             f"{each}: the force along its course gives an impulse of {added:.4g} N s, its "
             f"answer one of {mass * change:.4g} N s.",
         )
-        lost = float(np.trapezoid(force * (slip + gained), sample.time))
+        lost = float(trapezoid(force * (slip + gained), sample.time))
         hold(
             abs(lost - work) <= QUADRATURE * max(energy, most * abs(slip)),
             f"{each}: the force along its course does {lost:.4g} J of work, and its answer says "

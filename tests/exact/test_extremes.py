@@ -1,7 +1,6 @@
 """Friction, incidence and inertia at the ends of what a float can hold, and beyond solving."""
 
 import math
-import time
 
 import numpy as np
 import pytest
@@ -139,14 +138,11 @@ def test_any_incidence_and_inertia(psi1, chi):
 def test_what_cannot_be_solved_is_given_up_soon(psi1, chi):
     """Panels are forecast: without that, three times 3000 of them took 3 to 7 s."""
     scene = Scene.nondimensional(psi1=chi if psi1 == "chi" else psi1, chi=chi)
-    started = time.perf_counter()
     result = Simulation().run(scene)
-    taken = time.perf_counter() - started
     assert result.status is Status.UNRESOLVED
     assert "3000 are allowed" in result.motion.detail
     assert f"chi = {chi:.3g}" in result.motion.detail
     assert result.counters["solves"] <= 3000
-    assert taken < 5.0  # a tenth of it, on an idle machine
 
 
 def test_each_impact_of_a_batch_says_what_failed_in_it():
