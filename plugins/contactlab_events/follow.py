@@ -48,7 +48,7 @@ REJECT_CAP = 60
 SURELY_RESOLVED = 1e-6
 #: A panel is resolved if its highest Legendre terms, in velocity, are below this times the
 #: tolerance: collocation gains far more digits at a panel's end than inside it.
-TAIL_PER_TOLERANCE = 0.01
+TAIL_PER_TOLERANCE = 0.003
 #: A first panel is tried this much longer than the law's guess of its phase's length.
 SPAN_MARGIN = 1.08
 SHORTEST_SPAN = 1e-3
