@@ -126,6 +126,18 @@ def real(argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "")
     return widened
 
 
+def paired(first: str, second: str, values: tuple[Real, Real]) -> tuple[Any, Any]:
+    """Return two quantities as arrays of one shape, or refuse shapes that do not fit."""
+    try:
+        one, other = np.broadcast_arrays(*values)
+    except ValueError:
+        shapes = f"{np.shape(values[0])} and {np.shape(values[1])}"
+        remedy = f"one value of {second} for each {first}"
+        rule = "must have shapes that fit"
+        raise refuse(f"{first} and {second}", shapes, rule, remedy) from None
+    return one, other
+
+
 def whole(argument: str, value: object, *, least: int = 1, most: int = 10_000_000) -> int:
     """Return ``value`` as an int between ``least`` and ``most``, or refuse it."""
     rule = f"must be a whole number from {least} to {most}"

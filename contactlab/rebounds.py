@@ -10,7 +10,7 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import POSITIVE, Real, Rule, real, refuse
+from contactlab.checks import POSITIVE, Real, Rule, paired, real, refuse
 from contactlab.signatures import named_arguments
 
 Array = NDArray[np.float64]
@@ -100,13 +100,7 @@ def rebound(
     aim = real("tolerance", tolerance, rule=TOLERANCE, remedy="leave it out for 1e-5")
     if not isinstance(aim, float):
         raise refuse("tolerance", tolerance, "must be one number", "leave it out for 1e-5")
-    try:
-        velocity, ratio = np.broadcast_arrays(np.asarray(incidence), np.asarray(inertia))
-    except ValueError:
-        shapes = f"{np.shape(incidence)} and {np.shape(inertia)}"
-        raise refuse(
-            "psi1 and chi", shapes, "must have shapes that fit", "one value of chi for each psi1"
-        ) from None
+    velocity, ratio = paired("psi1", "chi", (incidence, inertia))
     psi2 = _solve(velocity.ravel(), ratio.ravel(), aim).reshape(velocity.shape)
     answer = float(psi2) if psi2.ndim == 0 else psi2
     if not derivatives:

@@ -9,7 +9,7 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import POSITIVE, real, refuse
+from contactlab.checks import POSITIVE, paired, real, refuse
 from contactlab_tabulated import evaluate
 from contactlab_tabulated.coordinates import LARGEST_CHI
 from contactlab_tabulated.derivatives import gradient
@@ -84,13 +84,7 @@ def _any(psi1: object, chi: object, derivatives: bool) -> Real | tuple[Real, Rea
     """Return what ``rebound`` returns, for anything."""
     incidence = real("psi1", psi1, remedy="give the non-dimensional angle of incidence (29)")
     inertia = real("chi", chi, rule=POSITIVE, remedy="chi of eq. (38); 1.4412 for a steel sphere")
-    try:
-        velocity, ratio = np.broadcast_arrays(np.asarray(incidence), np.asarray(inertia))
-    except ValueError:
-        shapes = f"{np.shape(incidence)} and {np.shape(inertia)}"
-        raise refuse(
-            "psi1 and chi", shapes, "must have shapes that fit", "one value of chi for each psi1"
-        ) from None
+    velocity, ratio = paired("psi1", "chi", (incidence, inertia))
     shape, velocity, ratio = velocity.shape, velocity.ravel(), ratio.ravel()
     if derivatives and not (ratio <= LARGEST_CHI).all():
         rule = f"derivatives are tabulated up to chi = {LARGEST_CHI}"
