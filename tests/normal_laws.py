@@ -42,3 +42,16 @@ class Damped(NormalLaw):
         hertz = (4 / 3) * state.effective_modulus * state.radius**0.5 * inside**1.5
         force = np.maximum(hertz * (1.0 + self.damping * rate), 0.0)
         return NormalContact(force, np.sqrt(state.radius * inside), approach), state
+
+
+@attrs.frozen(kw_only=True)
+class ForceFree(NormalLaw):
+    """Bodies that go through one another."""
+
+    api_version: ClassVar[int] = 2
+
+    def start(self, scene):
+        return None
+
+    def respond(self, state, approach, rate):
+        return NormalContact(0.0 * approach, 0.0 * approach, approach), state

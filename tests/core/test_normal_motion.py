@@ -11,7 +11,7 @@ from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
 from contactlab.contracts import NormalContact, NormalLaw
 from contactlab.normal_motion import normal_motion
 from tests.exact.laws import order
-from tests.normal_laws import Damped
+from tests.normal_laws import Damped, ForceFree
 from tests.outside_laws import Adhesive, LinearDashpot, Plastic, RescaledSpring, Tsuji
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
@@ -61,19 +61,6 @@ class Held(NormalLaw):
         if np.ndim(approach) == 0:
             return NormalContact(force, abs(approach), float(overlap)), state
         return NormalContact(force, abs(approach), overlap), state
-
-
-@attrs.frozen(kw_only=True)
-class ForceFree(NormalLaw):
-    """Bodies that go through one another."""
-
-    api_version: ClassVar[int] = 2
-
-    def start(self, scene):
-        return None
-
-    def respond(self, state, approach, rate):
-        return NormalContact(0.0 * approach, 0.0 * approach, approach), state
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)

@@ -10,13 +10,11 @@ import pytest
 import contactlab
 from contactlab import HalfSpace, ImpactError, Material, Scene, Simulation, Sphere, Status
 from contactlab.contracts import (
-    NormalContact,
-    NormalLaw,
     SteppedTangentialLaw,
     TangentialLaw,
     TangentialResponse,
 )
-from tests.normal_laws import LinearSpring
+from tests.normal_laws import ForceFree, LinearSpring
 from tests.outside_laws import Tsuji
 
 CHI = 1.4411764706
@@ -55,19 +53,6 @@ class Nameless(TangentialLaw):
     """A tangential law that says in no way how it is to be run."""
 
     api_version: ClassVar[int] = 2
-
-
-@attrs.frozen(kw_only=True)
-class ForceFree(NormalLaw):
-    """Bodies that go through one another."""
-
-    api_version: ClassVar[int] = 2
-
-    def start(self, scene):
-        return None
-
-    def respond(self, state, approach, rate):
-        return NormalContact(0.0 * approach, 0.0 * approach, approach), state
 
 
 def scene(psi1=1.2):
