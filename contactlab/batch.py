@@ -7,6 +7,7 @@ an array that broadcasts to ``shape``.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -73,3 +74,15 @@ def merged(parts: Sequence[tuple[Any, Any]], shape: tuple[int, ...], kind: Any =
 def spread(value: Any, shape: tuple[int, ...]) -> Any:
     """Return ``value`` as a float for one impact, or as an array of the batch ``shape``."""
     return np.array(np.broadcast_to(value, shape)) if shape else float(value)
+
+
+def filled(value: Any, shape: tuple[int, ...]) -> Any:
+    """Return ``value``, of whatever kind, for one impact, or an array of it for each of a batch."""
+    return np.full(shape, value, dtype=object) if shape else value
+
+
+def halves(shape: tuple[int, ...]) -> tuple[Any, Any]:
+    """Return masks of the first and the second half of a batch."""
+    size = math.prod(shape)
+    first = np.arange(size).reshape(shape) < size // 2
+    return first, ~first

@@ -143,11 +143,10 @@ class FailedMotion(NormalMotion):
     def __init__(self, law: NormalLaw, scene: Scene, status: Status, detail: str) -> None:
         shape = scene.shape
         self.law, self.scene = law, scene
-        unknown: Any = np.full(shape, math.nan) if shape else math.nan
+        unknown = batch.spread(math.nan, shape)
         self.duration = self.maximum_radius = self.maximum_approach = unknown
         self.maximum_force = self.final_rate = self.total_load_impulse = unknown
-        self.status = np.full(shape, status, dtype=object) if shape else status
-        self.detail = np.full(shape, detail, dtype=object) if shape else detail
+        self.status, self.detail = batch.filled(status, shape), batch.filled(detail, shape)
 
     def at(self, phase: Real) -> NormalSample:
         """Return NaN throughout."""
@@ -187,8 +186,8 @@ class SolvedMotion(NormalMotion):
         self.maximum_radius = shaped(np.sqrt(np.maximum(largest[:, SQUARE], 0.0)))
         status = table.status.reshape(table.shape) if table.shape else table.status[0]
         detail = table.detail.reshape(table.shape) if table.shape else table.detail[0]
-        self.status = np.full(scene.shape, status, dtype=object) if scene.shape else status
-        self.detail = np.full(scene.shape, detail, dtype=object) if scene.shape else detail
+        self.status = batch.filled(status, scene.shape)
+        self.detail = batch.filled(detail, scene.shape)
 
     def at(self, phase: Real) -> NormalSample:
         """Return the motion at ``phase`` in [0, pi], by interpolation."""
@@ -233,13 +232,10 @@ class _Solver:
     def __init__(self, law: NormalLaw, scene: Scene) -> None:
         self.law, self.scene, self.shape = law, scene, scene.shape
         self.items = math.prod(self.shape)
-
-        def flat(number: Any) -> Array:
-            return np.array(np.broadcast_to(number, self.shape), dtype=np.float64).reshape(-1)
-
-        self.unit = flat(hertz_scales(scene).duration)
-        self.speed, self.mass = flat(scene.normal_speed), flat(scene.pair.normal_mass)
-        self.radius = flat(scene.pair.radius)
+        self.unit = self._flat(hertz_scales(scene).duration)
+        self.speed = self._flat(scene.normal_speed)
+        self.mass = self._flat(scene.pair.normal_mass)
+        self.radius = self._flat(scene.pair.radius)
         self.length = self.speed * self.unit
         self.scale = float(self.length[0]), float(self.speed[0])
         self.softness = float(self.unit[0] / (self.mass[0] * self.speed[0]))

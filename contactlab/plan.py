@@ -163,7 +163,7 @@ def answers(
             left &= ~where
     if always and left.any():
         return _not_marched(tangential)
-    if history and shape and left.any() and not always:
+    if history and left.any():
         return []
     return found
 

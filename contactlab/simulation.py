@@ -11,6 +11,7 @@ import attrs
 import numpy as np
 
 from contactlab import composition, faults
+from contactlab.batch import filled, halves
 from contactlab.checks import refuse, whole
 from contactlab.contracts.integrator import Integrator, Observer, TangentialMotion
 from contactlab.contracts.motion import NormalMotion
@@ -237,9 +238,8 @@ class Simulation:
     def _by_halves(self, scene: Scene) -> tuple[Plan, Motion]:
         """Return plan and motion of a batch, half by half, down to the impacts that fail."""
         shape = scene.shape
-        first = np.arange(math.prod(shape)).reshape(shape) < math.prod(shape) // 2
         plans, motions = zip(
-            *(self._outcome(scene.take(part), False, None) for part in (first, ~first)),
+            *(self._outcome(scene.take(part), False, None) for part in halves(shape)),
             strict=True,
         )
         joined = Plan.joined(plans)
@@ -279,7 +279,7 @@ class Simulation:
                 np.broadcast_to(np.asarray(entry, dtype=np.float64), shape)[where]
                 for entry in (answer.slip_velocity_change, answer.friction_work)
             )
-            status = np.full(change.shape, Status.SUCCESS, dtype=object)
+            status = filled(Status.SUCCESS, change.shape)
             parts.append(
                 (
                     where,
@@ -317,11 +317,8 @@ class Simulation:
             places = list(np.ndindex(shape))
             single = [self._attempt(normal.take(at), scene.take(at), None)[0] for at in places]
             return TangentialMotion.joined(single, shape)
-        first = np.arange(size).reshape(shape) < size // 2
-        halves = [
-            self._march(normal.take(part), scene.take(part), None) for part in (first, ~first)
-        ]
-        return TangentialMotion.joined(halves, shape)
+        parts = [self._march(normal.take(part), scene.take(part), None) for part in halves(shape)]
+        return TangentialMotion.joined(parts, shape)
 
     def _attempt(
         self, normal: NormalMotion, scene: Scene, recorder: Observer | None

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, NamedTuple, Self, TypeAlias
 import attrs
 import numpy as np
 
-from contactlab.batch import merged
+from contactlab.batch import filled, merged, spread
 from contactlab.checks import Mask, Real
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
@@ -111,11 +111,10 @@ class TangentialMotion:
         cls, shape: tuple[int, ...], status: Status, detail: str | Sequence[str] = ""
     ) -> Self:
         """Return the motion of impacts of which nothing is known: NaN throughout."""
-        unknown: Any = np.full(shape, math.nan) if shape else math.nan
-        entries: dict[str, Any] = dict.fromkeys(cls.numbers(), unknown)
+        entries: dict[str, Any] = dict.fromkeys(cls.numbers(), spread(math.nan, shape))
         return cls(
             **entries,
-            status=np.full(shape, status, dtype=object) if shape else status,
+            status=filled(status, shape),
             detail=detail if isinstance(detail, str) else np.array(detail, dtype=object),
         )
 

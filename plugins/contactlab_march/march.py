@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab import faults
-from contactlab.batch import locked, spread
+from contactlab.batch import filled, locked, spread
 from contactlab.checks import Real
 from contactlab.contracts import (
     AllStepsTangentialLaw,
@@ -143,7 +143,7 @@ def _ended(
     return TangentialMotion(
         slip_velocity_change=spread(change, scene.shape),
         friction_work=spread(work, scene.shape),
-        status=np.full(scene.shape, status, dtype=object) if scene.shape else status,
+        status=filled(status, scene.shape),
         detail=detail,
         counters={"steps": count},
     )
