@@ -21,11 +21,12 @@ from contactlab.energy import balanced
 from contactlab.error_estimate import estimated
 from contactlab.history import Recorder, show
 from contactlab.motion import Motion, sound
-from contactlab.normal_motion import FailedMotion, normal_motion
+from contactlab.normal_motion import normal_motion
 from contactlab.plan import Answer, Plan, answers, make_plan
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.signatures import named_arguments
+from contactlab.solved_motion import FailedMotion
 from contactlab.status import Status
 
 #: So many impacts of a batch that failed are tried one by one; more are halved first.
