@@ -86,3 +86,13 @@ def halves(shape: tuple[int, ...]) -> tuple[Any, Any]:
     size = math.prod(shape)
     first = np.arange(size).reshape(shape) < size // 2
     return first, ~first
+
+
+def share(where: Any) -> str:
+    """Return how many impacts of a batch a mask holds, in words."""
+    return f"{int(np.sum(where))} of {np.size(where)} impacts"
+
+
+def for_share(where: Any) -> str:
+    """Return for how many impacts of a batch something holds, in words; nothing of one impact."""
+    return f" for {share(where)}" if np.ndim(where) else ""

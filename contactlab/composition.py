@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 from contactlab.checks import refuse
+from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.law import Law
-from contactlab.contracts.normal import ClosedFormNormalLaw
+from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.phases import PhasedTangentialLaw
 from contactlab.contracts.tangential import (
     SteppedTangentialLaw,
+    TangentialLaw,
     WholeImpactTangentialLaw,
 )
 from contactlab.registry import REGISTRY, PluginError
@@ -26,6 +28,14 @@ PREFERRED = {
 WAYS = (SteppedTangentialLaw, PhasedTangentialLaw, WholeImpactTangentialLaw)
 
 
+class Laws(NamedTuple):
+    """Three laws that fit together."""
+
+    normal: NormalLaw
+    tangential: TangentialLaw
+    integrator: Integrator
+
+
 def law(kind: str, value: object) -> Any:
     """Return the law of ``kind`` that ``value`` names or already is."""
     if isinstance(value, str):
@@ -38,21 +48,22 @@ def law(kind: str, value: object) -> Any:
     raise refuse(kind, value, f"must be a name or a {kind} law", remedy)
 
 
-def compose(normal: object, tangential: object, integrator: object) -> dict[str, Law]:
-    """Return three laws that fit, by kind, from names, laws, or None for the best that fits.
+def compose(normal: object, tangential: object, integrator: object) -> Laws:
+    """Return three laws that fit, from names, laws, or None for the best that fits.
 
     Raises
     ------
     ValueError
         If a name is not installed, or the laws do not fit together (naming what would).
     """
-    pressing = law("normal", DEFAULT_NORMAL if normal is None else normal)
-    asked = () if integrator is None else (law("integrator", integrator),)
-    rubbing = _chosen("tangential", tangential, pressing, after=asked)
-    following = asked[0] if asked else _chosen("integrator", None, pressing, rubbing)
-    if (complaint := misfit(pressing, rubbing, following)) is not None:
-        raise ValueError(complaint + _would_fit(pressing, rubbing, following))
-    return {"normal": pressing, "tangential": rubbing, "integrator": following}
+    first = law("normal", DEFAULT_NORMAL if normal is None else normal)
+    named = () if integrator is None else (law("integrator", integrator),)
+    second = _chosen("tangential", tangential, first, after=named)
+    third = named[0] if named else _chosen("integrator", None, first, second)
+    laws = Laws(first, second, third)
+    if (complaint := misfit(*laws)) is not None:
+        raise ValueError(complaint + _would_fit(laws))
+    return laws
 
 
 def _chosen(kind: str, value: object, *others: Law, after: tuple[Law, ...] = ()) -> Any:
@@ -122,18 +133,16 @@ def misfit(normal: Any, tangential: Any = None, integrator: Any = None) -> str |
     return None
 
 
-def _would_fit(normal: Law, tangential: Law, integrator: Law) -> str:
+def _would_fit(laws: Laws) -> str:
     """Return which laws would fit in the place of one, of those that need no new import."""
-    parts = {"normal": normal, "tangential": tangential, "integrator": integrator}
     found: list[str] = []
-    for kind in parts:
-        candidates = _candidates(kind)
-        fits = [name for name, other in candidates if _fits(*{**parts, kind: other}.values())]
+    for kind in laws._fields:
+        fits = (name for name, other in _candidates(kind) if _fits(*laws._replace(**{kind: other})))
         found += fits
     return f"; these would fit: {', '.join(found)}" if found else "; no law at hand fits"
 
 
-def _candidates(kind: str) -> Iterator[tuple[str, Law]]:
+def _candidates(kind: str) -> Iterator[tuple[str, Any]]:
     """Iterate over laws made with their defaults: those of this distribution, or loaded before.
 
     Other people's plug-ins are not imported for the sake of a message.

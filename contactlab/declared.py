@@ -8,6 +8,7 @@ coefficient, zero and huge ones included.
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import attrs
@@ -54,6 +55,15 @@ def psi2_range(scene: Scene) -> Any:
     return np.minimum(4.0 * np.asarray(scene.chi), 2.0 * np.abs(scene.psi1))
 
 
+def psi_magnitude(scene: Scene) -> Any:
+    """Return max(1, |psi1|), of which errors of psi2 are shares; 1 where psi1 is infinite."""
+    with np.errstate(all="ignore"):
+        size: Any = abs(scene.psi1)
+        if not scene.shape:
+            return max(1.0, size) if math.isfinite(size) else 1.0
+        return np.maximum(1.0, np.where(np.isfinite(size), size, 1.0))
+
+
 @attrs.frozen(kw_only=True)
 class ErrorModel:
     """Largest numerical error of psi2 over its range, as measured: A(chi)/N² + B(chi)/n^p.
@@ -83,8 +93,7 @@ class ErrorModel:
             share: Any = self._at(scene.chi, self.steps) / np.square(np.asarray(steps, float))
             if parts is not None:
                 share = share + self._at(scene.chi, self.parts) / float(parts) ** self.power
-            psi1 = np.abs(scene.psi1)
-            rounding = ROUNDING * np.maximum(1.0, np.where(np.isfinite(psi1), psi1, 1.0))
+            rounding = ROUNDING * psi_magnitude(scene)
             error = np.minimum(SAFETY * share, LARGEST_SHARE) * psi2_range(scene) + rounding
         return float(error) if not np.ndim(error) else error
 

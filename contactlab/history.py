@@ -9,9 +9,9 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.answers import Answer
 from contactlab.contracts.integrator import Observer, Sample
 from contactlab.contracts.motion import NormalMotion
-from contactlab.plan import Answer
 
 Array = NDArray[np.float64]
 

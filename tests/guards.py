@@ -12,7 +12,7 @@ import time
 from unittest import mock
 
 import contactlab
-from contactlab import Scene, Simulation, simulation
+from contactlab import Scene, Simulation, outcome
 from contactlab_march import march
 
 REPEATS = 150
@@ -32,8 +32,8 @@ def _nothing(*_):
 def without():
     """Replace every guard on the way of an annulus run by nothing."""
     with (
-        mock.patch.object(simulation, "sound", _first),
-        mock.patch.object(simulation, "balanced", _first),
+        mock.patch.object(outcome, "sound", _first),
+        mock.patch.object(outcome, "balanced", _first),
         mock.patch.object(march, "_unsound", _nothing),
     ):
         yield

@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.integrate import trapezoid
 
+from contactlab.answers import answers
 from contactlab.batch import spread
 from contactlab.contracts import NormalLaw, NormalMotion, TangentialLaw, WholeImpact
 from contactlab.normal_motion import normal_motion
-from contactlab.plan import answers
 from contactlab.registry import REGISTRY
 from contactlab.scene import Scene
 from contactlab.testing.bench import scene, slack

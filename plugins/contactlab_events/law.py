@@ -20,6 +20,7 @@ from contactlab.contracts import (
     TangentialLaw,
     TangentialMotion,
 )
+from contactlab.declared import psi_magnitude
 from contactlab.scene import Scene
 from contactlab_events.dense import show
 from contactlab_events.scaled import Run, scaled
@@ -77,7 +78,7 @@ class Events(Integrator):
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return the tolerance, and what the law declares for itself."""
         own: Any = tangential.psi2_error(scene, normal, np.inf)
-        bound: Real = self.tolerance * np.maximum(1.0, np.abs(scene.psi1)) + own
+        bound: Real = self.tolerance * psi_magnitude(scene) + own
         return bound
 
     def integrate(

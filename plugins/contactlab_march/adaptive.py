@@ -17,7 +17,7 @@ from contactlab.contracts import (
     TangentialLaw,
     TangentialMotion,
 )
-from contactlab.declared import range_of
+from contactlab.declared import psi_magnitude, range_of
 from contactlab.scene import Scene
 from contactlab.status import Status
 from contactlab_march.division import midpoints
@@ -70,7 +70,7 @@ class Adaptive(Integrator):
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return twice the tolerance, and what the law declares for its own discretisation."""
         own: Any = tangential.psi2_error(scene, normal, np.inf)
-        bound: Real = 2.0 * self.tolerance * np.maximum(1.0, np.abs(scene.psi1)) + own
+        bound: Real = 2.0 * self.tolerance * psi_magnitude(scene) + own
         return bound
 
     def integrate(

@@ -11,6 +11,7 @@ import attrs
 import numpy as np
 
 from contactlab import faults
+from contactlab.batch import for_share
 from contactlab.checks import Real, count, flag
 from contactlab.contracts import (
     Integrator,
@@ -153,8 +154,7 @@ class FixedSteps(Integrator):
         most = float(np.nanmax(needed))
         if most <= self.steps:
             return ()
-        few = np.broadcast_to(needed > self.steps, scene.shape)
-        share = f" for {int(few.sum())} of {few.size} impacts" if few.ndim else ""
+        share = for_share(np.broadcast_to(needed > self.steps, scene.shape))
         if self.refine and most <= MOST_STEPS:
             to = int(np.max(refined(self.steps, needed)))
             raised = f"steps raised from {self.steps} to {to}{share}"

@@ -1,0 +1,154 @@
+"""The making of a plan, from the scene, its normal motion and what the laws say of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from contactlab.answers import ONE, Answer, Mask
+from contactlab.batch import for_share
+from contactlab.composition import Laws
+from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import ClosedFormNormalLaw
+from contactlab.declared import COARSE, psi_magnitude, range_of
+from contactlab.plan import Plan, Sentence
+from contactlab.scene import Scene
+from contactlab.status import Status
+
+#: Error of what is known in closed form, over max(1, |psi1|).
+CLOSED_FORM = 1e-12
+
+
+def make_plan(
+    scene: Scene,
+    normal: NormalMotion,
+    laws: Laws,
+    known: Sequence[Answer],
+    *,
+    history: bool | str = False,
+) -> Plan:
+    """Return what ``scene`` needs of the three laws.
+
+    Parameters
+    ----------
+    scene : Scene
+    normal : NormalMotion
+        Already made: it comes first.
+    laws : Laws
+    known : sequence of Answer
+        What need not be marched.
+    history : bool or "fields"
+        What is asked for.
+    """
+    everywhere = np.ones(scene.shape, dtype=bool) if scene.shape else ONE
+    separated = np.array(np.asarray(normal.status, dtype=object) == Status.SUCCESS) & everywhere
+    marched = np.array(separated)
+    for answer in known:
+        marched &= ~answer.where
+    error = _error(scene, normal, laws, marched)
+    how = "integrated from first touch to separation"
+    if isinstance(normal.law, ClosedFormNormalLaw):
+        how = "in closed form"
+    computed = [Sentence(f"normal motion: {type(normal.law).__name__}, {how}", everywhere)]
+    cautions: list[str] = []
+    if separated.any():
+        cautions += normal.law.cautions(scene, normal)
+        cautions += laws.tangential.cautions(scene, normal)
+    if marched.any():
+        text = f"tangential motion: {laws.integrator!r} over {laws.tangential!r}"
+        computed.append(Sentence(text, marched))
+        part = (normal, scene)
+        if not marched.all():
+            part = normal.take(marched), scene.take(marched)
+        cautions += laws.integrator.remarks(part[0], laws.tangential, part[1])
+        cautions += _coarse(scene, error, marched, laws)
+    left_out = _not_marched(known, separated)
+    if reason := _no_history(history, marched):
+        left_out.append(Sentence(reason, everywhere))
+    return Plan(
+        computed=(*computed, *_error_sentences(error, separated)),
+        left_out=tuple(left_out),
+        cautions=tuple(Sentence(text, everywhere) for text in cautions),
+        marched=marched,
+        psi2_error=error if error.ndim else float(error),
+    )
+
+
+def _not_marched(known: Sequence[Answer], separated: Mask) -> list[Sentence]:
+    """Return why impacts are not marched."""
+    march = "march of the tangential motion"
+    found = [Sentence(f"{march}: {answer.known.reason}", answer.where) for answer in known]
+    if not separated.all():
+        found.append(Sentence(f"{march}: the normal motion came to no end", ~separated))
+    return found
+
+
+def _no_history(history: bool | str, marched: Mask) -> str | None:
+    """Return what a history leaves out, and why."""
+    if not history:
+        return "history: not asked for"
+    if history != "fields":
+        return "traction and stick/slip fields: not asked for (history='fields')"
+    if not marched.any():
+        return "traction and stick/slip fields: there is no march to take them from"
+    return None
+
+
+def _error(scene: Scene, normal: NormalMotion, laws: Laws, marched: Mask) -> Any:
+    """Return the declared numerical error of psi2, an array of the scene's shape.
+
+    Parameters
+    ----------
+    scene : Scene
+    normal : NormalMotion
+    laws : Laws
+    marched : array of bool
+        Impacts that no whole-impact answer is for.
+    """
+    with np.errstate(all="ignore"):
+        known = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
+        if not marched.any():
+            return np.array(np.broadcast_to(known, scene.shape))
+        declared = laws.integrator.psi2_error(normal, laws.tangential, scene)
+        return np.array(np.where(marched, declared, known))
+
+
+def _error_sentences(error: Any, separated: Mask) -> list[Sentence]:
+    """Return what a plan says of the numerical error."""
+    undeclared = separated & np.isnan(error)
+    declared = separated & ~undeclared
+    found = []
+    if declared.any():
+        most = float(np.max(error[declared]))
+        found.append(Sentence(f"numerical error of psi2: at most {most:.2g}, declared", declared))
+    if undeclared.any():
+        text = "numerical error of psi2: none is declared for these laws"
+        found.append(Sentence(text, undeclared))
+    return found
+
+
+def _coarse(scene: Scene, error: Any, marched: Mask, laws: Laws) -> list[str]:
+    """Return the caution of steps or annuli so coarse that no digit is sure.
+
+    Parameters
+    ----------
+    scene : Scene
+    error : array
+        Declared, of psi2.
+    marched : array of bool
+    laws : Laws
+    """
+    unit, width, _ = range_of(scene)
+    with np.errstate(all="ignore"):
+        share = np.where(marched, error * np.divide(unit, width), 0.0)
+    coarse = share > COARSE
+    if not coarse.any():
+        return []
+    finer = " and ".join(law.resolution for law in laws[1:] if law.resolution)
+    return [
+        f"coarse{for_share(coarse)}: the declared numerical error is "
+        f"{float(np.nanmax(share)):.2g} of the range of psi2, so that no digit is sure; finer "
+        f"{finer} would help"
+    ]
