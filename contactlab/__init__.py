@@ -2,6 +2,57 @@
 
 A scene meets three interchangeable laws, and the answer comes back with its error, its
 cost, its energy books and a list of what was left out.
+
+The modules, each of which imports from those above it only:
+
+===================== ==========================================================================
+*numbers and files*
+``status``            how a run ended
+``checks``            checked numbers, refusals
+``signatures``        refusals of unknown arguments
+``batch``             trees of numbers stacked, taken apart and joined
+``collocation``       nodes and matrices of Lobatto collocation
+``plain``             numbers as JSON takes them
+``files``             output files that are whole or not there
+*the problem*
+``bodies``            materials, spheres, half-spaces, pairs
+``scene``             one oblique impact, or a batch
+``closed_forms``      Hertz's scales, gross slip, the rigid body
+``cautions``          what a model leaves out, in sentences
+``declared``          measured numerical errors, and the range of psi2
+*the laws*
+``contracts``         what a law promises: normal, tangential, integrator
+``hookspecs``         the hook of a plug-in
+``installed``         entry points that are installed
+``registry``          laws by name
+``faults``            what is said of a law that fails
+``composition``       which laws fit together
+*one run*
+``solved_motion``     a normal motion as a table
+``scaled_normal_law`` a normal law as an equation of motion
+``normal_motion``     the normal motion of any law
+``answers``           whole impacts that a law knows without a march
+``plan``              what is computed, left out and doubtful
+``planning``          how a plan is made
+``history``           the course of an impact
+``motion``            normal and tangential motion together
+``energy``            energy books
+``marching``          the march, and failures within a batch
+``outcome``           plan and motion of a scene under three laws
+*the answer*
+``result``            velocities, books, cost
+``error_estimate``    the numerical error, estimated by other resolutions
+``simulation``        three laws composed: plan, run, sweep
+``rebounds``          psi2 of arrays of psi1 and chi
+``export``            results as files
+``quantities``        quantities of a result by name
+*around it*
+``scene_file``        scenes in TOML
+``analysis``          comparison, validation, stability, cost
+``figures``           one function a figure
+``testing``           the conformance kit
+``cli``               the commands
+===================== ==========================================================================
 """
 
 from __future__ import annotations

@@ -57,11 +57,10 @@ def psi2_range(scene: Scene) -> Any:
 
 def psi_magnitude(scene: Scene) -> Any:
     """Return max(1, |psi1|), of which errors of psi2 are shares; 1 where psi1 is infinite."""
-    with np.errstate(all="ignore"):
-        size: Any = abs(scene.psi1)
-        if not scene.shape:
-            return max(1.0, size) if math.isfinite(size) else 1.0
-        return np.maximum(1.0, np.where(np.isfinite(size), size, 1.0))
+    size: Any = abs(scene.psi1)
+    if not scene.shape:
+        return max(1.0, size) if math.isfinite(size) else 1.0
+    return np.maximum(1.0, np.where(np.isfinite(size), size, 1.0))
 
 
 @attrs.frozen(kw_only=True)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.answers import ONE, Answer, Mask
-from contactlab.batch import for_share
+from contactlab.batch import for_share, spread
 from contactlab.composition import Laws
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw
@@ -107,10 +107,10 @@ def _error(scene: Scene, normal: NormalMotion, laws: Laws, marched: Mask) -> Any
     marched : array of bool
         Impacts that no whole-impact answer is for.
     """
+    known = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
+    if not marched.any():
+        return np.array(spread(known, scene.shape))
     with np.errstate(all="ignore"):
-        known = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
-        if not marched.any():
-            return np.array(np.broadcast_to(known, scene.shape))
         declared = laws.integrator.psi2_error(normal, laws.tangential, scene)
         return np.array(np.where(marched, declared, known))
 
