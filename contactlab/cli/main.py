@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 #: A new subcommand is a module of this package and its name here.
 COMMANDS = (
     "run", "sweep", "compare", "bench", "stability", "validate", "figures", "plugins", "guide",
+    "explore", "animate",
 )  # fmt: skip
 
 EPILOG = """examples:

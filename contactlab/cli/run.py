@@ -23,24 +23,16 @@ import numpy as np
 from contactlab import export
 from contactlab.cli import arguments as shared
 from contactlab.cli.report import describe
+from contactlab.cli.scene import add_scene, given
 from contactlab.export import WRITERS
 from contactlab.plain import plain
 from contactlab.result import ImpactResult
-from contactlab.scene import Scene
-from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.status import Status
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the scene, the laws and the outputs."""
-    parser.add_argument("scene", nargs="?", metavar="SCENE.toml", help="a scene or a sweep")
-    parser.add_argument(
-        "--psi1", type=shared.finite, help="non-dimensional angle of incidence (29), without a file"
-    )
-    parser.add_argument(
-        "--chi", type=shared.finite, help="inertia ratio (38): 1.4412 for a solid sphere, nu = 0.3"
-    )
-    shared.add_laws(parser)
+    add_scene(parser)
     parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
     parser.add_argument(
         "--out",
@@ -65,15 +57,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run and report; 1 if an impact was not followed to its end."""
-    file = read_scene(arguments.scene) if arguments.scene else None
-    scene = _scene(arguments, file)
+    file, scene, simulation = given(arguments)
     if arguments.history and scene.shape:
         raise ValueError("--history: needs a single impact, this scene is a sweep; leave it out")
-    choice = file.laws if file else LawChoice()
-    choice = choice.choose(
-        normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
-    )
-    simulation = choice.set(dict(arguments.settings)).simulation()
     with contextlib.redirect_stdout(sys.stderr):  # what a plug-in prints is not our output
         if scene.shape:
             progress = shared.progress(arguments.progress, "impacts")
@@ -90,19 +76,6 @@ def execute(arguments: argparse.Namespace) -> int:
     if not arguments.json:
         print(describe(result, title=file.title if file else "", varied=varied))
     return max(saved, report(result, as_json=arguments.json, varied=varied))
-
-
-def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Scene:
-    numbers = (arguments.psi1, arguments.chi)
-    if file is not None:
-        if numbers != (None, None):
-            raise ValueError("--psi1, --chi: stand in place of a scene file; leave out one of them")
-        return file.scene
-    if None in numbers:
-        missing = "a scene file, or --psi1 and --chi" if numbers == (None, None) else "both"
-        missing = missing if missing != "both" else "--chi" if numbers[1] is None else "--psi1"
-        raise ValueError(f"{missing}: must be given (chi is 1.4412 for a solid sphere, nu = 0.3)")
-    return Scene.nondimensional(psi1=numbers[0], chi=numbers[1])
 
 
 def report(

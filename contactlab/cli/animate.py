@@ -1,0 +1,37 @@
+"""Draw one impact as a moving picture: the sphere, the forces, the contact from above.
+
+Examples
+--------
+  contactlab animate examples/steel_ball.toml --out impact.gif
+  contactlab animate --psi1 1.2 --chi 1.4412 --out contact.gif
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import sys
+
+from contactlab.cli import arguments as shared
+from contactlab.cli.scene import add_scene, given
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the scene, the laws and the file."""
+    add_scene(parser)
+    parser.add_argument("--out", type=shared.file_of(".gif"), required=True, metavar="FILE.gif")
+    shared.add_progress(parser)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Run the impact, draw it and print the path; an impact that failed is an error."""
+    scene, simulation = given(arguments)[1:]
+    if scene.shape:
+        raise ValueError("scene: must be a single impact, this one is a sweep; leave [sweep] out")
+    with contextlib.redirect_stdout(sys.stderr):  # what a plug-in prints is not our output
+        result = simulation.run(scene, history="fields").check()
+    from contactlab.figures.animation import animate  # matplotlib only when drawing
+
+    animate(arguments.out, result, progress=shared.progress(arguments.progress, "frames"))
+    print(arguments.out)
+    return shared.OK

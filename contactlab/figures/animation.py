@@ -1,0 +1,269 @@
+"""An impact as a moving picture: the sphere, the forces, and the contact seen from above."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Patch
+from numpy.typing import NDArray
+
+from contactlab.analysis.paper_figures import scaled_forces
+from contactlab.checks import refuse
+from contactlab.figures.stick_slip import NO_CONTACT, STATES
+from contactlab.figures.style import LAW_COLOURS, QUIET, friction_limit, styled, zero_line
+from contactlab.files import written
+from contactlab.result import ImpactResult
+
+#: Frames before, during and after contact, and how long each is shown, in ms.
+ARRIVING, IN_CONTACT, LEAVING = 14, 72, 22
+FRAME_TIME = 60
+#: How far the sphere flies before contact, in radii of its own.
+FLIGHT = 2.2
+#: Inches, dots an inch: 960 by 480 dots.
+SIZE, DOTS = (9.6, 4.8), 100
+#: Dots along the side of the picture of the contact.
+DISC = 160
+SPOKES = 4
+#: Of a frame: with so many, the file is small, and the edges of letters are smooth.
+COLOURS = 32
+
+
+class Frame(NamedTuple):
+    """What one frame shows.
+
+    Attributes
+    ----------
+    words : str
+    flight : float
+        Time from first touch (negative) or from separation (positive), in radii over the
+        greater speed of the two; 0 in contact.
+    instant : int
+        Row of the history.
+    """
+
+    words: str
+    flight: float
+    instant: int
+
+
+def animate(
+    path: str | Path, result: ImpactResult, *, progress: Callable[[int, int], object] | None = None
+) -> None:
+    """Write an animated GIF of one impact.
+
+    Parameters
+    ----------
+    path : str or Path
+    result : ImpactResult
+        Of one impact, ``run(scene, history="fields")``. The sphere is drawn where the scene has
+        one, the contact from above where the law gives the fields ``radius``, ``stuck``
+        and ``slipping``.
+    progress : callable, optional
+        Called as ``progress(done, total)`` after each frame.
+
+    Raises
+    ------
+    ValueError
+        If the result has no history of a single impact.
+    """
+    history = result.history
+    if history is None or result.scene.shape or not history.time.size:
+        raise refuse(
+            "result",
+            result,
+            "must have the history of a single impact",
+            "run(scene, history='fields')",
+        )
+    from PIL import Image  # matplotlib needs it, so it is there
+
+    adaptive = Image.Palette.ADAPTIVE
+    pictures = [
+        Image.fromarray(frame).convert("P", palette=adaptive, colors=COLOURS)
+        for frame in _frames(result, progress)
+    ]
+    with written(path, binary=True) as stream:
+        pictures[0].save(
+            stream,
+            format="GIF",
+            save_all=True,
+            append_images=pictures[1:],
+            duration=FRAME_TIME,
+            loop=0,
+        )
+
+
+def _frames(
+    result: ImpactResult, progress: Callable[[int, int], object] | None
+) -> Iterator[NDArray[np.uint8]]:
+    """Iterate over the frames as arrays of red, green, blue, shape (height, width, 3)."""
+    assert result.history is not None
+    with styled():
+        figure = Figure(figsize=SIZE, dpi=DOTS)
+        canvas = FigureCanvasAgg(figure)
+        panels = _panels(figure, result)
+        canvas.draw()
+        figure.set_layout_engine("none")  # laid out once, not in every frame
+        sequence = _sequence(result)
+        for done, frame in enumerate(sequence, start=1):
+            for panel in panels:
+                panel.show(frame)
+            canvas.draw()
+            yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
+            if progress is not None:
+                progress(done, len(sequence))
+
+
+def _sequence(result: ImpactResult) -> list[Frame]:
+    assert result.history is not None
+    last = len(result.history.time) - 1
+    if result.scene.sphere is None:
+        before: list[Frame] = []
+        after = [Frame("parted", 1.0, last)] * (LEAVING // 2)
+    else:
+        before = [Frame("arrives", -t, 0) for t in np.linspace(FLIGHT, 0.0, ARRIVING).tolist()]
+        after = [Frame("leaves", t, last) for t in np.linspace(0.0, FLIGHT, LEAVING).tolist()]
+    fractions = np.linspace(0.0, 1.0, IN_CONTACT)
+    rows = np.searchsorted(result.history.time, fractions * float(result.motion.duration))
+    slowed = f"in contact, {_seconds(float(result.motion.duration), result)}"
+    return [*before, *(Frame(slowed, 0.0, min(int(k), last)) for k in rows), *after]
+
+
+def _seconds(duration: float, result: ImpactResult) -> str:
+    if result.scene.sphere is None:
+        return f"T = {duration:.4g}"
+    for factor, unit in ((1.0, "s"), (1e3, "ms"), (1e6, "µs"), (1e9, "ns")):
+        if duration * factor >= 1.0:
+            return f"{duration * factor:.3g} {unit}"
+    return f"{duration:.2g} s"
+
+
+def _panels(figure: Figure, result: ImpactResult) -> list[Any]:
+    """Return the panels that there is something to show in."""
+    assert result.history is not None
+    sphere = result.scene.sphere is not None
+    disc = {"radius", "stuck", "slipping"} <= set(result.history.fields)
+    columns = figure.add_gridspec(1, 1 + sphere, width_ratios=[1.15, 1.0][: 1 + sphere])
+    right = columns[0, sphere].subgridspec(1 + disc, 1, height_ratios=[1.0, 1.15][: 1 + disc])
+    panels: list[Any] = [Forces(figure.add_subplot(right[0]), result)]
+    if disc:
+        panels.append(Disc(figure.add_subplot(right[1]), result))
+    if sphere:
+        panels.append(Ball(figure.add_subplot(columns[0, 0]), result))
+    return panels
+
+
+class Ball:
+    """The sphere: its path before and after, and how it spins.
+
+    Lengths are radii. In flight the scales of path and spin are those of the impact; the
+    displacements during contact are too small to be seen.
+    """
+
+    def __init__(self, axes: Axes, result: ImpactResult) -> None:
+        self.axes = axes
+        scene = result.scene
+        assert scene.sphere is not None
+        after = result.rebound_tangential_velocity, result.rebound_normal_velocity
+        assert after[0] is not None
+        assert result.rebound_spin is not None
+        before = np.array([float(scene.tangential_velocity), -float(scene.normal_speed)])
+        leaving = np.array([float(after[0]), -float(after[1])])
+        fastest = max(float(np.hypot(*before)), float(np.hypot(*leaving)))
+        self.velocity = before / fastest, leaving / fastest
+        size = float(scene.sphere.radius) / fastest
+        self.spin = float(scene.spin) * size, float(result.rebound_spin) * size
+        reach = FLIGHT * float(np.max(np.abs([before[0], leaving[0]]))) / fastest + 1.4
+        axes.set_aspect("equal")
+        axes.set_xlim(-reach, reach)
+        axes.set_ylim(-0.5, FLIGHT + 2.6)
+        axes.set_axis_off()
+        axes.axhspan(-0.5, 0.0, color="#E4E4E4", linewidth=0.0)
+        axes.axhline(0.0, color="black", linewidth=1.0)
+        for x, y in (-self.velocity[0], self.velocity[1]):
+            axes.plot([0.0, FLIGHT * x], [1.0, 1.0 + FLIGHT * y], color=QUIET, linestyle=":")
+        self.circle = Circle((0.0, 1.0), 1.0, facecolor="#CFE3F1", edgecolor="black")
+        axes.add_patch(self.circle)
+        self.marks = [axes.plot([], [], color="black", linewidth=1.0)[0] for _ in range(SPOKES)]
+        self.words = axes.text(0.02, 0.98, "", transform=axes.transAxes, va="top")
+
+    def show(self, frame: Frame) -> None:
+        """Show one frame."""
+        leaving = int(frame.flight > 0.0)
+        x, y = self.velocity[leaving] * frame.flight
+        # positive spin adds to the tangential velocity at the contact, below the centre:
+        # seen from here, with the tangential velocity to the right, it turns anticlockwise
+        angle = self.spin[leaving] * frame.flight
+        self.circle.center = (float(x), 1.0 + float(y))
+        for number, mark in enumerate(self.marks):
+            at = angle + 2.0 * math.pi * number / SPOKES
+            reach = np.array([0.25, 0.95 if number == 0 else 0.6])
+            mark.set_data(x + reach * math.cos(at), 1.0 + y + reach * math.sin(at))
+            mark.set_linewidth(2.2 if number == 0 else 1.0)
+        self.words.set_text(frame.words)
+
+
+class Forces:
+    """The tangential force over time inside friction's limit, drawn up to the instant."""
+
+    def __init__(self, axes: Axes, result: ImpactResult) -> None:
+        self.time, self.tangential, normal = scaled_forces(result)
+        zero_line(axes)
+        friction_limit(axes, self.time, normal)
+        (self.line,) = axes.plot([], [], color=LAW_COLOURS[0])
+        (self.point,) = axes.plot([], [], "o", color=LAW_COLOURS[0], markersize=6)
+        axes.set_xlim(0.0, 1.0)
+        axes.set_ylim(-1.08, 1.08)
+        axes.set_xlabel(r"time over duration of contact $t/t_{\mathrm{c}}$")
+        axes.set_ylabel(r"$F/(\mu P_{\max})$")
+
+    def show(self, frame: Frame) -> None:
+        """Show one frame."""
+        until = 0 if frame.flight < 0.0 else frame.instant + 2
+        self.line.set_data(self.time[:until], self.tangential[:until])
+        last = slice(max(until - 1, 0), until)
+        self.point.set_data(self.time[last], self.tangential[last])
+
+
+class Disc:
+    """The contact seen from above: what sticks, what slips and which way."""
+
+    def __init__(self, axes: Axes, result: ImpactResult) -> None:
+        history = result.history
+        assert history is not None
+        fields = history.fields
+        self.state = np.where(
+            fields["stuck"], 1, np.where(fields["slipping"] == 0, 3, fields["slipping"] + 1)
+        )
+        self.radius = np.asarray(fields["radius"])
+        self.edge = np.asarray(history.contact_radius)
+        self.largest = float(result.motion.maximum_radius)
+        side = (np.arange(DISC) + 0.5) / DISC * 2.2 - 1.1
+        self.distance = self.largest * np.hypot(side, side[:, np.newaxis])
+        names = [*STATES.values(), NO_CONTACT]
+        self.colours = np.array(
+            [[int(name[k : k + 2], 16) for k in (1, 3, 5)] for name in names], dtype=np.uint8
+        )
+        empty = np.full((DISC, DISC, 3), 255, dtype=np.uint8)
+        self.image = axes.imshow(empty, extent=(-1.1, 1.1, -1.1, 1.1), interpolation="nearest")
+        rim = Circle((0.0, 0.0), 1.0, fill=False, edgecolor=QUIET, linestyle=":")
+        axes.add_patch(rim)
+        axes.set_axis_off()
+        patches = [Patch(color=colour, label=name) for name, colour in STATES.items()]
+        axes.legend(handles=patches, loc="center left", bbox_to_anchor=(1.02, 0.5))
+
+    def show(self, frame: Frame) -> None:
+        """Show one frame."""
+        row = frame.instant
+        middles = self.radius[row]
+        ring = np.searchsorted(0.5 * (middles[1:] + middles[:-1]), self.distance)
+        state = np.where(self.distance < self.edge[row], self.state[row][ring], 3)
+        if frame.flight != 0.0:
+            state = np.full_like(state, 3)
+        self.image.set_data(self.colours[state])

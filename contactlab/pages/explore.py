@@ -1,0 +1,75 @@
+"""A page with sliders for psi1 and chi: the rebound, the forces, where the contact sticks."""
+
+from __future__ import annotations
+
+import json
+from importlib import resources
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import contactlab
+
+#: Digits of psi2 after the point, as they are shown.
+DIGITS = 4
+#: Springs and steps of the page's own computation: the map has so many rows, and psi2 of such a
+#: bundle is within 2e-3 of the exact one, which cannot be seen.
+SPRINGS, STEPS = 120, 600
+
+
+class Axis(NamedTuple):
+    """Evenly spaced stops of a slider.
+
+    Attributes
+    ----------
+    start, step : float
+    count : int
+    first : float
+        Where the slider stands when the page opens.
+    """
+
+    start: float
+    step: float
+    count: int
+    first: float
+
+    @property
+    def stops(self) -> NDArray[np.float64]:
+        """Return the stops, shape (count,)."""
+        return self.start + self.step * np.arange(self.count)
+
+    def to_dict(self) -> dict[str, float]:
+        """Return what the page needs."""
+        return {"from": self.start, "step": self.step, "count": self.count}
+
+
+#: To beyond gross slip of a solid sphere; from light shells to cores denser than any real sphere.
+PSI1 = Axis(0.0, 0.05, 181, 2.0)
+CHI = Axis(0.4, 0.02, 106, 1.44)
+
+
+def explore_page() -> str:
+    """Return the page."""
+    psi2 = contactlab.rebound(PSI1.stops, CHI.stops[:, np.newaxis])
+    first = [round((axis.first - axis.start) / axis.step) for axis in (PSI1, CHI)]
+    grid: dict[str, Any] = {
+        "psi1": PSI1.to_dict(),
+        "chi": CHI.to_dict(),
+        "first": first,
+        "digits": DIGITS,
+        "psi2": np.rint(psi2 * 10**DIGITS).astype(int).tolist(),
+    }
+    page = resources.files("contactlab").joinpath("pages", "explore.html").read_text("utf-8")
+    entries = {
+        "/*GRID*/null": json.dumps(grid, separators=(",", ":")),
+        "/*SPRINGS*/0": str(SPRINGS),
+        "/*STEPS*/0": str(STEPS),
+        "DIGITS digits": f"{DIGITS} digits",
+        "VERSION": contactlab.__version__,
+        "SPRINGS springs": f"{SPRINGS} springs",
+        "STEPS steps": f"{STEPS} steps",
+    }
+    for place, entry in entries.items():
+        page = page.replace(place, entry)
+    return page

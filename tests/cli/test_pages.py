@@ -1,0 +1,77 @@
+"""``contactlab explore`` and ``animate``: what the files hold, without a browser."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import contactlab
+from contactlab.figures import animation
+from contactlab.pages.explore import CHI, PSI1
+
+
+def test_the_page_holds_the_exact_rebound_at_every_stop(run, tmp_path):
+    page = tmp_path / "explore.html"
+    ran = run("explore", "--out", page)
+    assert (ran.status, ran.out) == (0, f"{page}\n")
+    grid = json.loads(re.search(r"const GRID = (.*);\n", page.read_text("utf-8"))[1])
+    stops = [PSI1.start + PSI1.step * k for k in range(PSI1.count)]
+    for row in (0, 37, CHI.count - 1):
+        exact = contactlab.rebound(stops, CHI.start + CHI.step * row)
+        shown = np.array(grid["psi2"][row]) / 10 ** grid["digits"]
+        assert np.abs(shown - exact).max() <= 0.5000001 * 10 ** -grid["digits"]
+
+
+def test_the_page_fetches_nothing(run, tmp_path):
+    page = tmp_path / "explore.html"
+    run("explore", "--out", page)
+    text = page.read_text("utf-8")
+    assert not re.search(r"https?://|src=|@import|<link", text)
+    assert "/*" not in re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+
+
+@pytest.fixture
+def few_frames(monkeypatch):
+    monkeypatch.setattr(animation, "ARRIVING", 2)
+    monkeypatch.setattr(animation, "IN_CONTACT", 4)
+    monkeypatch.setattr(animation, "LEAVING", 2)
+
+
+def test_the_animation_shows_the_sphere_where_it_is(run, ball, tmp_path, few_frames):
+    out = tmp_path / "impact.gif"
+    assert run("animate", ball, "--out", out).status == 0
+    with Image.open(out) as picture:
+        assert picture.n_frames == 8
+        frames = []
+        for number in range(picture.n_frames):
+            picture.seek(number)
+            frames.append(np.asarray(picture.convert("RGB")).astype(int))
+    blue = [np.argwhere((np.abs(frame - (207, 227, 241)) < 12).all(axis=2)) for frame in frames]
+    heights = [spot[:, 0].mean() for spot in blue]
+    assert heights[0] < heights[1]  # down
+    assert heights[1] == pytest.approx(heights[4], abs=1.0)  # in contact
+    assert heights[-1] < heights[-2] - 20  # up again
+    assert blue[0][:, 1].mean() < blue[-1][:, 1].mean()  # from the left to the right
+
+
+def test_without_bodies_forces_and_contact_are_drawn(run, tmp_path, few_frames):
+    out = tmp_path / "contact.gif"
+    assert run("animate", "--psi1", 1.2, "--chi", 1.4, "--out", out).status == 0
+    with Image.open(out) as picture:
+        assert picture.n_frames == 5
+
+
+def test_a_sweep_cannot_be_animated(run, short_sweep, tmp_path):
+    ran = run("animate", short_sweep, "--out", tmp_path / "a.gif")
+    assert ran.status == 2
+    assert "single impact" in ran.err
+
+
+def test_a_result_without_history_cannot_be_animated(tmp_path):
+    result = contactlab.Simulation().run(contactlab.Scene.nondimensional(psi1=1.0, chi=1.0))
+    with pytest.raises(ValueError, match="history='fields'"):
+        animation.animate(tmp_path / "a.gif", result)
