@@ -125,7 +125,7 @@ def _sequence(result: ImpactResult) -> list[Frame]:
     last = len(result.history.time) - 1
     if result.scene.sphere is None:
         before: list[Frame] = []
-        after = [Frame("parted", 1.0, last)] * (LEAVING // 2)
+        after: list[Frame] = []
     else:
         before = [Frame("arrives", -t, 0) for t in np.linspace(FLIGHT, 0.0, ARRIVING).tolist()]
         after = [Frame("leaves", t, last) for t in np.linspace(0.0, FLIGHT, LEAVING).tolist()]

@@ -62,7 +62,7 @@ def test_without_bodies_forces_and_contact_are_drawn(run, tmp_path, few_frames):
     out = tmp_path / "contact.gif"
     assert run("animate", "--psi1", 1.2, "--chi", 1.4, "--out", out).status == 0
     with Image.open(out) as picture:
-        assert picture.n_frames == 5
+        assert picture.n_frames == 4  # those in contact
 
 
 def test_a_sweep_cannot_be_animated(run, short_sweep, tmp_path):
