@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 from contactlab.answers import Answer
 from contactlab.contracts.integrator import Observer, Sample
 from contactlab.contracts.motion import NormalMotion
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 
@@ -50,6 +53,12 @@ class History:
         """Return the one-number-an-instant columns by name."""
         names = [item.name for item in attrs.fields(History) if item.name != "fields"]
         return {name: getattr(self, name) for name in names}
+
+    def plot(self, *, axes: Axes | None = None) -> Axes:
+        """Draw the forces over time on ``axes``, or on a new figure of ``matplotlib.pyplot``."""
+        from contactlab.figures.results import draw_history  # matplotlib only when drawing
+
+        return draw_history(axes, self)
 
     @staticmethod
     def unit(name: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -17,6 +17,9 @@ from contactlab.motion import Motion
 from contactlab.plan import Plan
 from contactlab.scene import Scene
 from contactlab.status import Status
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 class ImpactError(RuntimeError):
@@ -199,6 +202,25 @@ class ImpactResult:
     def energy(self) -> EnergyLedger:
         """Energy before and after, friction work, and what does not add up."""
         return ledger(self.scene, self.motion)
+
+    def plot(self, x: str | None = None, y: str | None = None, *, axes: Axes | None = None) -> Axes:
+        """Draw a batch as ``y`` over ``x``, a single impact as its forces over the contact.
+
+        Parameters
+        ----------
+        x, y : str, optional
+            Columns of the exports, such as ``"psi1"``, ``"psi2"``, ``"rebound_angle_deg"``.
+        axes : Axes, optional
+            Where to draw; a new figure of ``matplotlib.pyplot`` by default.
+
+        Raises
+        ------
+        ValueError
+            If a quantity is not known, or a single impact has no history.
+        """
+        from contactlab.figures.results import draw_result  # matplotlib only when drawing
+
+        return draw_result(axes, self, x, y)
 
     def __len__(self) -> int:
         """Return the number of impacts of a batch."""

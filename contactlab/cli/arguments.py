@@ -67,6 +67,20 @@ def file_of(*suffixes: str) -> Callable[[str], Path]:
     return convert
 
 
+#: Forms of picture; those of ``contactlab.figures.files.FORMATS``, which loads matplotlib.
+PICTURES = (".png", ".pdf", ".svg")
+
+
+def add_figure(parser: argparse.ArgumentParser, words: str) -> None:
+    """Add ``--figure`` and ``--style``; ``words`` say what is drawn."""
+    parser.add_argument(
+        "--figure", type=file_of(*PICTURES), metavar="FILE", help=f"{words} (.png, .pdf or .svg)"
+    )
+    parser.add_argument(
+        "--style", choices=("print", "slides"), default="print", help="of the figure"
+    )
+
+
 def check_outputs(arguments: argparse.Namespace) -> None:
     """Refuse two outputs that are the same file, or one that is the scene."""
     given = vars(arguments)
@@ -138,7 +152,7 @@ def add_report(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         help="begin no further run after this time",
     )
-    parser.add_argument("--figure", type=file_of(".png"), metavar="FILE.png")
+    parser.add_argument("--figure", type=file_of(*PICTURES), metavar="FILE")
     parser.add_argument("--csv", type=file_of(".csv"), metavar="FILE.csv")
     parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
     add_progress(parser)

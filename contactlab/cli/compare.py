@@ -42,7 +42,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="what to compare (default: what was measured, or psi2)",
     )
     parser.add_argument(
-        "--figure", type=shared.file_of(".png"), metavar="FILE.png", help="also draw the comparison"
+        "--figure",
+        type=shared.file_of(*shared.PICTURES),
+        metavar="FILE",
+        help="also draw the comparison",
     )
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="print JSON instead of tables")

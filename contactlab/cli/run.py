@@ -16,6 +16,7 @@ import contextlib
 import json
 import sys
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -46,6 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE.csv",
         help="also write the course of a single impact",
     )
+    shared.add_figure(parser, "also draw the forces over the contact, or psi2 over psi1")
     parser.add_argument(
         "--estimate",
         action=argparse.BooleanOptionalAction,
@@ -66,16 +68,26 @@ def execute(arguments: argparse.Namespace) -> int:
             result = simulation.sweep(scene, progress=progress)
         else:
             result = simulation.run(
-                scene, history=bool(arguments.history), estimate_error=arguments.estimate
+                scene,
+                history=bool(arguments.history or arguments.figure),
+                estimate_error=arguments.estimate,
             )
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.history, lambda path: export.write_history_csv(result, path)),
+        (arguments.figure, lambda path: draw(path, result, arguments.style)),
     )
     varied: Mapping[str, Any] = file.varied if file else {}
     if not arguments.json:
         print(describe(result, title=file.title if file else "", varied=varied))
     return max(saved, report(result, as_json=arguments.json, varied=varied))
+
+
+def draw(path: Path, result: ImpactResult, look: Any) -> None:
+    """Write a picture of a result."""
+    from contactlab.figures.files import save  # matplotlib only when drawing
+
+    save(path, lambda axes: result.plot(axes=axes), look=look)
 
 
 def report(

@@ -18,7 +18,7 @@ import numpy as np
 
 from contactlab.checks import refuse
 from contactlab.cli import arguments as shared
-from contactlab.cli.run import report
+from contactlab.cli.run import draw, report
 from contactlab.cli.table import table
 from contactlab.export import WRITERS
 from contactlab.result import ImpactResult
@@ -41,6 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     form.add_argument("--json", action="store_true", help="print JSON instead of the table")
     form.add_argument("--csv", action="store_true", help="print psi1, chi, psi2 as CSV")
     parser.add_argument("--out", type=shared.file_of(*WRITERS), metavar="FILE")
+    shared.add_figure(parser, "also draw psi2 over psi1")
     shared.add_progress(parser)
 
 
@@ -58,7 +59,10 @@ def execute(arguments: argparse.Namespace) -> int:
     simulation = choice.set(dict(arguments.settings)).simulation()
     with contextlib.redirect_stdout(sys.stderr):  # what a plug-in prints is not our output
         result = simulation.sweep(scene, progress=shared.progress(arguments.progress, "impacts"))
-    saved = shared.save((arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)))
+    saved = shared.save(
+        (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
+        (arguments.figure, lambda path: draw(path, result, arguments.style)),
+    )
     if arguments.csv:
         print("psi1,chi,psi2,status")
         for psi1, chi, psi2, status in _rows(result):

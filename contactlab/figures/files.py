@@ -6,11 +6,21 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from contactlab.figures.style import HEIGHT, RESOLUTION, WIDTH, styled
+from contactlab.figures.style import HEIGHT, RESOLUTION, WIDTH, Look, styled
 from contactlab.files import written
+
+#: Form of picture by the end of the file's name.
+FORMATS = {".png": "png", ".pdf": "pdf", ".svg": "svg"}
+#: Nothing that differs from run to run goes into a file.
+METADATA: dict[str, dict[str, Any]] = {
+    "png": {},
+    "pdf": {"CreationDate": None},
+    "svg": {"Date": None},
+}
 
 
 def save(
@@ -21,13 +31,28 @@ def save(
     columns: int = 1,
     heights: tuple[float, ...] = (1.0,),
     wide: bool = False,
+    look: Look = "print",
 ) -> None:
-    """Draw on one Axes, or on an array of them, and write a PNG; ``wide`` for a long legend.
+    """Draw on one Axes, or on an array of them, and write a picture.
 
     The canvas is made here, without pyplot: no backend is chosen for the process, nothing
     stays open, and a display is not needed.
+
+    Parameters
+    ----------
+    path : Path
+        Its end says the form: see ``FORMATS``.
+    draw : callable
+        Given the Axes, or an array of them of shape (rows, columns).
+    rows, columns : int
+    heights : tuple of float
+        Heights of the rows, relative to each other.
+    wide : bool
+        Whether there is a long legend.
+    look : {"print", "slides"}
+        Of a page or of a screen: see ``contactlab.figures.style``.
     """
-    with styled():
+    with styled(look):
         scale = sum(heights) / max(heights)
         width = WIDTH * (0.85 * columns if columns > 1 else 1.6 if wide else 1.0)
         figure = Figure(figsize=(width, HEIGHT * scale * (1.25 if wide else 1.0)))
@@ -36,10 +61,11 @@ def save(
             rows, columns, sharex="col", gridspec_kw={"height_ratios": heights}, squeeze=False
         )
         draw(axes[0, 0] if rows == columns == 1 else axes)
-        save_png(figure, path)
+        save_figure(figure, path)
 
 
-def save_png(figure: Figure, path: str | Path, **options: Any) -> None:
-    """Write a figure as PNG, whole or not at all; options are those of ``savefig``."""
-    with written(path, binary=True) as stream:
-        figure.savefig(stream, format="png", dpi=RESOLUTION, **options)
+def save_figure(figure: Figure, path: str | Path, **options: Any) -> None:
+    """Write a figure, whole or not at all; options are those of ``savefig``."""
+    form = FORMATS[Path(path).suffix.lower()]
+    with written(path, binary=True) as stream, mpl.rc_context({"svg.hashsalt": "contactlab"}):
+        figure.savefig(stream, format=form, dpi=RESOLUTION, metadata=METADATA[form], **options)

@@ -24,7 +24,7 @@ from contactlab.analysis.stability_map import (
     ONE_WRONG,
     Region,
 )
-from contactlab.figures.files import save_png
+from contactlab.figures.files import save_figure
 from contactlab.figures.style import ORDERED_MAP, QUIET, styled
 
 #: Errors over the range at which the colour changes: whole decades.
@@ -79,7 +79,7 @@ def draw_regions(path: Path, regions: Sequence[Region]) -> None:
         if any(np.any(region.state == ONE_RAISED) for region in regions):
             entries.insert(2, Patch(color=RAISED_COLOUR, label="raised"))
         figure.legend(handles=entries, loc="outside upper center", ncols=2)
-        save_png(figure, path)
+        save_figure(figure, path)
 
 
 def _rank(integrator: str) -> tuple[int, str]:

@@ -75,3 +75,28 @@ def test_a_result_without_history_cannot_be_animated(tmp_path):
     result = contactlab.Simulation().run(contactlab.Scene.nondimensional(psi1=1.0, chi=1.0))
     with pytest.raises(ValueError, match="history='fields'"):
         animation.animate(tmp_path / "a.gif", result)
+
+
+@pytest.mark.parametrize(
+    ("end", "begins"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")]
+)
+def test_pictures_of_any_form_are_the_same_twice(run, ball, tmp_path, end, begins):
+    one, other = (tmp_path / f"{name}.{end}" for name in ("one", "other"))
+    for path in (one, other):
+        assert run("run", ball, "--no-estimate", "--figure", path).status == 0
+    assert one.read_bytes().startswith(begins)
+    assert one.read_bytes() == other.read_bytes()
+
+
+def test_a_sweep_is_drawn_for_slides(run, tmp_path):
+    one, other = tmp_path / "page.png", tmp_path / "slide.png"
+    sweep = ("sweep", "--psi1", "0:5:5", "--chi", 1, "--tangential", "coulomb")
+    assert run(*sweep, "--figure", one).status == 0
+    assert run(*sweep, "--figure", other, "--style", "slides").status == 0
+    assert one.read_bytes() != other.read_bytes()
+
+
+def test_a_picture_of_unknown_form_is_refused(run, ball, tmp_path):
+    ran = run("run", ball, "--figure", tmp_path / "a.bmp")
+    assert ran.status == 2
+    assert ".svg" in ran.err

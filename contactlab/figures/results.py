@@ -1,0 +1,121 @@
+"""A result drawn by one call: forces over the contact, or one quantity over another."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from contactlab.analysis.paper_figures import scaled_forces
+from contactlab.checks import refuse
+from contactlab.export import unit_in
+from contactlab.figures.style import LAW_COLOURS, friction_limit, label, styled, zero_line
+from contactlab.history import History
+from contactlab.quantities import quantity_named
+from contactlab.result import ImpactResult
+
+#: A band of numerical error narrower than this share of the range of y cannot be seen.
+VISIBLE = 2e-3
+
+
+def draw_result(axes: Axes | None, result: ImpactResult, x: str | None, y: str | None) -> Axes:
+    """Draw a batch as ``y`` over ``x``, a single impact as its forces over the contact.
+
+    Parameters
+    ----------
+    axes : Axes or None
+        None: a new figure of ``matplotlib.pyplot``.
+    result : ImpactResult
+    x, y : str or None
+        Columns of the exports, angles also in degrees (``rebound_angle_deg``); psi1 and psi2
+        where not given. Only for a batch.
+
+    Raises
+    ------
+    ValueError
+        If a quantity is not known or not defined for the scene; if a single impact has no
+        history.
+    """
+    if not result.scene.shape:
+        if x is not None or y is not None:
+            raise refuse(
+                "x, y", (x, y), "are for the result of many impacts", "leave them out for forces"
+            )
+        return _forces(_axes(axes), result)
+    return _quantities(_axes(axes), result, x or "psi1", y or "psi2")
+
+
+def draw_history(axes: Axes | None, history: History) -> Axes:
+    """Draw normal and tangential force over time, in the history's units."""
+    axes = _axes(axes)
+    zero_line(axes)
+    force, time = History.unit("normal_force"), History.unit("time")
+    for number, name in enumerate(("normal_force", "tangential_force")):
+        curves = axes.plot(history.time, getattr(history, name), color=LAW_COLOURS[number])
+        curves[0].set_label(name.replace("_", " "))
+    axes.set_xlabel(f"time ({time})")
+    axes.set_ylabel(f"force ({force})")
+    axes.legend()
+    return axes
+
+
+def _axes(axes: Axes | None) -> Axes:
+    if axes is not None:
+        return axes
+    from matplotlib import pyplot  # only here: it chooses a backend for the process
+
+    with styled():
+        drawn: Axes = pyplot.subplots()[1]
+    return drawn
+
+
+def _forces(axes: Axes, result: ImpactResult) -> Axes:
+    history = result.history
+    if history is None or not history.time.size:
+        raise refuse(
+            "result", result, "has no history to draw", "ask for one: run(scene, history=True)"
+        )
+    time, tangential, normal = scaled_forces(result)
+    zero_line(axes)
+    friction_limit(axes, time, normal)
+    axes.plot(time, tangential, color=LAW_COLOURS[0])
+    axes.set_xlim(0.0, 1.0)
+    axes.set_xlabel(r"time over duration of contact $t/t_{\mathrm{c}}$")
+    axes.set_ylabel(r"tangential force $F/(\mu P_{\max})$")
+    return axes
+
+
+def _quantities(axes: Axes, result: ImpactResult, x: str, y: str) -> Axes:
+    scene = result.scene
+    across, up = (quantity_named(name, where=where) for name, where in ((x, "x"), (y, "y")))
+    abscissa, ordinate = (quantity.of(result).ravel() for quantity in (across, up))
+    for where, name, values in (("x", x, abscissa), ("y", y, ordinate)):
+        if np.isnan(values).all():
+            raise refuse(where, name, "is defined for none of these impacts", "give another")
+    order = np.argsort(abscissa, kind="stable")
+    # many impacts at one abscissa are a cloud, not a curve
+    curve = np.unique(abscissa).size == abscissa.size
+    look: dict[str, Any] = {"marker": "" if curve else ".", "linestyle": "-" if curve else "none"}
+    axes.plot(abscissa[order], ordinate[order], color=LAW_COLOURS[0], **look)
+    if curve and y == "psi2":
+        _band(axes, result, abscissa, ordinate, order)
+    axes.set_xlabel(label(x, unit_in(across.unit, scene)))
+    axes.set_ylabel(label(y, unit_in(up.unit, scene)))
+    return axes
+
+
+def _band(axes: Axes, result: ImpactResult, x: Any, y: Any, order: Any) -> None:
+    """Draw the numerical error of psi2, estimated or else declared, where it can be seen."""
+    error: Any = result.psi2_error_estimate
+    if error is None:
+        error = result.plan.psi2_error
+    error = np.broadcast_to(np.asarray(error, dtype=float), result.scene.shape).ravel()
+    if not np.nanmax(error, initial=0.0) > VISIBLE * np.nanmax(np.ptp(y[np.isfinite(y)])):
+        return
+    lower, upper = (y - error)[order], (y + error)[order]
+    axes.fill_between(
+        x[order], lower, upper, color=LAW_COLOURS[0], alpha=0.25, linewidth=0.0,
+        label="numerical error",
+    )  # fmt: skip
+    axes.legend()

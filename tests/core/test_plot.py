@@ -1,0 +1,83 @@
+"""Results drawn by one call: what is on the Axes is what the result says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from contactlab import Scene, Simulation
+from contactlab.figures.results import draw_history
+
+
+@pytest.fixture
+def axes():
+    return Figure().subplots()
+
+
+@pytest.fixture(scope="module")
+def many():
+    psi1 = [3.0, 0.0, 5.0, 1.0]
+    return Simulation(tangential="coulomb").run(Scene.nondimensional(psi1=psi1, chi=1.0))
+
+
+def test_a_batch_is_psi2_over_psi1_in_order(axes, many):
+    assert many.plot(axes=axes) is axes
+    (line,) = axes.lines
+    np.testing.assert_array_equal(line.get_xdata(), [0.0, 1.0, 3.0, 5.0])
+    np.testing.assert_array_equal(line.get_ydata(), [0.0, 0.0, 0.0, 1.0])
+    assert "psi_1" in axes.get_xlabel()
+
+
+def test_any_columns_angles_in_degrees_too(axes, many):
+    many.plot("psi1", "local_rebound_angle_deg", axes=axes)
+    (line,) = axes.lines
+    assert line.get_ydata()[-1] == pytest.approx(45.0)
+    assert "°" in axes.get_ylabel()
+
+
+def test_impacts_that_share_an_abscissa_are_points(axes):
+    scene = Scene.nondimensional(psi1=[1.0, 1.0, 2.0], chi=[1.0, 1.4, 1.0])
+    Simulation(tangential="coulomb").run(scene).plot(axes=axes)
+    assert axes.lines[0].get_linestyle() == "None"
+
+
+def test_the_numerical_error_is_a_band_where_it_can_be_seen(axes, many):
+    many.plot(axes=axes)
+    assert not axes.collections
+    rough = Simulation(tangential="annulus", integrator="symplectic")
+    result = rough.run(Scene.nondimensional(psi1=[0.5, 1.2, 2.0], chi=1.4))
+    result.plot(axes=axes)
+    (band,) = axes.collections
+    upper = band.get_paths()[0].vertices[:, 1].max()
+    assert upper == pytest.approx(np.max(result.psi2 + result.plan.psi2_error))
+
+
+def test_one_impact_is_its_force_over_time(axes):
+    result = Simulation().run(Scene.nondimensional(psi1=2.0, chi=1.4), history=True)
+    result.plot(axes=axes)
+    force = axes.lines[-1].get_ydata()
+    assert force.max() == pytest.approx(
+        result.history.tangential_force.max() / result.motion.maximum_force
+    )
+    assert draw_history(Figure().subplots(), result.history).get_xlabel() == "time (s)"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("psi3",), "psi2"),
+        (("psi1", "rebound_spin"), "defined for none"),
+    ],
+)
+def test_quantities_that_cannot_be_drawn_are_refused(axes, many, arguments, words):
+    with pytest.raises(ValueError, match=words):
+        many.plot(*arguments, axes=axes)
+
+
+def test_a_single_impact_needs_a_history(axes):
+    result = Simulation().run(Scene.nondimensional(psi1=2.0, chi=1.4))
+    with pytest.raises(ValueError, match=r"history=True"):
+        result.plot(axes=axes)
+    with pytest.raises(ValueError, match="many impacts"):
+        result.plot("psi1", axes=axes)
