@@ -63,7 +63,7 @@ def rebound(
     chi : float or array_like
         Eq. (38), broadcast against ``psi1``; positive, at most 1e4.
     tolerance : float
-        Error aimed at, of max(1, |psi1|), from 1e-9. Answers are that good whatever is asked.
+        Error aimed at, of max(1, abs(psi1)), from 1e-9. Answers are that good whatever is asked.
     derivatives : bool
         Whether d psi2/d psi1 and d psi2/d chi are wanted too, for chi up to 2.5; they are
         tabulated to 1e-6, whatever the tolerance (5e-5 for psi1 just above 1, chi 1.83 to 1.92).

@@ -171,7 +171,7 @@ class Integrator(Law):
 
     @property
     def accuracy(self) -> float | None:
-        """Error of psi2 over max(1, |psi1|) that it keeps to in time; None without control."""
+        """Error of psi2 over max(1, abs(psi1)) that it keeps to in time; None without control."""
         return None
 
     def chunk(self, tangential: TangentialLaw) -> int:

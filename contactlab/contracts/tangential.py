@@ -130,7 +130,7 @@ class WholeImpactTangentialLaw(TangentialLaw):
 
 
 class Steps(NamedTuple):
-    """All even steps of an impact, arrays of shape (K,); of a batch (K, *shape) or (K, 1, ..).
+    """All even steps of an impact, arrays of shape (K,); of a batch ``(K, ...)``.
 
     The march drifts to a sample of the normal contact, asks the law, and kicks.
 

@@ -1,0 +1,47 @@
+"""Settings of the site; ``.ci/site/build`` lays the sources out."""
+
+import os
+import sys
+from pathlib import Path
+
+import contactlab
+
+sys.path.insert(0, str(Path(__file__).parent))
+from examples import Pictures
+
+project = "contactlab"
+author = "The contactlab developers"
+release = version = contactlab.__version__
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx_gallery.gen_gallery",
+]
+myst_enable_extensions = ["colon_fence"]
+myst_heading_anchors = 3
+napoleon_numpy_docstring = True
+napoleon_google_docstring = False
+napoleon_use_ivar = True  # attributes are documented where they are declared, once
+autodoc_typehints = "none"  # the docstrings tell types, with shapes and units
+autodoc_member_order = "bysource"
+
+html_theme = "furo"
+html_title = f"contactlab {version}"
+html_theme_options = {"navigation_with_keys": True}
+exclude_patterns = ["gallery-source"]
+suppress_warnings = ["config.cache"]  # the gallery's order is an object, not a word
+
+sphinx_gallery_conf = {
+    "examples_dirs": os.environ["CONTACTLAB_EXAMPLES"],
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"\.py$",
+    "image_scrapers": (Pictures(),),
+    "reset_modules": (),
+    "matplotlib_animations": False,
+    "remove_config_comments": True,
+    "min_reported_time": 1e9,
+    "show_memory": False,
+    "download_all_examples": False,
+}

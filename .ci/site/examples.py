@@ -1,0 +1,58 @@
+"""Lays the examples out as sphinx-gallery wants them, and finds the pictures that they write."""
+
+from __future__ import annotations
+
+import ast
+import shutil
+from pathlib import Path
+from typing import Any
+
+#: What a script may rely on and the gallery does not give it; not shown in its page.
+HIDDEN = """
+# sphinx_gallery_start_ignore
+__file__ = {path!r}
+# sphinx_gallery_end_ignore
+"""
+
+
+def lay_out(examples: Path, to: Path) -> None:
+    """Copy the examples, the first sentence of each as its title."""
+    to.mkdir(parents=True)
+    for script in sorted(examples.glob("*.py")):
+        text = script.read_text("utf-8")
+        doc = ast.get_docstring(ast.parse(text)) or script.stem
+        head, _, rest = doc.partition("\n\n")
+        title, _, more = " ".join(head.split()).partition(": ")
+        title = title.rstrip(".")
+        words = [title, "=" * len(title), "", more.capitalize(), "", rest]
+        code = text.split('"""', 2)[2]
+        hidden = HIDDEN.format(path=str(to / script.name))
+        page = '"""\n' + "\n".join(words) + '\n"""\n' + hidden + code
+        (to / script.name).write_text(page, "utf-8")
+    for scene in examples.glob("*.toml"):
+        shutil.copy(scene, to)
+
+
+class Pictures:
+    """A scraper of sphinx-gallery: the pictures that a script has written beside itself."""
+
+    def __init__(self) -> None:
+        self.seen: set[Path] = set()
+
+    def __repr__(self) -> str:
+        """Return the same for the same settings, or everything is built anew."""
+        return "Pictures()"
+
+    def __call__(self, _: Any, variables: dict[str, Any], settings: dict[str, Any]) -> str:
+        """Move what the script wrote to where the page finds it, and return the page's part."""
+        from sphinx_gallery.scrapers import figure_rst
+
+        folder = Path(variables["src_file"]).parent
+        found = []
+        for picture in sorted([*folder.glob("*.png"), *folder.glob("*.gif")]):
+            if picture not in self.seen:
+                self.seen.add(picture)
+                place = Path(next(variables["image_path_iterator"])).with_suffix(picture.suffix)
+                shutil.move(picture, place)
+                found.append(str(place))
+        return figure_rst(found, settings["src_dir"])
