@@ -47,7 +47,7 @@ def make_plan(
     marched = np.array(separated)
     for answer in known:
         marched &= ~answer.where
-    error = _error(scene, normal, laws, marched)
+    error = _error(scene, normal, laws, known, marched)
     how = "integrated from first touch to separation"
     if isinstance(normal.law, ClosedFormNormalLaw):
         how = "in closed form"
@@ -96,7 +96,9 @@ def _no_history(history: bool | str, marched: Mask) -> str | None:
     return None
 
 
-def _error(scene: Scene, normal: NormalMotion, laws: Laws, marched: Mask) -> Any:
+def _error(
+    scene: Scene, normal: NormalMotion, laws: Laws, known: Sequence[Answer], marched: Mask
+) -> Any:
     """Return the declared numerical error of psi2, an array of the scene's shape.
 
     Parameters
@@ -104,15 +106,19 @@ def _error(scene: Scene, normal: NormalMotion, laws: Laws, marched: Mask) -> Any
     scene : Scene
     normal : NormalMotion
     laws : Laws
+    known : sequence of Answer
     marched : array of bool
         Impacts that no whole-impact answer is for.
     """
-    known = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
+    rounding = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
+    error: Any = np.array(spread(rounding, scene.shape))
+    for answer in known:
+        error = error + np.where(answer.where, answer.known.psi2_error, 0.0)
     if not marched.any():
-        return np.array(spread(known, scene.shape))
+        return np.asarray(error)
     with np.errstate(all="ignore"):
         declared = laws.integrator.psi2_error(normal, laws.tangential, scene)
-        return np.array(np.where(marched, declared, known))
+        return np.array(np.where(marched, declared, error))
 
 
 def _error_sentences(error: Any, separated: Mask) -> list[Sentence]:

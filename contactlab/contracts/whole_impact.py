@@ -31,6 +31,8 @@ class WholeImpact:
         ``course(load_impulse, friction_load)`` returns the change of slip velocity (m/s) and
         the tangential force (N) at the instants where the integral of the friction load and
         the load itself have these values, for a history. Without it a history has none.
+    psi2_error : float or array
+        Bound of the numerical error of psi2; 0, the default, for rounding alone.
     """
 
     where: Mask
@@ -38,6 +40,7 @@ class WholeImpact:
     friction_work: Real
     reason: str
     course: Callable[[Any, Any], tuple[Any, Any]] | None = None
+    psi2_error: Real = 0.0
 
 
 def sliding(
