@@ -13,8 +13,8 @@ from contactlab.checks import refuse, whole
 from contactlab.composition import Laws
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.normal import NormalLaw
-from contactlab.contracts.tangential import TangentialLaw
+from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
 from contactlab.error_estimate import estimated
 from contactlab.history import Recorder
 from contactlab.motion import Motion
@@ -24,6 +24,9 @@ from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.signatures import named_arguments
 from contactlab.status import Status
+
+#: Impacts of a sweep answered together where nothing is marched: as many as fit into the cache.
+CLOSED_FORM_CHUNK = 1 << 14
 
 
 @named_arguments("Simulation(tangential='annulus', integrator='symplectic')")
@@ -121,7 +124,7 @@ class Simulation:
         chunk : int, optional
             Impacts advanced together, which bounds the memory and what an interruption
             loses; as many as the integrator asks for: 1000 of most, 20 where they are followed
-            one by one.
+            one by one; 16384 where nothing is marched.
 
         Returns
         -------
@@ -144,7 +147,7 @@ class Simulation:
                 "for one impact use run",
             )
         if chunk is None:
-            chunk = self.integrator.chunk(self.tangential)
+            chunk = self._chunk()
         size, step = batch.shape[0], whole("chunk", chunk)
         plans: list[Plan] = []
         motions: list[Motion] = []
@@ -171,6 +174,13 @@ class Simulation:
             laws=composition.versions(*self._laws),
             run_time=time.perf_counter() - started,
         )
+
+    def _chunk(self) -> int:
+        """Return how many impacts of a sweep are run together."""
+        whole_impacts = isinstance(self.tangential, WholeImpactTangentialLaw)
+        if whole_impacts and isinstance(self.normal, ClosedFormNormalLaw):
+            return CLOSED_FORM_CHUNK
+        return self.integrator.chunk(self.tangential)
 
     def normal_motion(self, scene: Scene) -> NormalMotion:
         """Return the normal motion of ``scene``; a law that fails gives one without an end."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import Any, ClassVar
 
 import attrs
@@ -46,7 +47,7 @@ class Tabulated(WholeImpactTangentialLaw):
         closed = (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
         chi: Any = scene.chi
         psi1: Any = scene.psi1
-        left: Any = np.logical_not(np.logical_or.reduce([each.where for each in closed]))
+        left: Any = np.logical_not(reduce(np.logical_or, (each.where for each in closed)))
         # Where the closed forms answer no impact is solved, and psi1 may be infinite.
         psi1 = np.where(left, psi1, 0.0) if np.ndim(left) else float(psi1 if left else 0.0)
         psi2: Any = rebound(psi1, chi)
