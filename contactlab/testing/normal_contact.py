@@ -66,9 +66,13 @@ def grows(law: Any) -> None:
 
 @check(NormalLaw, claim="radius")
 def radius(law: Any) -> None:
-    """A law that offers ``radius`` has one wherever it presses."""
-    force, found, _, _ = respond(law, *strokes())
-    pressed = force > 1e-6 * force.max()
+    """A law that offers ``radius`` has one wherever it presses.
+
+    But at first touch, where a dashpot presses on a point.
+    """
+    given, approach, rate = strokes()
+    force, found, _, _ = respond(law, given, approach, rate)
+    pressed = (force > 1e-6 * force.max()) & (approach > 0.0)
     hold(np.all(found[pressed] > 0.0), "It offers 'radius', and has none where it presses.")
 
 

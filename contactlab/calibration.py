@@ -1,0 +1,32 @@
+"""Parameters of laws from what is known of an impact: a restitution, and the root that gives it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from contactlab.checks import Rule, quantity
+
+#: Below this coefficient of restitution hardly a law of dissipation means anything.
+LEAST_RESTITUTION = 0.01
+RESTITUTION = Rule(
+    lambda value: np.ndim(value) == 0 and LEAST_RESTITUTION <= value <= 1.0,
+    f"must be one number from {LEAST_RESTITUTION} to 1: rebound over approach velocity",
+)
+
+
+def restitution(*, default: Any) -> Any:
+    """Return an attrs field for a coefficient of normal restitution; optional if None."""
+    return quantity("1", rule=RESTITUTION, default=default)
+
+
+def root(function: Callable[[float], float], low: float, high: float) -> float:
+    """Return where ``function``, below 0 at ``low`` and not at ``high``, changes its sign.
+
+    To the last bit, by halving.
+    """
+    while low < (middle := 0.5 * (low + high)) < high:
+        low, high = (middle, high) if function(middle) < 0.0 else (low, middle)
+    return high

@@ -1,0 +1,142 @@
+"""A spring and a dashpot: linear, and Tsuji's over Hertz's spring."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, NamedTuple
+
+import attrs
+import numpy as np
+
+from contactlab.calibration import restitution
+from contactlab.checks import POSITIVE, Real, quantity
+from contactlab.closed_forms import hertz_scales
+from contactlab.contracts import ClosedFormMotion, ClosedFormNormalLaw, NormalContact
+from contactlab.scene import Scene
+from contactlab_dashpot.motion import Course, DashpotMotion
+from contactlab_dashpot.oscillator import damping_of
+from contactlab_hertz.motion import HertzMotion
+
+#: Overlap in m of a contact that presses at first touch: only its sign means something.
+TOUCH = 1e-300
+
+
+class Parts(NamedTuple):
+    """Stiffness k and damping c of P = k z^n + c z^m z', in SI, and the pair's radius."""
+
+    stiffness: Real
+    damping: Real
+    radius: Real
+
+
+def pressed(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float]) -> NormalContact:
+    """Return the contact of P = k z^n + c z^m z', ended where P returns to zero; b² = R z."""
+    touching: Any = approach >= 0.0
+    inside: Any = approach * touching  # NaN stays NaN
+    damping = parts.damping * inside ** powers[1] * touching
+    force = parts.stiffness * inside ** powers[0] + damping * rate
+    pushing = np.logical_not(force <= 0.0)
+    return NormalContact(
+        force=force * pushing,
+        radius=(parts.radius * inside) ** 0.5 * pushing,
+        overlap=(abs(approach) + TOUCH) * (2.0 * pushing - 1.0),
+    )
+
+
+@attrs.frozen(kw_only=True)
+class Tsuji(ClosedFormNormalLaw):
+    """Hertz's spring with the dashpot whose restitution is the same at any speed.
+
+    P = k z^1.5 + 2 beta sqrt(1.25 M k) z^0.25 z', k = (4/3) E* sqrt(R), in N, positive in
+    compression, z' positive while the bodies approach. Contact ends where P returns to zero: no
+    tension. beta follows from the restitution, and the motion is known in closed form.
+
+    Parameters
+    ----------
+    restitution : float
+        e, rebound over approach velocity, at most 1.
+
+    References
+    ----------
+    Tsuji, Tanaka & Ishida, Powder Technol. 71 (1992) 239-250,
+    doi:10.1016/0032-5910(92)88030-L. The end without tension: Schwager & Pöschel, Granular
+    Matter 9 (2007) 465-469, doi:10.1007/s10035-007-0065-z.
+    """
+
+    api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
+
+    restitution: float = restitution(default=0.9)
+
+    def start(self, scene: Scene) -> Parts:
+        """Return stiffness and damping of the pair; there is nothing to remember."""
+        pair = scene.pair
+        stiffness = (4.0 / 3.0) * pair.effective_modulus * pair.radius**0.5
+        critical = 2.0 * (1.25 * pair.normal_mass * stiffness) ** 0.5
+        return Parts(stiffness, damping_of(self.restitution) * critical, pair.radius)
+
+    def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
+        """Return force and Hertz's radius (2)."""
+        return pressed(state, approach, rate, (1.5, 0.25)), state
+
+    def motion(self, scene: Scene) -> ClosedFormMotion:
+        """Return the motion: with x = zeta^1.25 it is a linear oscillator; without damping Hertz's.
+
+        The phase that makes it smooth is another where there is no damping.
+        """
+        if self.restitution == 1.0:
+            return HertzMotion.of(self, scene)
+        course = Course(damping_of(self.restitution), 1.25)
+        return DashpotMotion.of(self, scene, course, hertz_scales(scene).approach)
+
+
+@attrs.frozen(kw_only=True)
+class Linear(ClosedFormNormalLaw):
+    """A linear spring and dashpot.
+
+    P = k z + 2 beta sqrt(M k) z', in N, positive in compression; contact ends where P returns to
+    zero. beta follows from the restitution, which is the same at any speed. The spring knows no
+    contact radius: that of Hertz at the same approach, b² = R z, is taken.
+
+    Parameters
+    ----------
+    restitution : float
+        e, rebound over approach velocity, at most 1.
+    stiffness : float, optional
+        k, in N/m. By default each impact has that with which its spring, undamped, would give way
+        as far as Hertz's: k = M (v1/z_max)².
+
+    References
+    ----------
+    Cundall & Strack, Géotechnique 29 (1979) 47-65, doi:10.1680/geot.1979.29.1.47. Restitution
+    without tension: Schwager & Pöschel, Granular Matter 9 (2007) 465-469,
+    doi:10.1007/s10035-007-0065-z.
+    """
+
+    api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"radius"})
+
+    restitution: float = restitution(default=0.9)
+    stiffness: float | None = quantity("N/m", rule=POSITIVE, default=None)
+
+    def start(self, scene: Scene) -> Parts:
+        """Return stiffness and damping; there is nothing to remember."""
+        pair = scene.pair
+        stiffness = pair.normal_mass * (scene.normal_speed / self._deepest(scene)) ** 2
+        critical = 2.0 * (pair.normal_mass * stiffness) ** 0.5
+        return Parts(stiffness, damping_of(self.restitution) * critical, pair.radius)
+
+    def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
+        """Return force and radius."""
+        return pressed(state, approach, rate, (1.0, 0.0)), state
+
+    def motion(self, scene: Scene) -> ClosedFormMotion:
+        """Return the motion of the oscillator."""
+        return DashpotMotion.of(
+            self, scene, Course(damping_of(self.restitution), 1.0), self._deepest(scene)
+        )
+
+    def _deepest(self, scene: Scene) -> Real:
+        """Return the greatest approach without damping, in m."""
+        if self.stiffness is None:
+            return hertz_scales(scene).approach
+        return scene.normal_speed * (scene.pair.normal_mass / self.stiffness) ** 0.5
