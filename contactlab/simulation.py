@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
 from contactlab import composition
-from contactlab.checks import refuse, whole
+from contactlab.checks import refuse
 from contactlab.composition import Laws
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
-from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
+from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.tangential import TangentialLaw
 from contactlab.error_estimate import estimated
 from contactlab.history import Recorder
 from contactlab.motion import Motion
@@ -24,10 +26,10 @@ from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.signatures import named_arguments
 from contactlab.status import Status
+from contactlab.sweeping import swept
 
-#: Impacts of a sweep answered together where nothing is marched: as many as fit into the cache.
-CLOSED_FORM_CHUNK = 1 << 14
-
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
 
 @named_arguments("Simulation(tangential='annulus', integrator='symplectic')")
 @attrs.frozen(kw_only=True, init=False)
@@ -113,8 +115,14 @@ class Simulation:
         *,
         progress: Callable[[int, int], object] | None = None,
         chunk: int | None = None,
+        executor: Executor | None = None,
+        keep: str | Path | None = None,
     ) -> ImpactResult:
-        """Run many impacts, vectorised, a chunk at a time.
+        """Run many impacts, vectorised, a block at a time.
+
+        Impacts are solved in blocks of as many as the integrator asks for, counted from the 
+        What is solved together depends on neither ``chunk`` nor ``executor``, and so does no bit
+        of an answer (of one installation, on one kind of processor).
 
         Parameters
         ----------
@@ -122,9 +130,18 @@ class Simulation:
         progress : callable, optional
             Called as ``progress(done, total)`` after each chunk.
         chunk : int, optional
-            Impacts advanced together, which bounds the memory and what an interruption
-            loses; as many as the integrator asks for: 1000 of most, 20 where they are followed
-            one by one; 16384 where nothing is marched.
+            Impacts between two calls of ``progress``, handed to ``executor`` and kept together,
+            rounded up to whole blocks; one block by default. An interruption loses the chunks
+            that are not done.
+        executor : concurrent.futures.Executor, optional
+            Where chunks are solved, by its ``submit`` alone: ``contactlab.workers.Workers(4)``
+            (processes of this machine), dask's ``client.get_executor()``, an
+            ``MPIPoolExecutor``. Laws are found there by the modules of their classes. A worker
+            that dies costs its chunk a second try, then the status ``WORKER_DIED``. None:
+            this process.
+        keep : str or Path, optional
+            A folder where each chunk is kept as soon as it is done. The same sweep with the same
+            folder goes on where it stopped; another scene or law is refused.
 
         Returns
         -------
@@ -135,7 +152,8 @@ class Simulation:
         Raises
         ------
         ValueError
-            If the scenes are none, not alike (bodies beside psi1 and chi) or no scenes.
+            If the scenes are none, not alike (bodies beside psi1 and chi) or no scenes; if a law
+            cannot be sent to ``executor``; if ``keep`` holds another sweep.
         """
         started = time.perf_counter()
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
@@ -146,41 +164,16 @@ class Simulation:
                 "must be a sequence, or a one-dimensional batch",
                 "for one impact use run",
             )
-        if chunk is None:
-            chunk = self._chunk()
-        size, step = batch.shape[0], whole("chunk", chunk)
-        plans: list[Plan] = []
-        motions: list[Motion] = []
-        done = 0
-        try:
-            while done < size:
-                part = batch.take(slice(done, min(done + step, size)))
-                plan, motion = self._outcome(part, False, None)
-                plans.append(plan)
-                motions.append(motion)
-                done += part.shape[0]
-                if progress is not None:
-                    progress(done, size)
-        except KeyboardInterrupt:
-            plans, motions = plans[: len(motions)], motions[: len(plans)]
-            done = sum(np.size(motion.duration) for motion in motions)
-            if done < size:
-                motions.append(Motion.nothing((size - done,), Status.INTERRUPTED))
-                plans.append(Plan.nothing((size - done,)))
+        plan, motion = swept(
+            self, batch, progress=progress, chunk=chunk, executor=executor, keep=keep
+        )
         return ImpactResult(
             scene=batch,
-            plan=Plan.joined(plans),
-            motion=Motion.joined(motions, batch.shape),
+            plan=plan,
+            motion=motion,
             laws=composition.versions(*self._laws),
             run_time=time.perf_counter() - started,
         )
-
-    def _chunk(self) -> int:
-        """Return how many impacts of a sweep are run together."""
-        whole_impacts = isinstance(self.tangential, WholeImpactTangentialLaw)
-        if whole_impacts and isinstance(self.normal, ClosedFormNormalLaw):
-            return CLOSED_FORM_CHUNK
-        return self.integrator.chunk(self.tangential)
 
     def normal_motion(self, scene: Scene) -> NormalMotion:
         """Return the normal motion of ``scene``; a law that fails gives one without an end."""

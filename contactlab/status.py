@@ -17,6 +17,7 @@ class Status(Enum):
     NOT_SEPARATED = "The bodies did not part: the contact was given up."
     MALFORMED = "A law's answer is not made of real numbers, or not of the batch's shape."
     LAW_RAISED = "A law raised an error in the middle of the run."
+    WORKER_DIED = "The process that was to compute this impact ended before it answered."
     INTERRUPTED = "The run was interrupted; this impact was not computed."
 
     def __bool__(self) -> bool:

@@ -5,6 +5,7 @@ Examples
   contactlab sweep --psi1 0:7:71 --chi 1.4412
   contactlab sweep --psi1 1.2 --chi 0.5:8:76 --tangential coulomb --csv
   contactlab sweep examples/sweep.toml --out sweep.npz
+  contactlab sweep --psi1 0:7:100000 --chi 1.4412 --workers 2 --out sweep.npz --resume
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ from __future__ import annotations
 import argparse
 import contextlib
 import sys
-from typing import Any
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +27,9 @@ from contactlab.export import WRITERS
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.scene_file import LawChoice, read_scene
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
 
 #: Most impacts of a range: a slip of the finger should not fill the memory.
 MOST_IMPACTS = 1_000_000
@@ -41,6 +47,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     form.add_argument("--json", action="store_true", help="print JSON instead of the table")
     form.add_argument("--csv", action="store_true", help="print psi1, chi, psi2 as CSV")
     parser.add_argument("--out", type=shared.file_of(*WRITERS), metavar="FILE")
+    parser.add_argument(
+        "--resume",
+        action="store_true",
+        help="keep what is done beside the file of --out, and go on where such a sweep stopped",
+    )
+    parser.add_argument("--workers", type=int, metavar="N", help="share the work among N processes")
     shared.add_figure(parser, "also draw psi2 over psi1")
     shared.add_progress(parser)
 
@@ -57,12 +69,17 @@ def execute(arguments: argparse.Namespace) -> int:
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )
     simulation = choice.set(dict(arguments.settings)).simulation()
-    with contextlib.redirect_stdout(sys.stderr):  # what a plug-in prints is not our output
-        result = simulation.sweep(scene, progress=shared.progress(arguments.progress, "impacts"))
+    keep = _folder(arguments.out) if arguments.resume else None
+    progress = shared.progress(arguments.progress, "impacts")
+    # What a plug-in prints is not our output.
+    with contextlib.redirect_stdout(sys.stderr), _executor(arguments.workers) as executor:
+        result = simulation.sweep(scene, progress=progress, executor=executor, keep=keep)
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.figure, lambda path: draw(path, result, arguments.style)),
     )
+    if keep is not None and saved == shared.OK:
+        _clear(keep, result)
     if arguments.csv:
         print("psi1,chi,psi2,status")
         for psi1, chi, psi2, status in _rows(result):
@@ -71,6 +88,36 @@ def execute(arguments: argparse.Namespace) -> int:
         print(table(["psi1", "chi", "psi2", "status"], _rows(result)))
     varied = file.varied if file else {}
     return max(saved, report(result, as_json=arguments.json, varied=varied))
+
+
+@contextlib.contextmanager
+def _executor(count: int | None) -> Iterator[Executor | None]:
+    """Return processes for the work; None for this one."""
+    if count is None:
+        yield None
+        return
+    from contactlab.workers import Workers  # only for those who ask for some
+
+    executor = Workers(count)
+    try:
+        yield executor
+    finally:
+        executor.shutdown(cancel_futures=True)  # after Ctrl-C nobody waits for the rest
+
+
+def _folder(out: Path | None) -> Path:
+    """Return the folder beside ``out`` where a sweep is kept until it is done."""
+    if out is None:
+        raise ValueError("--resume: needs --out FILE; what is done is kept beside it")
+    return out.with_name(f"{out.name}.kept")
+
+
+def _clear(folder: Path, result: ImpactResult) -> None:
+    """Delete what was kept of a sweep that is done; what is to be tried again needs the rest."""
+    from contactlab.kept import TRIED_AGAIN, remove
+
+    if not any(status in TRIED_AGAIN for status in result.status):
+        remove(folder)
 
 
 def numbers(text: str) -> Any:

@@ -1,0 +1,160 @@
+"""Sweeps: a batch cut into blocks that are always the same, solved here or by an executor."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Generator, Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from contactlab.checks import whole
+from contactlab.contracts.normal import ClosedFormNormalLaw
+from contactlab.contracts.tangential import WholeImpactTangentialLaw
+from contactlab.motion import Motion
+from contactlab.plan import Plan
+from contactlab.scene import Scene
+from contactlab.status import Status
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from contactlab.simulation import Simulation
+
+#: Impacts of a block where everything is known in closed form: as many as fit into the cache.
+CLOSED_FORM = 1 << 14
+
+
+class Chunk(NamedTuple):
+    """Impacts ``first`` to ``stop``, without the last, of a sweep: some whole blocks of it."""
+
+    first: int
+    stop: int
+
+
+class Piece(NamedTuple):
+    """The plan and the motion of a chunk."""
+
+    chunk: Chunk
+    plan: Plan
+    motion: Motion
+
+
+def block_of(simulation: Simulation) -> int:
+    """Return how many impacts are solved in one call.
+
+    The last bits of an answer may depend on what is solved beside it: on the iterations of an
+    array solver, and on which arithmetic, of scalars or of vectors, the processor has for a
+    number. So a block depends on the laws alone.
+    """
+    whole_impacts = isinstance(simulation.tangential, WholeImpactTangentialLaw)
+    if whole_impacts and isinstance(simulation.normal, ClosedFormNormalLaw):
+        return CLOSED_FORM
+    return simulation.integrator.chunk(simulation.tangential)
+
+
+def solved(simulation: Simulation, scene: Scene, chunk: Chunk, block: int) -> Piece:
+    """Return the piece of a chunk, ``scene`` being that chunk alone, solved block by block."""
+    size = chunk.stop - chunk.first
+    results = [
+        simulation.run(scene.take(slice(first, min(first + block, size))))
+        for first in range(0, size, block)
+    ]
+    plan = Plan.joined([result.plan for result in results])
+    return Piece(chunk, plan, Motion.joined([result.motion for result in results], (size,)))
+
+
+def unsolved(chunk: Chunk, status: Status, detail: str = "") -> Piece:
+    """Return the piece of a chunk that there is no answer to."""
+    shape = (chunk.stop - chunk.first,)
+    return Piece(chunk, Plan.nothing(shape), Motion.nothing(shape, status, detail))
+
+
+def swept(
+    simulation: Simulation,
+    scene: Scene,
+    *,
+    progress: Callable[[int, int], object] | None,
+    chunk: int | None,
+    executor: Executor | None,
+    keep: str | Path | None,
+) -> tuple[Plan, Motion]:
+    """Return plan and motion of a one-dimensional batch; see ``Simulation.sweep``.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    scene : Scene
+        Of shape (n,).
+    progress, chunk, executor, keep
+        As ``Simulation.sweep`` has them.
+    """
+    size, block = scene.shape[0], block_of(simulation)
+    step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
+    kept = None
+    if keep is not None:
+        from contactlab.kept import Kept  # only for those who keep
+
+        kept = Kept(keep, simulation, scene, block)
+    found = [] if kept is None else kept.pieces()
+    done = sum(piece.chunk.stop - piece.chunk.first for piece in found)
+    missing = _cut(_gaps(found, size), step)
+    pieces = _pieces(simulation, scene, missing, block, executor)
+    try:
+        for piece in pieces:
+            if kept is not None:
+                kept.keep(piece)
+            found.append(piece)
+            done += piece.chunk.stop - piece.chunk.first
+            if progress is not None:
+                progress(done, size)
+    except KeyboardInterrupt:
+        found += [unsolved(gap, Status.INTERRUPTED) for gap in _gaps(found, size)]
+    finally:
+        pieces.close()
+    found.sort(key=lambda piece: piece.chunk)
+    plan = Plan.joined([piece.plan for piece in found])
+    return plan, Motion.joined([piece.motion for piece in found], (size,))
+
+
+def _pieces(
+    simulation: Simulation,
+    scene: Scene,
+    chunks: Iterable[Chunk],
+    block: int,
+    executor: Executor | None,
+) -> Generator[Piece, None, None]:
+    """Return the pieces as they are finished, solved in this process or by an executor.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    scene : Scene
+    chunks : iterable of Chunk
+        Those that are wanted.
+    block : int
+    executor : concurrent.futures.Executor, optional
+    """
+    if executor is not None:
+        from contactlab.shared_out import pieces_of  # only for those who share their work out
+
+        yield from pieces_of(simulation, scene, list(chunks), block, executor)
+        return
+    for chunk in chunks:
+        yield solved(simulation, scene.take(slice(*chunk)), chunk, block)
+
+
+def _gaps(pieces: Iterable[Piece], size: int) -> list[Chunk]:
+    """Return what no piece covers."""
+    ends = [(0, 0), *sorted(piece.chunk for piece in pieces), (size, size)]
+    return [
+        Chunk(before, after)
+        for (_, before), (after, _) in itertools.pairwise(ends)
+        if before < after
+    ]
+
+
+def _cut(gaps: Iterable[Chunk], step: int) -> Iterator[Chunk]:
+    for gap in gaps:
+        for first in range(gap.first, gap.stop, step):
+            yield Chunk(first, min(first + step, gap.stop))

@@ -1,0 +1,130 @@
+"""Sweeps that are kept go on where they stopped, and only they."""
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Scene, Simulation, kept, sweeping
+from tests.core.test_sweep import CHI, RIGID, assert_same, blocks_of, scene
+from tests.ending_laws import Ending
+
+
+@pytest.fixture(autouse=True)
+def blocks(monkeypatch):
+    blocks_of(monkeypatch, 40)
+
+
+def interrupted(simulation, folder, *, after=80, **changed):
+    def stop(done, total):
+        if done >= after:
+            raise KeyboardInterrupt
+
+    return simulation.sweep(**({"scenes": scene(), "keep": folder, "progress": stop} | changed))
+
+
+@pytest.mark.parametrize(("tangential", "chunk"), [("fronts", None), ("springs", 80)])
+def test_a_sweep_goes_on_where_it_stopped(tmp_path, tangential, chunk):
+    simulation, folder = Simulation(tangential=tangential), tmp_path / "kept"
+    whole = simulation.sweep(scene())
+    assert interrupted(simulation, folder).status[-1].name == "INTERRUPTED"
+    seen = []
+    again = simulation.sweep(
+        scene(), keep=folder, chunk=chunk, progress=lambda *n: seen.append(n[0])
+    )
+    assert seen[0] == 80 + (chunk or 40) - (chunk == 80) * 10
+    assert_same(again, whole)
+    finished = simulation.sweep(scene(), keep=str(folder), progress=lambda *_: pytest.fail("ran"))
+    assert_same(finished, whole)
+
+
+def test_failures_are_kept_with_their_sentences(tmp_path):
+    simulation = Simulation(
+        tangential="springs",
+        integrator=contactlab.create("integrator.symplectic", steps=5, refine=False),
+    )
+    whole = simulation.sweep(scene())
+    assert whole.failures
+    interrupted(simulation, tmp_path / "kept")
+    assert_same(simulation.sweep(scene(), keep=tmp_path / "kept"), whole)
+
+
+def test_another_sweep_is_refused(tmp_path):
+    simulation, folder = Simulation(**RIGID), tmp_path / "kept"
+    interrupted(simulation, folder)
+    other = scene().psi1.copy()
+    other[-1] = np.nextafter(other[-1], 10.0)
+    steps = contactlab.create("integrator.symplectic", steps=7)
+    for changed, scenes, words in (
+        (simulation, Scene.nondimensional(psi1=other, chi=CHI), "scene was"),
+        (simulation, Scene.nondimensional(psi1=other[1:], chi=CHI), "impacts was 150, is 149"),
+        (attrs.evolve(simulation, integrator=steps), scene(), "integrator was .*steps=7"),
+        (Simulation(tangential="frictionless"), scene(), "tangential was .*Coulomb"),
+    ):
+        with pytest.raises(ValueError, match=rf"keep = .*holds another sweep: {words}"):
+            changed.sweep(scenes, keep=folder)
+
+
+def test_other_blocks_are_refused(tmp_path, monkeypatch):
+    interrupted(Simulation(**RIGID), tmp_path / "kept")
+    monkeypatch.setattr(sweeping, "block_of", lambda _: 41)
+    with pytest.raises(ValueError, match="block was 40, is 41"):
+        Simulation(**RIGID).sweep(scene(), keep=tmp_path / "kept")
+
+
+def test_what_holds_no_sweep_is_refused_and_left_alone(tmp_path):
+    simulation, folder = Simulation(**RIGID), tmp_path / "kept"
+    folder.mkdir()
+    (folder / "thesis.txt").write_text("mine")
+    with pytest.raises(ValueError, match="holds something else"):
+        simulation.sweep(scene(), keep=folder)
+    with pytest.raises(ValueError, match="must be the path of a folder"):
+        simulation.sweep(scene(), keep=3)
+    with pytest.raises(FileNotFoundError):
+        simulation.sweep(scene(), keep=tmp_path / "none" / "kept")
+    (folder / "thesis.txt").rename(tmp_path / "thesis.txt")
+    interrupted(simulation, folder)
+    (tmp_path / "thesis.txt").rename(folder / "thesis.txt")
+    kept.remove(folder)
+    assert [path.name for path in folder.iterdir()] == ["thesis.txt"]
+
+
+def test_damaged_files_are_refused(tmp_path):
+    simulation, folder = Simulation(**RIGID), tmp_path / "kept"
+    interrupted(simulation, folder)
+    piece = next(folder.glob("*.npz"))
+    whole = piece.read_bytes()
+    for content in (b"", whole[:100], b"x" * 300):
+        piece.write_bytes(content)
+        with pytest.raises(ValueError, match=r"is damaged.*delete this file"):
+            simulation.sweep(scene(), keep=folder)
+    piece.write_bytes(whole)
+    piece.rename(piece.with_name("impacts-40-90.npz"))
+    with pytest.raises(ValueError, match="is damaged"):
+        simulation.sweep(scene(), keep=folder)
+    (folder / "sweep.json").write_text("[")
+    with pytest.raises(ValueError, match="cannot be read"):
+        simulation.sweep(scene(), keep=folder)
+
+
+def test_impacts_whose_worker_died_are_tried_again(tmp_path):
+    (ends := tmp_path / "ends").mkdir()
+    law = Ending(folder=str(ends), above=7.4, times=2)
+    simulation = Simulation(tangential=law, integrator="symplectic")
+    with contactlab.workers.Workers(1) as one:
+        first = simulation.sweep(scene(), executor=one, keep=tmp_path / "kept")
+        assert "WORKER_DIED" in {status.name for status in first.status}
+        assert simulation.sweep(scene(), executor=one, keep=tmp_path / "kept").check()
+
+
+def test_a_fingerprint_knows_every_number_and_class():
+    trees = [
+        scene(),
+        scene(149),
+        Scene.nondimensional(psi1=scene().psi1, chi=1.4),
+        *([1.0, 2.0], [2.0, 1.0], (1.0, 2.0), 1, 1.0, "1", None, True, {"a": 1}, {"b": 1}),
+        *(np.zeros(3), np.zeros((3, 1)), np.zeros(3, dtype=np.float32), frozenset()),
+        *(contactlab.create("tangential.springs", springs=n) for n in (50, 51)),
+    ]
+    assert len({kept.fingerprint(tree) for tree in trees}) == len(trees)
+    assert kept.fingerprint(scene()) == kept.fingerprint(scene())

@@ -1,0 +1,49 @@
+"""Laws that do not let a worker live, and one that writes into what it is given."""
+
+import os
+import signal
+from pathlib import Path
+from typing import ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab.contracts import WholeImpactTangentialLaw
+from contactlab.contracts.whole_impact import no_force
+
+
+@attrs.frozen(kw_only=True)
+class Ending(WholeImpactTangentialLaw):
+    """No force; ends its process where psi1 is more than ``above``, ``times`` times.
+
+    ``folder`` counts the ends, for no process lives to do so.
+    """
+
+    api_version: ClassVar[int] = 2
+    folder: str
+    above: float = 5.0
+    times: int = 1000
+
+    def whole_impacts(self, scene, normal):
+        if np.max(scene.psi1) > self.above:
+            ends = Path(self.folder)
+            if len(list(ends.iterdir())) < self.times:
+                (ends / os.urandom(8).hex()).touch()
+                os.kill(os.getpid(), signal.SIGKILL)
+        return (no_force(scene, where=True, reason="a test"),)
+
+
+@attrs.frozen(kw_only=True)
+class Raising(WholeImpactTangentialLaw):
+    """No force; raises where psi1 is more than ``above``, or writes there into the scene."""
+
+    api_version: ClassVar[int] = 2
+    above: float = 5.0
+    writes: bool = False
+
+    def whole_impacts(self, scene, normal):
+        if np.max(scene.psi1) > self.above:
+            if not self.writes:
+                raise RuntimeError("too much")
+            scene.tangential_velocity[0] *= 0.5
+        return (no_force(scene, where=True, reason="a test"),)
