@@ -85,9 +85,7 @@ def write_json(result: ImpactResult, path: str | Path) -> None:
 def write_csv(result: ImpactResult, path: str | Path) -> None:
     """Write one row an impact, the unit in each heading."""
     table = [_spread(read(result), result.scene.shape) for _, _, read in COLUMNS]
-    headings = [
-        f"{name} ({unit_in(unit, result.scene)})" if unit else name for name, unit, _ in COLUMNS
-    ]
+    headings = [heading(name, unit, result.scene) for name, unit, _ in COLUMNS]
     write_table(path, headings, list(zip(*table, strict=True)))
 
 
@@ -103,7 +101,7 @@ def write_history_csv(result: ImpactResult, path: str | Path) -> None:
     if history is None or result.scene.shape:
         raise ValueError("result: has no history of a single impact; run(scene, history=True)")
     columns = history.columns()
-    headings = [f"{name} ({unit_in(history.unit(name), result.scene)})" for name in columns]
+    headings = [heading(name, history.unit(name), result.scene) for name in columns]
     write_table(path, headings, list(zip(*columns.values(), strict=True)))
 
 
@@ -121,6 +119,11 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
 
 #: Form of file by the end of its name.
 WRITERS = {".json": write_json, ".csv": write_csv, ".npz": write_npz}
+
+
+def heading(name: str, unit: str, scene: Scene) -> str:
+    """Return the heading of a CSV column: its name, and its unit unless it holds words."""
+    return f"{name} ({unit_in(unit, scene)})" if unit else name
 
 
 def unit_in(unit: str, scene: Scene) -> str:

@@ -222,6 +222,21 @@ class ImpactResult:
 
         return draw_result(axes, self, x, y)
 
+    def to_dataframe(self) -> Any:
+        """Return a ``pandas.DataFrame``: a row an impact, units in ``.attrs["units"]``.
+
+        The index has the axes of a ``Scene.grid``, or of a file's product; ``impact`` otherwise.
+        """
+        from contactlab.labelled import to_dataframe
+
+        return to_dataframe(self)
+
+    def to_xarray(self) -> Any:
+        """Return an ``xarray.Dataset`` with units, its dimensions the axes of a ``Scene.grid``."""
+        from contactlab.labelled import to_xarray
+
+        return to_xarray(self)
+
     def __len__(self) -> int:
         """Return the number of impacts of a batch."""
         if not self.scene.shape:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -12,6 +12,9 @@ from contactlab import batch
 from contactlab.bodies import HalfSpace, Pair, Sphere
 from contactlab.checks import NON_NEGATIVE, POSITIVE, Real, quantity, real, refuse
 from contactlab.signatures import named_arguments
+
+if TYPE_CHECKING:
+    from contactlab.grid import Grid
 
 #: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s: numbers
 #: formed from smaller ones are no longer held to sixteen digits.
@@ -172,6 +175,23 @@ class Scene:
             tangential_mass=0.5 / inertia,
         )
         return cls(None, None, 1.0, 1.0, incidence, pair=pair)
+
+    @classmethod
+    def grid(cls, *bodies: Any, **entries: Any) -> Grid:
+        """Return the batch of every combination of some entries, the last varying fastest.
+
+        ``Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25))``, or bodies first and the
+        entries of ``Scene`` by name: lists for those that vary, numbers for the others. A sweep
+        of it gives tables and arrays with named dimensions: ``ImpactResult.to_xarray``.
+
+        Raises
+        ------
+        ValueError
+            If nothing varies, a list has more than one dimension, or the scene is refused.
+        """
+        from contactlab.grid import grid  # a kind of scene itself
+
+        return grid(*bodies, **entries)
 
     @classmethod
     def stack(cls, scenes: Sequence[Scene]) -> Scene:

@@ -5,10 +5,9 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
-import numpy as np
 
 from contactlab import composition
 from contactlab.checks import refuse
@@ -25,11 +24,11 @@ from contactlab.plan import Plan
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.signatures import named_arguments
-from contactlab.status import Status
 from contactlab.sweeping import swept
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
+
 
 @named_arguments("Simulation(tangential='annulus', integrator='symplectic')")
 @attrs.frozen(kw_only=True, init=False)
@@ -120,7 +119,9 @@ class Simulation:
     ) -> ImpactResult:
         """Run many impacts, vectorised, a block at a time.
 
-        Impacts are solved in blocks of as many as the integrator asks for, counted from the 
+        Impacts are solved in blocks of as many as the integrator asks for, counted from the first
+        impact: 4000 of the exact solution, 20 where they are followed one by one, 1000 of most;
+        16384 where nothing is marched.
         What is solved together depends on neither ``chunk`` nor ``executor``, and so does no bit
         of an answer (of one installation, on one kind of processor).
 

@@ -23,7 +23,7 @@ from contactlab.checks import refuse
 from contactlab.cli import arguments as shared
 from contactlab.cli.run import draw, report
 from contactlab.cli.table import table
-from contactlab.export import WRITERS
+from contactlab.export import COLUMNS, WRITERS, heading
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.scene_file import LawChoice, read_scene
@@ -31,6 +31,8 @@ from contactlab.scene_file import LawChoice, read_scene
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+#: Columns that are printed.
+SHOWN = ("psi1", "chi", "psi2", "status")
 #: Most impacts of a range: a slip of the finger should not fill the memory.
 MOST_IMPACTS = 1_000_000
 
@@ -81,11 +83,12 @@ def execute(arguments: argparse.Namespace) -> int:
     if keep is not None and saved == shared.OK:
         _clear(keep, result)
     if arguments.csv:
-        print("psi1,chi,psi2,status")
+        units = {name: unit for name, unit, _ in COLUMNS}
+        print(",".join(heading(name, units[name], result.scene) for name in SHOWN))
         for psi1, chi, psi2, status in _rows(result):
             print(f"{psi1!r},{chi!r},{psi2!r},{status}")
     elif not arguments.json:
-        print(table(["psi1", "chi", "psi2", "status"], _rows(result)))
+        print(table(SHOWN, _rows(result)))
     varied = file.varied if file else {}
     return max(saved, report(result, as_json=arguments.json, varied=varied))
 
@@ -146,8 +149,7 @@ def _ranges(psi1: Any, chi: Any) -> Scene:
         raise refuse(
             "--psi1, --chi", np.size(psi1) * np.size(chi), f"at most {MOST_IMPACTS} impacts"
         )
-    grid_chi, grid_psi1 = np.meshgrid(np.atleast_1d(chi), np.atleast_1d(psi1), indexing="ij")
-    return Scene.nondimensional(psi1=grid_psi1.ravel(), chi=grid_chi.ravel())
+    return Scene.grid(chi=np.atleast_1d(chi), psi1=np.atleast_1d(psi1))
 
 
 def _rows(result: ImpactResult) -> list[tuple[float, float, float, str]]:

@@ -13,12 +13,13 @@ from typing import Any
 import attrs
 
 from contactlab.checks import Real, real, refuse
+from contactlab.grid import over
 from contactlab.scene import Scene
 from contactlab.scene_file.build import build_scene
 from contactlab.scene_file.entries import entry_path, replaced
 from contactlab.scene_file.laws import LawChoice, read_laws
 from contactlab.scene_file.measured import Measured, read_measured
-from contactlab.scene_file.sweep import read_sweep
+from contactlab.scene_file.sweep import Sweep, read_sweep
 from contactlab.scene_file.table import Table
 
 SECTIONS = (
@@ -39,7 +40,7 @@ class SceneFile:
     title, citation, notes : str
         From ``[about]``; empty where not given.
     scene : Scene
-        One impact, or the batch of a ``[sweep]``.
+        One impact, or the batch of a ``[sweep]``: a ``Grid`` if that is a product.
     varied : mapping of str to array
         The entries that the sweep varies and their values, shape (n,); empty for one impact.
     laws : LawChoice
@@ -84,19 +85,25 @@ def read_scene(path: str | Path) -> SceneFile:
     try:
         root = Table(document, "", known=SECTIONS)
         about = Table(document.get("about", {}), "about", known=ABOUT_KEYS)
-        varied = read_sweep(document.get("sweep", {}))
+        sweep = read_sweep(document.get("sweep", {}))
         tables = {key: root.content[key] for key in SECTIONS[1:5] if root.has(key)}
         return SceneFile(
             path=file,
             **{key: about.text(key, default="") for key in ABOUT_KEYS},
-            scene=_scene_with(tables, varied),
-            varied=varied,
+            scene=_swept(tables, sweep),
+            varied=sweep.varied,
             laws=read_laws(document.get("simulation", {})),
             measured=read_measured(document.get("measured", [])),
             tables=tables,
         )
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from error
+
+
+def _swept(tables: Mapping[str, Any], sweep: Sweep) -> Scene:
+    """Return the file's scene with what its sweep varies."""
+    scene = _scene_with(tables, sweep.varied)
+    return over(scene, sweep.axes) if sweep.axes else scene
 
 
 def _scene_with(tables: Mapping[str, Any], entries: Mapping[str, Any]) -> Scene:

@@ -1,45 +1,77 @@
-"""The ``[sweep]`` of a scene file: which entries vary, and through which values."""
+"""The ``[sweep]`` of a scene file: which entries vary, and through which values.
+
+Lists of equal length go together; with ``product = true`` every value of one meets every value
+of the others, the last entry varying fastest.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from contactlab.checks import Real, refuse, whole
+from contactlab.grid import product
 from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table, number_list
 
 RANGE_KEYS = ("start", "stop", "count")
+#: The entry that asks for every combination.
+PRODUCT = "product"
 REMEDY = "give a list of numbers, or {start = ..., stop = ..., count = ...}"
 
 
-def read_sweep(content: object) -> dict[str, Real]:
-    """Return the varied entries, name to array of shape (n,); empty where nothing varies.
+class Sweep(NamedTuple):
+    """The entries that vary.
+
+    Attributes
+    ----------
+    varied : dict of str to array
+        Name of the entry to its values, one for each impact, shape (n,); empty where nothing
+        varies.
+    axes : dict of str to array
+        The values of each entry, shape (n_i,), if all are combined with all; else empty.
+    """
+
+    varied: dict[str, Real]
+    axes: dict[str, Real]
+
+
+def read_sweep(content: object) -> Sweep:
+    """Return the entries that vary.
 
     Raises
     ------
     ValueError
-        If an entry is unknown or given twice, a value is not a list, or lengths differ.
+        If an entry is unknown or given twice, a value is not a list, or lengths differ and no
+        product is asked for.
     """
     if not isinstance(content, Mapping):
         raise refuse("sweep", content, "must be a table", "write it under [sweep]")
+    combined = content.get(PRODUCT, False)
+    if not isinstance(combined, bool):
+        raise refuse(f"sweep.{PRODUCT}", combined, "must be true or false")
     varied: dict[str, Real] = {}
     paths: dict[str, str] = {}
-    for name, value in _flat(content).items():
+    for name, value in _flat({key: content[key] for key in content if key != PRODUCT}).items():
         path = entry_path(name, where="sweep.")
         if path in paths:
             raise ValueError(f"sweep: {paths[path]} and {name} are the same entry; leave out one")
         paths[path] = name
         varied[name] = _values(f"sweep.{name}", value)
+    if content and not varied:
+        raise ValueError(f"sweep: varies nothing; {REMEDY}")
+    if combined:
+        return Sweep(dict(product(varied)), varied)
     lengths = {name: np.size(values) for name, values in varied.items()}
     if len(set(lengths.values())) > 1:
         listed = ", ".join(f"{name} {length}" for name, length in lengths.items())
-        raise ValueError(f"sweep: the lists must be of equal length; they have {listed}")
-    if content and not varied:
-        raise ValueError(f"sweep: varies nothing; {REMEDY}")
-    return varied
+        raise ValueError(
+            f"sweep: the lists must be of equal length; they have {listed}; "
+            f"for every combination of them write {PRODUCT} = true"
+        )
+    return Sweep(varied, {})
 
 
 def _flat(content: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:

@@ -29,7 +29,7 @@ def motion_agrees(law: Any) -> None:
         ("radius", contact.radius, radius, motion.maximum_radius),
         ("friction load", contact.friction_load, load, motion.maximum_force),
     ):
-        # At separation the radius is its limit or none, as rounding has it; force tells no difference.
+        # At separation the radius is its limit or none, as rounding has it.
         apart = np.abs(one - other)[: -1 if name == "radius" else None]
         gap = float(np.max(apart)) / scale
         hold(gap <= 1e-8, f"The {name} of the motion is {gap:.1e} off that of respond.")

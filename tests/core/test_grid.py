@@ -1,0 +1,155 @@
+"""Grids, and results with named dimensions."""
+
+import pickle
+import sys
+
+import numpy as np
+import pytest
+
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scene
+from contactlab.closed_forms import rigid_body_rebound
+from contactlab.export import COLUMNS, write_csv
+from contactlab.grid import MOST_IMPACTS, Grid
+
+STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+CHI, PSI1 = [1.0, 1.2, 1.4412], [0.0, 2.0, 6.0, 8.0]
+RIGID = Simulation(tangential="coulomb", integrator="symplectic")
+
+
+@pytest.fixture(scope="module")
+def result():
+    return RIGID.sweep(Scene.grid(chi=CHI, psi1=PSI1))
+
+
+def test_every_combination_the_last_fastest(result):
+    grid = result.scene
+    assert isinstance(grid, Grid)
+    assert (grid.shape, grid.dimensions) == ((12,), (3, 4))
+    pairs = [(chi, psi1) for chi in CHI for psi1 in PSI1]
+    assert list(zip(grid.chi, grid.psi1, strict=True)) == pairs
+    assert type(grid.take(slice(2, 5))) is Scene
+    assert grid.scene == Scene.nondimensional(psi1=grid.psi1, chi=grid.chi)
+
+
+def test_a_grid_pickles_and_is_read_only(result):
+    again = pickle.loads(pickle.dumps(result.scene))
+    assert again == result.scene
+    assert {name: values.tolist() for name, values in again.axes.items()} == {
+        "chi": CHI,
+        "psi1": PSI1,
+    }
+    with pytest.raises(TypeError):
+        again.axes["chi"] = [1.0]
+    with pytest.raises(ValueError, match="read-only"):
+        again.axes["chi"][0] = 2.0
+
+
+def test_an_array_has_the_axes_of_the_grid(result):
+    data = result.to_xarray()
+    assert dict(data.sizes) == {"chi": 3, "psi1": 4}
+    for chi in CHI:
+        for psi1 in PSI1:
+            found = float(data.psi2.sel(chi=chi, psi1=psi1))
+            assert found == pytest.approx(float(rigid_body_rebound(psi1, chi)), abs=1e-12)
+    assert data.incidence_angle.attrs == {"units": "rad"}
+    assert set(data.status.values.flat) == {"SUCCESS"}
+
+
+def test_a_table_has_them_as_its_index(result):
+    frame = result.to_dataframe()
+    assert frame.index.names == ["chi", "psi1"]
+    assert frame.loc[(1.2, 8.0), "psi2"] == pytest.approx(rigid_body_rebound(8.0, 1.2))
+    assert frame.psi2.tolist() == result.psi2.tolist()
+    assert frame.attrs["units"]["rebound_normal_velocity"] == "1"
+
+
+def test_bodies_have_units_and_their_entries_are_axes():
+    ball = Sphere(0.0127, STEEL)
+    grid = Scene.grid(
+        ball,
+        HalfSpace(STEEL),
+        friction_coefficient=[0.1, 0.2],
+        normal_speed=1.0,
+        tangential_velocity=[1.0, 2.0, 3.0],
+    )
+    data = RIGID.sweep(grid).to_xarray()
+    assert data.psi2.dims == ("friction_coefficient", "tangential_velocity")
+    assert data.tangential_velocity.attrs == {"units": "m/s"}
+    assert data.rebound_spin.attrs == {"units": "rad/s"}
+    one = RIGID.run(Scene(ball, HalfSpace(STEEL), 0.2, 1.0, tangential_velocity=3.0))
+    assert float(data.rebound_spin[1, 2]) == pytest.approx(one.rebound_spin, rel=1e-14)
+
+
+def test_what_is_no_grid_has_the_dimension_impact(result):
+    assert dict(result[2:5].to_xarray().sizes) == {"impact": 3}
+    assert result[2:5].to_dataframe().index.name == "impact"
+    assert dict(result[2].to_xarray().sizes) == {}
+    assert len(result[2].to_dataframe()) == 1
+    two = RIGID.run(Scene.nondimensional(psi1=np.ones((2, 1)), chi=np.ones(3)))
+    assert dict(two.to_xarray().sizes) == {"impact_0": 2, "impact_1": 3}
+    assert len(two.to_dataframe()) == 6
+
+
+def test_columns_are_those_of_the_csv(result, tmp_path):
+    write_csv(result, tmp_path / "a.csv")
+    headings = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()[0].split(",")
+    frame = result[0:3].to_dataframe()
+    units = frame.attrs["units"]
+    named = [f"{name} ({units[name]})" if units[name] else name for name in frame.columns]
+    undefined = [name for name, _, read in COLUMNS if read(result) is None]
+    assert [one for one in headings if one.partition(" ")[0] not in undefined] == named
+
+
+@pytest.mark.parametrize(
+    ("method", "module"), [("to_dataframe", "pandas"), ("to_xarray", "xarray")]
+)
+def test_without_the_extra_it_is_named(result, monkeypatch, method, module):
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(ImportError, match=rf"{method} needs {module}.*contactlab\[{module}\]"):
+        getattr(result, method)()
+
+
+@pytest.mark.parametrize(
+    ("entries", "words"),
+    [
+        ({"psi1": 1.0, "chi": 1.0}, "none of them varies"),
+        ({"psi1": [[1.0]], "chi": 1.0}, "psi1 = .*plain list"),
+        ({"psi1": [1.0, np.nan], "chi": 1.0}, "psi1 = .*finite"),
+        ({"psi1": [1.0], "chi": [1.0, -1.0]}, "chi = .*positive"),
+        ({"psi1": [1.0], "xi": 1.0}, "xi is not an argument"),
+        ({"psi1": np.ones(4000), "chi": np.ones(4000)}, f"at most {MOST_IMPACTS}"),
+    ],
+)
+def test_bad_grids(entries, words):
+    with pytest.raises(ValueError, match=words):
+        Scene.grid(**entries)
+
+
+SCENE = """
+[nondimensional]
+chi = 1.0
+[sweep]
+product = {product}
+chi = [1.0, 1.2, 1.4412]
+psi1 = {{ start = 0.0, stop = 6.0, count = 4 }}
+"""
+
+
+def test_a_file_asks_for_the_product(tmp_path):
+    path = tmp_path / "grid.toml"
+    path.write_text(SCENE.format(product="true"), encoding="utf-8")
+    file = read_scene(path)
+    assert isinstance(file.scene, Grid)
+    assert dict(RIGID.sweep(file.scene).to_xarray().sizes) == {"chi": 3, "psi1": 4}
+    assert file.scene == Scene.grid(chi=CHI, psi1=[0.0, 2.0, 4.0, 6.0])
+    assert file.varied["psi1"].tolist() == file.scene.psi1.tolist()
+
+
+@pytest.mark.parametrize(
+    ("product", "words"), [("false", "write product = true"), ("1", "sweep.product = 1")]
+)
+def test_a_file_that_does_not_is_refused(tmp_path, product, words):
+    path = tmp_path / "grid.toml"
+    path.write_text(SCENE.format(product=product), encoding="utf-8")
+    with pytest.raises(ValueError, match=words):
+        read_scene(path)
