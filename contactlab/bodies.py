@@ -76,6 +76,19 @@ class Material:
         shear = real("shear_modulus", shear_modulus, rule=POSITIVE, remedy="give it in Pa")
         self.__attrs_init__(shear_modulus=shear, poisson_ratio=ratio, density=density)
 
+    @classmethod
+    def named(cls, name: str) -> Material:
+        """Return a material of the collection by name: see ``contactlab.materials``.
+
+        Raises
+        ------
+        ValueError
+            If there is no such material, with the nearest name.
+        """
+        from contactlab import materials  # only for those who ask by name
+
+        return materials.entry(name).material()
+
     @property
     def young_modulus(self) -> Real:
         """E = 2 G (1 + nu), in Pa."""

@@ -16,6 +16,7 @@ from contactlab.declared import COARSE, psi_magnitude, range_of
 from contactlab.plan import Plan, Sentence
 from contactlab.scene import Scene
 from contactlab.status import Status
+from contactlab.unit_slips import unit_slips
 
 #: Error of what is known in closed form, over max(1, |psi1|).
 CLOSED_FORM = 1e-12
@@ -52,7 +53,7 @@ def make_plan(
     if isinstance(normal.law, ClosedFormNormalLaw):
         how = "in closed form"
     computed = [Sentence(f"normal motion: {type(normal.law).__name__}, {how}", everywhere)]
-    cautions: list[str] = []
+    cautions = unit_slips(scene)
     if separated.any():
         cautions += normal.law.cautions(scene, normal)
         cautions += laws.tangential.cautions(scene, normal)

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 #: A new subcommand is a module of this package and its name here.
 COMMANDS = (
-    "run", "sweep", "compare", "bench", "stability", "validate", "figures", "plugins", "guide",
-    "explore", "animate",
+    "run", "sweep", "compare", "fit", "bench", "stability", "validate", "figures", "animate",
+    "explore", "materials", "plugins", "guide",
 )  # fmt: skip
 
 EPILOG = """examples:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from contactlab import materials
 from contactlab.checks import nearest
 
 MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density")
@@ -66,3 +67,24 @@ def replaced(document: Mapping[str, Any], path: str, value: object) -> dict[str,
     key, _, rest = path.partition(".")
     inner = document.get(key, {})
     return {**document, key: replaced(inner, rest, value) if rest else value}
+
+
+def with_materials(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the tables with the numbers of each material that is given by its name.
+
+    Raises
+    ------
+    ValueError
+        If there is no such material, with the nearest name.
+    """
+    found = dict(tables)
+    for body in ("sphere", "target"):
+        table = found.get(body)
+        name = table.get("material") if isinstance(table, Mapping) else None
+        if isinstance(name, str):
+            path = f"{body}.material"
+            try:
+                found = replaced(found, path, materials.entry(name).numbers())
+            except ValueError as error:
+                raise ValueError(f"{path}: {error}") from None
+    return found

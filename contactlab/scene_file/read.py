@@ -16,7 +16,7 @@ from contactlab.checks import Real, real, refuse
 from contactlab.grid import over
 from contactlab.scene import Scene
 from contactlab.scene_file.build import build_scene
-from contactlab.scene_file.entries import entry_path, replaced
+from contactlab.scene_file.entries import entry_path, replaced, with_materials
 from contactlab.scene_file.laws import LawChoice, read_laws
 from contactlab.scene_file.measured import Measured, read_measured
 from contactlab.scene_file.sweep import Sweep, read_sweep
@@ -86,7 +86,7 @@ def read_scene(path: str | Path) -> SceneFile:
         root = Table(document, "", known=SECTIONS)
         about = Table(document.get("about", {}), "about", known=ABOUT_KEYS)
         sweep = read_sweep(document.get("sweep", {}))
-        tables = {key: root.content[key] for key in SECTIONS[1:5] if root.has(key)}
+        tables = with_materials({key: root.content[key] for key in SECTIONS[1:5] if root.has(key)})
         return SceneFile(
             path=file,
             **{key: about.text(key, default="") for key in ABOUT_KEYS},

@@ -1,0 +1,56 @@
+"""List the materials that have a name, or print one with its sources.
+
+Examples
+--------
+  contactlab materials
+  contactlab materials "soda-lime glass"
+  contactlab materials --json
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+import attrs
+
+from contactlab import materials
+from contactlab.cli import arguments as shared
+from contactlab.cli.table import table
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the name and the output."""
+    parser.add_argument("name", nargs="?", metavar="NAME", help="leave it out for the list")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Print the list of materials, or one of them."""
+    one = arguments.name is not None
+    found = (materials.entry(arguments.name),) if one else materials.entries()
+    if arguments.json:
+        content = {"materials": [attrs.asdict(entry) for entry in found]}
+        print(json.dumps(content | {"references": materials.references()}, indent=2))
+        return shared.OK
+    headings = ["material", "E (GPa)", "nu", "density (kg/m³)"]
+    rows = [
+        [entry.name, entry.young_modulus / 1e9, entry.poisson_ratio, entry.density]
+        for entry in found
+    ]
+    print(table(headings, rows))
+    if one:
+        print(_sources(found[0]))
+    else:
+        print("\ncontactlab materials NAME prints one with its sources.")
+        print('In a scene file: material = "steel"; in Python: Material.named("steel").')
+    return shared.OK
+
+
+def _sources(entry: materials.Entry) -> str:
+    """Return where the numbers of a material come from, the works written out."""
+    lines = [f"\nelastic constants: {entry.elastic_source}", f"density: {entry.density_source}"]
+    lines += [f"note: {entry.note}"] if entry.note else []
+    told = " ".join(lines)
+    works = [f"{key}: {text}" for key, text in materials.references().items() if key in told]
+    return "\n".join([*lines, "", *works])
