@@ -72,6 +72,8 @@ from contactlab.simulation import Simulation
 from contactlab.status import Status
 
 if TYPE_CHECKING:
+    from contactlab import materials
+    from contactlab.fitting import fit
     from contactlab.scene_file import SceneFile
 
 __version__ = "0.1.0"
@@ -89,7 +91,9 @@ __all__ = [
     "Sphere",
     "Status",
     "create",
+    "fit",
     "hookimpl",
+    "materials",
     "read_scene",
     "rebound",
 ]
@@ -122,3 +126,16 @@ def read_scene(path: str | Path) -> SceneFile:
     from contactlab import scene_file  # only those who read files pay for the reader
 
     return scene_file.read_scene(path)
+
+
+def __getattr__(name: str) -> Any:
+    """Return what only some need, when it is asked for."""
+    if name == "fit":
+        from contactlab.fitting import fit
+
+        return fit
+    if name == "materials":
+        import importlib
+
+        return importlib.import_module("contactlab.materials")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from contactlab import materials
@@ -87,4 +87,16 @@ def with_materials(tables: Mapping[str, Any]) -> dict[str, Any]:
                 found = replaced(found, path, materials.entry(name).numbers())
             except ValueError as error:
                 raise ValueError(f"{path}: {error}") from None
+    return found
+
+
+def without_rivals(tables: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
+    """Return the tables without velocities that are given otherwise: polar, or by components."""
+    forms = (("speed", "angle_deg"), ("normal_speed", "tangential_velocity"))
+    found = dict(tables)
+    impact = found.get("impact")
+    if isinstance(impact, Mapping):
+        for form, rival in (forms, forms[::-1]):
+            if set(form) & set(names):
+                found["impact"] = {k: v for k, v in impact.items() if k not in rival}
     return found

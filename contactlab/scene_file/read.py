@@ -16,7 +16,12 @@ from contactlab.checks import Real, real, refuse
 from contactlab.grid import over
 from contactlab.scene import Scene
 from contactlab.scene_file.build import build_scene
-from contactlab.scene_file.entries import entry_path, replaced, with_materials
+from contactlab.scene_file.entries import (
+    entry_path,
+    replaced,
+    with_materials,
+    without_rivals,
+)
 from contactlab.scene_file.laws import LawChoice, read_laws
 from contactlab.scene_file.measured import Measured, read_measured
 from contactlab.scene_file.sweep import Sweep, read_sweep
@@ -67,8 +72,21 @@ class SceneFile:
         return _scene_with(self.tables, entries)
 
 
-def read_scene(path: str | Path) -> SceneFile:
+def read_scene(
+    path: str | Path,
+    *,
+    entries: Mapping[str, Any] | None = None,
+    defaults: Mapping[str, Any] | None = None,
+) -> SceneFile:
     """Read a scene, its sweep, its laws and its measured values from a TOML file.
+
+    Parameters
+    ----------
+    path : path
+    entries : mapping of str to float or array, optional
+        Entries that stand in place of the file's own, and of its sweep: ``{"angle_deg": [5, 10]}``.
+    defaults : mapping of str to float, optional
+        Entries for those that the file does not have.
 
     Raises
     ------
@@ -87,6 +105,11 @@ def read_scene(path: str | Path) -> SceneFile:
         about = Table(document.get("about", {}), "about", known=ABOUT_KEYS)
         sweep = read_sweep(document.get("sweep", {}))
         tables = with_materials({key: root.content[key] for key in SECTIONS[1:5] if root.has(key)})
+        if defaults:
+            tables = _with_defaults(tables, defaults)
+        if entries:
+            tables = without_rivals(tables, entries)
+            sweep = Sweep(varied=dict(entries), axes={})
         return SceneFile(
             path=file,
             **{key: about.text(key, default="") for key in ABOUT_KEYS},
@@ -111,6 +134,20 @@ def _scene_with(tables: Mapping[str, Any], entries: Mapping[str, Any]) -> Scene:
         path = entry_path(name)
         tables = replaced(tables, path, real(path, values))
     return build_scene(tables)
+
+
+def _with_defaults(tables: Mapping[str, Any], defaults: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the tables with entries that they did not have; psi1 and chi need none."""
+    found = dict(tables)
+    if "nondimensional" in found:
+        return found
+    for name, value in defaults.items():
+        path = entry_path(name)
+        section, _, key = path.partition(".")
+        table = found.get(section, {})
+        if isinstance(table, Mapping) and key not in table:
+            found = replaced(found, path, value)
+    return found
 
 
 def _document(file: Path) -> dict[str, Any]:

@@ -1,0 +1,160 @@
+"""What the measurements cannot determine is refused, with a measurement that would."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.fitting.model import Model
+from contactlab.fitting.parameters import Parameter
+from contactlab.fitting.problem import Problem
+from contactlab.scene import Scene
+
+Array = NDArray[np.float64]
+
+#: A change of a parameter by its whole size that moves no measured quantity by this share of
+#: that quantity's size has no effect; derivatives are good to about 1e-6.
+NO_EFFECT = 1e-4
+#: Parameters whose effects, each of unit length, differ by less than this are told apart by none.
+ALIKE = 1e-3
+#: Standard error, of the parameter or of its range, beyond which it is not determined: half
+#: of it, so that the 95 % interval reaches from nothing to double, or through the range.
+VAGUE, VAGUE_IN_RANGE = 0.5, 0.25
+#: Angles of incidence and, without bodies, psi1 at which a further measurement is thought of.
+ANGLES_DEG = np.array(
+    [1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0]
+)
+INCIDENCES = np.array([0.1, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0])
+#: Quantities that are thought of, all without unit.
+THOUGHT_OF = ("normal_restitution", "tangential_restitution")
+#: Share of the greatest effect that a measurement is worth while with.
+WORTH = 0.5
+
+
+def check_enough(problem: Problem) -> None:
+    """Refuse fewer numbers than parameters.
+
+    Raises
+    ------
+    ValueError
+    """
+    numbers, parameters = sum(problem.counts.values()), problem.model.parameters
+    if numbers < len(parameters):
+        raise ValueError(
+            f"{numbers} measured numbers cannot determine {len(parameters)} parameters; "
+            "measure more impacts, or fit fewer"
+        )
+
+
+def check_determined(problem: Problem, values: Array) -> None:
+    """Refuse parameters that no measured number depends on, or that are not told apart.
+
+    Raises
+    ------
+    ValueError
+        With the parameters, and a measurement that would determine them.
+    """
+    parameters = problem.model.parameters
+    effects = problem.linearised(values, problem.sizes())[1] * _sizes(parameters, values)
+    lengths = np.sqrt(np.sum(effects**2, axis=0) / len(effects))
+    for place, parameter in enumerate(parameters):
+        if lengths[place] < NO_EFFECT:
+            raise _undetermined(
+                problem.model, values, [place], f"no measured number depends on {parameter.name}"
+            )
+    unit = effects / np.sqrt(np.sum(effects**2, axis=0))
+    _, singular, turned = np.linalg.svd(unit, full_matrices=False)
+    if singular[-1] < ALIKE:
+        places = np.flatnonzero(np.abs(turned[-1]) > 0.1).tolist()
+        names = " and ".join(parameters[place].name for place in places)
+        told = f"a change of {names} together leaves every measured number as it is"
+        raise _undetermined(problem.model, values, places, told)
+
+
+def check_precise(problem: Problem, values: Array, errors: Array) -> None:
+    """Refuse parameters whose interval is as wide as themselves, or as their range.
+
+    Raises
+    ------
+    ValueError
+    """
+    for place, (parameter, value, error) in enumerate(
+        zip(problem.model.parameters, values.tolist(), errors.tolist(), strict=True)
+    ):
+        wide = error > (
+            VAGUE_IN_RANGE * parameter.width
+            if math.isfinite(parameter.width)
+            else VAGUE * max(abs(value), 1e-300)
+        )
+        if wide:
+            told = (
+                f"the measured numbers hardly depend on {parameter.name}: {value:.3g} with a "
+                f"standard error of {error:.2g}"
+            )
+            raise _undetermined(problem.model, values, [place], told)
+
+
+def _undetermined(model: Model, values: Array, places: list[int], told: str) -> ValueError:
+    names = " and ".join(model.parameters[place].name for place in places)
+    advice = " ".join(dict.fromkeys(_advice(model, values, place) for place in places))
+    return ValueError(f"the data do not determine {names}: {told}; {advice}")
+
+
+def _advice(model: Model, values: Array, place: int) -> str:
+    """Return a sentence on which measurement depends most on a parameter."""
+    parameter = model.parameters[place]
+    scene, x, words = _thought_of(model.setup.scene)
+    names = THOUGHT_OF if scene.sphere is not None else ("normal_restitution", "psi2")
+    effects = {name: _effect(model.at(scene), values, place, name) for name in names}
+    greatest = {name: float(np.max(effect)) for name, effect in effects.items()}
+    name = max(greatest, key=lambda key: greatest[key])
+    if greatest[name] < NO_EFFECT:
+        return f"no rebound of these laws depends on {parameter.name}: fix it, or choose others."
+    worth = x[effects[name] >= WORTH * greatest[name]]
+    where = f" from {worth.min():g} to {worth.max():g}" if len(worth) > 1 else f" of {worth[0]:g}"
+    if len(worth) == len(x):
+        return f"measure {name} to determine {parameter.name}, at any {words}."
+    best = x[int(np.argmax(effects[name]))]
+    return f"measure {name} at {words}{where}, best about {best:g}, to determine {parameter.name}."
+
+
+def _thought_of(scene: Scene) -> tuple[Scene, Array, str]:
+    """Return impacts over a range of incidence at the speed of those that were measured."""
+    if scene.sphere is None:
+        chi = float(np.median(scene.chi))
+        return Scene.nondimensional(psi1=INCIDENCES, chi=chi), INCIDENCES, "psi1"
+    speed: Any = np.hypot(scene.normal_speed, scene.tangential_velocity)
+    angle = np.radians(ANGLES_DEG)
+    first = scene.take(0)
+    impacts = attrs.evolve(
+        first,
+        normal_speed=float(np.median(speed)) * np.cos(angle),
+        tangential_velocity=float(np.median(speed)) * np.sin(angle),
+        spin=0.0,
+    )
+    return impacts, ANGLES_DEG, "angles of incidence (degrees)"
+
+
+def _effect(model: Model, values: Array, place: int, quantity: str) -> Array:
+    """Return how far a quantity moves if the parameter changes by its size."""
+    parameter = model.parameters[place]
+    size = _sizes((parameter,), values[place : place + 1])[0]
+    ends = np.array([values, values])
+    ends[0, place] = max(values[place] - 0.05 * size, parameter.least)
+    ends[1, place] = min(values[place] + 0.05 * size, parameter.most)
+    below, above = model.predicted(ends, [quantity])[quantity]
+    return np.abs(above - below) / (ends[1, place] - ends[0, place]) * size
+
+
+def _sizes(parameters: tuple[Parameter, ...], values: Array) -> Array:
+    """Return what counts as a change of each parameter by its whole size."""
+    return np.array(
+        [
+            min(parameter.width, max(abs(value), 1e-12))
+            for parameter, value in zip(parameters, values.tolist(), strict=True)
+        ]
+    )

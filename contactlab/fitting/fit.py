@@ -1,0 +1,194 @@
+"""``fit``: the one entry to fitting."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.checks import refuse, whole
+from contactlab.fitting import determinacy
+from contactlab.fitting.bootstrap import bootstrapped
+from contactlab.fitting.measurements import Measurements, read_measurements
+from contactlab.fitting.model import Model, scene_of, simulation_of
+from contactlab.fitting.outcome import Estimate, Fit
+from contactlab.fitting.parameters import Setup, parameter_named
+from contactlab.fitting.problem import Problem, solved, starting
+from contactlab.scene import Scene
+from contactlab.scene_file import SceneFile
+from contactlab.signatures import named_arguments
+from contactlab.simulation import Simulation
+
+Array = NDArray[np.float64]
+
+#: Both tails of an interval outside which one estimate in twenty lies.
+TAIL = 0.025
+#: A reduced chi square beyond this says that errors, or the law, do not fit the data.
+LARGE_CHI_SQUARE = 2.0
+#: Nearness, of its range, of a value to the end of it.
+AT_END = 1e-6
+
+
+@named_arguments("fit('impacts.csv', 'bodies.toml', parameters=['friction_coefficient'])")
+def fit(
+    measurements: object,
+    scene: Scene | SceneFile | str | Path | None = None,
+    *,
+    parameters: Sequence[str] = ("friction_coefficient",),
+    simulation: Simulation | None = None,
+    quantities: Sequence[str] | None = None,
+    bootstrap: int = 0,
+    seed: int = 1976,
+    progress: Callable[[int, int], object] | None = None,
+) -> Fit:
+    """Fit numbers of a scene and of laws to measured impacts, by least squares.
+
+    Parameters
+    ----------
+    measurements : path of a CSV file, mapping, or SceneFile
+        Columns by their headings, ``{"angle_deg": [...], "tangential_restitution": [...]}``: see
+        ``contactlab guide fitting``. A scene file has its ``[[measured]]`` values.
+    scene : Scene, SceneFile or path
+        Bodies, and what the measurements do not say; may be left out where these are a scene file.
+    parameters : sequence of str
+        ``friction_coefficient``, ``stiffness_ratio`` (kappa = G*/E*), or an option of a law:
+        ``normal.restitution``, ``tangential.beta0``.
+    simulation : Simulation, optional
+        The laws; by default the exact elastic ones by their table.
+    quantities : sequence of str, optional
+        Those of the measured quantities that are to be met; all by default.
+    bootstrap : int
+        Samples of the bootstrap; 0 for none.
+    seed : int
+        Of the bootstrap's random numbers.
+    progress : callable, optional
+        Called as ``progress(done, total)`` after each sample.
+
+    Returns
+    -------
+    Fit
+
+    Raises
+    ------
+    ValueError
+        For bad input; and where the data do not determine a parameter, with a measurement that
+        would.
+    ImpactError
+        If a law does not follow an impact.
+
+    Notes
+    -----
+    Known errors (columns ``..._error``) are taken as they are, and intervals widened by the
+    square root of the reduced chi square if that is above 1. Where errors are not known, those
+    of each quantity are estimated by its residuals.
+    """
+    if scene is None and isinstance(measurements, SceneFile):
+        scene = measurements
+    if scene is None:
+        raise refuse("scene", None, "must be given", "a Scene, or a TOML file with the bodies")
+    table = read_measurements(measurements).only(quantities)
+    model = _model(table, scene, parameters, simulation_of(simulation))
+    problem = Problem.of(model, table)
+    determinacy.check_enough(problem)
+    values = solved(problem, starting(problem))
+    determinacy.check_determined(problem, values)
+    found = _outcome(problem, table, values)
+    errors = np.array([one.standard_error for one in found.parameters.values()])
+    determinacy.check_precise(problem, values, errors)
+    samples = whole("bootstrap", bootstrap, least=0, most=100_000)
+    if not samples:
+        return found
+    intervals = bootstrapped(problem, values, samples, seed=seed, tail=TAIL, progress=progress)
+    estimates = {
+        name: attrs.evolve(one, bootstrap=interval)
+        for (name, one), interval in zip(found.parameters.items(), intervals, strict=True)
+    }
+    return attrs.evolve(found, parameters=estimates)
+
+
+def _model(
+    table: Measurements, scene: object, parameters: Sequence[str], simulation: Simulation | None
+) -> Model:
+    """Return the model of the measured impacts with the parameters asked for."""
+    if isinstance(parameters, str) or not parameters:
+        raise refuse(
+            "parameters", parameters, "must be a list of names", "['friction_coefficient']"
+        )
+    setup = Setup(scene_of(scene, table.given, len(table)), simulation)
+    found = tuple(parameter_named(name, setup) for name in parameters)
+    names = [parameter.name for parameter in found]
+    if len(set(names)) < len(names):
+        raise refuse("parameters", list(parameters), "names one of them twice")
+    return Model(setup=setup, parameters=found)
+
+
+def _outcome(problem: Problem, table: Measurements, values: Array) -> Fit:
+    """Return the fit with intervals from the covariance."""
+    from scipy.special import stdtrit  # only those who fit pay for it
+
+    parameters = problem.model.parameters
+    scales = problem.scales(values)
+    weighted, jacobian = problem.linearised(values, scales)
+    freedom = len(weighted) - len(values)
+    mean_square = float(weighted @ weighted) / freedom if freedom > 0 else math.nan
+    known = all(name in problem.errors for name in problem.measured)
+    factor = max(mean_square, 1.0) if known and freedom else 1.0 if known else mean_square
+    size = np.sqrt(np.sum(jacobian**2, axis=0))
+    covariance = np.linalg.inv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
+    errors = np.sqrt(factor * np.diag(covariance))
+    reach = float(stdtrit(freedom, 1.0 - TAIL)) if freedom > 0 else math.nan
+    low, high = problem.bounds()
+    estimates = {}
+    for place, parameter in enumerate(parameters):
+        value, off = float(values[place]), reach * float(errors[place])
+        ends = (float(max(value - off, low[place])), float(min(value + off, high[place])))
+        estimates[parameter.name] = Estimate(
+            name=parameter.name,
+            unit=parameter.unit,
+            value=value,
+            standard_error=float(errors[place]),
+            interval=ends if off == off else (math.nan, math.nan),
+        )
+    deviation = np.sqrt(np.diag(covariance))
+    predicted = problem.model.predicted(values[None], list(problem.measured))
+    return Fit(
+        parameters=estimates,
+        correlation=covariance / np.outer(deviation, deviation),
+        laws=problem.model.laws,
+        measurements=table,
+        predicted={name: rows[0] for name, rows in predicted.items()},
+        aic=_criterion(problem, weighted, scales, len(values)),
+        reduced_chi_square=mean_square if known else None,
+        notes=tuple(_notes(problem, values, mean_square if known else None, freedom)),
+    )
+
+
+def _criterion(problem: Problem, weighted: Array, scales: Any, count: int) -> float:
+    """Return -2 log likelihood + 2 parameters, a constant left out: Gaussian errors."""
+    unknown = [name for name in problem.measured if name not in problem.errors]
+    logs = sum(2.0 * problem.counts[name] * math.log(scales[name]) for name in unknown)
+    return float(weighted @ weighted) + logs + 2.0 * (count + len(unknown))
+
+
+def _notes(problem: Problem, values: Array, chi_square: float | None, freedom: int) -> list[str]:
+    found = []
+    for parameter, value in zip(problem.model.parameters, values.tolist(), strict=True):
+        near = AT_END * parameter.width
+        if math.isfinite(near) and min(value - parameter.least, parameter.most - value) <= near:
+            found.append(
+                f"{parameter.name} lies at the end of its range, {parameter.least:.4g} to "
+                f"{parameter.most:.4g}: the law may not be that of the data"
+            )
+    if freedom == 0:
+        found.append("as many numbers as parameters: nothing is left to tell the scatter by")
+    if chi_square is not None and chi_square > LARGE_CHI_SQUARE:
+        found.append(
+            f"residuals are {math.sqrt(chi_square):.2g} times the errors given: these are too "
+            "small, or the law is not that of the data; intervals are widened by as much"
+        )
+    return found

@@ -1,0 +1,168 @@
+"""What a scene and laws, with numbers put in, say of the measured quantities."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.analysis.interrupts import uninterrupted
+from contactlab.checks import refuse
+from contactlab.closed_forms import hertz_scales
+from contactlab.fitting.parameters import Parameter, Setup
+from contactlab.motion import Motion
+from contactlab.plan import Plan
+from contactlab.quantities import QUANTITIES
+from contactlab.rebounds import rebound
+from contactlab.result import ImpactResult
+from contactlab.scene import Scene
+from contactlab.scene_file import SceneFile, read_scene
+from contactlab.simulation import Simulation
+from contactlab.status import Status
+
+Array = NDArray[np.float64]
+
+#: Friction of a scene file that says none; every parameter has its own start besides.
+SOME_FRICTION = 0.1
+TABULATED = "exact elastic law (tabulated rebound)"
+POLAR, CARTESIAN = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class Model:
+    """A scene, laws, and the parameters that are put into them."""
+
+    setup: Setup
+    parameters: tuple[Parameter, ...]
+    _repeated: dict[int, Scene] = attrs.field(factory=dict, init=False, repr=False)
+
+    def predicted(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
+        """Return quantities of all impacts, shape (m, n), at m points of the parameters.
+
+        Parameters
+        ----------
+        points : array, shape (m, parameters)
+        quantities : sequence of str
+
+        Raises
+        ------
+        ImpactError
+            If a law did not follow one of the impacts.
+        """
+        if all(parameter.batched for parameter in self.parameters):
+            return self._together(points, quantities)
+        rows = [self._together(point[None], quantities) for point in points]
+        return {name: np.concatenate([row[name] for row in rows]) for name in quantities}
+
+    def _together(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
+        """Return the quantities at all points from one batch of impacts."""
+        many, count = len(points), self.setup.scene.shape[0]
+        setup = self.setup._replace(scene=self._times(many))
+        for parameter, column in zip(self.parameters, points.T, strict=True):
+            value = np.repeat(column, count) if many > 1 else float(column[0])
+            setup = parameter.applied(setup, value)
+        if setup.simulation is None:
+            result = _tabulated(setup.scene)
+        else:
+            result = uninterrupted(setup.simulation.sweep(setup.scene)).check()
+        return {name: QUANTITIES[name].of(result).reshape(many, count) for name in quantities}
+
+    def _times(self, many: int) -> Scene:
+        """Return the impacts so many times over."""
+        scene = self.setup.scene
+        if many == 1:
+            return scene
+        if many not in self._repeated:
+            self._repeated[many] = scene.take(np.tile(np.arange(scene.shape[0]), many))
+        return self._repeated[many]
+
+    def at(self, scene: Scene) -> Model:
+        """Return the model of other impacts."""
+        return attrs.evolve(self, setup=self.setup._replace(scene=scene))
+
+    @property
+    def laws(self) -> str:
+        """Names of the laws."""
+        simulation = self.setup.simulation
+        if simulation is None:
+            return TABULATED
+        return f"{simulation.normal!r}, {simulation.tangential!r}, {simulation.integrator!r}"
+
+
+def _tabulated(scene: Scene) -> ImpactResult:
+    """Return elastic impacts from the table of psi2; the friction work is not worked out."""
+    shape = scene.shape
+    change: Any = (rebound(scene.psi1, scene.chi) - scene.psi1) / np.asarray(scene.psi_scale)
+    scales = hertz_scales(scene)
+    motion = Motion(
+        slip_velocity_change=change,
+        friction_work=np.full(shape, np.nan),
+        status=np.full(shape, Status.SUCCESS, dtype=object),
+        duration=np.broadcast_to(scales.duration, shape),
+        normal_velocity=-np.broadcast_to(scene.normal_speed, shape),
+        maximum_radius=np.broadcast_to(scales.radius, shape),
+        maximum_approach=np.broadcast_to(scales.approach, shape),
+        maximum_force=np.broadcast_to(scales.force, shape),
+    )
+    plan = Plan(computed=(), left_out=(), marched=np.zeros(shape, dtype=bool))
+    return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
+
+
+def scene_of(scene: object, given: Mapping[str, Array], count: int) -> Scene:
+    """Return the batch of the measured impacts.
+
+    Parameters
+    ----------
+    scene : Scene, SceneFile or path
+        Bodies, and what the measurements do not say. A file needs no friction coefficient.
+    given : mapping of str to array, shape (count,)
+        Entries of the scene, from the measurements; they stand in place of the scene's own.
+    count : int
+
+    Raises
+    ------
+    ValueError
+        If the scene has none of the entries, or another number of impacts.
+    """
+    if isinstance(scene, SceneFile):
+        scene = scene.path
+    if not isinstance(scene, Scene):
+        defaults = {"friction_coefficient": SOME_FRICTION}
+        batch = read_scene(scene, entries=given, defaults=defaults).scene  # type: ignore[arg-type]
+    else:
+        batch = attrs.evolve(scene, **_velocities(given, scene)) if given else scene
+    if not batch.shape:
+        batch = attrs.evolve(batch, normal_speed=np.full(count, batch.normal_speed))
+    if batch.shape != (count,):
+        raise refuse("scene", batch.shape, f"must be one impact, or the {count} that were measured")
+    return batch
+
+
+def _velocities(given: Mapping[str, Array], scene: Scene) -> dict[str, Any]:
+    """Return the fields of a scene that measured entries stand for."""
+    fields: dict[str, Any] = {}
+    speed = np.hypot(scene.normal_speed, scene.tangential_velocity)
+    for name, values in given.items():
+        if name in POLAR:
+            angle = np.radians(given["angle_deg"]) if "angle_deg" in given else None
+            if angle is None:
+                angle = np.arctan2(scene.tangential_velocity, scene.normal_speed)
+            size = given.get("speed", speed)
+            fields["normal_speed"] = size * np.cos(angle)
+            fields["tangential_velocity"] = size * np.sin(angle)
+        elif name in (*CARTESIAN, "spin", "friction_coefficient"):
+            fields[name] = values
+        else:
+            remedy = "give the scene as a TOML file, or velocities alone"
+            raise refuse("measurements", name, "cannot be put into a Scene", remedy)
+    return fields
+
+
+def simulation_of(value: object) -> Simulation | None:
+    """Return the laws to fit with: None for the tabulated exact rebound."""
+    if value is None or isinstance(value, Simulation):
+        return value
+    raise refuse("simulation", value, "must be a Simulation", "or None for the exact elastic law")

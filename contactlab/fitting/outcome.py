@@ -1,0 +1,135 @@
+"""The outcome of a fit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.checks import refuse
+from contactlab.fitting.measurements import Measurements
+from contactlab.plain import plain
+
+Array = NDArray[np.float64]
+Interval = tuple[float, float]
+
+
+@attrs.frozen(kw_only=True)
+class Estimate:
+    """A fitted parameter.
+
+    Attributes
+    ----------
+    name, unit : str
+    value : float
+    standard_error : float
+        From the covariance; NaN if no number is left over to tell the scatter by.
+    interval : tuple of float
+        95 % interval from the covariance and Student's t.
+    bootstrap : tuple of float or None
+        95 % interval of the bootstrap, if one was made.
+    """
+
+    name: str
+    unit: str
+    value: float
+    standard_error: float
+    interval: Interval
+    bootstrap: Interval | None = None
+
+
+@attrs.frozen(kw_only=True, eq=False, repr=False)
+class Fit:
+    """Parameters that meet measured impacts best, and how well they do.
+
+    Attributes
+    ----------
+    parameters : mapping of str to Estimate
+    correlation : array, shape (parameters, parameters)
+    laws : str
+    measurements : Measurements
+    predicted : mapping of str to array, shape (n,)
+        Quantities at the best values.
+    aic : float
+        Akaike's criterion up to a constant, to compare laws over the same measurements: lower
+        is better, by 10 is beyond doubt.
+    reduced_chi_square : float or None
+        Mean square of residuals over their known errors, a degree of freedom; None where
+        errors are not known.
+    notes : tuple of str
+    """
+
+    parameters: Mapping[str, Estimate]
+    correlation: Array
+    laws: str
+    measurements: Measurements
+    predicted: Mapping[str, Array]
+    aic: float
+    reduced_chi_square: float | None = None
+    notes: tuple[str, ...] = ()
+
+    def __getitem__(self, name: str) -> float:
+        """Return the value of a parameter."""
+        if name not in self.parameters:
+            raise refuse("name", name, "was not fitted", f"fitted: {', '.join(self.parameters)}")
+        return self.parameters[name].value
+
+    @property
+    def residuals(self) -> dict[str, Array]:
+        """Measured less predicted, shape (n,), by quantity; NaN where it was not measured."""
+        measured = self.measurements.measured
+        return {name: values - self.predicted[name] for name, values in measured.items()}
+
+    @property
+    def rms(self) -> dict[str, float]:
+        """Root mean square of the residuals, by quantity."""
+        return {name: math.sqrt(np.nanmean(r**2)) for name, r in self.residuals.items()}
+
+    @property
+    def largest(self) -> dict[str, float]:
+        """Largest absolute residual, by quantity."""
+        return {name: float(np.nanmax(np.abs(r))) for name, r in self.residuals.items()}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as plain numbers, lists and text."""
+        content = self.measurements
+        return {
+            "laws": self.laws,
+            "parameters": {
+                name: {
+                    "value": one.value,
+                    "unit": one.unit,
+                    "standard_error": plain(one.standard_error),
+                    "interval_95": [plain(end) for end in one.interval],
+                    "bootstrap_95": list(one.bootstrap) if one.bootstrap else None,
+                }
+                for name, one in self.parameters.items()
+            },
+            "correlation": plain(self.correlation),
+            "rms": self.rms,
+            "largest": self.largest,
+            "aic": plain(self.aic),
+            "reduced_chi_square": plain(self.reduced_chi_square),
+            "given": {name: plain(values) for name, values in content.given.items()},
+            "measured": {name: plain(values) for name, values in content.measured.items()},
+            "predicted": {name: plain(values) for name, values in self.predicted.items()},
+            "notes": list(self.notes),
+        }
+
+    def __repr__(self) -> str:
+        """Return parameters and residuals as a table."""
+        lines = [f"Fit of {len(self.measurements)} impacts to {self.laws}"]
+        for name, one in self.parameters.items():
+            low, high = one.interval
+            unit = "" if one.unit == "1" else f" {one.unit}"
+            error = f"± {one.standard_error:.2g}, 95 % {low:.4g} to {high:.4g}"
+            lines.append(f"  {name:24} {one.value:.5g}{unit} {error}")
+            if one.bootstrap:
+                lines[-1] += f" (bootstrap {one.bootstrap[0]:.4g} to {one.bootstrap[1]:.4g})"
+        for name, rms in self.rms.items():
+            lines.append(f"  {name:24} rms {rms:.3g}, largest {self.largest[name]:.3g}")
+        return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])

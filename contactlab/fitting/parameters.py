@@ -1,0 +1,216 @@
+"""What can be fitted: numbers of a scene, and options of laws."""
+
+from __future__ import annotations
+
+import abc
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import attrs
+import numpy as np
+
+from contactlab.bodies import HalfSpace, Material, Sphere
+from contactlab.checks import Real, Rule, nearest
+from contactlab.registry import KINDS
+from contactlab.scene import Scene
+from contactlab.simulation import Simulation
+
+#: Range in which a coefficient of friction is looked for, and where the search begins.
+FRICTION, FRICTION_STARTS = (1e-6, 10.0), tuple(np.geomspace(0.004, 4.0, 25).tolist())
+#: kappa = 2(1-nu)/(2-nu) of isotropic solids, from nu = 0.5 to nu = -1.
+STIFFNESS = (2.0 / 3.0, 4.0 / 3.0)
+#: Numbers at which an option's rule is tried, to find the interval in which it holds.
+TRIED = np.concatenate([-np.geomspace(1e12, 1e-6, 37), [0.0], np.geomspace(1e-6, 1e12, 37)])
+#: Starts that are tried of a parameter with a finite range.
+STARTS = 7
+
+
+class Setup(NamedTuple):
+    """A scene and the laws that it is run with; no laws stand for the tabulated exact rebound."""
+
+    scene: Scene
+    simulation: Simulation | None
+
+
+@attrs.frozen(kw_only=True)
+class Parameter(abc.ABC):
+    """A number to be found, between ``least`` and ``most``.
+
+    Attributes
+    ----------
+    name, unit : str
+    least, most : float
+    starts : tuple of float
+        Where the search begins: the best of these.
+    """
+
+    name: str
+    unit: str = "1"
+    least: float
+    most: float
+    starts: tuple[float, ...]
+
+    @property
+    def width(self) -> float:
+        """Width of the range; infinite where it has no end, or one without a meaning."""
+        return self.most - self.least
+
+    @property
+    def batched(self) -> bool:
+        """Whether each impact of a batch may have its own value."""
+        return True
+
+    @abc.abstractmethod
+    def applied(self, setup: Setup, value: Real) -> Setup:
+        """Return the scene and the laws with this number, or one for each impact, in them."""
+
+
+class FrictionCoefficient(Parameter):
+    """Coulomb's coefficient, of all impacts alike."""
+
+    @property
+    def width(self) -> float:
+        """Infinite: there is no greatest coefficient of friction."""
+        return math.inf
+
+    def applied(self, setup: Setup, value: Real) -> Setup:
+        """Return the scene with this friction."""
+        return setup._replace(scene=attrs.evolve(setup.scene, friction_coefficient=value))
+
+
+class StiffnessRatio(Parameter):
+    """Kappa = G*/E*, the ratio of the initial tangential to the normal stiffness of the contact.
+
+    It is all that a rebound says of shear moduli. Both bodies are given the Poisson's ratio that
+    belongs to it, kappa = 2(1-nu)/(2-nu), and keep their compliance in normal contact, (1-nu)/(2G).
+    """
+
+    def applied(self, setup: Setup, value: Real) -> Setup:
+        """Return the scene with bodies of this ratio."""
+        scene = setup.scene
+        assert scene.sphere is not None
+        assert scene.target is not None
+        poisson = (2.0 - 2.0 * value) / (2.0 - value)
+
+        def like(body: Any) -> Any:
+            old = body.material
+            shear = old.shear_modulus * (1.0 - poisson) / (1.0 - old.poisson_ratio)
+            new = Material(shear_modulus=shear, poisson_ratio=poisson, density=old.density)
+            return (
+                HalfSpace(new) if isinstance(body, HalfSpace) else attrs.evolve(body, material=new)
+            )
+
+        bodies = {"sphere": like(scene.sphere), "target": like(scene.target)}
+        return setup._replace(scene=attrs.evolve(scene, **bodies))
+
+
+@attrs.frozen(kw_only=True)
+class LawOption(Parameter):
+    """An option of one of the three laws that is a real number."""
+
+    kind: str
+    option: str
+
+    @property
+    def batched(self) -> bool:
+        """False: a law has one number for all impacts."""
+        return False
+
+    def applied(self, setup: Setup, value: Real) -> Setup:
+        """Return the laws with this option."""
+        assert setup.simulation is not None
+        laws = {kind: getattr(setup.simulation, kind) for kind in KINDS}
+        laws[self.kind] = attrs.evolve(laws[self.kind], **{self.option: value})
+        return setup._replace(simulation=Simulation(**laws))
+
+
+def parameter_named(name: str, setup: Setup) -> Parameter:
+    """Return a parameter by name: a number of the scene, or ``kind.option`` of a law.
+
+    The kind may be left out where only one of the laws has an option of that name.
+
+    Raises
+    ------
+    ValueError
+        If scene and laws have no such number, with the nearest match.
+    """
+    known = _known(setup)
+    short: dict[str, list[str]] = {}
+    for full in known:
+        short.setdefault(full.rpartition(".")[2], []).append(full)
+    if name not in known and len(short.get(name, ())) == 1:
+        name = short[name][0]
+    if name in known:
+        return known[name]()
+    near = nearest(name, [*known, *short])
+    told = f"known here: {', '.join(known)}" if known else "nothing can be fitted here"
+    remedy = "; an option of a law is there once the law is chosen, as normal.restitution"
+    raise ValueError(
+        f"parameters = {name!r}: scene and laws have no such number; {near}{told}{remedy}"
+    )
+
+
+def _known(setup: Setup) -> dict[str, Callable[[], Parameter]]:
+    found: dict[str, Callable[[], Parameter]] = {}
+    if isinstance(setup.scene.sphere, Sphere):
+        found["friction_coefficient"] = lambda: FrictionCoefficient(
+            name="friction_coefficient", least=FRICTION[0], most=FRICTION[1], starts=FRICTION_STARTS
+        )
+        found["stiffness_ratio"] = lambda: StiffnessRatio(
+            name="stiffness_ratio",
+            least=STIFFNESS[0],
+            most=STIFFNESS[1],
+            starts=_evenly(*STIFFNESS),
+        )
+    for kind in KINDS if setup.simulation is not None else ():
+        law = getattr(setup.simulation, kind)
+        for field in attrs.fields(type(law)) if attrs.has(type(law)) else ():
+            value = getattr(law, field.name)
+            if field.init and isinstance(value, float) and kind != "integrator":
+                full = f"{kind}.{field.name}"
+                found[full] = lambda field=field, value=value, kind=kind: _option(
+                    kind, field, value
+                )
+    return found
+
+
+def _option(kind: str, field: attrs.Attribute[Any], value: float) -> LawOption:
+    least, most = _range(field.metadata.get("rule"), value)
+    finite = math.isfinite(least) and math.isfinite(most)
+    return LawOption(
+        name=f"{kind}.{field.name}",
+        unit=field.metadata.get("unit", "1"),
+        least=least,
+        most=most,
+        starts=(value, *(_evenly(least, most) if finite else ())),
+        kind=kind,
+        option=field.name,
+    )
+
+
+def _evenly(least: float, most: float) -> tuple[float, ...]:
+    """Return numbers between two, the ends left out."""
+    return tuple(np.linspace(least, most, STARTS + 2)[1:-1].tolist())
+
+
+def _range(rule: Rule | None, value: float) -> tuple[float, float]:
+    """Return the interval around ``value`` in which a rule of a law's option holds."""
+    if rule is None:
+        return -math.inf, math.inf
+    return _end(rule, value, np.flip(TRIED[value > TRIED])), _end(rule, value, TRIED[value < TRIED])
+
+
+def _end(rule: Rule, value: float, further: Any) -> float:
+    """Return the last number for which the rule holds on the way from ``value`` outwards."""
+    inside = value
+    for number in further.tolist():
+        if rule.holds(number):
+            inside = number
+            continue
+        outside = number
+        for _ in range(100):  # halving, to the last bit
+            middle = 0.5 * (inside + outside)
+            inside, outside = (middle, outside) if rule.holds(middle) else (inside, middle)
+        return inside
+    return math.copysign(math.inf, inside - value) if len(further) else value

@@ -1,0 +1,162 @@
+"""Least squares: measured less predicted, over the error of each quantity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.fitting.measurements import Measurements
+from contactlab.fitting.model import Model
+
+Array = NDArray[np.float64]
+
+#: Step of a derivative, of the parameter's size: the table of psi2 is good to 1e-9, steps of
+#: an integrator make answers uneven by less than that, and the third derivative costs 1e-6.
+STEP = 1e-3
+#: Share of a parameter to which it is found: far below any scatter, far above the table's error.
+TOLERANCE = 1e-6
+#: Rounds in which the errors of several quantities are taken from their own residuals.
+ROUNDS = 4
+#: Least error of a quantity, of the size of its values: data made by the model itself have none.
+LEAST_ERROR = 1e-9
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class Problem:
+    """A model and what it is to meet.
+
+    Attributes
+    ----------
+    model : Model
+    measured : mapping of str to array, shape (n,)
+        NaN where there is no value.
+    errors : mapping of str to array, shape (n,)
+        Known standard errors.
+    """
+
+    model: Model
+    measured: Mapping[str, Array]
+    errors: Mapping[str, Array]
+
+    @classmethod
+    def of(cls, model: Model, measurements: Measurements) -> Problem:
+        """Return the problem of measurements."""
+        return cls(model=model, measured=measurements.measured, errors=measurements.errors)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Numbers measured, by quantity."""
+        return {name: int(np.isfinite(v).sum()) for name, v in self.measured.items()}
+
+    def residuals(self, points: Array) -> dict[str, Array]:
+        """Return measured less predicted, shape (m, n) by quantity, at points (m, parameters)."""
+        predicted = self.model.predicted(points, list(self.measured))
+        return {name: found - predicted[name] for name, found in self.measured.items()}
+
+    def weighted(self, points: Array, scales: Mapping[str, Any]) -> Array:
+        """Return residuals over errors, shape (m, numbers), quantity after quantity, no gaps."""
+        found = self.residuals(points)
+        known = {name: np.isfinite(values) for name, values in self.measured.items()}
+        parts = [(found[name] / scales[name])[:, known[name]] for name in found]
+        return np.concatenate(parts, axis=1)
+
+    def sizes(self) -> dict[str, float]:
+        """Return the size of the values of each quantity."""
+        return {name: float(np.nanmax(np.abs(v))) or 1.0 for name, v in self.measured.items()}
+
+    def scales(self, values: Array | None = None) -> dict[str, Any]:
+        """Return the error of each quantity: known, or by the rms of its residuals.
+
+        Before there are residuals the spread of the values stands for them.
+        """
+        found: dict[str, Any] = {}
+        residuals = None if values is None else self.residuals(values[None])
+        for name, measured in self.measured.items():
+            if name in self.errors:
+                found[name] = self.errors[name]
+                continue
+            least = LEAST_ERROR * self.sizes()[name]
+            off = measured - np.nanmean(measured) if residuals is None else residuals[name]
+            found[name] = max(float(np.sqrt(np.nanmean(off**2))), least)
+        return found
+
+    def bounds(self) -> tuple[Array, Array]:
+        """Return the ends of the ranges of the parameters."""
+        ends = [(parameter.least, parameter.most) for parameter in self.model.parameters]
+        return np.array([low for low, _ in ends]), np.array([high for _, high in ends])
+
+    def linearised(self, values: Array, scales: Mapping[str, Any]) -> tuple[Array, Array]:
+        """Return weighted residuals, shape (numbers,), and their derivatives by the parameters.
+
+        Derivatives, shape (numbers, parameters), are central differences inside the bounds; all
+        impacts that they need are run together.
+        """
+        count = len(values)
+        low, high = self.bounds()
+        steps = STEP * np.array([abs(v) or 1.0 for v in values.tolist()])
+        below = np.maximum(values - steps, low)
+        above = np.minimum(values + steps, high)
+        points = np.tile(values, (1 + 2 * count, 1))
+        points[1 : 1 + count][np.diag_indices(count)] = below
+        points[1 + count :][np.diag_indices(count)] = above
+        found = self.weighted(points, scales)
+        slopes = (found[1 + count :] - found[1 : 1 + count]).T / (above - below)
+        return found[0], slopes
+
+
+def starting(problem: Problem) -> Array:
+    """Return where the search begins: of each parameter the best of its starts, in turn."""
+    scales = problem.scales()
+    values = np.array([parameter.starts[0] for parameter in problem.model.parameters])
+    for place, parameter in enumerate(problem.model.parameters):
+        points = np.tile(values, (len(parameter.starts), 1))
+        points[:, place] = parameter.starts
+        costs = np.sum(problem.weighted(points, scales) ** 2, axis=1)
+        values[place] = parameter.starts[int(np.argmin(costs))]
+    return values
+
+
+def solved(problem: Problem, start: Array) -> Array:
+    """Return the values of the parameters that meet the measurements best.
+
+    Where several quantities have unknown errors, each is weighted by its own residuals, round
+    after round: the maximum of likelihood.
+    """
+    unknown = [name for name in problem.measured if name not in problem.errors]
+    values = start
+    scales = problem.scales()
+    for _ in range(ROUNDS if len(problem.measured) > 1 and unknown else 1):
+        values = _minimum(problem, values, scales)
+        scales = problem.scales(values)
+    return values
+
+
+def _minimum(problem: Problem, start: Array, scales: Mapping[str, Any]) -> Array:
+    from scipy.optimize import least_squares  # only those who fit pay for it
+
+    known: dict[bytes, tuple[Array, Array]] = {}
+
+    def linearised(values: Array) -> tuple[Array, Array]:
+        """Return residuals and derivatives; the search asks for them one after the other."""
+        key = values.tobytes()
+        if key not in known:
+            known.clear()
+            known[key] = problem.linearised(values, scales)
+        return known[key]
+
+    low, high = problem.bounds()
+    found = least_squares(
+        lambda values: linearised(values)[0],
+        np.clip(start, low, high),
+        jac=lambda values: linearised(values)[1],
+        bounds=(low, high),
+        x_scale=np.array([abs(v) or 1.0 for v in start.tolist()]),
+        xtol=TOLERANCE,
+        ftol=TOLERANCE**2,
+        gtol=TOLERANCE**2,
+    )
+    return np.asarray(found.x)

@@ -1,0 +1,63 @@
+"""Laws by how well they meet the same measurements, each with its own best parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import attrs
+
+from contactlab.fitting.fit import fit
+from contactlab.fitting.measurements import read_measurements
+from contactlab.fitting.outcome import Fit
+from contactlab.result import ImpactError
+from contactlab.simulation import Simulation
+
+
+@attrs.frozen(kw_only=True)
+class Ranked:
+    """A law and its fit, or why there is none."""
+
+    name: str
+    fit: Fit | None
+    refusal: str = ""
+
+
+def rank(
+    measurements: object,
+    scene: Any,
+    simulations: Mapping[str, Simulation | None],
+    *,
+    progress: Callable[[int, int], object] | None = None,
+    parameters: Sequence[str] = ("friction_coefficient",),
+    **options: Any,
+) -> list[Ranked]:
+    """Return laws in the order of Akaike's criterion, the best first, those without a fit last.
+
+    Parameters
+    ----------
+    measurements, scene, parameters
+        As for ``fit``.
+    simulations : mapping of str to Simulation
+        By the names under which they are to appear; None stands for the exact elastic laws.
+    progress : callable, optional
+        Called as ``progress(done, total)`` after each law.
+    **options
+        As for ``fit``.
+
+    Raises
+    ------
+    ValueError
+        If the measurements cannot be read. What a single law cannot do is in its ``refusal``.
+    """
+    table = read_measurements(measurements)
+    found = []
+    for done, (name, simulation) in enumerate(simulations.items(), start=1):
+        keywords = options | {"parameters": parameters, "simulation": simulation}
+        try:
+            found.append(Ranked(name=name, fit=fit(table, scene, **keywords)))
+        except (ValueError, ImpactError) as error:
+            found.append(Ranked(name=name, fit=None, refusal=str(error)))
+        if progress is not None:
+            progress(done, len(simulations))
+    return sorted(found, key=lambda one: (one.fit is None, one.fit.aic if one.fit else 0.0))
