@@ -21,9 +21,9 @@ Array = NDArray[np.float64]
 NO_EFFECT = 1e-4
 #: Parameters whose effects, each of unit length, differ by less than this are told apart by none.
 ALIKE = 1e-3
-#: Standard error, of the parameter or of its range, beyond which it is not determined: half
-#: of it, so that the 95 % interval reaches from nothing to double, or through the range.
-VAGUE, VAGUE_IN_RANGE = 0.5, 0.25
+#: Half-width of the 95 % interval, of the range or else of the value, from which on nothing is
+#: determined; and a half-width of friction that says something however small the value.
+VAGUE_IN_RANGE, VAGUE, SHARP = 0.5, 1.0, 0.05
 #: Angles of incidence and, without bodies, psi1 at which a further measurement is thought of.
 ANGLES_DEG = np.array(
     [1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0]
@@ -75,25 +75,28 @@ def check_determined(problem: Problem, values: Array) -> None:
         raise _undetermined(problem.model, values, places, told)
 
 
-def check_precise(problem: Problem, values: Array, errors: Array) -> None:
-    """Refuse parameters whose interval is as wide as themselves, or as their range.
+def check_precise(problem: Problem, values: Array, reaches: Array) -> None:
+    """Refuse parameters whose interval is as wide as their range, or as themselves.
+
+    Parameters
+    ----------
+    problem : Problem
+    values, reaches : array, shape (parameters,)
+        Best values, and half-widths of their 95 % intervals; NaN where there is none.
 
     Raises
     ------
     ValueError
+        With the parameter, and a measurement that would determine it.
     """
-    for place, (parameter, value, error) in enumerate(
-        zip(problem.model.parameters, values.tolist(), errors.tolist(), strict=True)
-    ):
-        wide = error > (
-            VAGUE_IN_RANGE * parameter.width
-            if math.isfinite(parameter.width)
-            else VAGUE * max(abs(value), 1e-300)
-        )
-        if wide:
+    for place, parameter in enumerate(problem.model.parameters):
+        value, reach = float(values[place]), float(reaches[place])
+        allowed = VAGUE_IN_RANGE * parameter.width
+        if not math.isfinite(allowed):
+            allowed = max(VAGUE * abs(value), SHARP)
+        if reach > allowed:
             told = (
-                f"the measured numbers hardly depend on {parameter.name}: {value:.3g} with a "
-                f"standard error of {error:.2g}"
+                f"the measured numbers hardly depend on {parameter.name}: {value:.3g} ± {reach:.2g}"
             )
             raise _undetermined(problem.model, values, [place], told)
 

@@ -97,9 +97,8 @@ def fit(
     determinacy.check_enough(problem)
     values = solved(problem, starting(problem))
     determinacy.check_determined(problem, values)
-    found = _outcome(problem, table, values)
-    errors = np.array([one.standard_error for one in found.parameters.values()])
-    determinacy.check_precise(problem, values, errors)
+    found, reaches = _outcome(problem, table, values)
+    determinacy.check_precise(problem, values, reaches)
     samples = whole("bootstrap", bootstrap, least=0, most=100_000)
     if not samples:
         return found
@@ -127,8 +126,8 @@ def _model(
     return Model(setup=setup, parameters=found)
 
 
-def _outcome(problem: Problem, table: Measurements, values: Array) -> Fit:
-    """Return the fit with intervals from the covariance."""
+def _outcome(problem: Problem, table: Measurements, values: Array) -> tuple[Fit, Array]:
+    """Return the fit with intervals from the covariance, and their half-widths."""
     from scipy.special import stdtrit  # only those who fit pay for it
 
     parameters = problem.model.parameters
@@ -141,11 +140,11 @@ def _outcome(problem: Problem, table: Measurements, values: Array) -> Fit:
     size = np.sqrt(np.sum(jacobian**2, axis=0))
     covariance = np.linalg.inv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
     errors = np.sqrt(factor * np.diag(covariance))
-    reach = float(stdtrit(freedom, 1.0 - TAIL)) if freedom > 0 else math.nan
+    reaches = errors * (float(stdtrit(freedom, 1.0 - TAIL)) if freedom > 0 else math.nan)
     low, high = problem.bounds()
     estimates = {}
     for place, parameter in enumerate(parameters):
-        value, off = float(values[place]), reach * float(errors[place])
+        value, off = float(values[place]), float(reaches[place])
         ends = (float(max(value - off, low[place])), float(min(value + off, high[place])))
         estimates[parameter.name] = Estimate(
             name=parameter.name,
@@ -156,7 +155,7 @@ def _outcome(problem: Problem, table: Measurements, values: Array) -> Fit:
         )
     deviation = np.sqrt(np.diag(covariance))
     predicted = problem.model.predicted(values[None], list(problem.measured))
-    return Fit(
+    found = Fit(
         parameters=estimates,
         correlation=covariance / np.outer(deviation, deviation),
         laws=problem.model.laws,
@@ -166,6 +165,7 @@ def _outcome(problem: Problem, table: Measurements, values: Array) -> Fit:
         reduced_chi_square=mean_square if known else None,
         notes=tuple(_notes(problem, values, mean_square if known else None, freedom)),
     )
+    return found, reaches
 
 
 def _criterion(problem: Problem, weighted: Array, scales: Any, count: int) -> float:

@@ -85,6 +85,11 @@ class Fit:
         return {name: values - self.predicted[name] for name, values in measured.items()}
 
     @property
+    def counts(self) -> dict[str, int]:
+        """Measured numbers, by quantity."""
+        return {name: int(np.isfinite(r).sum()) for name, r in self.residuals.items()}
+
+    @property
     def rms(self) -> dict[str, float]:
         """Root mean square of the residuals, by quantity."""
         return {name: math.sqrt(np.nanmean(r**2)) for name, r in self.residuals.items()}

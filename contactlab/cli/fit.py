@@ -1,0 +1,243 @@
+"""Fit friction, stiffness ratio or options of laws to measured impacts, and rank laws by fit.
+
+Examples
+--------
+  contactlab fit examples/kharaz2001.toml --quantity tangential_restitution
+  contactlab fit impacts.csv bodies.toml --fit friction_coefficient,stiffness_ratio
+  contactlab fit impacts.csv bodies.toml --laws exact,coulomb,mindlin_cap --figure fit.png
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from contactlab.checks import whole
+from contactlab.cli import arguments as shared
+from contactlab.cli.table import table
+from contactlab.composition import DEFAULT_NORMAL
+from contactlab.files import write_table
+from contactlab.fitting import Fit, Ranked, fit, rank, read_measurements
+from contactlab.quantities import QUANTITIES
+from contactlab.scene_file import LawChoice, SceneFile, read_scene
+from contactlab.scene_file.entries import entry_unit
+from contactlab.simulation import Simulation
+
+#: The name of the exact elastic laws by their table, which are no law that is installed.
+EXACT = "exact"
+SAMPLES = 200
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the data, the parameters, the laws and the outputs."""
+    parser.add_argument(
+        "files",
+        nargs="+",
+        metavar="FILE",
+        help="DATA.csv and SCENE.toml, or a SCENE.toml that holds measured values",
+    )
+    parser.add_argument(
+        "--fit",
+        type=shared.names,
+        default=["friction_coefficient"],
+        metavar="A,B,...",
+        help="friction_coefficient (default), stiffness_ratio, or options of the laws chosen, "
+        "such as normal.restitution",
+    )
+    parser.add_argument(
+        "--laws",
+        type=shared.names,
+        default=[EXACT],
+        metavar="A,B,...",
+        help="tangential laws, the first reported and all ranked; exact (default) is the exact "
+        "elastic one by its table",
+    )
+    parser.add_argument("--normal", metavar="NAME", help="name of the normal law")
+    parser.add_argument("--integrator", metavar="NAME", help="name of the integrator")
+    parser.add_argument(
+        "--set",
+        type=shared.setting,
+        action="append",
+        default=[],
+        dest="settings",
+        metavar="KIND.OPTION=VALUE",
+        help="option of a law: normal.restitution=0.9; may be repeated",
+    )
+    parser.add_argument(
+        "--quantity",
+        type=shared.names,
+        metavar="A,B,...",
+        help="measured quantities to fit (default: all)",
+    )
+    parser.add_argument(
+        "--bootstrap",
+        type=int,
+        default=SAMPLES,
+        metavar="SAMPLES",
+        help=f"samples of the bootstrap of the first law (default {SAMPLES}; 0 for none)",
+    )
+    parser.add_argument(
+        "--figure",
+        type=shared.file_of(".png"),
+        metavar="FILE.png",
+        help="draw measured values, laws and residuals",
+    )
+    parser.add_argument(
+        "--csv", type=shared.file_of(".csv"), metavar="FILE.csv", help="write the residuals"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    shared.add_progress(parser)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Fit and report; 1 if one of several laws could not be fitted."""
+    whole("--bootstrap", arguments.bootstrap, least=0, most=100_000)
+    data, path = _files(arguments.files)
+    table_of_impacts = read_measurements(data)
+    simulations = _simulations(
+        arguments,
+        read_scene(path, entries=table_of_impacts.given, defaults={"friction_coefficient": 0.1}),
+    )
+    asked: dict[str, Any] = {"parameters": arguments.fit, "quantities": arguments.quantity}
+    first, *others = simulations
+    found = fit(
+        table_of_impacts,
+        path,
+        simulation=simulations[first],
+        bootstrap=arguments.bootstrap,
+        progress=shared.progress(arguments.progress, "bootstrap"),
+        **asked,
+    )
+    ranked = []
+    if others:
+        rest = {name: simulations[name] for name in others}
+        progress = shared.progress(arguments.progress, "laws")
+        ranked = rank(table_of_impacts, path, rest, progress=progress, **asked)
+        ranked.append(Ranked(name=first, fit=found))
+        ranked.sort(key=lambda one: (one.fit is None, one.fit.aic if one.fit else 0.0))
+    shown = [one for one in ranked if one.fit] or [Ranked(name=first, fit=found)]
+    saved = shared.save(
+        (arguments.figure, lambda file: _draw(file, shown)),
+        (arguments.csv, lambda file: _write(file, shown)),
+    )
+    if arguments.json:
+        content = found.to_dict() | {
+            "ranking": [
+                {"law": one.name, "refusal": one.refusal, "fit": one.fit and one.fit.to_dict()}
+                for one in ranked
+            ]
+        }
+        print(json.dumps(content, indent=2, allow_nan=False))
+    else:
+        print(describe(found))
+        if ranked:
+            print("\n" + _ranking(ranked))
+    failed = [one for one in ranked if one.fit is None]
+    for one in failed:
+        print(f"contactlab fit: {one.name}: {one.refusal}", file=sys.stderr)
+    return shared.FAILED if failed else saved
+
+
+def _files(names: list[str]) -> tuple[Any, Path]:
+    """Return what was measured, and the file with the bodies."""
+    scenes = [name for name in names if name.lower().endswith(".toml")]
+    tables = [name for name in names if name not in scenes]
+    if len(scenes) != 1 or len(tables) > 1:
+        raise ValueError(
+            f"FILE = {' '.join(names)}: give the measured impacts as DATA.csv and the bodies as "
+            "SCENE.toml; or a SCENE.toml that holds measured values"
+        )
+    path = Path(scenes[0])
+    return (Path(tables[0]) if tables else read_scene(path)), path
+
+
+def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation | None]:
+    """Return the laws by their names: the file's normal law, the tangential ones asked for."""
+    normal = arguments.normal or file.laws.normal
+    found: dict[str, Simulation | None] = {}
+    for name in arguments.laws:
+        if name == EXACT and normal in (None, DEFAULT_NORMAL) and not arguments.settings:
+            found[name] = None
+            continue
+        kept = {key: value for key, value in file.laws.options.items() if key.startswith("normal")}
+        choice = LawChoice(
+            normal=file.laws.normal, integrator=arguments.integrator, options=kept
+        ).choose(normal=arguments.normal, tangential=None if name == EXACT else name)
+        found[name] = choice.set(dict(arguments.settings)).simulation()
+    return found
+
+
+def describe(found: Fit) -> str:
+    """Return parameters with their intervals, and residuals, as tables."""
+    headings = ["parameter", "value", "standard error", "95 % from", "to"]
+    rows: list[list[Any]] = []
+    for one in found.parameters.values():
+        name = one.name if one.unit == "1" else f"{one.name} ({one.unit})"
+        rows.append([name, one.value, one.standard_error, *one.interval, *(one.bootstrap or ())])
+    if any(one.bootstrap for one in found.parameters.values()):
+        headings += ["bootstrap from", "to"]
+    measured = found.measurements.measured
+    residuals = [
+        [name, QUANTITIES[name].unit, found.counts[name], found.rms[name],
+         found.largest[name]]
+        for name in measured
+    ]  # fmt: skip
+    parts = [
+        f"{len(found.measurements)} impacts of {found.measurements.source or 'the data'}; "
+        f"laws: {found.laws}",
+        table(headings, rows, digits=5),
+        table(["measured", "unit", "numbers", "rms residual", "largest"], residuals, digits=3),
+    ]
+    if found.measurements.unused:
+        parts.append(f"columns not used: {', '.join(found.measurements.unused)}")
+    if found.reduced_chi_square is not None:
+        parts.append(f"reduced chi square: {found.reduced_chi_square:.3g}")
+    parts += [f"note: {note}" for note in found.notes]
+    return "\n\n".join(parts)
+
+
+def _ranking(ranked: list[Ranked]) -> str:
+    """Return the laws in order, each with its own parameters."""
+    fits = [one.fit for one in ranked if one.fit]
+    names, quantities = list(fits[0].parameters), list(fits[0].rms)
+    headings = ["law", "AIC - best", *names, *(f"rms {name}" for name in quantities)]
+    best = min(one.aic for one in fits)
+    rows = [
+        [one.name, one.fit.aic - best, *(one.fit[name] for name in names), *one.fit.rms.values()]
+        if one.fit
+        else [one.name, *[None] * (1 + len(names) + len(quantities))]
+        for one in ranked
+    ]
+    return f"laws by fit (a difference of 10 is beyond doubt)\n{table(headings, rows, digits=4)}"
+
+
+def _write(path: Path, shown: list[Ranked]) -> None:
+    """Write a row for each measured number and law."""
+    rows: list[list[Any]] = []
+    given: list[str] = []
+    for one in shown:
+        assert one.fit is not None
+        content = one.fit.measurements
+        given = list(content.given)
+        for name, residuals in one.fit.residuals.items():
+            columns = [*content.given.values(), content.measured[name]]
+            columns += [one.fit.predicted[name], residuals]
+            rows += [
+                [one.name, name, QUANTITIES[name].unit, impact + 1]
+                + [float(column[impact]) for column in columns]
+                for impact in np.flatnonzero(np.isfinite(residuals)).tolist()
+            ]
+    headings = [f"{name} ({entry_unit(name)})" for name in given]
+    head = ["law", "quantity", "unit", "impact", *headings, "measured", "predicted", "residual"]
+    write_table(path, head, rows)
+
+
+def _draw(path: Path, shown: list[Ranked]) -> None:
+    from contactlab.figures.fitting import draw_fits  # matplotlib only when drawing
+
+    draw_fits(path, {one.name: one.fit for one in shown if one.fit})
