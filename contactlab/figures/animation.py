@@ -106,7 +106,7 @@ def _frames(
     assert result.history is not None
     with styled():
         figure = Figure(figsize=SIZE, dpi=DOTS)
-        canvas = FigureCanvasAgg(figure)
+        canvas: Any = FigureCanvasAgg(figure)  # matplotlib leaves its drawing untyped
         panels = _panels(figure, result)
         canvas.draw()
         figure.set_layout_engine("none")  # laid out once, not in every frame

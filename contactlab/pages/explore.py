@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 from importlib import resources
-from typing import Any, NamedTuple
+from typing import Any
 
+import attrs
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,7 +19,8 @@ DIGITS = 4
 SPRINGS, STEPS = 120, 600
 
 
-class Axis(NamedTuple):
+@attrs.frozen
+class Axis:
     """Evenly spaced stops of a slider.
 
     Attributes
@@ -37,7 +39,7 @@ class Axis(NamedTuple):
     @property
     def stops(self) -> NDArray[np.float64]:
         """Return the stops, shape (count,)."""
-        return self.start + self.step * np.arange(self.count)
+        return self.start + self.step * np.arange(self.count, dtype=np.float64)
 
     def to_dict(self) -> dict[str, float]:
         """Return what the page needs."""
