@@ -40,7 +40,8 @@ def _in_degrees(read: Callable[[ImpactResult], Any]) -> Callable[[ImpactResult],
     return converted
 
 
-def _all() -> dict[str, Quantity]:
+def numeric_columns() -> dict[str, Quantity]:
+    """Return the columns of the exports that are numbers, by name; angles in degrees too."""
     found = {}
     for name, unit, read in COLUMNS:
         if name == "status":
@@ -51,7 +52,7 @@ def _all() -> dict[str, Quantity]:
     return found
 
 
-QUANTITIES = _all()
+QUANTITIES = numeric_columns()
 
 
 def quantity_named(name: str, *, where: str = "quantity") -> Quantity:

@@ -1,7 +1,8 @@
 """The numbers behind Figs 1-4 of the paper.
 
-To add a figure is a function ``figure_5`` here, for the numbers, and one of the same name in
-``contactlab.figures.paper``, which draws them: the command finds both by their name.
+To add a figure is a function ``figure_5`` here, which returns the numbers: the command finds it by
+its name, writes its table and draws its curves. One that wants more than curves and a legend has a
+function of the same name in ``contactlab.figures.paper``.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.checks import Real
 from contactlab.closed_forms import rigid_body_rebound
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
@@ -78,10 +80,7 @@ def figure_1(simulation: Simulation) -> FigureData:
 
 def figure_2(simulation: Simulation) -> FigureData:
     """Return psi2(psi1) for chi = 1.4412, elastic and rigid-body."""
-    psi1 = FIGURE_2_PSI1
-    result = simulation.sweep(Scene.nondimensional(psi1=psi1, chi=SOLID_CHI)).check()
-    rigid = np.asarray(rigid_body_rebound(psi1, SOLID_CHI))
-    return _reflexion(2, "psi1", psi1, result, rigid)
+    return _reflexion(2, simulation, psi1=FIGURE_2_PSI1, chi=SOLID_CHI)
 
 
 def figure_3(simulation: Simulation) -> FigureData:
@@ -95,17 +94,18 @@ def figure_3(simulation: Simulation) -> FigureData:
 
 def figure_4(simulation: Simulation) -> FigureData:
     """Return psi2(chi) at psi1 = 1.2, elastic and rigid-body."""
-    chi = FIGURE_4_CHI
-    result = simulation.sweep(Scene.nondimensional(psi1=FIXED_PSI1, chi=chi)).check()
-    rigid = np.asarray(rigid_body_rebound(FIXED_PSI1, chi))
-    return _reflexion(4, "chi", chi, result, rigid)
+    return _reflexion(4, simulation, psi1=FIXED_PSI1, chi=FIGURE_4_CHI)
 
 
-FIGURES: Mapping[int, Callable[[Simulation], FigureData]] = {
-    int(name.removeprefix("figure_")): function
-    for name, function in list(globals().items())
-    if name.startswith("figure_")
-}
+def figures() -> dict[int, Callable[[Simulation], FigureData]]:
+    """Return the functions of this module that make the numbers of a figure, by its number."""
+    prefix = "figure_"
+    found = {
+        int(name.removeprefix(prefix)): function
+        for name, function in globals().items()
+        if name.startswith(prefix)
+    }
+    return dict(sorted(found.items()))
 
 
 def chi_of_gyration(gyration_ratio: float) -> float:
@@ -127,6 +127,18 @@ def scaled_forces(result: ImpactResult) -> tuple[Array, Array, Array]:
 def _forces(
     number: int, simulation: Simulation, scenes: Mapping[float, Scene], parameter: str
 ) -> FigureData:
+    """Return the forces over the contact in several impacts, and the normal force of one.
+
+    Parameters
+    ----------
+    number : int
+        Of the figure.
+    simulation : Simulation
+    scenes : mapping of float to Scene
+        By the parameter that tells their curves apart.
+    parameter : str
+        Its name.
+    """
     curves: list[Curve] = []
     for value, scene in scenes.items():
         result = simulation.run(scene, history=True).check()
@@ -139,12 +151,23 @@ def _forces(
     )
 
 
-def _reflexion(
-    number: int, x: str, values: Array, result: ImpactResult, rigid: Array
-) -> FigureData:
+def _reflexion(number: int, simulation: Simulation, *, psi1: Real, chi: Real) -> FigureData:
+    """Return psi2, elastic and rigid-body, over psi1 or chi, whichever is an array.
+
+    Parameters
+    ----------
+    number : int
+        Of the figure.
+    simulation : Simulation
+    psi1, chi : float or array
+    """
+    varied = {"psi1": psi1, "chi": chi}
+    name = next(name for name, value in varied.items() if np.ndim(value))
+    x = np.asarray(varied[name])
+    result = simulation.sweep(Scene.nondimensional(psi1=psi1, chi=chi)).check()
     law = result.laws["tangential"].partition(" ")[0]
     curves = (
-        Curve(law, np.nan, values, np.asarray(result.psi2)),
-        Curve("rigid-body theory", np.nan, values, rigid),
+        Curve(law, np.nan, x, np.asarray(result.psi2)),
+        Curve("rigid-body theory", np.nan, x, np.asarray(rigid_body_rebound(psi1, chi))),
     )
-    return FigureData(number=number, x=x, y="psi2", parameter="", curves=curves)
+    return FigureData(number=number, x=name, y="psi2", parameter="", curves=curves)

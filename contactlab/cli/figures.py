@@ -12,7 +12,7 @@ import argparse
 import functools
 from pathlib import Path
 
-from contactlab.analysis.paper_figures import FIGURES, FigureData
+from contactlab.analysis.paper_figures import FigureData, figures
 from contactlab.cli import arguments as shared
 from contactlab.files import unwritable, write_table
 from contactlab.scene_file import LawChoice
@@ -26,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--only",
         type=_numbers,
-        default=list(FIGURES),
+        default=list(figures()),
         metavar="1,2,...",
         help="some of the figures",
     )
@@ -53,7 +53,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     progress = shared.progress(arguments.progress, "figures")
     for done, number in enumerate(arguments.only, start=1):
-        data = FIGURES[number](simulation)
+        data = figures()[number](simulation)
         numbers, picture = (arguments.out / f"figure-{number}{end}" for end in (".csv", ".png"))
         _write_csv(numbers, data)
         save(picture, functools.partial(draw, data=data))
@@ -73,8 +73,8 @@ def _write_csv(path: Path, data: FigureData) -> None:
 
 def _numbers(text: str) -> list[int]:
     found = [word.strip() for word in text.split(",")]
-    unknown = [word for word in found if word not in map(str, FIGURES)]
+    unknown = [word for word in found if word not in map(str, figures())]
     if unknown:
-        known = ", ".join(map(str, FIGURES))
+        known = ", ".join(map(str, figures()))
         raise argparse.ArgumentTypeError(f"{unknown[0]!r}: the paper's figures are {known}")
     return [int(word) for word in dict.fromkeys(found)]

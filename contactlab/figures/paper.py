@@ -23,9 +23,19 @@ SOLID_CHI_RANGE = (3.5 / 3.0, 3.5 / 2.0)  # nu = 0.5 and nu = 0 in eq. (38)
 
 
 def draw(axes: Axes, data: FigureData) -> Axes:
-    """Draw a figure of the paper from its numbers, with the function of its name."""
-    drawn: Axes = globals()[f"figure_{data.number}"](axes, data)
+    """Draw a figure of the paper from its numbers, with the function of its name if one is here."""
+    drawn: Axes = globals().get(f"figure_{data.number}", curves)(axes, data)
     return drawn
+
+
+def curves(axes: Axes, data: FigureData) -> Axes:
+    """Draw every curve with its name or parameter in a legend."""
+    for curve, colour in zip(data.curves, ordered_colours(len(data.curves)), strict=True):
+        name = curve.name if np.isnan(curve.parameter) else f"{curve.parameter:g}"
+        axes.plot(curve.x, curve.y, color=colour, label=name)
+    axes.set(xlabel=label(data.x), ylabel=label(data.y))
+    axes.legend(title=data.parameter)
+    return axes
 
 
 def figure_1(axes: Axes, data: FigureData) -> Axes:

@@ -7,9 +7,9 @@ import json
 
 import pytest
 
-from contactlab.analysis import validation, work_precision
+from contactlab.analysis import paper_figures, validation, work_precision
 from contactlab.analysis.bench_methods import Method
-from contactlab.cli import bench, figures, stability
+from contactlab.cli import bench, stability
 from contactlab.simulation import Simulation
 
 STEPPED = [Method(tangential="springs", integrator="symplectic")]
@@ -89,12 +89,10 @@ def test_stability_on_its_map(run, monkeypatch, tmp_path):
 
 
 def test_figures(run, monkeypatch, tmp_path):
-    drawn = dict(figures.FIGURES)
-
     def interrupted(_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(figures, "FIGURES", drawn | {4: interrupted})
+    monkeypatch.setattr(paper_figures, "figure_4", interrupted)
     ran = run("figures", "--out", tmp_path, "--only", "2,4", "--tangential", "coulomb")
     assert ran.status == 130
     assert sorted(path.name for path in tmp_path.iterdir()) == ["figure-2.csv", "figure-2.png"]

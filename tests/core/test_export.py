@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation
+from contactlab import Scene, Simulation, export, quantities
 from contactlab.export import (
     COMPARISON_TABLE,
     SWEEP_TABLE,
@@ -75,6 +75,24 @@ def test_a_file_gets_the_name_asked_for_and_angles_keep_their_unit(tmp_path):
 
 def test_the_tables_for_reading_name_columns():
     assert set(SWEEP_TABLE) | set(COMPARISON_TABLE) <= set(QUANTITIES)
+
+
+def test_a_new_column_is_one_line(monkeypatch, tmp_path):
+    """Every file has it, and quantities by name, an angle in degrees too."""
+    line = ("turned", "rad", lambda result: np.arctan(result.psi2))
+    for module in (export, quantities):
+        monkeypatch.setattr(module, "COLUMNS", (*export.COLUMNS, line))
+    result = SIM.run(SINGLE)
+    turned = np.arctan(result.psi2)
+    assert to_dict(result)["turned"] == turned
+    write_csv(result, tmp_path / "a.csv")
+    assert float(table(tmp_path / "a.csv")[0]["turned (rad)"]) == turned
+    write_npz(result, tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as content:
+        assert content["turned"] == turned
+    found = quantities.numeric_columns()
+    assert found["turned"].of(result) == turned
+    assert found["turned_deg"].of(result) == pytest.approx(np.degrees(turned), rel=1e-15)
 
 
 def test_npz_round_trip(tmp_path):
