@@ -10,8 +10,8 @@ import numpy as np
 
 from contactlab.checks import count
 from contactlab.declared import ErrorModel
+from contactlab_jaeger.bundle import Array, Bundle
 from contactlab_jaeger.law import ProfileLaw
-from contactlab_jaeger.places import Array, Places
 
 #: Measured over 1,000 runs of 29 impacts, see ``ErrorModel``.
 ERRORS = ErrorModel(
@@ -21,7 +21,7 @@ ERRORS = ErrorModel(
 )  # fmt: skip
 
 
-class Circles(Places):
+class Circles(Bundle):
     """Circles a_i = i/n, i = 0 .. n-1, with w linear in s² between them and 0 at s = b.
 
     The weights integrate this w exactly. Beyond the last circle inside the contact, at a,
@@ -43,16 +43,16 @@ class Circles(Places):
         last = np.minimum(last, self.count - 1)
         radius = np.sqrt(square)
         rim = 1.5 * _rim(np.where(radius > 0.0, radius, 1.0), self.circles[last])
-        found = np.repeat(self.measure[:, None], len(square), axis=1)
+        found = np.repeat(self.full_weights[:, None], len(square), axis=1)
         found[last, np.arange(len(square))] += rim - self.inner[last]
         return found
 
-    def weights_within(self, square: float, reach: int) -> Array:
+    def weights_of_one(self, square: float, touching: int) -> Array:
         """Return the same for one contact."""
-        found = self.measure[:reach].copy()
-        if reach:
-            rim = 1.5 * _rim(square**0.5, self.circles[reach - 1])
-            found[-1] += rim - self.inner[reach - 1]
+        found = self.full_weights[:touching].copy()
+        if touching:
+            rim = 1.5 * _rim(square**0.5, self.circles[touching - 1])
+            found[-1] += rim - self.inner[touching - 1]
         return found
 
 
@@ -115,6 +115,6 @@ class SharpAnnulus(ProfileLaw):
         """
         return 0.05 + 0.2 / self.annuli
 
-    def places(self) -> Places:
+    def bundle(self) -> Bundle:
         """Return the circles between the annuli."""
         return circles(self.annuli)

@@ -1,4 +1,4 @@
-"""Elastic impacts that slip from start to end, which laws of partial slip need not follow."""
+"""Elastic impacts that slip from start to end, for which laws of partial slip need no march."""
 
 from __future__ import annotations
 

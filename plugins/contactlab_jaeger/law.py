@@ -1,4 +1,4 @@
-"""The part of a law that does not depend on where it keeps w(s)."""
+"""The part of a law of springs that does not depend on where they are."""
 
 from __future__ import annotations
 
@@ -24,22 +24,36 @@ from contactlab.contracts import (
 )
 from contactlab.declared import ErrorModel
 from contactlab.scene import Scene
-from contactlab_jaeger import step, whole
+from contactlab_jaeger import all_steps, step
+from contactlab_jaeger.bundle import Array, Bundle
 from contactlab_jaeger.gross_slip import gross_slip
-from contactlab_jaeger.places import Array, Places
 
 #: Numbers in a table of a whole run; larger ones (16 MB each) are not made.
 LARGEST_RUN = 2_000_000
 
 
 class Scales(NamedTuple):
-    """What turns SI into scaled variables and back; floats, or arrays of the batch shape."""
+    """What turns SI into scaled variables and back; floats, or arrays of the batch shape.
 
-    radius: Real  # a, m
-    displacement: Real  # kappa R / (mu a²), 1/m; 0 without friction
-    force: Real  # mu P_max, N
-    normal_force: Real  # P_max of a Hertz contact of radius a, N
-    work: Real  # mu P_max mu a²/(kappa R), J
+    Attributes
+    ----------
+    radius : float or array
+        a, the largest contact radius, in m.
+    displacement : float or array
+        kappa R/(mu a²), in 1/m: scaled displacement per metre; 0 without friction.
+    force : float or array
+        mu P_max, in N.
+    normal_force : float or array
+        P_max of a Hertz contact of radius a, in N.
+    work : float or array
+        mu P_max times mu a²/(kappa R), in J.
+    """
+
+    radius: Real
+    displacement: Real
+    force: Real
+    normal_force: Real
+    work: Real
 
     @classmethod
     def of(cls, scene: Scene, normal: NormalMotion) -> Scales:
@@ -72,8 +86,8 @@ class ProfileLaw(AllStepsTangentialLaw):
     errors: ClassVar[ErrorModel]
 
     @abstractmethod
-    def places(self) -> Places:
-        """Return the places, made once for each number of them."""
+    def bundle(self) -> Bundle:
+        """Return the springs, made once for each number of them."""
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return those of gross slip too, where (44) and (46) say so."""
@@ -83,7 +97,7 @@ class ProfileLaw(AllStepsTangentialLaw):
         """Return what was measured over elastic Hertz contacts; of others nothing is declared."""
         if "elastic_hertz" not in normal.offers:
             return math.nan
-        return self.errors.psi2_error(scene, steps, len(self.places().squares))
+        return self.errors.psi2_error(scene, steps, len(self.bundle().squares))
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return those of every law, and that of a pressure that may be no hemisphere."""
@@ -106,18 +120,18 @@ class ProfileLaw(AllStepsTangentialLaw):
     ) -> tuple[TangentialResponse, State]:
         """Return the force after the step."""
         shape, scales, memory = state
-        radius = step.plain(after.radius) / scales.radius
-        pressure = scales.pressure(radius, step.plain(after.friction_load))
+        radius = step.float_of_one(after.radius) / scales.radius
+        pressure = scales.pressure(radius, step.float_of_one(after.friction_load))
         radius, pressure = step.common(radius, shape), step.common(pressure, shape)
         moved = increment.displacement * scales.displacement
         if not shape:
-            force, work, memory = step.advance(self.places(), memory, moved, radius, pressure, 1)
+            force, work, memory = step.advance(self.bundle(), memory, moved, radius, pressure, 1)
             response = TangentialResponse(force.item() * scales.force, work.item() * scales.work)
             return response, State(shape, scales, memory)
         if len(shape) > 1 or np.shape(moved) != shape:
             moved = np.broadcast_to(moved, shape).reshape(-1)
         force, work, memory = step.advance(
-            self.places(), memory, moved, radius, pressure, math.prod(shape)
+            self.bundle(), memory, moved, radius, pressure, math.prod(shape)
         )
         force, work = force.reshape(shape) * scales.force, work.reshape(shape) * scales.work
         return TangentialResponse(force, work), State(shape, scales, memory)
@@ -126,30 +140,30 @@ class ProfileLaw(AllStepsTangentialLaw):
         self, scene: Scene, normal: NormalMotion, steps: Steps
     ) -> AllStepsResponse | None:
         """Return the forces of a whole impact."""
-        if len(steps.drift) * len(self.places().squares) > LARGEST_RUN:
+        if len(steps.drift) * len(self.bundle().squares) > LARGEST_RUN:
             return None
         scales = Scales.of(scene, normal)
         radius = steps.contact.radius / scales.radius
-        course = whole.Course(
+        scaled = all_steps.ScaledSteps(
             radius=radius,
             pressure=scales.pressure(radius, steps.contact.friction_load),
             drift=steps.drift * scales.displacement,
             kick=steps.kick * (scales.force / scene.pair.tangential_mass),
         )
-        force, work = whole.run(self.places(), course, float(scene.slip_velocity))
+        force, work = all_steps.advance_all(self.bundle(), scaled, float(scene.slip_velocity))
         return AllStepsResponse(force * scales.force, float(work * scales.work), True)
 
     def fields(self, state: State) -> Mapping[str, NDArray[Any]]:
-        """Return radius (m), displacement and limit (m), stuck and slipping at every place.
+        """Return radius (m), displacement and limit (m), stuck and slipping of every spring.
 
-        ``displacement`` is w, the tangential displacement of the spring there; ``slipping``
+        ``displacement`` is w, the tangential displacement of the spring; ``slipping``
         is its sign where it is held at the limit, 0 elsewhere.
         """
         shape, scales, memory = state
-        squares = self.places().squares
+        squares = self.bundle().squares
         items = math.prod(shape)
 
-        def whole_rows(rows: Array) -> Array:
+        def of_all(rows: Array) -> Array:
             full = np.zeros((items, len(squares)))
             full[:, : len(rows)] = rows.T
             return full.reshape(*shape, len(squares))
@@ -157,14 +171,14 @@ class ProfileLaw(AllStepsTangentialLaw):
         def column(value: Real) -> Any:
             return np.asarray(value)[..., None]
 
-        stretch, limit = whole_rows(memory.stretch), whole_rows(memory.limit)
+        deflection, limit = of_all(memory.deflection), of_all(memory.limit)
         with np.errstate(divide="ignore"):
-            length = np.where(np.asarray(scales.displacement) > 0, 1.0 / scales.displacement, 0.0)
-        slips = (limit > 0.0) & (np.abs(stretch) >= limit)
+            unit = np.where(np.asarray(scales.displacement) > 0, 1.0 / scales.displacement, 0.0)
+        slips = (limit > 0.0) & (np.abs(deflection) >= limit)
         return {
-            "radius": np.broadcast_to(column(scales.radius) * np.sqrt(squares), stretch.shape),
-            "displacement": column(length) * stretch,
-            "limit": column(length) * limit,
+            "radius": np.broadcast_to(column(scales.radius) * np.sqrt(squares), deflection.shape),
+            "displacement": column(unit) * deflection,
+            "limit": column(unit) * limit,
             "stuck": (limit > 0.0) & ~slips,
-            "slipping": (slips * np.sign(stretch)).astype(np.int8),
+            "slipping": (slips * np.sign(deflection)).astype(np.int8),
         }

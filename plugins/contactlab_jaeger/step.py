@@ -1,4 +1,4 @@
-"""One step of any number of impacts: w follows the surfaces and is cut back to its limit."""
+"""One step of any number of impacts: w grows with the displacement and is cut to its limit."""
 
 from __future__ import annotations
 
@@ -7,20 +7,30 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.checks import Real
+from contactlab_jaeger.bundle import Array, Bundle
 from contactlab_jaeger.geometry import Geometry, of_each, of_one
-from contactlab_jaeger.places import Array, Places
 
 #: Numbers of a batch that differ by less than this, relatively, are taken as one: impacts of
-#: any size and speed go through one course in units of their own, up to rounding.
+#: any size and speed are the same in units of their own, up to rounding.
 ROUNDING = 1e-14
 
 
 class Memory(NamedTuple):
-    """What the contacts remember. Places lead, so that each row is contiguous over the batch."""
+    """What the contacts remember. Springs lead, so that each row is contiguous over the batch.
 
-    stretch: Array  # w at the places in contact in some impact, shape (reach, items)
-    limit: Array  # l there, shape (reach, items) or (reach, 1)
-    square: Real  # b², a float where all impacts agree
+    Attributes
+    ----------
+    deflection : array, shape (touching, items)
+        w of the springs that touch in some impact.
+    limit : array, shape (touching, items) or (touching, 1)
+        l there.
+    square : float or array, shape (items,)
+        b², a float where all impacts agree.
+    """
+
+    deflection: Array
+    limit: Array
+    square: Real
 
 
 def start() -> Memory:
@@ -30,7 +40,7 @@ def start() -> Memory:
 
 
 def common(value: Real, shape: tuple[int, ...]) -> Real:
-    """Return ``value`` as a float where the whole batch agrees on it, else flat."""
+    """Return ``value`` as a float where the whole batch agrees on it, else with shape (items,)."""
     if isinstance(value, float):
         return value
     first = float(value.flat[0])
@@ -39,71 +49,90 @@ def common(value: Real, shape: tuple[int, ...]) -> Real:
     return np.broadcast_to(value, shape).reshape(-1)
 
 
-def plain(value: Real) -> Any:
+def float_of_one(value: Real) -> Any:
     """Return an array of one number as a float: arithmetic with it is faster."""
     return value if isinstance(value, float) or value.size > 1 else value.item()
 
 
 def advance(
-    places: Places, memory: Memory, displacement: Real, radius: Real, pressure: Real, items: int
+    bundle: Bundle, memory: Memory, displacement: Real, radius: Real, pressure: Real, items: int
 ) -> tuple[Array, Array, Memory]:
     """Return force, friction work and new memory after a step.
 
     Parameters
     ----------
+    bundle : Bundle
+    memory : Memory
     displacement, radius, pressure : float, or array of shape (items,)
         D of the step; b and p at its end.
+    items : int
+        Impacts.
 
     Returns
     -------
     force, work : array, shape (items,)
-        The work of each place is the mean of w before and after times its slip: of second
-        order also for places that let go within the step, where the limit before is far
-        above what they carried.
+        The work of each spring is the mean of w before and after times its slip: of second
+        order also for springs that leave the contact within the step, where the limit before is
+        far above what they carried.
     memory : Memory
     """
     square = radius * radius
     if isinstance(square, float) and isinstance(memory.square, float):
         if square != square:
             return np.full(items, np.nan), np.full(items, np.nan), memory
-        geometry = of_one(places, memory.square, square, pressure)
+        geometry = of_one(bundle, memory.square, square, pressure)
     else:
         each = np.broadcast_to(square, (items,))
-        geometry = of_each(places, memory.square, each, pressure)
-    force, work, stretch = follow(places, memory.stretch, geometry, displacement, items)
-    if not len(stretch):  # no contact must not hide what is not a number
+        geometry = of_each(bundle, memory.square, each, pressure)
+    force, work, deflection = _returned(bundle, memory.deflection, geometry, displacement, items)
+    if not len(deflection):  # no contact must not hide what is not a number
         force = force + 0.0 * (displacement * pressure)
-    return force, work, Memory(stretch, geometry.limit, square)
+    return force, work, Memory(deflection, geometry.limit, square)
 
 
-def follow(
-    places: Places, old: Array, geometry: Geometry, displacement: Real, items: int
+def _returned(
+    bundle: Bundle, before: Array, geometry: Geometry, displacement: Real, items: int
 ) -> tuple[Array, Array, Array]:
-    """Return force, friction work and the new w: w <- clip(w + share D, -l, l)."""
-    settled, share, limit, weights = geometry
-    reach, known = len(limit), min(len(old), len(limit))
-    trial = np.empty((reach, items))
-    np.add(old[:settled], displacement, out=trial[:settled])
-    if settled < reach:
-        np.multiply(share, displacement, out=trial[settled:])
-        trial[settled:known] += old[settled:known]
-    stretch = np.minimum(trial, limit)
-    np.maximum(stretch, -limit, out=stretch)
+    """Return force, friction work and the new w: w <- clip(w + part D, -l, l), a return mapping.
 
-    work = np.subtract(trial, stretch, out=trial)  # the slip, to begin with
-    if known == reach:
-        work *= stretch + old[:reach]
+    Parameters
+    ----------
+    bundle : Bundle
+    before : array, shape (touching before, items)
+        w at the beginning of the step.
+    geometry : Geometry
+    displacement : float or array, shape (items,)
+        D of the step.
+    items : int
+        Impacts.
+    """
+    throughout, part, limit, weights = geometry
+    touching = len(limit)
+    still = min(len(before), touching)  # springs that touch at both ends of the step
+    trial = np.empty((touching, items))
+    np.add(before[:throughout], displacement, out=trial[:throughout])
+    if throughout < touching:
+        np.multiply(part, displacement, out=trial[throughout:])
+        trial[throughout:still] += before[throughout:still]
+    after = np.minimum(trial, limit)
+    np.maximum(after, -limit, out=after)
+
+    work = np.subtract(trial, after, out=trial)  # the slip, to begin with
+    if still == touching:
+        work *= after + before[:touching]
     else:
-        work[:known] *= stretch[:known] + old[:known]
-        work[known:] *= stretch[known:]
+        work[:still] *= after[:still] + before[:still]
+        work[still:] *= after[still:]
     done = _weighed(weights, work)
-    if reach < len(old):  # places that came out of contact let go of all they held
-        left = old[reach:]
-        done = done + places.measure[reach : len(old)] @ (left * (left + displacement))
-    return _weighed(weights, stretch), 0.5 * np.maximum(done, 0.0), stretch
+    if touching < len(before):  # springs that left the contact lose all they held
+        left = before[touching:]
+        slip = left + displacement
+        done = done + bundle.full_weights[touching : len(before)] @ (left * slip)
+    return _weighed(weights, after), 0.5 * np.maximum(done, 0.0), after
 
 
 def _weighed(weights: Array, values: Array) -> Array:
+    """Return the sum over the springs, shape (items,)."""
     if weights.ndim == 1:
         return np.asarray(weights @ values)
     return np.asarray(np.einsum("ij,ij->j", weights, values))
