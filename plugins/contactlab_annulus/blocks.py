@@ -1,66 +1,62 @@
-"""A whole run of fixed steps at once: step by step at the edge of stick, all tests in blocks.
+"""All steps of one impact at once: step by step at the edge of stick, all tests in blocks.
 
 Almost always the inner annuli stick and the outer ones slip in one direction. Then a step is one
 small product, and what changes is the number that stick: it is followed by two scalar tests at
 the edge, of the outermost annulus that sticks (36) and the innermost that slips (37). After
 a block of such steps the tests of all annuli are made together. The steps before the first
-failure are kept; the one that failed is searched in earnest, as are divisions of other
-kinds. So the result is that of step by step, at a fraction of the calls.
+failure are kept; the one that failed is left to the search of ``one.advance``, as are
+divisions of other kinds. So the result is that of step by step, at a fraction of the calls.
 """
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 
 from contactlab_annulus import one
 from contactlab_annulus.tables import Array, Tables, response
+from contactlab_jaeger.all_steps import ScaledSteps
 
 #: Steps in a block: it grows while no test fails.
 SHORTEST, LONGEST = 4, 128
 #: Moves of the edge in one step; more are left to the search.
 MOST_MOVES = 4
-#: Divisions tried on one step before it is left to ``one.advance``, which knows when to give up.
+#: Divisions tried on one step before it is left to ``one.advance``, which gives up in the end.
 MOST_TRIES = 8
 
 
-class Course(NamedTuple):
-    """The steps of a run in the paper's variables, shape (K,).
+class BlockMarch:
+    """The march of one impact. Row k of its arrays is step k; row 0 of lags and tractions is touch.
 
-    ``drift`` takes the slip velocity to displacement, ``kick`` takes F^ to its change.
+    Parameters
+    ----------
+    table : Tables
+    steps : ScaledSteps
+        In the paper's variables.
+    velocity : float
+        Slip velocity at first touch, in m/s.
     """
 
-    radius: Array
-    pressure: Array
-    drift: Array
-    kick: Array
-
-
-class Runner:
-    """One run. Row k of its tables is step k; row 0 of lags and tractions is first touch."""
-
-    def __init__(self, table: Tables, course: Course, velocity: float) -> None:
-        count, size = len(course.radius), len(table.weight)
-        limits = np.square(course.radius)[:, None] - table.radius_squared
+    def __init__(self, table: Tables, steps: ScaledSteps, velocity: float) -> None:
+        count, size = len(steps.radius), len(table.weight)
+        limits = np.square(steps.radius)[:, None] - table.radius_squared
         np.sqrt(np.maximum(limits, 0.0, out=limits), out=limits)
-        limits *= course.pressure[:, None]
-        self.table, self.course, self.velocity, self.limits = table, course, velocity, limits
-        self.reaches = np.count_nonzero(limits, axis=1).tolist()
-        self.drifts, self.kicks = course.drift.tolist(), course.kick.tolist()
+        limits *= steps.pressure[:, None]
+        self.table, self.steps, self.velocity, self.limits = table, steps, velocity, limits
+        self.touching_at = np.count_nonzero(limits, axis=1).tolist()
+        self.drifts, self.kicks = steps.drift.tolist(), steps.kick.tolist()
         self.lags, self.tractions = np.zeros((count + 1, size)), np.zeros((count + 1, size))
-        self.found = np.zeros((count, size + 1))
-        self.signs, self.reach = np.zeros(size), 0  # the division, as in ``one.Memory``
+        self.answers = np.zeros((count, size + 1))
+        self.signs, self.touching = np.zeros(size), 0  # the division, as in ``one.Memory``
         self.at, self.total, self.change = 0, 0.0, 0.0
 
     @property
     def forces(self) -> Array:
         """F^ of the steps taken."""
-        return self.found[: self.at, 0]
+        return self.answers[: self.at, 0]
 
-    def run(self) -> bool:
+    def march(self) -> bool:
         """Take all steps; return whether every division was found."""
-        count, length, tries = len(self.found), SHORTEST, 0
+        count, length, tries = len(self.answers), SHORTEST, 0
         while self.at < count:
             if tries > MOST_TRIES or not self.table.responses:
                 if not self._step():
@@ -68,7 +64,7 @@ class Runner:
                 tries = 0
                 continue
             edge, until = self._edge(), min(self.at + length, count)
-            kept = self._fixed(until) if edge is None else self._follow(until, *edge)
+            kept = self._by_division(until) if edge is None else self._by_edge(until, *edge)
             length = min(2 * length, LONGEST) if self.at == until else SHORTEST
             tries = 0 if kept else tries + 1
         return True
@@ -81,36 +77,37 @@ class Runner:
 
     def _edge(self) -> tuple[int, float] | None:
         """Return how many leading annuli stick and the sign of the rest, if that says it all."""
-        reach = self.reach
-        signs = self.signs[:reach]
+        touching = self.touching
+        signs = self.signs[:touching]
         slipping = signs.nonzero()[0]
         if not len(slipping):
-            return reach, 1.0
+            return touching, 1.0
         first, sign = slipping.item(0), signs.item(-1)
         return (
             (first, sign)
-            if len(slipping) == reach - first and (signs[first:] == sign).all()
+            if len(slipping) == touching - first and (signs[first:] == sign).all()
             else None
         )
 
-    def _follow(self, until: int, stuck: int, sign: float) -> int:
+    def _by_edge(self, until: int, stuck: int, sign: float) -> int:
         """Take steps up to ``until`` by the tests at the edge; return how many were kept."""
-        at, found, responses, reach = self.at, self.found, self.table.responses, self.reach
+        at, answers, responses = self.at, self.answers, self.table.responses
+        touching = self.touching
         before, lag = self.lags[at], self.lags[at].copy()
-        rows = np.empty((until - at, found.shape[1]))
+        rows = np.empty((until - at, answers.shape[1]))
         np.multiply(self.limits[at:until], sign, out=rows[:, 1:])
-        totals, changes, edges, senses = [self.total], [self.change], [], []
+        totals, changes, edges, slip_signs = [self.total], [self.change], [], []
         for k, now, row, limit, answer in zip(
             range(at, until),
-            self.reaches[at:until],
+            self.touching_at[at:until],
             rows,
             self.limits[at:until],
-            found[at:until],
+            answers[at:until],
             strict=True,
         ):
             total = totals[-1] + (self.velocity + changes[-1]) * self.drifts[k]
             known = stuck  # annuli whose lag is in ``lag``
-            stuck = now if stuck == reach else min(stuck, now)
+            stuck = now if stuck == touching else min(stuck, now)
             if known < stuck:
                 lag[known:stuck] = before[known:stuck]
                 known = stuck
@@ -135,32 +132,34 @@ class Runner:
                 known = max(known, stuck)
             else:
                 break  # not a matter of the edge alone
-            before, reach = answer[1:], now
+            before, touching = answer[1:], now
             totals.append(total)
             changes.append(changes[-1] - self.kicks[k] * answer.item(0))
             edges.append(stuck)
-            senses.append(sign)
+            slip_signs.append(sign)
         if not edges:
-            self.signs[: self.reach] = 0.0  # start the tries anew, from stick all over
+            self.signs[: self.touching] = 0.0  # start the tries anew, from stick all over
             return 0
         rows = rows[: len(edges)]
         inner = np.arange(len(lag)) < np.array(edges)[:, None]
-        return self._tested(rows, np.where(inner, 0.0, np.array(senses)[:, None]), totals, changes)
+        return self._tested(
+            rows, np.where(inner, 0.0, np.array(slip_signs)[:, None]), totals, changes
+        )
 
-    def _fixed(self, until: int) -> int:
+    def _by_division(self, until: int) -> int:
         """Take steps up to ``until`` with any division as it stands; return how many were kept."""
-        at, signs, reach = self.at, self.signs, self.reach
-        signs[reach:] = signs[reach - 1]
+        at, signs, touching = self.at, self.signs, self.touching
+        signs[touching:] = signs[touching - 1]
         if not signs[-1]:  # newcomers stick, from where they then are: not beyond this block
-            until = next((k for k in range(at, until) if self.reaches[k] > reach), until)
-            signs[reach:] = 1.0
+            until = next((k for k in range(at, until) if self.touching_at[k] > touching), until)
+            signs[touching:] = 1.0
         if until == at:
-            self.reach = self.reaches[at]
-            signs[reach : self.reach] = 0.0
+            self.touching = self.touching_at[at]
+            signs[touching : self.touching] = 0.0
             until = at + 1
         sticks = signs == 0.0
         matrix = response(len(signs), self.table.mean, sticks.tobytes())
-        rows = np.zeros((until - at, self.found.shape[1]))
+        rows = np.zeros((until - at, self.answers.shape[1]))
         np.multiply(self.limits[at:until], signs, out=rows[:, 1:])
         np.copyto(rows[:, 1:], self.lags[at], where=sticks)
         totals, changes = [self.total], [self.change]
@@ -169,13 +168,23 @@ class Runner:
             force = matrix.item(0) * totals[-1] + known
             changes.append(changes[-1] - self.kicks[k] * force)
         rows[:, 0] = totals[1:]
-        self.found[at:until] = rows.dot(matrix)
+        self.answers[at:until] = rows.dot(matrix)
         return self._tested(rows, np.tile(signs, (len(rows), 1)), totals, changes)
 
     def _tested(self, rows: Array, signs: Array, totals: list[float], changes: list[float]) -> int:
-        """Enter a block of steps in the tables; keep and count those that pass (36) and (37)."""
+        """Enter a block of steps; keep and count those that pass (36) and (37).
+
+        Parameters
+        ----------
+        rows : array, shape (steps, n + 1)
+            D, and what is given of each annulus: its lag where it sticks, else its traction.
+        signs : array, shape (steps, n)
+            Of slip, 0 where stuck.
+        totals, changes : list of float
+            D and the change of slip velocity, before the block and after each step.
+        """
         at, until = self.at, self.at + len(rows)
-        given, answer, limits = rows[:, 1:], self.found[at:until, 1:], self.limits[at:until]
+        given, answer, limits = rows[:, 1:], self.answers[at:until, 1:], self.limits[at:until]
         sticks, here = signs == 0.0, slice(at + 1, until + 1)
         self.lags[here] = np.where(sticks, given, answer)
         self.tractions[here] = np.where(sticks, answer, given)
@@ -186,24 +195,26 @@ class Runner:
         kept = len(good) if good.flat[first] else first // good.shape[1]
         self.at, self.total, self.change = at + kept, totals[kept], changes[kept]
         if kept == len(good):
-            self.signs, self.reach = signs[-1].copy(), self.reaches[self.at - 1]
+            self.signs, self.touching = signs[-1].copy(), self.touching_at[self.at - 1]
         else:  # for the next try, all violators of the step that failed are flipped
             begins = np.where(sticks[kept], np.sign(answer[kept]), 0.0)
             self.signs = np.where(good[kept], signs[kept], begins)
-            self.reach = self.reaches[self.at]
+            self.touching = self.touching_at[self.at]
         return kept
 
     def _step(self) -> bool:
         """Take one step by the search for any division."""
-        at, course = self.at, self.course
-        memory = one.Memory(self.total, self.lags[at], self.tractions[at], self.signs, self.reach)
+        at, steps = self.at, self.steps
+        memory = one.Memory(
+            self.total, self.lags[at], self.tractions[at], self.signs, self.touching
+        )
         move = (self.velocity + self.change) * self.drifts[at]
-        radius, pressure = float(course.radius[at]), float(course.pressure[at])
+        radius, pressure = float(steps.radius[at]), float(steps.pressure[at])
         force, _, settled, memory = one.advance(self.table, memory, move, radius, pressure)
         if settled:
-            self.total, self.lags[at + 1], self.tractions[at + 1], signs, self.reach = memory
+            self.total, self.lags[at + 1], self.tractions[at + 1], signs, self.touching = memory
             self.signs = signs.copy()
-            self.found[at, 0] = force
+            self.answers[at, 0] = force
             self.change -= self.kicks[at] * force
             self.at += 1
         return settled

@@ -25,6 +25,7 @@ from contactlab.declared import ErrorModel
 from contactlab.scene import Scene
 from contactlab_annulus import blocks, many, one
 from contactlab_annulus.tables import Tables, tables
+from contactlab_jaeger.all_steps import ScaledSteps
 from contactlab_jaeger.gross_slip import gross_slip
 from contactlab_jaeger.law import Scales
 
@@ -126,16 +127,16 @@ class Annulus(AllStepsTangentialLaw):
         """Return the forces (22) of a whole impact, found in blocks of steps."""
         scales = Scales.of(scene, normal)
         radius = steps.contact.radius / scales.radius
-        course = blocks.Course(
+        scaled = ScaledSteps(
             radius=radius,
             pressure=scales.pressure(radius, steps.contact.friction_load),
             drift=steps.drift * scales.displacement,
             kick=steps.kick * scales.force / scene.pair.tangential_mass,
         )
-        runner = blocks.Runner(self._tables(), course, float(scene.slip_velocity))
-        settled = runner.run()
-        work = runner.friction_work() * float(scales.work)
-        return AllStepsResponse(runner.forces * scales.force, work, settled)
+        march = blocks.BlockMarch(self._tables(), scaled, float(scene.slip_velocity))
+        settled = march.march()
+        work = march.friction_work() * float(scales.work)
+        return AllStepsResponse(march.forces * scales.force, work, settled)
 
     def _tables(self) -> Tables:
         return tables(self.annuli, self.displacement == "mean")
@@ -154,14 +155,14 @@ class Annulus(AllStepsTangentialLaw):
 
         xi = memory.traction @ table.compliance.T
         with np.errstate(divide="ignore"):
-            length = np.where(np.asarray(scales.displacement) > 0, 1.0 / scales.displacement, 0.0)
+            unit = np.where(np.asarray(scales.displacement) > 0, 1.0 / scales.displacement, 0.0)
         return {
             "radius": np.broadcast_to(
                 column(scales.radius) * np.sqrt(table.radius_squared), memory.traction.shape
             ),
             # the unit is mu times Hertz's greatest pressure, 3 P_max/(2 pi a²), eq. (3)
             "traction": column(1.5 * scales.force / (np.pi * scales.radius**2)) * memory.traction,
-            "displacement": column(length) * xi,
+            "displacement": column(unit) * xi,
             "stuck": stuck,
             "slipping": slipping,
         }

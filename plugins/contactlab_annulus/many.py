@@ -40,7 +40,12 @@ def advance(
 ) -> tuple[Array, Array, NDArray[np.bool_], Memory]:
     """Return forces, friction works, whether divisions were found, and the new memory.
 
-    As ``one.advance``, with every argument of the batch shape (or broadcasting to it).
+    Parameters
+    ----------
+    table : Tables
+    memory : Memory
+    displacement, radius, pressure : float or array
+        As of ``one.advance``, of the batch shape or broadcasting to it.
     """
     shape, size = memory.lag.shape[:-1], memory.lag.shape[-1]
     lag, old = memory.lag.reshape(-1, size), memory.traction.reshape(-1, size)
@@ -86,6 +91,12 @@ def _tractions(table: Tables, sticks: NDArray[np.bool_], moved: Array, given: Ar
 
     Where the stuck annuli are the leading ones, masks pick the leading blocks of the
     triangular factors, whatever their number; the rest is solved item by item.
+
+    Parameters
+    ----------
+    table : Tables
+    sticks : array of bool, shape (items, n)
+    moved, given : array, shape (items, n)
     """
     rest = sticks * (moved - given @ table.compliance.T)
     inner = sticks * (rest @ table.lower_inverse.T)

@@ -18,17 +18,31 @@ TIE = 1.0 + 1e-12
 
 
 class Memory(NamedTuple):
-    """What the contact remembers, and the last division into stick and slip."""
+    """What the contact remembers, and the last division into stick and slip.
 
-    total: float  # D, slip displacement so far
-    lag: Array  # g_j = xi_j - D, shape (n,): constant while an annulus sticks
-    traction: Array  # q_j, shape (n,), zero outside the contact
-    signs: Array  # of the traction of those that slip, 0 for those that stick
-    reach: int  # annuli in contact
+    Attributes
+    ----------
+    total : float
+        D, slip displacement so far.
+    lag : array, shape (n,)
+        g_j = xi_j - D: constant while an annulus sticks.
+    traction : array, shape (n,)
+        q_j, zero outside the contact.
+    signs : array, shape (n,)
+        Of the traction of annuli that slip, 0 for those that stick.
+    touching : int
+        Annuli in contact.
+    """
+
+    total: float
+    lag: Array
+    traction: Array
+    signs: Array
+    touching: int
 
     def division(self) -> tuple[NDArray[np.bool_], NDArray[np.int8]]:
         """Return which annuli are stuck, and the sign of those that slip."""
-        inside = np.arange(len(self.lag)) < self.reach
+        inside = np.arange(len(self.lag)) < self.touching
         return inside & (self.signs == 0.0), (inside * self.signs).astype(np.int8)
 
 
@@ -44,6 +58,8 @@ def advance(
 
     Parameters
     ----------
+    table : Tables
+    memory : Memory
     displacement : float
         Slip displacement of the step, 2.9432 psi dtau of eq. (33).
     radius : float
@@ -56,8 +72,8 @@ def advance(
         return math.nan, math.nan, True, memory
     limit = pressure * np.sqrt(np.maximum(square - table.radius_squared, 0.0))
     inside = limit > 0.0
-    reach, lag = int(np.count_nonzero(inside)), memory.lag
-    signs = extended(memory.signs, memory.reach, reach)
+    touching, lag = int(np.count_nonzero(inside)), memory.lag
+    signs = extended(memory.signs, memory.touching, touching)
     seen: set[bytes] = set()
     for _ in range(MOST_PASSES):
         sticks = inside & (signs == 0.0)
@@ -70,7 +86,7 @@ def advance(
             traction, new_lag = np.where(sticks, found, given), np.where(sticks, lag, found)
             mean = 0.5 * table.weight * (traction + memory.traction)
             work = float(mean.dot(lag - new_lag))
-            return force, work, True, Memory(total, new_lag, traction, signs, reach)
+            return force, work, True, Memory(total, new_lag, traction, signs, touching)
         if key in seen:
             break
         seen.add(key)
@@ -78,12 +94,12 @@ def advance(
     return math.nan, math.nan, False, memory
 
 
-def extended(signs: Array, reach_before: int, reach: int) -> Array:
+def extended(signs: Array, touching_before: int, touching: int) -> Array:
     """Return a first guess of the division: as before, newcomers as the outermost annulus."""
-    if reach <= reach_before or reach_before == 0:
+    if touching <= touching_before or touching_before == 0:
         return signs
     guess = signs.copy()
-    guess[reach_before:reach] = signs[reach_before - 1]
+    guess[touching_before:touching] = signs[touching_before - 1]
     return guess
 
 
@@ -92,7 +108,14 @@ def respond(
 ) -> tuple[float, Array]:
     """Return the force, and tractions where it sticks, lags where not.
 
-    ``given`` holds lags where it sticks and tractions where not; see ``tables.exchange``.
+    Parameters
+    ----------
+    table : Tables
+    sticks : array of bool, shape (n,)
+    total : float
+        D, slip displacement so far.
+    given : array, shape (n,)
+        Lags where it sticks and tractions where not; see ``tables.exchange``.
     """
     if table.responses:
         drive = np.concatenate(([total], given))

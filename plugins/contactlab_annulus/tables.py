@@ -6,7 +6,7 @@ q = S phi with S upper triangular. The displacement of eq. (33) is then xi = B q
 B = A S^-1 / 2, everywhere and always, the free surface outside the contact included. B has
 condition 3 n, the mixed matrix in phi n^2.5 (theory §6).
 
-Memory is the lag of each place behind the bodies, g_j = xi_j - D with D the slip displacement
+Memory is the lag of each annulus behind the bodies, g_j = xi_j - D with D the slip displacement
 so far: while an annulus sticks its lag is constant, and (33) says no more than that.
 """
 
@@ -37,22 +37,22 @@ class Tables(NamedTuple):
 
 
 def influence(annuli: int) -> Array:
-    """Return A of eq. (14), places j in rows and distributions i in columns.
+    """Return A of eq. (14), middles of annuli j in rows and distributions i in columns.
 
     The misprint in the second branch is corrected: it holds for j = i+1 .. n.
     """
     i = np.arange(1, annuli + 1)[None, :]
-    place = np.arange(1, annuli + 1)[:, None] - 0.5
-    ratio = np.minimum(i / place, 1.0)  # inside, arcsin 1 = pi/2 gives the first branch
-    root = np.sqrt(np.maximum(place**2 - i**2, 0.0))
-    return np.asarray(((2 * i**2 - place**2) * np.arcsin(ratio) / i + root) / annuli)
+    middle = np.arange(1, annuli + 1)[:, None] - 0.5
+    ratio = np.minimum(i / middle, 1.0)  # inside, arcsin 1 = pi/2 gives the first branch
+    root = np.sqrt(np.maximum(middle**2 - i**2, 0.0))
+    return np.asarray(((2 * i**2 - middle**2) * np.arcsin(ratio) / i + root) / annuli)
 
 
 def traction_shape(annuli: int) -> Array:
     """Return S of eq. (34): q = S phi, upper triangular."""
     i = np.arange(1, annuli + 1)[None, :]
-    place = np.arange(1, annuli + 1)[:, None] - 0.5
-    return np.asarray(0.5 * np.pi * np.sqrt(np.maximum(1.0 - (place / i) ** 2, 0.0)))
+    middle = np.arange(1, annuli + 1)[:, None] - 0.5
+    return np.asarray(0.5 * np.pi * np.sqrt(np.maximum(1.0 - (middle / i) ** 2, 0.0)))
 
 
 def mean_compliance(inverse_shape: Array, weight: Array) -> Array:
@@ -88,8 +88,8 @@ def factors(matrix: Array) -> tuple[Array, Array]:
 def exchange(response: Array, annulus: int) -> Array:
     """Return the response after ``annulus`` (from 0) went from slip to stick or back.
 
-    A response M takes x to x M. In: D in place 0, then for each annulus its lag where it
-    sticks and its traction where it slips. Out: the force in place 0, then traction where
+    A response M takes x to x M. In: D first, then for each annulus its lag where it
+    sticks and its traction where it slips. Out: the force first, then traction where
     it sticks and lag where it slips. Exchanging one unknown for the other is a
     principal pivot, so that nothing is ever solved anew.
     """
