@@ -73,12 +73,14 @@ def _checked(known: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> 
     """
     for entry in (known.slip_velocity_change, known.friction_work):
         if faults.malformed(entry, shape):
-            told = faults.told(law, f"the answer {faults.shown(entry)} to a whole impact", 1)
-            raise faults.LawFaultError(Status.MALFORMED, told)
+            sentence = faults.sentence(
+                law, f"the answer {faults.shown(entry)} to a whole impact", 1
+            )
+            raise faults.LawFaultError(Status.MALFORMED, sentence)
     return known
 
 
 def _unanswered(law: TangentialLaw) -> faults.LawFaultError:
     """Return the error of a whole-impact law that leaves impacts without an answer."""
-    told = faults.told(law, "no answer to some impacts, and no other way to run them", 1)
-    return faults.LawFaultError(Status.MALFORMED, told)
+    sentence = faults.sentence(law, "no answer to some impacts, and no other way to run them", 1)
+    return faults.LawFaultError(Status.MALFORMED, sentence)

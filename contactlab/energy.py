@@ -96,24 +96,26 @@ def _balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
     fast: Any = np.abs(motion.normal_velocity) > LARGEST_RESTITUTION * scene.normal_speed
     if fast.any():
         rebound = np.abs(motion.normal_velocity) / scene.normal_speed
-        told = _told("The bodies part {:.4g} times as fast as they met.", rebound)
-        motion = motion.failing(fast, Status.UNBALANCED, told)
+        detail = _sentences("The bodies part {:.4g} times as fast as they met.", rebound)
+        motion = motion.failing(fast, Status.UNBALANCED, detail)
     books = ledger(scene, motion)
     missing: Any = np.abs(books.imbalance) > bound * books.start
     if missing.any():
         share = np.abs(books.relative_imbalance)
-        told = _told(f"Off by {{:.2g}} of the energy at the start; declared: {bound:.2g}.", share)
-        motion = motion.failing(missing, Status.UNBALANCED, told)
+        detail = _sentences(
+            f"Off by {{:.2g}} of the energy at the start; declared: {bound:.2g}.", share
+        )
+        motion = motion.failing(missing, Status.UNBALANCED, detail)
     before = np.abs(scene.slip_velocity)
     after: Any = np.abs(scene.slip_velocity + motion.slip_velocity_change)
     slips: Any = after > LARGEST_SLIP * before
     if np.any(slips):
-        told = _told("The contact slips {:.4g} times as fast as it met.", after / before)
-        motion = motion.failing(slips, Status.UNBALANCED, told)
+        detail = _sentences("The contact slips {:.4g} times as fast as it met.", after / before)
+        motion = motion.failing(slips, Status.UNBALANCED, detail)
     return motion
 
 
-def _told(sentence: str, numbers: Any) -> Any:
+def _sentences(sentence: str, numbers: Any) -> Any:
     """Return the sentence with its number in it, for each impact."""
     if not np.ndim(numbers):
         return sentence.format(float(numbers))

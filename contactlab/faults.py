@@ -37,7 +37,7 @@ def blaming(law: Law) -> Iterator[None]:
     except (KeyboardInterrupt, LawFaultError):
         raise
     except BaseException as error:  # a plug-in may not end the process
-        raise LawFaultError(Status.LAW_RAISED, told(law, raised(error), 1)) from error
+        raise LawFaultError(Status.LAW_RAISED, sentence(law, raised(error), 1)) from error
 
 
 def malformed(value: Any, shape: tuple[int, ...]) -> bool:
@@ -49,7 +49,7 @@ def malformed(value: Any, shape: tuple[int, ...]) -> bool:
     return isinstance(value, bool) or not isinstance(value, float | int | np.floating | np.integer)
 
 
-def told(law: Law, what: str, step: int, time: Any = None) -> str:
+def sentence(law: Law, what: str, step: int, time: Any = None) -> str:
     """Return the sentence of a fault: step, time, what happened, and whose law it was."""
     from contactlab.registry import REGISTRY  # only a run that fails asks for names
 

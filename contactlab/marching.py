@@ -68,5 +68,5 @@ def _attempt(
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # a plug-in may not end the process
-        told = faults.told(laws.integrator, faults.raised(error), 1)
-        return TangentialMotion.nothing(scene.shape, Status.LAW_RAISED, told), True
+        sentence = faults.sentence(laws.integrator, faults.raised(error), 1)
+        return TangentialMotion.nothing(scene.shape, Status.LAW_RAISED, sentence), True

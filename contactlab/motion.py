@@ -76,5 +76,5 @@ def sound(motion: Motion) -> Motion:
     names = [
         name.replace("_", " ") for name, value in values.items() if not np.isfinite(value).all()
     ]
-    told = f"Not finite at the end of contact: {', '.join(names)}."
-    return motion.failing(~good, Status.NON_FINITE, told)
+    sentence = f"Not finite at the end of contact: {', '.join(names)}."
+    return motion.failing(~good, Status.NON_FINITE, sentence)

@@ -246,7 +246,7 @@ class _Solver:
             return
         for item in np.flatnonzero(lost).tolist():
             self.status[item] = Status.NOT_SEPARATED
-            self.detail[item] = faults.told(
+            self.detail[item] = faults.sentence(
                 law.law, "the bodies do not part", law.steps, time * law.unit[item]
             )
         self.ends[lost] = time

@@ -56,7 +56,7 @@ def judge(case: Case) -> Outcome:
         scene = case.scene.make()
         simulation = case.method.simulation(case.options)
     except (ValueError, PluginError) as error:
-        return _told(case, REFUSED, note=f"bad input: {error}")
+        return _outcome(case, REFUSED, note=f"bad input: {error}")
     return judge_run(case, simulation, scene, reference_for(case.method.tangential))
 
 
@@ -69,19 +69,21 @@ def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Refer
     except Exception as error:
         # Whatever a law or the core lets out is a finding, not an end of the report. A run
         # makes a status of what an integrator raises.
-        told = f"{type(error).__name__}: {error}"
+        note = f"{type(error).__name__}: {error}"
         outcome = RAISED if case.planned else REFUSED
-        return _told(case, outcome, note=told if case.planned else f"LAW_RAISED {told}")
+        return _outcome(case, outcome, note=note if case.planned else f"LAW_RAISED {note}")
     taken = time.perf_counter() - before
     if result.status is not Status.SUCCESS:
-        return _told(case, REFUSED, note=f"{result.status.name} {result.motion.detail}", time=taken)
+        return _outcome(
+            case, REFUSED, note=f"{result.status.name} {result.motion.detail}", time=taken
+        )
     try:
         with np.errstate(all="ignore"):
             expected = reference(scene, simulation.tangential)
             return _judged(case, simulation, result, expected, taken)
     except Exception as error:
-        told = f"its reference: {type(error).__name__}: {error}"
-        return _told(case, RAISED, note=told, time=taken)
+        note = f"its reference: {type(error).__name__}: {error}"
+        return _outcome(case, RAISED, note=note, time=taken)
 
 
 def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
@@ -122,7 +124,7 @@ def _judged(
     elastic = "elastic_hertz" in simulation.normal.offers
     if not off <= LARGEST_NORMAL or (elastic and not off >= -LARGEST_NORMAL):
         wrong.append(f"e is off by {off:.2g}")
-    return _told(
+    return _outcome(
         case,
         WRONG if wrong else ANSWERED,
         error=float(error),
@@ -132,7 +134,7 @@ def _judged(
     )
 
 
-def _told(case: Case, outcome: str, *, time: float = 0.0, **entries: Any) -> Outcome:
+def _outcome(case: Case, outcome: str, *, time: float = 0.0, **entries: Any) -> Outcome:
     return Outcome(
         method=case.method.name,
         family=case.family,

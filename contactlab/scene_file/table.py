@@ -82,7 +82,7 @@ class Table:
         return number_list(self.at(key), value, remedy=remedy)
 
     def make(self, maker: Callable[..., Made], **arguments: Any) -> Made:
-        """Return ``maker(**arguments)``; its refusals are told with this table's path."""
+        """Return ``maker(**arguments)``; its refusals carry this table's path."""
         try:
             return maker(**arguments)
         except ValueError as error:

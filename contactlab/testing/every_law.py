@@ -50,8 +50,8 @@ def contract(law: Law) -> None:
         hold(good, f"{name} = {words!r}: must be a frozenset of words.")
         known_words = claims(contract)
         for word in sorted(words - known_words):
-            told = ", ".join(sorted(known_words)) or "none"
-            hold(False, f"{name}: {word!r} is a word that no check knows; there are: {told}.")
+            listed = ", ".join(sorted(known_words)) or "none"
+            hold(False, f"{name}: {word!r} is a word that no check knows; there are: {listed}.")
     hold(not law.needs or isinstance(law, TangentialLaw), "Only a tangential law needs something.")
     if isinstance(law, TangentialLaw):
         ways = ", ".join(way.__name__ for way in WAYS)

@@ -93,13 +93,13 @@ def impact_books(law: Any) -> None:
 @check(TangentialLaw)
 def impact_coulomb_limit(law: Any) -> None:
     """All along an impact the force is within mu P, and zero when it ends (TangentialLaw, 1)."""
-    told = 0
+    known = 0
     for way in ways(law):
         for chi, psi1 in itertools.product(CHI, (0.3, 1.2, 3.5)):
             history = course(way, psi1, chi)[0]
             if np.isnan(history.tangential_force).all():
-                continue  # an answer as a whole that does not tell the course
-            told += 1
+                continue  # an answer as a whole without a course
+            known += 1
             limit = FRICTION * history.normal_force
             largest = float(limit.max())
             over = float(np.max(np.abs(history.tangential_force) - limit)) / largest
@@ -107,7 +107,7 @@ def impact_coulomb_limit(law: Any) -> None:
                 over <= allowed(way),
                 f"psi1 = {psi1}, chi = {chi}: abs(F) exceeds mu P by {over:.2g} of mu P_max.",
             )
-    apply_if(told, "It answers impacts as wholes, and tells no force along them.")
+    apply_if(known, "It answers impacts as wholes, and gives no force along them.")
 
 
 @check(TangentialLaw)

@@ -71,7 +71,7 @@ class Way(NamedTuple):
             normal = normal_motion(self.normal, given)
             motion = self.integrator.integrate(normal, self.law, given, recorder)
         if not np.all(np.asarray(motion.status) == Status.SUCCESS):
-            hold(False, f"{_which(given)}: {_told(motion)} ({self})")
+            hold(False, f"{_which(given)}: {_detail(motion)} ({self})")
         unit = given.pair.tangential_mass / np.square(given.psi_scale)
         change = given.psi(motion.slip_velocity_change)
         return Followed(change, motion, motion.friction_work / unit)
@@ -84,7 +84,7 @@ def _which(given: Scene) -> str:
     return f"psi1 = {float(given.psi1):.6g}, chi = {float(given.chi):.4g}"
 
 
-def _told(motion: TangentialMotion) -> str:
+def _detail(motion: TangentialMotion) -> str:
     """Return status and detail of the first impact that failed."""
     statuses = np.ravel(np.asarray(motion.status, dtype=object))
     first = int(np.argmax(statuses != Status.SUCCESS))

@@ -97,7 +97,7 @@ def follow(
                     failure = f"The energy books miss {missing:.1e} of the tangential energy."
         except Exception as error:
             what = f"{faults.raised(error)}, at x = {walk.state.x:.6g}"
-            failure = faults.told(law, what, len(walk.pieces) + 1)
+            failure = faults.sentence(law, what, len(walk.pieces) + 1)
             status = Status.LAW_RAISED
         solves += walk.solves
         status = status if failure else Status.SUCCESS

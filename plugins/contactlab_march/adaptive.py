@@ -84,23 +84,31 @@ class Adaptive(Integrator):
         law = tangential
         assert isinstance(law, SteppedTangentialLaw)
 
-        def follow(normal: NormalMotion, scene: Scene, count: int) -> TangentialMotion:
-            return self._follow(normal, law, scene, count)
+        def even(normal: NormalMotion, scene: Scene, count: int) -> TangentialMotion:
+            return self._from(normal, law, scene, count)
 
         try:
             with faults.blaming(law):
                 needed = needed_steps(normal, law, scene)
-            motion = in_groups(normal, scene, FIRST, needed, refined(FIRST, needed), follow)
+            motion = in_groups(normal, scene, FIRST, needed, refined(FIRST, needed), even)
             if observer is not None:
                 _march(normal, law, scene, motion.counters.get("steps", FIRST), observer)
         except faults.LawFaultError as fault:
             return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
         return motion
 
-    def _follow(
+    def _from(
         self, normal: NormalMotion, law: SteppedTangentialLaw, scene: Scene, count: int
     ) -> TangentialMotion:
-        """Follow impacts that all begin with ``count`` steps."""
+        """Return the motion of impacts that all begin with ``count`` steps.
+
+        Parameters
+        ----------
+        normal : NormalMotion
+        law : SteppedTangentialLaw
+        scene : Scene
+        count : int
+        """
         first = _march(normal, law, scene, count)
         second = _march(normal, law, scene, 2 * count) if np.all(first.status) else first
         if not np.all(second.status):
@@ -117,7 +125,7 @@ class Adaptive(Integrator):
         before: tuple[TangentialMotion, TangentialMotion],
         tried: int,
     ) -> TangentialMotion:
-        """Take ``count`` steps, and twice as many where that is not enough.
+        """Return the motion in ``count`` steps, and in twice as many where that is not enough.
 
         Parameters
         ----------
@@ -140,8 +148,8 @@ class Adaptive(Integrator):
         if not open_.any():
             return last
         if 2 * count > MOST_STEPS:
-            told = f"After {count} steps psi2 still changes by more than the tolerance."
-            return last.failing(open_, Status.UNRESOLVED, told)
+            sentence = f"After {count} steps psi2 still changes by more than the tolerance."
+            return last.failing(open_, Status.UNRESOLVED, sentence)
         if not scene.shape or open_.all():
             return self._doubled(normal, law, scene, 2 * count, (before[1], last), tried + count)
 
@@ -186,6 +194,16 @@ def _march(
     count: int,
     observer: Observer | None = None,
 ) -> TangentialMotion:
+    """Return the motion in ``count`` steps, each sampled in its middle.
+
+    Parameters
+    ----------
+    normal : NormalMotion
+    law : SteppedTangentialLaw
+    scene : Scene
+    count : int
+    observer : callable, optional
+    """
     with faults.blaming(normal.law):
         steps = midpoints(normal, count)
     return march(normal, law, scene, steps, observer)

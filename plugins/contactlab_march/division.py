@@ -44,7 +44,17 @@ def endpoints(normal: NormalMotion, count: int) -> Steps:
 
 
 def _steps(normal: NormalMotion, phases: Any, kick: Any, load_impulse: Any) -> Steps:
-    """Return steps that sample the contact at ``phases``, as read-only arrays."""
+    """Return steps that sample the contact at ``phases``, as read-only arrays.
+
+    Parameters
+    ----------
+    normal : NormalMotion
+    phases : array, shape (K,)
+    kick : array, shape (K, ...)
+        Time in s for which each force acts.
+    load_impulse : array, shape (K, ...)
+        Exact integral of the friction load over that time, in N s.
+    """
     time, approach, rate, contact, _ = normal.at(_column(phases, normal))
     drift = np.array(time)
     drift[1:] -= time[:-1]

@@ -38,11 +38,11 @@ LARGEST_LEAD = 0.05
 LEAST_STEPS = math.ceil(math.pi / LARGEST_PHASE_STEP)
 #: More steps than this are refused, whoever asks for them.
 MOST_STEPS = 2_000_000
-#: Where steps are raised, from one number to the next.
-RUNG = 1.25
+#: Ratio of one number of steps to the next where they are raised.
+RAISE = 1.25
 
-#: Follows impacts that all take the same number of steps.
-Follow = Callable[[NormalMotion, Scene, int], TangentialMotion]
+#: The march of impacts that all take the same number of steps.
+EvenMarch = Callable[[NormalMotion, Scene, int], TangentialMotion]
 
 
 def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene) -> Any:
@@ -52,23 +52,23 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene) -> Any:
     """
     assert isinstance(law, SteppedTangentialLaw)
     omega = np.sqrt(law.stiffness(scene, normal) / scene.pair.tangential_mass)
-    swing = omega * normal.duration
-    steps = swing / LARGEST_PHASE_STEP
+    radians = omega * normal.duration
+    steps = radians / LARGEST_PHASE_STEP
     if "partial_slip" not in law.offers:
-        steps = np.maximum(steps, swing * np.sqrt(swing / (24.0 * LARGEST_LEAD)))
+        steps = np.maximum(steps, radians * np.sqrt(radians / (24.0 * LARGEST_LEAD)))
     return np.maximum(np.ceil(steps), float(LEAST_STEPS))
 
 
 def refined(steps: int, needed: Any) -> Any:
-    """Return ``steps``, or the first rung of a ladder up from there that is enough.
+    """Return ``steps``, or the first number of a sequence that grows from there that is enough.
 
-    With rungs the impacts of a batch fall into a few groups of equal steps.
+    Taken from a sequence, the impacts of a batch fall into a few groups of equal steps.
     """
-    ladder = [float(steps)]
-    while ladder[-1] < min(float(np.nanmax(needed)), MOST_STEPS):
-        ladder.append(min(math.ceil(ladder[-1] * RUNG), MOST_STEPS))
-    ladder.append(np.inf)
-    return np.array(ladder)[np.searchsorted(ladder, needed)]
+    sequence = [float(steps)]
+    while sequence[-1] < min(float(np.nanmax(needed)), MOST_STEPS):
+        sequence.append(min(math.ceil(sequence[-1] * RAISE), MOST_STEPS))
+    sequence.append(np.inf)
+    return np.array(sequence)[np.searchsorted(sequence, needed)]
 
 
 def refusal(steps: int, needed: float) -> str:
@@ -77,9 +77,9 @@ def refusal(steps: int, needed: float) -> str:
 
 
 def in_groups(
-    normal: NormalMotion, scene: Scene, steps: int, needed: Any, taken: Any, follow: Follow
+    normal: NormalMotion, scene: Scene, steps: int, needed: Any, taken: Any, even: EvenMarch
 ) -> TangentialMotion:
-    """Follow each impact of a batch with the steps that it would take alone.
+    """Return the motion of impacts, each marched in the steps that it would take alone.
 
     Parameters
     ----------
@@ -89,21 +89,22 @@ def in_groups(
         Asked for, for the refusal.
     needed, taken : float or array
         Steps that an impact needs, and those that it takes.
-    follow : callable
+    even : callable
+        Marches impacts that take the same number of steps.
     """
     shape = scene.shape
-    followed = (needed <= taken) & (taken <= MOST_STEPS)
-    if np.all(followed) and np.min(taken) == np.max(taken):
-        return follow(normal, scene, int(np.max(taken)))
+    possible = (needed <= taken) & (taken <= MOST_STEPS)
+    if np.all(possible) and np.min(taken) == np.max(taken):
+        return even(normal, scene, int(np.max(taken)))
     if not shape:
         return TangentialMotion.nothing(shape, Status.TOO_FEW_STEPS, refusal(steps, needed))
-    taken = np.broadcast_to(np.where(followed, taken, 0), shape)
+    taken = np.broadcast_to(np.where(possible, taken, 0), shape)
     needed = np.broadcast_to(needed, shape)
     parts = []
     for number in np.unique(taken).tolist():
         where = taken == number
         if number:
-            motion = follow(normal.take(where), scene.take(where), int(number))
+            motion = even(normal.take(where), scene.take(where), int(number))
         else:
             detail = [refusal(steps, least) for least in needed[where].tolist()]
             motion = TangentialMotion.nothing((len(detail),), Status.TOO_FEW_STEPS, detail)
@@ -149,7 +150,7 @@ class FixedSteps(Integrator):
     def remarks(
         self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
     ) -> tuple[str, ...]:
-        """Say whether the steps are enough."""
+        """Return a sentence where the steps are too few: what is taken instead, or needed."""
         needed = needed_steps(normal, tangential, scene)
         most = float(np.nanmax(needed))
         if most <= self.steps:
@@ -175,7 +176,7 @@ class FixedSteps(Integrator):
         law = tangential
         assert isinstance(law, SteppedTangentialLaw)
 
-        def follow(normal: NormalMotion, scene: Scene, number: int) -> TangentialMotion:
+        def even(normal: NormalMotion, scene: Scene, number: int) -> TangentialMotion:
             with faults.blaming(normal.law):
                 steps = self.divide(normal, number)
             return march(normal, law, scene, steps, observer)
@@ -186,6 +187,6 @@ class FixedSteps(Integrator):
             if observer is not None:
                 needed = float(np.max(needed))
             taken = refined(self.steps, needed) if self.refine else float(self.steps)
-            return in_groups(normal, scene, self.steps, needed, taken, follow)
+            return in_groups(normal, scene, self.steps, needed, taken, even)
         except faults.LawFaultError as fault:
             return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)

@@ -34,7 +34,16 @@ def march(
     steps: Steps,
     observer: Observer | None,
 ) -> TangentialMotion:
-    """Follow the tangential motion along ``steps``: all at once if the law can, else one by one."""
+    """Return the tangential motion along ``steps``: all at once if the law can, else one by one.
+
+    Parameters
+    ----------
+    normal : NormalMotion
+    law : SteppedTangentialLaw
+    scene : Scene
+    steps : Steps
+    observer : callable or None
+    """
     if (complaint := _unsound(normal, steps)) is not None:
         return _ended(scene, law, math.nan, math.nan, Status.NON_FINITE, complaint, 0)
     if observer is None and not scene.shape and isinstance(law, AllStepsTangentialLaw):
@@ -47,7 +56,15 @@ def march(
 def _all_at_once(
     normal: NormalMotion, law: AllStepsTangentialLaw, scene: Scene, steps: Steps
 ) -> TangentialMotion | None:
-    """Follow the tangential motion with a law that takes all steps in one call, if it will."""
+    """Return the tangential motion from a law that takes all steps in one call, if it does.
+
+    Parameters
+    ----------
+    normal : NormalMotion
+    law : AllStepsTangentialLaw
+    scene : Scene
+    steps : Steps
+    """
     try:
         with faults.blaming(law):
             response = law.advance_all(scene, normal, steps)
@@ -59,10 +76,10 @@ def _all_at_once(
         return _ended(scene, law, math.nan, math.nan, fault.status, fault.detail, 0)
     status, detail = Status.SUCCESS, ""
     if not response.settled:
-        status, detail = Status.UNSETTLED, faults.told(law, "no division found", count + 1)
+        status, detail = Status.UNSETTLED, faults.sentence(law, "no division found", count + 1)
     elif not np.isfinite(change):
         step = int((~np.isfinite(response.force)).argmax())
-        detail = faults.told(law, f"force {faults.shown(response.force[step])}", step + 1)
+        detail = faults.sentence(law, f"force {faults.shown(response.force[step])}", step + 1)
         status = Status.NON_FINITE
     return _ended(scene, law, change, response.friction_work, status, detail, count)
 
@@ -74,10 +91,18 @@ def _one_by_one(
     steps: Steps,
     observer: Observer | None,
 ) -> TangentialMotion:
-    """Ask the law in every step.
+    """Return the tangential motion, the law asked in every step.
 
     The change of velocity is summed apart from the velocity, which may be so large
     that it would swallow the change (theory §8).
+
+    Parameters
+    ----------
+    normal : NormalMotion
+    law : SteppedTangentialLaw
+    scene : Scene
+    steps : Steps
+    observer : callable or None
     """
     single, initial, mass = not scene.shape, scene.slip_velocity, scene.pair.tangential_mass
     shape = scene.shape
@@ -122,7 +147,7 @@ def _one_by_one(
         status, what = Status.LAW_RAISED, faults.raised(error)
     if status is Status.SUCCESS:
         return _ended(scene, law, change, work, status, "", count)
-    return _ended(scene, law, change, work, status, faults.told(law, what, count, time), count)
+    return _ended(scene, law, change, work, status, faults.sentence(law, what, count, time), count)
 
 
 def _checked(shape: tuple[int, ...], *answers: Real) -> tuple[Status, str]:
@@ -136,10 +161,22 @@ def _checked(shape: tuple[int, ...], *answers: Real) -> tuple[Status, str]:
 def _ended(
     scene: Scene, law: Law, change: Real, work: Real, status: Status, detail: str, count: int
 ) -> TangentialMotion:
-    """Return the motion, after a last look at the friction work."""
+    """Return the motion as it ended; friction work that is not finite is a failure too.
+
+    Parameters
+    ----------
+    scene : Scene
+    law : Law
+        Whose failure it is.
+    change, work : float or array
+        Change of slip velocity (m/s) and friction work (J).
+    status, detail : Status, str
+    count : int
+        Steps taken.
+    """
     if status is Status.SUCCESS and not np.all(np.isfinite(work)):
         status = Status.NON_FINITE
-        detail = faults.told(law, f"friction work {faults.shown(work)}", count)
+        detail = faults.sentence(law, f"friction work {faults.shown(work)}", count)
     return TangentialMotion(
         slip_velocity_change=spread(change, scene.shape),
         friction_work=spread(work, scene.shape),
@@ -160,13 +197,25 @@ def _unsound(normal: NormalMotion, steps: Steps) -> str | None:
             bad = ~np.isfinite(column).reshape(len(column), -1).all(axis=1)
             count: int = int(bad.argmax())
             what: Any = faults.shown(column[count])
-            return faults.told(normal.law, what, count + 1, steps.time[count])
+            return faults.sentence(normal.law, what, count + 1, steps.time[count])
     return None
 
 
 def _sample(
     step: Steps, velocity: Real, force: Real, law: SteppedTangentialLaw, state: object
 ) -> Sample:
+    """Return what an observer sees of a step.
+
+    Parameters
+    ----------
+    step : Steps
+        One of them.
+    velocity, force : float or array
+        Slip velocity (m/s) and tangential force (N) at the sample.
+    law : SteppedTangentialLaw
+    state : object
+        The law's, at the end of the step.
+    """
     return Sample(
         time=step.time,
         approach=step.approach,

@@ -16,7 +16,7 @@ class Symplectic(FixedSteps):
     """Leapfrog: the contact is sampled in the middle of each step.
 
     Steps are even in time: even in the phase of a closed form the error is about 1.6 times as
-    large. A law is told the exact mean friction load of each step.
+    large. A law gets the exact mean friction load of each step.
 
     Parameters
     ----------

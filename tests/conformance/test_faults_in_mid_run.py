@@ -274,7 +274,7 @@ def test_plug_in_and_distribution_are_named():
     assert "Press (not registered)" in told(result)
     from contactlab import faults
 
-    assert f"coulomb (contactlab {contactlab.__version__})" in faults.told(soft, "NaN", 3, 1e-6)
+    assert f"coulomb (contactlab {contactlab.__version__})" in faults.sentence(soft, "NaN", 3, 1e-6)
 
 
 def test_contact_that_never_ends_is_bounded_and_said():

@@ -30,7 +30,7 @@ def test_too_few_steps_are_raised_and_the_plan_says_so(integrator):
     """Five steps at chi = 30: psi2 would be off by more than 1 (theory §4)."""
     scene = Scene.nondimensional(psi1=1.2, chi=30.0)
     sim = annulus(integrator, steps=5)
-    assert "steps raised from 5 to 75" in str(sim.plan(scene))  # 63 would do; see RUNG
+    assert "steps raised from 5 to 75" in str(sim.plan(scene))  # 63 would do; see RAISE
     result = sim.run(scene).check()
     assert result.counters["steps"] >= 63
     fine = annulus(integrator, steps=2000).run(scene)
