@@ -34,6 +34,15 @@ def answers(
 
     None where a march is asked for: traction and stick/slip fields come from nothing else, and
     the impacts of a batch that keeps its history share one time axis.
+
+    Parameters
+    ----------
+    scene : Scene
+    normal : NormalMotion
+        Of the scene.
+    tangential : TangentialLaw
+    history : bool or "fields"
+        What is asked for.
     """
     shape = scene.shape
     always = isinstance(tangential, WholeImpactTangentialLaw)

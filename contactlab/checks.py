@@ -63,7 +63,19 @@ def shown(value: object, *, most: int = 80) -> str:
 
 
 def refuse(argument: str, value: object, rule: str, remedy: str = "") -> ValueError:
-    """Return the error for a bad argument: name, value, rule and remedy in one sentence."""
+    """Return the error for a bad argument: name, value, rule and remedy in one sentence.
+
+    Parameters
+    ----------
+    argument : str
+        Its name, or its path in a file.
+    value : object
+        As it was given.
+    rule : str
+        What it breaks: ``"must be positive"``.
+    remedy : str
+        What to do about it.
+    """
     return ValueError(f"{argument} = {shown(value)}: {rule}" + (f"; {remedy}" if remedy else ""))
 
 
@@ -139,7 +151,16 @@ def paired(first: str, second: str, values: tuple[Real, Real]) -> tuple[Any, Any
 
 
 def whole(argument: str, value: object, *, least: int = 1, most: int = 10_000_000) -> int:
-    """Return ``value`` as an int between ``least`` and ``most``, or refuse it."""
+    """Return ``value`` as an int between ``least`` and ``most``, or refuse it.
+
+    Parameters
+    ----------
+    argument : str
+        Name used in the error.
+    value : object
+    least, most : int
+        The range, both ends in it.
+    """
     rule = f"must be a whole number from {least} to {most}"
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value[()]
@@ -176,6 +197,16 @@ def quantity(
     """Return an attrs field for a checked real quantity with its unit in the metadata.
 
     A default of None makes it optional: None may be given too.
+
+    Parameters
+    ----------
+    unit : str
+        In SI; ``"1"`` for none.
+    rule : Rule
+        What every element must satisfy besides being finite.
+    default : float or None, optional
+    kw_only : bool
+        Whether this field alone is to be given by name.
     """
     keywords: Any = {"kw_only": True} if kw_only else {}  # False would overrule the class
     return attrs.field(

@@ -33,6 +33,17 @@ def size_ratio(
 
     Each factor is raised to its power on its own, so that v1² and R³ neither underflow
     nor overflow.
+
+    Parameters
+    ----------
+    normal_mass : float or array
+        M, in kg.
+    effective_modulus : float or array
+        E*, in Pa.
+    radius : float or array
+        R, in m.
+    normal_speed : float or array
+        v1, in m/s.
     """
     stiffness = 15.0 * normal_mass / (16.0 * effective_modulus)
     ratio: Real = stiffness**0.2 * normal_speed**0.4 / radius**0.6

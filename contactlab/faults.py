@@ -50,7 +50,19 @@ def malformed(value: Any, shape: tuple[int, ...]) -> bool:
 
 
 def sentence(law: Law, what: str, step: int, time: Any = None) -> str:
-    """Return the sentence of a fault: step, time, what happened, and whose law it was."""
+    """Return the sentence of a fault: step, time, what happened, and whose law it was.
+
+    Parameters
+    ----------
+    law : Law
+        The one that failed.
+    what : str
+        What it did: ``"force nan"``.
+    step : int
+        From 1.
+    time : float or array, optional
+        In s; the latest of several.
+    """
     from contactlab.registry import REGISTRY  # only a run that fails asks for names
 
     try:

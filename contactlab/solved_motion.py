@@ -155,6 +155,16 @@ class FailedMotion(NormalMotion):
     accuracy = math.nan
 
     def __init__(self, law: NormalLaw, scene: Scene, status: Status, detail: str) -> None:
+        """Every number is NaN.
+
+        Parameters
+        ----------
+        law : NormalLaw
+            The one that failed.
+        scene : Scene
+        status, detail : Status, str
+            How, for every impact.
+        """
         shape = scene.shape
         self.law, self.scene = law, scene
         unknown = batch.spread(math.nan, shape)

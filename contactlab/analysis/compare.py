@@ -200,6 +200,17 @@ def _run(simulation: Simulation, scene: Scene) -> ImpactResult:
 
 
 def _timed(name: str, simulation: Simulation, scene: Scene, *, history: bool) -> LawRun:
+    """Return the result of one simulation, and its least run time an impact.
+
+    Parameters
+    ----------
+    name : str
+        Of the laws, for tables.
+    simulation : Simulation
+    scene : Scene
+    history : bool
+        Whether the course of the impact is kept too.
+    """
     result = _run(simulation, scene)  # the first run also imports, compiles and fills caches
     times = [result.run_time]
     if result.run_time < LONG_RUN:

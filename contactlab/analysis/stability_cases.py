@@ -66,6 +66,18 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
 def _ladder(
     method: Method, part: str | None, step: str | None, psi1: float, chi: float, *, quick: bool
 ) -> Iterator[Case]:
+    """Yield the cases of one impact at several resolutions.
+
+    Parameters
+    ----------
+    method : Method
+    part, step : str or None
+        Names of the resolutions of tangential law and integrator.
+    psi1, chi : float
+    quick : bool
+        Whether fewer values will do.
+    """
+
     def scene(family: str) -> Extreme:
         label = f"psi1={psi1:g} chi={chi:.4g}"
         return Extreme(family, label, lambda: Scene.nondimensional(psi1=psi1, chi=chi))
@@ -94,6 +106,17 @@ def _class(method: Method) -> Any:
 
 
 def _case(method: Method, scene: Extreme, options: Options, *, planned: bool = True) -> Case:
+    """Return the case of a scene at one resolution.
+
+    Parameters
+    ----------
+    method : Method
+    scene : Extreme
+    options : mapping of str to mapping
+        Of tangential law and integrator, by kind.
+    planned : bool
+        Whether whole-impact answers are taken; everything is marched otherwise.
+    """
     words = [f"{name}={value:g}" for part in options.values() for name, value in part.items()] + (
         [] if planned else ["marched"]
     )

@@ -89,10 +89,16 @@ def region(
     until: float = np.inf,
     judged: Callable[[Case], Outcome] = judge,
 ) -> Region:
-    """Run the cells of a method, those of one resolution in order of chi.
+    """Return how a method does in its cells, those of one resolution run in order of chi.
 
-    ``until`` is the time (``time.perf_counter``) after which no cell is begun, ``judged`` what
-    runs a case.
+    Parameters
+    ----------
+    method : Method
+    cells : list of tuple (resolution, chi)
+    until : float
+        Time (``time.perf_counter``) after which no cell is begun.
+    judged : callable
+        What runs a case.
     """
     word = _word(method)
     assert word is not None
@@ -138,6 +144,17 @@ def _word(method: Method) -> str | None:
 
 
 def _case(method: Method, word: str, fine: float, psi1: float, chi: float) -> Case:
+    """Return the case of one impact in a cell.
+
+    Parameters
+    ----------
+    method : Method
+    word : str
+        Name of the integrator's resolution.
+    fine : float
+        Its value.
+    psi1, chi : float
+    """
     options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {word: fine}}
     if hasattr(REGISTRY.law_class(f"integrator.{method.integrator}"), "refine"):
         options["integrator"]["refine"] = False  # what the steps asked for are worth

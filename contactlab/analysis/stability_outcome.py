@@ -61,7 +61,17 @@ def judge(case: Case) -> Outcome:
 
 
 def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Reference) -> Outcome:
-    """Run one scene, and judge the answer against ``reference``."""
+    """Return what came of one scene, its answer judged against ``reference``.
+
+    Parameters
+    ----------
+    case : Case
+        What is reported; ``planned`` says whether whole-impact answers are taken.
+    simulation : Simulation
+    scene : Scene
+    reference : callable
+        Gives the exact change of slip velocity, or None where none is known.
+    """
     before = time.perf_counter()
     try:
         with np.errstate(all="ignore"):
@@ -105,6 +115,19 @@ def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
 def _judged(
     case: Case, simulation: Simulation, result: ImpactResult, expected: float | None, taken: float
 ) -> Outcome:
+    """Return the outcome of a run that ended well: right, or silently wrong.
+
+    Parameters
+    ----------
+    case : Case
+    simulation : Simulation
+    result : ImpactResult
+        A success.
+    expected : float or None
+        Exact change of slip velocity, in m/s, if it is known.
+    taken : float
+        Run time, in s.
+    """
     scene = result.scene
     unit, width, _ = range_of(scene)
     declared = float(result.plan.psi2_error) * unit

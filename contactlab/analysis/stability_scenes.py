@@ -33,6 +33,14 @@ def extreme_scenes(*, quick: bool = False) -> list[Extreme]:
 
 
 def _plain(family: str, label: str, psi1: Any, chi: Any) -> Extreme:
+    """Return an impact of given psi1 and chi.
+
+    Parameters
+    ----------
+    family, label : str
+        For the report.
+    psi1, chi : float or array
+    """
     return Extreme(family, label, lambda: Scene.nondimensional(psi1=psi1, chi=chi))
 
 
@@ -63,6 +71,23 @@ def _ball(
     poisson: Any = 0.3,
     other: float | None = None,
 ) -> Scene:
+    """Return the scene of a steel sphere, changed in some of its numbers.
+
+    Parameters
+    ----------
+    radius : float
+        In m.
+    speed : float
+        Normal speed, in m/s.
+    friction : float or array
+        mu.
+    slip : float or array
+        Tangential velocity over normal speed.
+    poisson : float or array
+        nu of both bodies.
+    other : float, optional
+        Mass of a second sphere over that of the first; a half-space is hit without it.
+    """
     material = Material(shear_modulus=80e9, poisson_ratio=poisson, density=7850.0)
     sphere = Sphere(radius, material)
     target: Sphere | HalfSpace = HalfSpace(material)

@@ -116,6 +116,17 @@ def _reference(
     settings: dict[str, Any],
     bound: float,
 ) -> Finding:
+    """Return how far psi2 is from ``REFERENCE_PSI2``.
+
+    Parameters
+    ----------
+    tangential, integrator : str
+        Names, without their kind.
+    options, settings : dict
+        Parameters of the one and of the other.
+    bound : float
+        On the difference in psi2.
+    """
     sim = Simulation(
         tangential=REGISTRY.create(f"tangential.{tangential}", **options),
         integrator=REGISTRY.create(f"integrator.{integrator}", **settings),

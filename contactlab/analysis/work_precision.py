@@ -167,6 +167,17 @@ def _exact(scene: Scene) -> ImpactResult:
 def _row(
     method: Method, rung: dict[str, dict[str, Any]], given: list[Scene], exact: list[ImpactResult]
 ) -> Row:
+    """Return error and cost of a method at one resolution.
+
+    Parameters
+    ----------
+    method : Method
+    rung : mapping of str to mapping
+        Options of tangential law and integrator, by kind: one resolution.
+    given : list of Scene
+    exact : list of ImpactResult
+        Of the same scenes, with history.
+    """
     simulation = method.simulation(rung)
     results = [simulation.run(scene, history=True) for scene in given]
     failed = [result for result in results if not result.status]

@@ -207,4 +207,16 @@ class Integrator(Law):
         scene: Scene,
         observer: Observer | None = None,
     ) -> TangentialMotion:
-        """Return the tangential motion from first touch to separation."""
+        """Return the tangential motion from first touch to separation.
+
+        Parameters
+        ----------
+        normal : NormalMotion
+            Already made, of the same impacts.
+        tangential : TangentialLaw
+            Of the class ``tangential_contract``.
+        scene : Scene
+            One impact, or a batch.
+        observer : callable, optional
+            Called with a ``Sample`` at increasing times (clause 3).
+        """

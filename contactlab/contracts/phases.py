@@ -135,7 +135,18 @@ class Phase(ABC):
         velocity: Array,
         response: PhaseResponse,
     ) -> Array:
-        """Return the margin of one event (clause 2)."""
+        """Return the margin of one event (clause 2).
+
+        Parameters
+        ----------
+        event : int
+        contact : ScaledContact
+            At the x asked for.
+        slip, velocity : array
+            There.
+        response : PhaseResponse
+            What ``respond`` gave there.
+        """
         raise IndexError(event)
 
     def follow(
@@ -145,7 +156,18 @@ class Phase(ABC):
         contact: ScaledContact,
         path: Path | None,
     ) -> Phase:
-        """Return the next phase (clause 4)."""
+        """Return the next phase (clause 4).
+
+        Parameters
+        ----------
+        event : int
+        state : PhaseState
+            At the event.
+        contact : ScaledContact
+            There, of floats.
+        path : Path or None
+            The stretch just finished; None if the phase had no length.
+        """
         raise IndexError(event)
 
     def carry_on(self, state: PhaseState, contact: ScaledContact, path: Path) -> Phase:
@@ -159,7 +181,17 @@ class Phase(ABC):
         velocity: Array,
         response: PhaseResponse,
     ) -> Array:
-        """Return the rate of friction work (clause 6)."""
+        """Return the rate of friction work (clause 6).
+
+        Parameters
+        ----------
+        contact : ScaledContact
+            At the x asked for.
+        slip, velocity : array
+            There.
+        response : PhaseResponse
+            What ``respond`` gave there.
+        """
         return np.zeros_like(slip)
 
     def closed_form(
@@ -223,6 +255,20 @@ class PhasedTangentialLaw(TangentialLaw):
 
         ``factor`` is what the scaled solution is to be multiplied with: -1 for an impact
         with negative slip velocity, and see clause 2.
+
+        Parameters
+        ----------
+        normal : ClosedFormMotion
+            Of the impact, for its scales.
+        phase : Phase
+            The one that holds at the instant.
+        contact : ScaledContact
+            At the instant, of floats.
+        slip : float
+            Scaled.
+        factor : float
+            What the scaled solution is to be multiplied with: -1 for an impact with negative slip
+            velocity, and see clause 2.
         """
         return {}
 

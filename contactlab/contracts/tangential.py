@@ -195,7 +195,17 @@ class SteppedTangentialLaw(TangentialLaw):
     def advance(
         self, state: Any, increment: Increment, before: NormalContact, after: NormalContact
     ) -> tuple[TangentialResponse, Any]:
-        """Return the response at the end of the step, and the new state."""
+        """Return the response at the end of the step, and the new state.
+
+        Parameters
+        ----------
+        state : object
+            As ``start`` or the step before left it.
+        increment : Increment
+            Displacement, slip velocity, mean friction load and duration of the step.
+        before, after : NormalContact
+            The normal contact at the two ends of the step, friction load included.
+        """
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return the largest tangential stiffness, in N/m."""

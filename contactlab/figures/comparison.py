@@ -30,7 +30,18 @@ POINTS: dict[str, Any] = {
 def laws_over_sweep(
     axes: Axes, comparison: Comparison, quantity: str, agreement: Agreement | None = None
 ) -> Axes:
-    """Draw a quantity over the sweep, one curve a law, with measured points if there are any."""
+    """Draw a quantity over the sweep, one curve a law, with measured points if there are any.
+
+    Parameters
+    ----------
+    axes : Axes
+    comparison : Comparison
+        Of a sweep.
+    quantity : str
+        By its name in ``contactlab.quantities``.
+    agreement : Agreement, optional
+        With measured values, drawn too.
+    """
     varied, x = _abscissa(comparison, agreement)
     for number, name in enumerate(comparison.names):
         axes.plot(x, comparison.values(quantity, name), label=verbatim(name), **law_style(number))
@@ -53,7 +64,18 @@ def laws_over_sweep(
 def differences(
     axes: Axes, comparison: Comparison, quantity: str, agreement: Agreement | None = None
 ) -> Axes:
-    """Draw each law less the measured values, or, where there are none, less the first law."""
+    """Draw each law less the measured values, or, where there are none, less the first law.
+
+    Parameters
+    ----------
+    axes : Axes
+    comparison : Comparison
+        Of a sweep.
+    quantity : str
+        By its name in ``contactlab.quantities``.
+    agreement : Agreement, optional
+        With measured values, drawn too.
+    """
     varied, x = _abscissa(comparison, agreement)
     zero_line(axes)
     names = comparison.names

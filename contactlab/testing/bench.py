@@ -154,9 +154,19 @@ def continue_from(
     level: Any = 0.0,
     count: int | None = None,
 ) -> Answers:
-    """Take ``law`` on from ``state``, reached at ``slip`` and ``level``.
+    """Return the answers of ``law`` along ``path``, from ``state`` on.
 
-    ``count`` is the number of steps of the whole path, if ``path`` is a part of it.
+    Parameters
+    ----------
+    law : SteppedTangentialLaw
+    bench : Bench
+    state : object
+        The law's, reached at ``slip`` and ``level``.
+    path : Path
+    slip, level : float or array
+        Where the path begins.
+    count : int, optional
+        Steps of the whole path, if ``path`` is a part of it.
     """
     duration = locked(bench.time / (count or len(path.slip)))
     before = bench.contact(level)
@@ -188,9 +198,16 @@ def straight(*knots: tuple[float, float], steps: int = 40) -> Path:
 
 
 def wandering(seed: int, *, knots: int = 12, steps: int = 16, fixed: bool = False) -> Path:
-    """Return a path through random knots, in stick, partial and gross slip.
+    """Return a path through random knots, in stick, partial and gross slip; the first only presses.
 
-    The first knot only presses; with ``fixed`` the normal load then stays.
+    Parameters
+    ----------
+    seed : int
+    knots : int
+    steps : int
+        From one knot to the next.
+    fixed : bool
+        Whether the normal load stays after the first knot.
     """
     draw = np.random.default_rng(seed)
     slips = draw.normal(0.0, 0.8, knots)

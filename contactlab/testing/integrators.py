@@ -42,7 +42,15 @@ def sound(integrator: Any) -> list[Simulation]:
 
 
 def run(way: Simulation, psi1: Any, chi: Any = CHI, recorder: Any = None) -> TangentialMotion:
-    """Run an impact past the plan, which might take a short cut."""
+    """Run an impact past the plan, which might take a short cut.
+
+    Parameters
+    ----------
+    way : Simulation
+    psi1, chi : float or array
+    recorder : callable, optional
+        An observer.
+    """
     return follow(way, scene(psi1, chi), recorder)
 
 

@@ -35,7 +35,15 @@ def strokes(units: Units | None = None, *, bodies: Any = 1.0) -> tuple[Scene, An
 
 
 def respond(law: Any, given: Scene, approach: Any, rate: Any) -> Any:
-    """Return force, radius, overlap and friction load along a course, rows of an array."""
+    """Return force, radius, overlap and friction load along a course, rows of an array.
+
+    Parameters
+    ----------
+    law : NormalLaw
+    given : Scene
+    approach, rate : array, shape (K, ...)
+        In m and m/s, one after the other.
+    """
     state, rows = law.start(given), []
     for depth, speed in zip(_rows(approach), _rows(rate), strict=True):
         contact, state = law.respond(state, depth, speed)

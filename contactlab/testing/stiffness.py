@@ -54,7 +54,17 @@ def stiffness(law: Any) -> None:
 
 
 def _steepest(law: Any, bench: Bench, level: float, size: float) -> float:
-    """Return the largest dF/dD as a contact at fixed load is sheared to and fro."""
+    """Return the largest dF/dD as a contact at fixed load is sheared to and fro.
+
+    Parameters
+    ----------
+    law : SteppedTangentialLaw
+    bench : Bench
+    level : float
+        zeta at which the load is kept.
+    size : float
+        Amplitude of the slip, scaled.
+    """
     pressed = drive(law, bench, straight((0.0, level), steps=8)).state
     slip = straight((size, 0.0), (-size, 0.0), (0.5 * size, 0.0), steps=16).slip
     path = Path(slip, np.full_like(slip, level))
@@ -100,7 +110,17 @@ def tension(law: Any) -> None:
 
 
 def _pulled(law: Any, bench: Bench, pulled: Any, sense: float) -> Any:
-    """Return the forces as a sheared contact comes under tension and is sheared on."""
+    """Return the forces as a sheared contact comes under tension and is sheared on.
+
+    Parameters
+    ----------
+    law : SteppedTangentialLaw
+    bench : Bench
+    pulled : NormalContact
+        Under tension.
+    sense : float
+        Sign of the slip.
+    """
     pressed = drive(law, bench, straight((0.0, 0.7), (0.4 * sense, 0.7), steps=8)).state
     state, before, forces = pressed, bench.contact(0.7), []
     for moved in (0.1, 0.0, 0.3, -0.2, -0.9, 0.05):

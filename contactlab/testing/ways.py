@@ -119,7 +119,17 @@ def ways(law: TangentialLaw, normal: NormalLaw | None = None) -> list[Way]:
 def meet(
     way: Way, psi1: Any, chi: Any, *, units: Units | None = None, recorder: Observer | None = None
 ) -> Followed:
-    """Follow an impact of given psi1 and chi."""
+    """Follow an impact of given psi1 and chi.
+
+    Parameters
+    ----------
+    way : Way
+    psi1, chi : float or array
+    units : Units, optional
+        In which the scene is given, for laws in the same.
+    recorder : callable, optional
+        An observer.
+    """
     return way.follow(scene(psi1, chi, units=units), recorder)
 
 

@@ -60,9 +60,8 @@ class Midpoints(Bundle):
 
     def _factor_of_one(self, square: float) -> float:
         touching = bisect_left(self.squares_listed, square)
-        if not touching:
-            return 0.0
-        return square**1.5 / (touching * square - self.sums_listed[touching])
+        full = touching * square - self.sums_listed[touching]
+        return square**1.5 / full if touching else 0.0
 
 
 @lru_cache(maxsize=32)
