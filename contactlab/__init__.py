@@ -61,6 +61,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from contactlab.bodies import HalfSpace, Material, Pair, Sphere
+from contactlab.collision import Collision, collide
+from contactlab.encounter import Encounter
 from contactlab.energy import EnergyLedger
 from contactlab.hookspecs import hookimpl
 from contactlab.rebounds import rebound
@@ -79,6 +81,8 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Collision",
+    "Encounter",
     "EnergyLedger",
     "HalfSpace",
     "ImpactError",
@@ -90,6 +94,7 @@ __all__ = [
     "Simulation",
     "Sphere",
     "Status",
+    "collide",
     "create",
     "fit",
     "hookimpl",

@@ -7,6 +7,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.bodies import Pair
 from contactlab.checks import Real
 from contactlab.motion import Motion
 from contactlab.plain import plain
@@ -64,21 +65,40 @@ class EnergyLedger:
 
 def ledger(scene: Scene, motion: Motion) -> EnergyLedger:
     """Return the books of ``motion``, from the velocities alone but for the friction work."""
-    pair, before, change = scene.pair, scene.slip_velocity, motion.slip_velocity_change
-    speed, after = scene.normal_speed, motion.normal_velocity
+    before = (scene.normal_speed, scene.slip_velocity)
+    after = (motion.normal_velocity, motion.slip_velocity_change)
+    return books(scene.pair, before, after, motion.friction_work)
+
+
+def books(
+    pair: Pair, before: tuple[Real, Real], after: tuple[Real, Real], friction_work: Real
+) -> EnergyLedger:
+    """Return the books of two bodies.
+
+    Parameters
+    ----------
+    pair : Pair
+    before : tuple
+        Rate of approach and slip velocity, in m/s.
+    after : tuple
+        Rate of approach, and the change of the slip velocity, in m/s.
+    friction_work : float or array
+        In J.
+    """
+    (speed, slip), (rate, change) = before, after
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         # Products, not powers: a float raised to a power raises OverflowError.
         start = 0.5 * pair.normal_mass * speed * speed
-        start = start + 0.5 * pair.tangential_mass * before * before
+        start = start + 0.5 * pair.tangential_mass * slip * slip
         # The loss is formed from the changes: with a huge v_x, start - end would cancel.
-        normal_loss = 0.5 * pair.normal_mass * (speed - after) * (speed + after)
-        slip_loss = -pair.tangential_mass * change * (before + 0.5 * change)
+        normal_loss = 0.5 * pair.normal_mass * (speed - rate) * (speed + rate)
+        slip_loss = -pair.tangential_mass * change * (slip + 0.5 * change)
         return EnergyLedger(
             start=start,
             end=start - normal_loss - slip_loss,
             normal_loss=normal_loss,
-            friction_work=motion.friction_work,
-            imbalance=slip_loss - motion.friction_work,
+            friction_work=friction_work,
+            imbalance=slip_loss - friction_work,
         )
 
 

@@ -23,12 +23,12 @@ LEAST_ENERGY = LEAST_VELOCITY = 1e-290
 LEAST_IMPULSE = 1e-285
 
 
-def _is_sphere(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
+def is_sphere(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
     if value is not None and not isinstance(value, Sphere):
         raise refuse(attribute.name, value, "must be a Sphere", "make one: Sphere(...)")
 
 
-def _is_target(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
+def is_target(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
     if value is not None and not isinstance(value, Sphere | HalfSpace):
         raise refuse(attribute.name, value, "must be a HalfSpace or a Sphere")
 
@@ -69,8 +69,8 @@ class Scene:
         With the argument's name, if a number is not finite or out of range.
     """
 
-    sphere: Sphere | None = attrs.field(validator=_is_sphere)
-    target: Sphere | HalfSpace | None = attrs.field(validator=_is_target)
+    sphere: Sphere | None = attrs.field(validator=is_sphere)
+    target: Sphere | HalfSpace | None = attrs.field(validator=is_target)
     friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE)
     normal_speed: Real = quantity("m/s", rule=POSITIVE)
     tangential_velocity: Real = quantity("m/s", default=0.0)

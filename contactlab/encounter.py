@@ -1,0 +1,282 @@
+"""Two bodies that meet in space, by vectors, and the scene in their plane of friction."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab import batch
+from contactlab.bodies import HalfSpace, Pair, Sphere
+from contactlab.checks import NON_NEGATIVE, Real, Rule, quantity, real, refuse
+from contactlab.scene import Scene, is_sphere, is_target
+from contactlab.signatures import named_arguments
+
+Array = NDArray[np.float64]
+
+#: Largest number in a vector, and least length of a normal and speed of approach: their squares
+#: are held in floating point.
+LARGEST, LEAST = 1e100, 1e-100
+RANGE = Rule(lambda value: np.abs(value) <= LARGEST, f"must be finite, at most {LARGEST:g}")
+NOTHING = (0.0, 0.0, 0.0)
+#: Encounters whose directions are found together: arrays of this length stay in the cache.
+TOGETHER = 1 << 14
+
+
+def _vector(value: object, field: attrs.Attribute[Any]) -> Array:
+    """Return vectors, shape (..., 3), as a read-only copy."""
+    remedy = f"give three numbers in {field.metadata['unit']}, or an array of shape (..., 3)"
+    if field.metadata["unit"] == "1":
+        remedy = "give three numbers, or an array of shape (..., 3)"
+    if type(value) is np.ndarray and value.dtype == np.float64 and value.size:
+        # no temporary arrays: a million vectors are common; NaN fails both comparisons
+        found = value if value.min() >= -LARGEST and value.max() <= LARGEST else None
+    else:
+        found = None
+    vectors = np.asarray(
+        real(field.name, value, rule=RANGE, remedy=remedy) if found is None else found.copy()
+    )
+    if vectors.shape[-1:] != (3,):
+        told = value if vectors.ndim < 2 else vectors.shape
+        raise refuse(field.name, told, "must be a vector of three numbers", remedy)
+    vectors.flags.writeable = False
+    return vectors
+
+
+def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
+    """Return an attrs field for checked vectors."""
+    return attrs.field(
+        default=default,
+        kw_only=True,
+        converter=attrs.Converter(_vector, takes_field=True),  # type: ignore[misc]
+        eq=attrs.cmp_using(eq=np.array_equal),
+        metadata={"vector": True, "unit": unit},
+    )
+
+
+class Contact(NamedTuple):
+    """How the surfaces of both bodies meet; vectors have their components first, (3, encounters).
+
+    Attributes
+    ----------
+    normal, along : tuple of three arrays
+        Unit vectors from the sphere to the target, and of the slip; the latter is zero where there
+        is no slip.
+    approach, slip : array
+        Speeds along the normal, negative where the bodies separate, and of slip, in m/s.
+    """
+
+    normal: tuple[Any, Any, Any]
+    along: tuple[Any, Any, Any]
+    approach: Any
+    slip: Any
+
+
+@named_arguments("Encounter(ball, plate, friction_coefficient=0.2, normal=[0, 0, -1], velocity=v)")
+@attrs.frozen
+class Encounter:
+    """A sphere and a target as they touch, or a batch of such pairs, by vectors in SI units.
+
+    ::
+
+              spin                          x
+             ,-->-.                         |
+           /        \\     ,--------.        | right-handed,
+          |    +-----|--->|    +     |       | any orientation
+           \\  velocity   normal     /        +------ z
+             `----'        `------'        /
+            sphere          target        y
+
+    Every vector may be an array of shape ``(..., 3)``, every number an array; the encounters are
+    then a batch of the broadcast ``shape``. Spins turn by the right-hand rule. Friction acts in the
+    plane of the normal and of the slip, and for spheres the motion stays in it.
+
+    Parameters
+    ----------
+    sphere : Sphere
+    target : Sphere or HalfSpace
+    friction_coefficient : float or array
+        Coulomb's mu, at least 0.
+    normal : vector
+        From the centre of the sphere towards the target: to the target's centre, or at right
+        angles into its surface. Of any length but zero; it is normalised.
+    velocity, target_velocity : vector
+        Of the centres (of the surface of a half-space), in m/s; by default the target rests.
+    spin, target_spin : vector
+        In rad/s; zero by default. A half-space has none.
+
+    Raises
+    ------
+    ValueError
+        With the argument's name: a scalar or another shape where a vector is meant, a number that
+        is not finite, a normal of length zero, the spin of a half-space.
+    """
+
+    sphere: Sphere = attrs.field(validator=is_sphere)
+    target: Sphere | HalfSpace = attrs.field(validator=is_target)
+    friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE)
+    normal: Array = vector("1")
+    velocity: Array = vector("m/s")
+    spin: Array = vector("rad/s", default=NOTHING)
+    target_velocity: Array = vector("m/s", default=NOTHING)
+    target_spin: Array = vector("rad/s", default=NOTHING)
+    #: Batch shape: () for one encounter.
+    shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
+
+    def __attrs_post_init__(self) -> None:
+        for name, body in (("sphere", self.sphere), ("target", self.target)):
+            if body is None:
+                raise refuse(name, body, "must be given")
+        shapes = {name: value.shape[:-1] for name, value in self._vectors().items()}
+        shapes |= {name: np.shape(value) for name, value in self._numbers().items()}
+        shapes = {name: shape for name, shape in shapes.items() if shape}
+        try:
+            object.__setattr__(self, "shape", np.broadcast_shapes(*shapes.values()))
+        except ValueError:
+            told = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+            raise ValueError(
+                f"Encounter: the batch shapes of {told} must broadcast to one; "
+                "give one vector, or as many as there are encounters"
+            ) from None
+        if isinstance(self.target, HalfSpace) and np.any(self.target_spin):
+            raise refuse(
+                "target_spin",
+                self.target_spin,
+                "must be zero: a half-space does not spin",
+                "give target_velocity, that of its surface at the contact",
+            )
+        if not math.sqrt(np.einsum("...i,...i->...", self.normal, self.normal).min()) >= LEAST:
+            raise refuse("normal", self.normal, f"must be at least {LEAST:g} long", "not zero")
+
+    def _vectors(self) -> dict[str, Array]:
+        names = [field.name for field in attrs.fields(Encounter) if "vector" in field.metadata]
+        return {name: getattr(self, name) for name in names}
+
+    def _numbers(self) -> dict[str, Real]:
+        """Return every number, by name."""
+        found = {"friction_coefficient": self.friction_coefficient}
+        for name, body in (("sphere", self.sphere), ("target", self.target)):
+            material = body.material
+            parts: list[Any] = [body, material] if isinstance(body, Sphere) else [material]
+            for part in parts:
+                for field in attrs.fields(type(part)):
+                    if "unit" in field.metadata and getattr(part, field.name) is not None:
+                        found[f"{name}.{field.name}"] = getattr(part, field.name)
+        return found
+
+    def take(self, part: Any) -> Encounter:
+        """Return some of a batch: a slice, mask or indices, or the index of one."""
+        found: Encounter = object.__new__(Encounter)  # every number was checked before
+        for name in ("sphere", "target", "friction_coefficient"):
+            value = batch.taken(getattr(self, name), self.shape, part)
+            object.__setattr__(found, name, value)
+        for name, value in self._vectors().items():
+            chosen = value
+            if value.ndim > 1:
+                chosen = np.broadcast_to(value, (*self.shape, 3))[part]
+            object.__setattr__(found, name, chosen)
+        one = np.empty(self.shape, dtype=bool)[part] if self.shape else ()
+        object.__setattr__(found, "shape", np.shape(one))
+        return found
+
+    @property
+    def pair(self) -> Pair:
+        """What the laws need of the two bodies."""
+        return Pair.of(self.sphere, self.target)
+
+    @property
+    def approaching(self) -> Any:
+        """Whether the bodies come nearer, a bool or an array of them; 1e-100 m/s counts as rest."""
+        approach = np.empty(self.shape)
+        for where, part in self.parts():
+            approach.reshape(-1)[where] = part.contact().approach
+        found = approach >= LEAST
+        return found if self.shape else bool(found)
+
+    def parts(self) -> Any:
+        """Iterate over parts of the batch as one-dimensional batches, and where they belong."""
+        size = math.prod(self.shape)
+        flat = self.take(np.full(self.shape, True)) if len(self.shape) > 1 else self
+        for first in range(0, size, TOGETHER):
+            where = slice(first, min(first + TOGETHER, size))
+            yield where, flat.take(where) if size > TOGETHER else flat
+
+    def contact(self) -> Contact:
+        """Return how the surfaces meet, before the impact; of one encounter or a batch."""
+        n1, n2, n3 = components(self.normal)
+        length = np.sqrt(n1 * n1 + n2 * n2 + n3 * n3)
+        n1, n2, n3 = n1 / length, n2 / length, n3 / length
+        u1, u2, u3 = _difference(self.velocity, self.target_velocity)
+        approach = u1 * n1 + u2 * n2 + u3 * n3
+        w1, w2, w3 = self._rim()
+        u1 = u1 + (w2 * n3 - w3 * n2) - approach * n1
+        u2 = u2 + (w3 * n1 - w1 * n3) - approach * n2
+        u3 = u3 + (w1 * n2 - w2 * n1) - approach * n3
+        slip = np.sqrt(u1 * u1 + u2 * u2 + u3 * u3)
+        one = 1.0 / (slip + (slip == 0.0))
+        return Contact((n1, n2, n3), (u1 * one, u2 * one, u3 * one), approach, slip)
+
+    def _rim(self) -> tuple[Any, Any, Any]:
+        """Return R1 omega1 + R2 omega2: its product with the normal is slip by spin, in m/s."""
+        parts = [self.sphere.radius * each for each in components(self.spin)]
+        if isinstance(self.target, Sphere) and self.target_spin.any():
+            other = self.target.radius
+            for k, each in enumerate(components(self.target_spin)):
+                parts[k] = parts[k] + other * each
+        return parts[0], parts[1], parts[2]
+
+    @property
+    def scene(self) -> Scene:
+        """The scene in the plane of friction, in which the target rests and does not spin.
+
+        Its tangential velocity is that of the centres relative to each other, along the slip;
+        its spin is that which alone would make the same slip: (R1 omega1 + R2 omega2)/R1.
+
+        Raises
+        ------
+        ValueError
+            If bodies separate.
+        """
+        contact = self.contact()
+        if not np.all(contact.approach >= LEAST):
+            raise self.separate()
+        u = _difference(self.velocity, self.target_velocity)
+        along = sum(each * direction for each, direction in zip(u, contact.along, strict=True))
+        along = np.broadcast_to(along, self.shape)
+        spin = (contact.slip - along) / self.sphere.radius
+        numbers = (contact.approach, along, spin)
+        if not self.shape:
+            numbers = tuple(map(float, numbers))
+        return Scene(self.sphere, self.target, self.friction_coefficient, *numbers)
+
+    def separate(self) -> ValueError:
+        """Return the refusal of bodies that do not approach each other."""
+        approach = np.broadcast_to(self.contact().approach, self.shape)
+        where = np.argwhere(~(approach >= LEAST))
+        first = tuple(where[0].tolist())
+        which = f" (the first of {len(where)} has index {list(first)})" if self.shape else ""
+        return refuse(
+            "velocity, target_velocity",
+            float(approach[first]),
+            f"bodies separate: the speed of approach, in m/s, must be positive{which}",
+            "turn normal from the sphere to the target, or let such pairs pass: "
+            "collide(encounter, separating='pass')",
+        )
+
+
+def components(vectors: Array) -> tuple[Any, Any, Any]:
+    """Return x, y and z of vectors, each contiguous, or a number of one vector."""
+    x, y, z = np.ascontiguousarray(np.moveaxis(vectors, -1, 0))
+    return x, y, z
+
+
+def _difference(one: Array, other: Array) -> tuple[Any, Any, Any]:
+    """Return the components of a difference of vectors."""
+    x, y, z = components(one)
+    if not other.any():
+        return x, y, z
+    a, b, c = components(other)
+    return x - a, y - b, z - c
