@@ -66,6 +66,19 @@ def coupling(scene: Scene) -> tuple[str, ...]:
     )
 
 
+def vectors(scene: Scene) -> tuple[str, ...]:
+    """Return the caution of three numbers, all else being one, that may be meant for a vector."""
+    if scene.shape != (3,) or scene.sphere is None:
+        return ()
+    arrays = [name for name, number in scene.numbers().items() if np.ndim(number)]
+    if len(arrays) != 1:
+        return ()
+    return (
+        f"{arrays[0]} has three numbers, taken for three impacts: vectors in space belong in an "
+        "Encounter",
+    )
+
+
 def hemisphere(claims: frozenset[str]) -> tuple[str, ...]:
     """Return the caution of a pressure that is taken for a hemisphere and may be none."""
     if "hertzian_pressure" in claims:

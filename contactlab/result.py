@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 
 from contactlab import batch
+from contactlab.bodies import Sphere
 from contactlab.checks import Real
 from contactlab.energy import EnergyLedger, ledger
 from contactlab.history import History
@@ -165,6 +166,36 @@ class ImpactResult:
         inertia = sphere.mass * sphere.gyration_ratio**2 * sphere.radius
         share = self.scene.pair.tangential_mass / inertia
         return self.scene.spin + share * self.motion.slip_velocity_change
+
+    @property
+    def target_rebound_normal_velocity(self) -> Real | None:
+        """Velocity of the target along the normal, in m/s; positive: away from where it was hit.
+
+        0 for a half-space, None for a non-dimensional scene; so are the next two.
+        """
+        motion, pair = self.motion, self.scene.pair
+        return self._of_target(pair.normal_mass * (self.scene.normal_speed - motion.normal_velocity))
+
+    @property
+    def target_rebound_tangential_velocity(self) -> Real | None:
+        """Tangential velocity of the target's centre, in m/s, positive as that of the sphere."""
+        return self._of_target(-self.scene.pair.tangential_mass * self.motion.slip_velocity_change)
+
+    @property
+    def target_rebound_spin(self) -> Real | None:
+        """Spin of the target in rad/s, positive as that of the sphere: where it adds to the slip."""
+        turn = self.scene.pair.tangential_mass * self.motion.slip_velocity_change
+        target = self.scene.target
+        if isinstance(target, Sphere):
+            turn = turn / (target.gyration_ratio**2 * target.radius)
+        return self._of_target(turn)
+
+    def _of_target(self, momentum: Real) -> Real | None:
+        """Return ``momentum`` (N s) over the mass of the target, without bound for a half-space."""
+        target = self.scene.target
+        if isinstance(target, Sphere):
+            return momentum / target.mass
+        return None if target is None else 0.0 * momentum + 0.0
 
     @property
     def normal_restitution(self) -> Real:

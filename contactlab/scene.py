@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlab import batch
 from contactlab.bodies import HalfSpace, Pair, Sphere
-from contactlab.checks import NON_NEGATIVE, POSITIVE, Real, quantity, real, refuse
+from contactlab.checks import NON_NEGATIVE, POSITIVE, Real, Rule, quantity, real, refuse
 from contactlab.signatures import named_arguments
 
 if TYPE_CHECKING:
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 LEAST_ENERGY = LEAST_VELOCITY = 1e-290
 #: Least momentum that friction can take, mu times that of the normal motion, in N s.
 LEAST_IMPULSE = 1e-285
+OBLIQUE = Rule(
+    lambda degrees: np.abs(degrees) < 90.0, "must lie between -90 and 90, measured from the normal"
+)
 
 
 def is_sphere(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
@@ -91,7 +94,7 @@ class Scene:
                 "both bodies must be given",
                 "or use Scene.nondimensional(psi1=, chi=)",
             )
-        numbers = self._numbers()
+        numbers = self.numbers()
         shapes = {name: np.shape(number) for name, number in numbers.items() if np.shape(number)}
         try:
             object.__setattr__(self, "shape", np.broadcast_shapes(*shapes.values()))
@@ -104,7 +107,7 @@ class Scene:
         real("tangential_velocity + spin * radius", self.slip_velocity)
         self._check_scales()
 
-    def _numbers(self) -> dict[str, Real]:
+    def numbers(self) -> dict[str, Real]:
         """Return every number of the scene and of its pair, by name."""
         numbers = {field.name: getattr(self.pair, field.name) for field in attrs.fields(Pair)}
         for field in attrs.fields(Scene):
@@ -147,6 +150,40 @@ class Scene:
                 "with these velocities psi1 of eq. (29) cannot be held in floating point",
                 "give 0 for no friction, or larger velocities",
             )
+
+    @classmethod
+    @named_arguments("Scene.at_angle(ball, plate, 0.2, speed=3.9, angle_deg=30)")
+    def at_angle(
+        cls,
+        sphere: Sphere,
+        target: Sphere | HalfSpace,
+        friction_coefficient: Real,
+        *,
+        speed: Any,
+        angle_deg: Any,
+        spin: Real = 0.0,
+    ) -> Scene:
+        """Return the scene of a centre that moves at an angle from the normal.
+
+        Parameters
+        ----------
+        sphere, target, friction_coefficient, spin
+            As of the class.
+        speed : float or array
+            Of the centre, in m/s, positive.
+        angle_deg : float or array
+            From the normal, in degrees, between -90 and 90.
+
+        Raises
+        ------
+        ValueError
+            With the argument's name.
+        """
+        remedy = "give speed in m/s and angle_deg in degrees from the normal"
+        fast = real("speed", speed, rule=POSITIVE, remedy=remedy)
+        angle = np.radians(real("angle_deg", angle_deg, rule=OBLIQUE, remedy=remedy))
+        ahead, aside = np.cos(angle), np.sin(angle)
+        return cls(sphere, target, friction_coefficient, fast * ahead, fast * aside, spin)
 
     @classmethod
     @named_arguments("Scene.nondimensional(psi1=1.2, chi=1.4412)")
@@ -225,7 +262,7 @@ class Scene:
         What all impacts share stays a plain number: laws are faster then.
         """
         taken: Scene = batch.taken(self, self.shape, part)
-        numbers = taken._numbers().values()
+        numbers = taken.numbers().values()
         object.__setattr__(taken, "shape", np.broadcast_shapes(*map(np.shape, numbers)))
         if taken.shape or isinstance(part, int | tuple):
             return taken

@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import attrs
+import numpy as np
 
 from contactlab import composition
+from contactlab.cautions import vectors
 from contactlab.checks import refuse
 from contactlab.composition import Laws
 from contactlab.contracts.integrator import Integrator
@@ -20,7 +22,7 @@ from contactlab.error_estimate import estimated
 from contactlab.history import Recorder
 from contactlab.motion import Motion
 from contactlab.outcome import normal_or_failed, outcome, prepare
-from contactlab.plan import Plan
+from contactlab.plan import Plan, Sentence
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.signatures import named_arguments
@@ -65,7 +67,7 @@ class Simulation:
 
     def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
         """Say what ``run`` would compute for ``scene``, what it leaves out and why."""
-        return prepare(self._laws, _scene(scene), _asked(history)).plan
+        return _complete(prepare(self._laws, _scene(scene), _asked(history)).plan, scene)
 
     def run(
         self, scene: Scene, *, history: bool | str = False, estimate_error: bool = False
@@ -98,7 +100,7 @@ class Simulation:
         plan, motion = self._outcome(scene, _asked(history), recorder if history else None)
         result = ImpactResult(
             scene=scene,
-            plan=plan,
+            plan=_complete(plan, scene),
             motion=motion,
             laws=composition.versions(*self._laws),
             history=recorder.history() if history else None,
@@ -170,7 +172,7 @@ class Simulation:
         )
         return ImpactResult(
             scene=batch,
-            plan=plan,
+            plan=_complete(plan, batch),
             motion=motion,
             laws=composition.versions(*self._laws),
             run_time=time.perf_counter() - started,

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.bodies import Sphere
 from contactlab.cli.table import number, table, time
 from contactlab.export import SWEEP_TABLE
 from contactlab.quantities import QUANTITIES
@@ -77,6 +78,12 @@ def _velocities(result: ImpactResult) -> list[Row]:
         ["spin", scene.spin, result.rebound_spin, "rad/s"],
         ["angle of the path", np.degrees(result.incidence_angle), after, "deg"],
     ]
+    if isinstance(scene.target, Sphere):
+        rows += [
+            ["target: normal velocity", 0.0, result.target_rebound_normal_velocity, "m/s"],
+            ["target: tangential velocity", 0.0, result.target_rebound_tangential_velocity, "m/s"],
+            ["target: spin", 0.0, result.target_rebound_spin, "rad/s"],
+        ]
     return rows if bodies else rows[:3]
 
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from contactlab.bodies import HalfSpace, Material, Sphere
-from contactlab.checks import POSITIVE, Rule, refuse, unit_remedy
+from contactlab.checks import refuse, unit_remedy
 from contactlab.scene import Scene
 from contactlab.scene_file.entries import (
     BODY_SECTIONS,
@@ -19,10 +17,6 @@ from contactlab.scene_file.entries import (
     UNITS,
 )
 from contactlab.scene_file.table import Table
-
-OBLIQUE = Rule(
-    lambda degrees: np.abs(degrees) < 90.0, "must lie between -90 and 90, measured from the normal"
-)
 
 
 def build_scene(document: Mapping[str, Any]) -> Scene:
@@ -95,11 +89,8 @@ def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:
         )
     if table.has(*polar):
         unit = "give speed in m/s and angle_deg in degrees from the normal"
-        speed = table.number("speed", rule=POSITIVE, remedy=unit)
-        angle = np.radians(table.number("angle_deg", rule=OBLIQUE, remedy=unit))
-        numbers["normal_speed"] = speed * np.cos(angle)
-        numbers["tangential_velocity"] = speed * np.sin(angle)
-    else:
-        table.require("normal_speed", "give it in m/s, or give speed and angle_deg")
-        numbers |= _given(table, cartesian)
+        numbers |= {key: table.number(key, remedy=unit) for key in polar}
+        return table.make(Scene.at_angle, sphere=sphere, target=target, **numbers)
+    table.require("normal_speed", "give it in m/s, or give speed and angle_deg")
+    numbers |= _given(table, cartesian)
     return table.make(Scene, sphere=sphere, target=target, **numbers)
