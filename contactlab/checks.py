@@ -183,7 +183,7 @@ def _checked(value: object, field: attrs.Attribute[Any]) -> Real | None:
     return real(field.name, value, rule=meta["rule"], remedy=unit_remedy(meta["unit"]))
 
 
-def _key(value: Real | None) -> object:
+def key(value: Real | None) -> object:
     """Return what equality and hash of a quantity go by; arrays have neither of their own."""
     if value is None or isinstance(value, float):
         return value
@@ -213,7 +213,7 @@ def quantity(
         default=default,
         **keywords,
         converter=attrs.Converter(_checked, takes_field=True),
-        eq=_key,
+        eq=key,
         metadata={"unit": unit, "rule": rule},
     )
 

@@ -108,7 +108,8 @@ class Collision:
     @cached_property
     def plan(self) -> Plan:
         """What was computed, what was left out, and what to be wary of."""
-        plan = self.known.plan if self.known else self._simulation.plan(self._met.scene)
+        known = self.known
+        plan = self._simulation.plan(self._met.scene) if known is None else known.plan
         left_out = list(plan.left_out)
         met = self._met
         turning = np.array(np.broadcast_to(_turns(met), met.shape))

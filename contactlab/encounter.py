@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab import batch
 from contactlab.bodies import HalfSpace, Pair, Sphere
-from contactlab.checks import NON_NEGATIVE, Real, Rule, quantity, real, refuse
+from contactlab.checks import NON_NEGATIVE, Real, Rule, key, quantity, real, refuse
 from contactlab.scene import Scene, is_sphere, is_target
 from contactlab.signatures import named_arguments
 
@@ -52,7 +52,7 @@ def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
         default=default,
         kw_only=True,
         converter=attrs.Converter(_vector, takes_field=True),  # type: ignore[misc]
-        eq=attrs.cmp_using(eq=np.array_equal),
+        eq=key,
         metadata={"vector": True, "unit": unit},
     )
 

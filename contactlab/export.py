@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.collision import Collision
 from contactlab.files import write_table, written
 from contactlab.plain import plain
 from contactlab.result import ImpactResult
@@ -72,6 +73,18 @@ def to_dict(result: ImpactResult) -> dict[str, Any]:
         "laws": dict(result.laws),
         "plan": result.plan.to_dict(),
     }
+
+
+#: Vectors of a collision: name and unit.
+VECTORS = (
+    ("velocity", "m/s"), ("spin", "rad/s"), ("target_velocity", "m/s"), ("target_spin", "rad/s"),
+    ("impulse", "N s"), ("contact_velocity", "m/s"), ("target_contact_velocity", "m/s"),
+)  # fmt: skip
+
+
+def vectors(collision: Collision) -> dict[str, Any]:
+    """Return the vectors of both bodies after a collision as plain lists."""
+    return {name: plain(np.asarray(getattr(collision, name))) for name, _ in VECTORS}
 
 
 def write_json(result: ImpactResult, path: str | Path) -> None:

@@ -10,7 +10,8 @@ import numpy as np
 
 from contactlab.bodies import Sphere
 from contactlab.cli.table import number, table, time
-from contactlab.export import SWEEP_TABLE
+from contactlab.collision import Collision
+from contactlab.export import SWEEP_TABLE, VECTORS
 from contactlab.quantities import QUANTITIES
 from contactlab.result import ImpactResult
 from contactlab.scene_file.entries import entry_unit
@@ -22,8 +23,25 @@ SENTENCES = 3
 Row = list[Any]
 
 
-def describe(result: ImpactResult, *, title: str = "", varied: Mapping[str, Any]) -> str:
-    """Return the whole report of one impact, or of a sweep."""
+def describe(
+    result: ImpactResult,
+    *,
+    title: str = "",
+    varied: Mapping[str, Any],
+    collision: Collision | None = None,
+) -> str:
+    """Return the whole report of one impact, or of a sweep.
+
+    Parameters
+    ----------
+    result : ImpactResult
+    title : str
+    varied : mapping of str to array
+        What a sweep varies.
+    collision : Collision, optional
+        Both bodies in space, where the scene was given by vectors.
+    """
+    plan = result.plan
     if result.scene.shape:
         body = _sweep(result, varied)
     else:
@@ -33,7 +51,11 @@ def describe(result: ImpactResult, *, title: str = "", varied: Mapping[str, Any]
             _table(result, ["contact", "value", "unit"], _contact(result)),
             _table(result, ["energy", "value", "unit"], _energy(result)),
         ]
-    return "\n\n".join([title] * bool(title) + [*body, str(result.plan), _closing(result)])
+        if collision is not None:
+            rows = _space(collision)
+            body.insert(1, table(["in space", "before", "after", "unit"], rows))
+            plan = collision.plan
+    return "\n\n".join([title] * bool(title) + [*body, str(plan), _closing(result)])
 
 
 def answer(result: ImpactResult) -> str:
@@ -60,6 +82,20 @@ def _table(result: ImpactResult, headings: list[str], rows: list[Row]) -> str:
             unit = "1" if result.scene.sphere is None else unit
             shown.append([c if isinstance(c, str) else float(c) for c in cells] + [unit])
     return table(headings, shown)
+
+
+def _space(collision: Collision) -> list[Row]:
+    """Return the vectors of both bodies, and the impulse."""
+    rows: list[Row] = []
+    for name, unit in VECTORS:
+        before = getattr(collision.encounter, name, None)
+        told = "" if before is None else _vector(before)
+        rows.append([name.replace("_", " "), told, _vector(getattr(collision, name)), unit])
+    return rows
+
+
+def _vector(numbers: Any) -> str:
+    return f"({', '.join(f'{each:.6g}' for each in numbers.tolist())})"
 
 
 def _velocities(result: ImpactResult) -> list[Row]:

@@ -25,6 +25,7 @@ from contactlab import export
 from contactlab.cli import arguments as shared
 from contactlab.cli.report import describe
 from contactlab.cli.scene import add_scene, given
+from contactlab.collision import Collision
 from contactlab.export import WRITERS
 from contactlab.plain import plain
 from contactlab.result import ImpactResult
@@ -78,9 +79,13 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.figure, lambda path: draw(path, result, arguments.style)),
     )
     varied: Mapping[str, Any] = file.varied if file else {}
+    met = file.encounter if file else None
+    collision = None if met is None else Collision.of(met, result)
     if not arguments.json:
-        print(describe(result, title=file.title if file else "", varied=varied))
-    return max(saved, report(result, as_json=arguments.json, varied=varied))
+        title = file.title if file else ""
+        print(describe(result, title=title, varied=varied, collision=collision))
+    status = report(result, as_json=arguments.json, varied=varied, collision=collision)
+    return max(saved, status)
 
 
 def draw(path: Path, result: ImpactResult, look: Any) -> None:
@@ -91,12 +96,29 @@ def draw(path: Path, result: ImpactResult, look: Any) -> None:
 
 
 def report(
-    result: ImpactResult, *, as_json: bool = False, varied: Mapping[str, Any] | None = None
+    result: ImpactResult,
+    *,
+    as_json: bool = False,
+    varied: Mapping[str, Any] | None = None,
+    collision: Collision | None = None,
 ) -> int:
-    """Print JSON if asked, say on stderr what went wrong, and return the status of the command."""
+    """Print JSON if asked, say on stderr what went wrong, and return the status of the command.
+
+    Parameters
+    ----------
+    result : ImpactResult
+    as_json : bool
+    varied : mapping of str to array, optional
+        What a sweep varies.
+    collision : Collision, optional
+        Both bodies in space, where the scene was given by vectors.
+    """
     if as_json:
         swept = {name: plain(values) for name, values in (varied or {}).items()}
-        print(json.dumps(export.to_dict(result) | {"varied": swept}, indent=2, allow_nan=False))
+        content = export.to_dict(result) | {"varied": swept}
+        if collision is not None:
+            content["collision"] = export.vectors(collision)
+        print(json.dumps(content, indent=2, allow_nan=False))
     failures = result.failures
     if not failures:
         return shared.OK

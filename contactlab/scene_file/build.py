@@ -7,6 +7,7 @@ from typing import Any
 
 from contactlab.bodies import HalfSpace, Material, Sphere
 from contactlab.checks import refuse, unit_remedy
+from contactlab.encounter import Encounter
 from contactlab.scene import Scene
 from contactlab.scene_file.entries import (
     BODY_SECTIONS,
@@ -15,12 +16,16 @@ from contactlab.scene_file.entries import (
     NONDIMENSIONAL_KEYS,
     SPHERE_KEYS,
     UNITS,
+    VECTOR_KEYS,
 )
 from contactlab.scene_file.table import Table
 
 
-def build_scene(document: Mapping[str, Any]) -> Scene:
-    """Return the scene of a file's tables; arrays in the place of numbers make it a batch."""
+def build_scene(document: Mapping[str, Any]) -> tuple[Scene, Encounter | None]:
+    """Return the scene of a file's tables, and the encounter in space if it gives vectors.
+
+    Arrays in the place of numbers make it a batch.
+    """
     given = [section for section in BODY_SECTIONS if section in document]
     if "nondimensional" in document:
         if given:
@@ -29,11 +34,15 @@ def build_scene(document: Mapping[str, Any]) -> Scene:
                 "leave out one or the other"
             )
         table = Table(document["nondimensional"], "nondimensional", known=NONDIMENSIONAL_KEYS)
-        return table.make(Scene.nondimensional, **_numbers(table, NONDIMENSIONAL_KEYS))
+        return table.make(Scene.nondimensional, **_numbers(table, NONDIMENSIONAL_KEYS)), None
     root = Table({section: document[section] for section in given}, "", known=BODY_SECTIONS)
     sphere = _sphere(root.table("sphere", known=SPHERE_KEYS))
     target = _target(root)
-    return _impact(root.table("impact", known=IMPACT_KEYS), sphere, target)
+    impact = root.table("impact", known=dict.fromkeys((*IMPACT_KEYS, *VECTOR_KEYS)))
+    if impact.has(*(key for key in VECTOR_KEYS if key != "spin")):
+        encounter = _encounter(impact, sphere, target)
+        return impact.make(lambda: encounter.scene), encounter
+    return _impact(impact, sphere, target), None
 
 
 def _numbers(table: Table, keys: tuple[str, ...]) -> dict[str, Any]:
@@ -77,6 +86,25 @@ def _target(root: Table) -> Sphere | HalfSpace:
         raise refuse("target.kind", kind, 'must be "half-space" or "sphere"')
     table = Table(raw, "target", known=kinds.get(str(kind), ()))
     return HalfSpace(_material(table)) if kind == "half-space" else _sphere(table)
+
+
+def _encounter(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Encounter:
+    """Return the encounter of an impact that is given by vectors."""
+    plane = [key for key in IMPACT_KEYS if key not in ("friction_coefficient", "spin")]
+    if (both := [key for key in plane if table.has(key)]) != []:
+        raise ValueError(
+            f"{table.path}: has vectors, and {both[0]} too; velocity and normal say it all, "
+            "leave out one or the other"
+        )
+    for key in ("velocity", "normal"):
+        table.require(key, f"an impact in space needs {key} = [x, y, z]")
+    vectors = {key: table.content[key] for key in VECTOR_KEYS if table.has(key)}
+    for key, value in vectors.items():
+        if not isinstance(value, list):
+            remedy = "beside vectors write [x, y, z]"
+            raise refuse(table.at(key), value, "must be a vector of three numbers", remedy)
+    numbers = _numbers(table, ("friction_coefficient",))
+    return table.make(Encounter, sphere=sphere, target=target, **numbers, **vectors)
 
 
 def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:

@@ -13,6 +13,8 @@ SPHERE_KEYS = ("radius", "mass", "gyration_ratio", "material")
 IMPACT_KEYS = (
     "friction_coefficient", "speed", "angle_deg", "normal_speed", "tangential_velocity", "spin",
 )  # fmt: skip
+#: Vectors, which make an encounter in space of an impact; a spin is one beside a velocity.
+VECTOR_KEYS = ("velocity", "normal", "spin", "target_velocity", "target_spin")
 NONDIMENSIONAL_KEYS = ("psi1", "chi")
 BODY_SECTIONS = ("sphere", "target", "impact")
 
@@ -21,7 +23,8 @@ UNITS = {
     "shear_modulus": "Pa", "young_modulus": "Pa", "poisson_ratio": "1", "density": "kg/m³",
     "radius": "m", "mass": "kg", "gyration_ratio": "1", "friction_coefficient": "1",
     "speed": "m/s", "angle_deg": "deg", "normal_speed": "m/s",
-    "tangential_velocity": "m/s", "spin": "rad/s", "psi1": "1", "chi": "1",
+    "tangential_velocity": "m/s", "spin": "rad/s", "psi1": "1", "chi": "1", "velocity": "m/s",
+    "normal": "1", "target_velocity": "m/s", "target_spin": "rad/s",
 }  # fmt: skip
 
 

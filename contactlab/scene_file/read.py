@@ -13,6 +13,7 @@ from typing import Any
 import attrs
 
 from contactlab.checks import Real, real, refuse
+from contactlab.encounter import Encounter
 from contactlab.grid import over
 from contactlab.scene import Scene
 from contactlab.scene_file.build import build_scene
@@ -50,6 +51,8 @@ class SceneFile:
         The entries that the sweep varies and their values, shape (n,); empty for one impact.
     laws : LawChoice
         From ``[simulation]``.
+    encounter : Encounter or None
+        Of an impact that is given by vectors; ``scene`` is then that in its plane of friction.
     measured : tuple of Measured
     """
 
@@ -60,6 +63,7 @@ class SceneFile:
     scene: Scene
     varied: Mapping[str, Real]
     laws: LawChoice
+    encounter: Encounter | None
     measured: tuple[Measured, ...]
     tables: Mapping[str, Any] = attrs.field(repr=False)
 
@@ -69,7 +73,7 @@ class SceneFile:
         ``scene_at(angle_deg=[5, 10])`` is a batch of two; entries of equal length go
         together. A dotted entry is given as ``**{"sphere.radius": [...]}``.
         """
-        return _scene_with(self.tables, entries)
+        return _scene_with(self.tables, entries)[0]
 
 
 def read_scene(
@@ -110,10 +114,12 @@ def read_scene(
         if entries:
             tables = without_rivals(tables, entries)
             sweep = Sweep(varied=dict(entries), axes={})
+        scene, encounter = _scene_with(tables, sweep.varied)
         return SceneFile(
             path=file,
             **{key: about.text(key, default="") for key in ABOUT_KEYS},
-            scene=_swept(tables, sweep),
+            scene=over(scene, sweep.axes) if sweep.axes else scene,
+            encounter=encounter,
             varied=sweep.varied,
             laws=read_laws(document.get("simulation", {})),
             measured=read_measured(document.get("measured", [])),
@@ -123,13 +129,9 @@ def read_scene(
         raise ValueError(f"{file}: {error}") from error
 
 
-def _swept(tables: Mapping[str, Any], sweep: Sweep) -> Scene:
-    """Return the file's scene with what its sweep varies."""
-    scene = _scene_with(tables, sweep.varied)
-    return over(scene, sweep.axes) if sweep.axes else scene
-
-
-def _scene_with(tables: Mapping[str, Any], entries: Mapping[str, Any]) -> Scene:
+def _scene_with(
+    tables: Mapping[str, Any], entries: Mapping[str, Any]
+) -> tuple[Scene, Encounter | None]:
     for name, values in entries.items():
         path = entry_path(name)
         tables = replaced(tables, path, real(path, values))
