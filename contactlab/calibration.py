@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.checks import Rule, quantity
+from contactlab.checks import Rule, quantity, refuse
 
 #: Below this coefficient of restitution hardly a law of dissipation means anything.
 LEAST_RESTITUTION = 0.01
@@ -30,3 +30,21 @@ def root(function: Callable[[float], float], low: float, high: float) -> float:
     while low < (middle := 0.5 * (low + high)) < high:
         low, high = (middle, high) if function(middle) < 0.0 else (low, middle)
     return high
+
+
+def one_of_two(law: Any, one: str, other: str, *, default: float) -> None:
+    """Refuse a law that is given two options which decide the same; of neither, fill in ``one``.
+
+    To be called when a law is made, of options whose default is None.
+
+    Raises
+    ------
+    ValueError
+        If neither is None.
+    """
+    values = getattr(law, one), getattr(law, other)
+    if None not in values:
+        rule = "only one of the two may be given"
+        raise refuse(f"{one}, {other}", values, rule, "each follows from the other: leave one out")
+    if values == (None, None):
+        object.__setattr__(law, one, default)  # the object is frozen, and not made yet

@@ -65,6 +65,17 @@ def hertz_scales(scene: Scene) -> HertzScales:
     )
 
 
+def linear_stiffness(scene: Scene) -> Real:
+    """Return k of the linear spring that gives way as far as Hertz's contact, M (v1/z_max)²."""
+    frequency = scene.normal_speed / hertz_scales(scene).approach
+    return scene.pair.normal_mass * frequency * frequency
+
+
+def hertz_stiffness(scene: Scene) -> Real:
+    """Return k = (4/3) E* sqrt(R) of P = k z^1.5, eq. (4)."""
+    return (4.0 / 3.0) * scene.pair.effective_modulus * scene.pair.radius**0.5
+
+
 def slips_throughout_elastic(psi1: Real, chi: Real) -> Mask:
     """Whether an elastic impact slips from start to end, eqs (44) and (46).
 

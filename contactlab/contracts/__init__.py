@@ -8,7 +8,12 @@ from contactlab.contracts.motion import (
     NormalSample,
     ScaledContact,
 )
-from contactlab.contracts.normal import ClosedFormNormalLaw, NormalContact, NormalLaw
+from contactlab.contracts.normal import (
+    ClosedFormNormalLaw,
+    NormalContact,
+    NormalLaw,
+    without_tension,
+)
 from contactlab.contracts.phases import (
     ClosedPhase,
     ManyImpacts,
@@ -64,4 +69,5 @@ __all__ = [
     "WholeImpactTangentialLaw",
     "no_force",
     "sliding",
+    "without_tension",
 ]

@@ -14,6 +14,8 @@ from contactlab.scene import Scene
 
 #: Above this ratio of contact radius to R the picture of half-spaces is doubtful (theory §8).
 DOUBTFUL_SIZE_RATIO = 0.1
+#: Overlap in m of a contact that presses at first touch: only its sign means something.
+TOUCH = 1e-300
 
 
 class NormalContact(NamedTuple):
@@ -48,6 +50,19 @@ class NormalContact(NamedTuple):
         return self._replace(friction_load=force * (force > 0.0) + 0.0 if np.ndim(force) else (
             0.0 if force <= 0.0 else force
         ))  # fmt: skip
+
+
+def without_tension(force: Real, radius: Real, approach: Real) -> NormalContact:
+    """Return the contact of a law that does not pull: it has ended where ``force`` is not positive.
+
+    Force and radius are 0 there, and the overlap is negative. NaN stays NaN.
+    """
+    pushing = np.logical_not(force <= 0.0)
+    return NormalContact(
+        force=force * pushing,
+        radius=radius * pushing,
+        overlap=(np.abs(approach) + TOUCH) * (2.0 * pushing - 1.0),
+    )
 
 
 class NormalLaw(Law):

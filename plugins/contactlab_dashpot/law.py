@@ -5,19 +5,20 @@ from __future__ import annotations
 from typing import Any, ClassVar, NamedTuple
 
 import attrs
-import numpy as np
 
 from contactlab.calibration import restitution
 from contactlab.checks import POSITIVE, Real, quantity
-from contactlab.closed_forms import hertz_scales
-from contactlab.contracts import ClosedFormMotion, ClosedFormNormalLaw, NormalContact
+from contactlab.closed_forms import hertz_scales, hertz_stiffness, linear_stiffness
+from contactlab.contracts import (
+    ClosedFormMotion,
+    ClosedFormNormalLaw,
+    NormalContact,
+    without_tension,
+)
 from contactlab.scene import Scene
 from contactlab_dashpot.motion import Course, DashpotMotion
 from contactlab_dashpot.oscillator import damping_of
 from contactlab_hertz.motion import HertzMotion
-
-#: Overlap in m of a contact that presses at first touch: only its sign means something.
-TOUCH = 1e-300
 
 
 class Parts(NamedTuple):
@@ -34,12 +35,7 @@ def pressed(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float
     inside: Any = approach * touching  # NaN stays NaN
     damping = parts.damping * inside ** powers[1] * touching
     force = parts.stiffness * inside ** powers[0] + damping * rate
-    pushing = np.logical_not(force <= 0.0)
-    return NormalContact(
-        force=force * pushing,
-        radius=(parts.radius * inside) ** 0.5 * pushing,
-        overlap=(abs(approach) + TOUCH) * (2.0 * pushing - 1.0),
-    )
+    return without_tension(force, (parts.radius * inside) ** 0.5, approach)
 
 
 @attrs.frozen(kw_only=True)
@@ -70,7 +66,7 @@ class Tsuji(ClosedFormNormalLaw):
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and damping of the pair; there is nothing to remember."""
         pair = scene.pair
-        stiffness = (4.0 / 3.0) * pair.effective_modulus * pair.radius**0.5
+        stiffness = hertz_stiffness(scene)
         critical = 2.0 * (1.25 * pair.normal_mass * stiffness) ** 0.5
         return Parts(stiffness, damping_of(self.restitution) * critical, pair.radius)
 
@@ -121,7 +117,7 @@ class Linear(ClosedFormNormalLaw):
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and damping; there is nothing to remember."""
         pair = scene.pair
-        stiffness = pair.normal_mass * (scene.normal_speed / self._deepest(scene)) ** 2
+        stiffness = linear_stiffness(scene) if self.stiffness is None else self.stiffness
         critical = 2.0 * (pair.normal_mass * stiffness) ** 0.5
         return Parts(stiffness, damping_of(self.restitution) * critical, pair.radius)
 
@@ -131,12 +127,6 @@ class Linear(ClosedFormNormalLaw):
 
     def motion(self, scene: Scene) -> ClosedFormMotion:
         """Return the motion of the oscillator."""
-        return DashpotMotion.of(
-            self, scene, Course(damping_of(self.restitution), 1.0), self._deepest(scene)
-        )
-
-    def _deepest(self, scene: Scene) -> Real:
-        """Return the greatest approach without damping, in m."""
-        if self.stiffness is None:
-            return hertz_scales(scene).approach
-        return scene.normal_speed * (scene.pair.normal_mass / self.stiffness) ** 0.5
+        stiffness = self.start(scene).stiffness
+        deepest = scene.normal_speed * (scene.pair.normal_mass / stiffness) ** 0.5
+        return DashpotMotion.of(self, scene, Course(damping_of(self.restitution), 1.0), deepest)

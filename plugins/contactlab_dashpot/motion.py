@@ -83,7 +83,7 @@ class Course:
     @property
     def deepest(self) -> float:
         """Greatest zeta: x_max = sqrt e."""
-        return self.oscillator.restitution ** (0.5 / self.power)
+        return math.pow(self.oscillator.restitution, 0.5 / self.power)
 
     @property
     def strongest(self) -> float:

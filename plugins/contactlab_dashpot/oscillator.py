@@ -21,9 +21,9 @@ def half_duration(damping: float) -> float:
     square = (1.0 - damping) * (1.0 + damping)
     if square == 0.0:
         return 1.0
-    return math.acos(damping) / square**0.5 if square > 0.0 else (
-        math.acosh(damping) / (-square) ** 0.5
-    )  # fmt: skip
+    if square < 0.0:
+        return math.acosh(damping) / math.sqrt(-square)
+    return math.acos(damping) / math.sqrt(square)
 
 
 def restitution(damping: float) -> float:

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
+from contactlab import Simulation
 from contactlab.normal_motion import normal_motion
 from contactlab_dashpot.oscillator import damping_of
 from tests.normal.by_hand import rebound
+from tests.normal.impacts import psi2, scene
 
-STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
 POWERS = {"linear": (1.0, 0.0), "tsuji": (1.5, 0.25)}
 #: psi2 under Tsuji's law, theory §11, by springs converged to 5e-7: chi 1.4412 and 1.
 PSI2 = {
@@ -20,10 +20,6 @@ PSI2 = {
     (1.0, 0.8): {2: -1.174316},
     (1.0, 0.5): {2: -0.752322},
 }
-
-
-def scene(speed=1.0):
-    return Scene(Sphere(0.005, STEEL), HalfSpace(STEEL), 0.2, speed, 0.5 * speed)
 
 
 def schwager_poeschel(beta):
@@ -100,13 +96,6 @@ def test_undamped_tsuji_is_hertz():
     found = [sim.run(scene()).check().psi2 for sim in sims]
     assert found[0] == found[1]
     assert "elastic_hertz" not in sims[1].normal.offers
-
-
-def psi2(law, psi1, chi, *, springs=200):
-    tangential = contactlab.create("tangential.springs", springs=springs)
-    steps = contactlab.create("integrator.symplectic", steps=4 * springs)
-    sim = Simulation(normal=law, tangential=tangential, integrator=steps)
-    return sim.run(Scene.nondimensional(psi1=np.array(psi1, dtype=float), chi=chi)).check().psi2
 
 
 @pytest.mark.parametrize(("chi", "e"), PSI2)
