@@ -37,7 +37,7 @@ PAPER_STEPS_PER_PART = 10
 
 @attrs.frozen(kw_only=True)
 class Method:
-    """A tangential law under an integrator, with Hertz's normal law.
+    """A tangential law under an integrator, with Hertz's normal law unless another is named.
 
     Attributes
     ----------
@@ -83,10 +83,12 @@ class Method:
                 ladder.append(options)
         return ladder[::2][:QUICK_RUNGS] if quick and len(ladder) > 1 else ladder
 
-    def simulation(self, options: dict[str, dict[str, Any]]) -> Simulation:
+    def simulation(
+        self, options: dict[str, dict[str, Any]], *, normal: str = "hertz"
+    ) -> Simulation:
         """Return the composition at one rung."""
         return Simulation(
-            normal="hertz",
+            normal=normal,
             tangential=REGISTRY.create(f"tangential.{self.tangential}", **options["tangential"]),
             integrator=REGISTRY.create(f"integrator.{self.integrator}", **options["integrator"]),
         )

@@ -12,12 +12,18 @@ from contactlab.result import ImpactResult
 BOOKS = 1e-5
 #: However coarse a method is, energy from nothing beyond this is wrong.
 LARGEST_GAIN = 0.1
-#: |1 - e| of an elastic impact is never beyond this, however few the steps.
+#: |1 - e| of an elastic impact is never beyond this, however few the steps, nor beyond what the
+#: normal motion declares.
 LARGEST_NORMAL = 1e-9
 
 
 def broken_invariants(
-    result: ImpactResult, bound: float, *, passive: bool = True, books_bound: float = 0.0
+    result: ImpactResult,
+    bound: float,
+    *,
+    passive: bool = True,
+    books_bound: float = 0.0,
+    load_impulse: float | None = None,
 ) -> list[str]:
     """Return the laws of physics (theory §7) that a result breaks beyond what is declared.
 
@@ -30,9 +36,14 @@ def broken_invariants(
         False for a law whose model itself makes energy.
     books_bound : float
         Declared imbalance of the books, over the energy at the start.
+    load_impulse : float, optional
+        Of the friction load, in N s; by default that of an elastic impact.
     """
     scene, motion = result.scene, result.motion
     _, width, speed = range_of(scene)
+    if load_impulse is not None:
+        grip = scene.friction_coefficient * load_impulse / scene.pair.tangential_mass
+        width = min(float(grip), 2.0 * speed)
     change, rate = float(motion.slip_velocity_change), float(motion.normal_velocity)
     numbers = (change, rate, float(motion.duration), float(motion.friction_work))
     if not np.all(np.isfinite(numbers)):
@@ -46,7 +57,9 @@ def broken_invariants(
         broken.append("friction speeds the slip up")
     gripped = width < 2.0 * speed  # the range is that of slip throughout, 4 chi
     if along > (1.0 + allowed) * width and (passive or gripped):
-        broken.append("|psi2 - psi1| > 4 chi" if gripped else "|psi2| > |psi1|")
+        broken.append(
+            "|psi2 - psi1| beyond what mu times the load can do" if gripped else "|psi2| > |psi1|"
+        )
     if not passive:
         return broken
     books = result.energy

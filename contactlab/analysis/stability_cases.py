@@ -8,8 +8,9 @@ from typing import Any
 import attrs
 
 from contactlab.analysis.bench_methods import Method
-from contactlab.analysis.stability_scenes import CHI, Extreme, extreme_scenes
-from contactlab.registry import REGISTRY
+from contactlab.analysis.stability_scenes import CHI, Extreme, extreme_scenes, normal_scenes
+from contactlab.composition import misfit
+from contactlab.registry import REGISTRY, PluginError
 from contactlab.scene import Scene
 
 STEPS = (1, 2, 3, 4, 5, 7, 10, 20, 50, 100, 1000, 10_000, 100_000, 1_000_000)
@@ -23,6 +24,9 @@ QUICK_LADDER = ((1.2, CHI), (1.2, 30.0))
 #: Steps over sqrt(chi) at the stability limit, and how many times that follow a large chi.
 LIMIT, ABOVE_LIMIT = 2.85, 8
 
+#: The normal law under which most is tried, and the only one with an exact solution.
+HERTZ = "hertz"
+
 Options = dict[str, dict[str, Any]]
 
 
@@ -34,6 +38,8 @@ class Case:
     ----------
     planned : bool
         False: the plan's short cuts are not taken, the march does the whole impact.
+    normal : str
+        The normal law.
     """
 
     family: str
@@ -42,10 +48,11 @@ class Case:
     options: Options
     scene: Extreme = attrs.field(repr=False)
     planned: bool = True
+    normal: str = HERTZ
 
 
 def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
-    """Iterate over the cases of a method."""
+    """Iterate over the cases of a method, under Hertz's law and then under the others."""
     law = REGISTRY.law_class(f"tangential.{method.tangential}")
     integrator = REGISTRY.law_class(f"integrator.{method.integrator}")
     for scene in extreme_scenes(quick=quick):
@@ -57,10 +64,30 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
         if scene.family == "chi" and integrator.resolution == "steps":
             steps = int(ABOVE_LIMIT * LIMIT * float(scene.make().chi) ** 0.5) + 8
             yield _case(method, scene, {"integrator": {"steps": steps}})
+    for normal in other_normal_laws(method):
+        for scene in normal_scenes(quick=quick):
+            case = _case(method, scene, {})
+            yield attrs.evolve(case, normal=normal, label=f"{normal}: {case.label}")
     if method.whole:
         return
     for psi1, chi in QUICK_LADDER if quick else LADDER:
         yield from _ladder(method, law.resolution, integrator.resolution, psi1, chi, quick=quick)
+
+
+def other_normal_laws(method: Method) -> Iterator[str]:
+    """Iterate over the installed normal laws but Hertz's that fit a method."""
+    tangential = REGISTRY.create(f"tangential.{method.tangential}")
+    integrator = REGISTRY.create(f"integrator.{method.integrator}")
+    for name in REGISTRY.names("normal"):
+        short = name.partition(".")[2]
+        if short == HERTZ:
+            continue
+        try:
+            normal = REGISTRY.create(name)
+        except (PluginError, ValueError):
+            continue  # broken, or it cannot be made without options
+        if misfit(normal, tangential, integrator) is None:
+            yield short
 
 
 def _ladder(

@@ -32,6 +32,25 @@ def extreme_scenes(*, quick: bool = False) -> list[Extreme]:
     return found
 
 
+def normal_scenes(*, quick: bool = False) -> list[Extreme]:
+    """Return the scenes that are tried under every normal law."""
+    found = [
+        _plain("normal", "psi1=3", 3.0, CHI),
+        _plain("normal", "psi1=1.2 chi=3", 1.2, 3.0),
+        Extreme("normal", "steel ball", _ball),
+    ]
+    if quick:
+        return found
+    incidences = (0.0, 1e-12, 0.5, 1.2, 20.0, 1e15)
+    found += [_plain("normal", f"psi1={psi1:g}", psi1, CHI) for psi1 in incidences]
+    found += [_plain("normal", f"chi={chi:g}", 0.3, chi) for chi in (0.05, 0.5, 30.0, 1e3)]
+    found += [
+        each._replace(family="normal")
+        for each in (*_friction(), *_sizes(quick=True), *_masses(quick=True), *_types())
+    ]
+    return found
+
+
 def _plain(family: str, label: str, psi1: Any, chi: Any) -> Extreme:
     """Return an impact of given psi1 and chi.
 

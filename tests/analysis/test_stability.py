@@ -13,10 +13,11 @@ from contactlab.analysis.stability import stability
 from contactlab.analysis.stability_bounds import broken_invariants
 from contactlab.analysis.stability_cases import Case, cases
 from contactlab.analysis.stability_outcome import ANSWERED, REFUSED, WRONG, judge, judge_run
-from contactlab.analysis.stability_references import continuum, itself, rigid
+from contactlab.analysis.stability_references import continuum, itself, reference_for, rigid
 from contactlab.analysis.stability_scenes import Extreme, extreme_scenes
 from contactlab.contracts import NormalContact, NormalLaw, SteppedTangentialLaw, TangentialResponse
 from contactlab.declared import range_of
+from contactlab.registry import REGISTRY
 
 CHI = 49 / 34
 
@@ -59,6 +60,17 @@ class Spoiled(SteppedTangentialLaw):
             self.factor * response.force, response.friction_work, response.settled
         )
         return response, state
+
+
+@attrs.frozen(kw_only=True)
+class SpoiledSprings(Spoiled):
+    """The same of the springs, which run under any normal law with a radius."""
+
+    needs: ClassVar[frozenset] = frozenset({"radius"})
+
+    @property
+    def law(self):
+        return contactlab.create("tangential.springs")
 
 
 @attrs.frozen(kw_only=True)
@@ -122,6 +134,32 @@ def test_a_wrong_law_nobody_knows_is_found_by_the_invariants():
 
 def test_a_normal_law_that_makes_energy_is_found():
     assert "e is off" in judged(Spoiled(), normal=Bouncy()).note
+
+
+@pytest.mark.parametrize("factor", [1.0, 0.6])
+@pytest.mark.parametrize("normal", ["tsuji", "thornton", "jkr"])
+def test_laws_under_other_normal_laws_are_judged_by_another_law(normal, factor):
+    method = Method(tangential="springs", integrator="symplectic")
+    scene = Extreme("normal", "", lambda: Scene.nondimensional(psi1=1.2, chi=CHI))
+    case = Case(
+        family="normal", label="", method=method, options={}, scene=scene, planned=False,
+        normal=normal,
+    )  # fmt: skip
+    pressing = contactlab.create(f"normal.{normal}")
+    spoiled = SpoiledSprings(factor=factor)
+    simulation = Simulation(normal=pressing, tangential=spoiled, integrator="symplectic")
+    outcome = judge_run(case, simulation, scene.make(), reference_for("springs", pressing))
+    assert outcome.outcome == (ANSWERED if factor == 1.0 else WRONG)
+    assert np.isfinite(outcome.error)
+
+
+def test_every_normal_law_is_tried_that_fits():
+    installed = {name.partition(".")[2] for name in REGISTRY.names("normal")} - {"hertz"}
+    for tangential, integrator in (("springs", "paper"), ("coulomb", "events")):
+        listed = list(cases(Method(tangential=tangential, integrator=integrator), quick=True))
+        assert {case.normal for case in listed if case.family == "normal"} == installed
+    listed = cases(Method(tangential="fronts", integrator="events"), quick=True)
+    assert {case.normal for case in listed} == {"hertz"}
 
 
 def test_the_report_counts_what_is_wrong():
