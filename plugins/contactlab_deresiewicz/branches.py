@@ -1,0 +1,191 @@
+"""Loading, unloading and reloading of a contact with partial slip, and the turns between them.
+
+The share theta of the contact radius within which the contact sticks follows from the force T,
+with M = mu N, the sense s of slip at the edge, and u = 1 - theta³ (Thornton & Yin 1991):
+
+    loading      s T = M (h + (1 - h) u),   h = 0 from rest
+    unloading    T = T* + 2 s M u           from the turning point T*
+    reloading    T = T** + 2 s M u          from the turning point T**
+
+and dT = k theta dD + s (1 - theta) dM. With these two epsilon = 1 - theta² obeys
+
+    d(epsilon M^(2/3)) = w s q dD + (1 - w) d(M^(2/3)),   q = (2/3) k M^(-1/3),
+
+w = 1/(1 - h) in loading, ½ after a turn: along a branch a step of any size is exact where q is
+constant, as it is for Hertz. Turning points move with the load, dT* = s dM of the sense s before
+the turn. Shares are kept small where slip is small, so that nothing cancels at huge mu.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+#: Branches.
+LOADING, UNLOADING, RELOADING = 0, 1, 2
+#: Greatest h: a contact so near its limit slips as a whole with the next step.
+MOST_HELD = 1.0 - 1e-12
+
+
+class Memory(NamedTuple):
+    """What a contact remembers.
+
+    Attributes
+    ----------
+    force, limit : float
+        T and M at the last instant, in N.
+    slipped : float
+        epsilon; the stick radius is sqrt(1 - epsilon) of the contact radius.
+    sense : int
+        Direction of slip at the edge; 0 where all of the contact sticks.
+    branch : int
+        ``LOADING``, ``UNLOADING`` or ``RELOADING``.
+    held : float
+        h: the share of the limit that a contact which stuck while it grew holds everywhere.
+    turn, earlier : float
+        The last turning point and the one before, in N.
+    outrun : float
+        abs(q dD) - d(M^(2/3)) of the last step: how far displacement outran the limit.
+    """
+
+    force: float = 0.0
+    limit: float = 0.0
+    slipped: float = 0.0
+    sense: int = 0
+    branch: int = LOADING
+    held: float = 0.0
+    turn: float = 0.0
+    earlier: float = 0.0
+    outrun: float = 0.0
+
+
+class Step(NamedTuple):
+    """A step: the limit M at its end (N), k (N/m), q (N^(2/3)/m) and dD (m)."""
+
+    limit: float
+    stiffness: float
+    front_rate: float
+    displacement: float
+
+    @property
+    def moved(self) -> float:
+        """Return q dD."""
+        return self.front_rate * self.displacement
+
+    def outruns(self, memory: Memory, sense: int) -> float:
+        """Return s q dD - d(M^(2/3)): above zero the edge slips in the sense s."""
+        return sense * self.moved - (_square(self.limit) - _square(memory.limit))
+
+
+def followed(memory: Memory, step: Step) -> tuple[Memory, float]:
+    """Return the memory after a step, and the friction work in J."""
+    before = _turned(memory, step)
+    if not before.sense:
+        trial = memory.force + step.stiffness * step.displacement
+        held = min(max(trial, -step.limit), step.limit)
+        ahead = step.outruns(memory, _sign(step.displacement))
+        return before._replace(force=held, limit=step.limit, slipped=0.0, outrun=ahead), 0.0
+    after = _slipped(before, step)
+    if step.front_rate == 0.0:
+        return after, 0.0
+    # The traction on the slipping annulus is mu p; it slips by dD - s dM/k all over.
+    slid = max(step.outruns(memory, before.sense), 0.0) / step.front_rate
+    traction = before.limit * _annulus(max(before.slipped, 0.0)) + after.limit * _annulus(
+        after.slipped
+    )
+    return after, 0.5 * traction * slid
+
+
+def _turned(memory: Memory, step: Step) -> Memory:
+    """Return the memory with the sense and the branch of a step.
+
+    The edge slips while its displacement outruns the limit. Where it no longer does, the edge
+    turns if it slips the other way, or sticks. Under a falling load both may slip; it then goes
+    on as it did.
+    """
+    sense = memory.sense
+    if sense and step.outruns(memory, sense) > 0.0:
+        return memory
+    if sense and step.outruns(memory, -sense) > 0.0:
+        turned = memory._replace(sense=-sense, slipped=0.0, turn=memory.force)
+        if memory.branch == UNLOADING:
+            return turned._replace(branch=RELOADING, earlier=memory.turn)
+        return turned._replace(branch=UNLOADING)
+    begun = 0 if sense else _sign(step.displacement) or _sign(memory.force)
+    ahead = step.outruns(memory, begun)
+    if not (begun and ahead > 0.0):
+        return memory._replace(sense=0)
+    held = slipped = 0.0
+    if memory.limit > 0.0:
+        # It began to slip between the middle of the last step and the middle of this one, and
+        # the gap to the limit then stood still.
+        began = -memory.outrun / (ahead - memory.outrun) if memory.outrun < 0.0 else 0.5
+        later = (began - 0.5) * (step.limit - memory.limit)
+        at = max(memory.limit + later, 0.5 * memory.limit)
+        held = min((begun * memory.force + at - memory.limit) / at, MOST_HELD)
+        slipped = _edge((begun * memory.force / memory.limit - held) / (1.0 - held))
+    return memory._replace(sense=begun, branch=LOADING, slipped=slipped, held=held)
+
+
+def _slipped(memory: Memory, step: Step) -> Memory:
+    """Return the memory after a step in which the edge slips."""
+    old, limit, sense, branch = memory.limit, step.limit, memory.sense, memory.branch
+    pressed, square = limit - old, _square(limit)
+    # The last turn was made from slip in the sense -s, and moves with the load; so does the other.
+    turn, earlier = memory.turn - sense * pressed, memory.earlier + sense * pressed
+    held, loading = memory.held, branch == LOADING
+    weight = 1.0 / (1.0 - held) if loading else 0.5
+    grown = square - _square(old)
+    ahead = memory.slipped * _square(old) + weight * sense * step.moved + (1.0 - weight) * grown
+    slipped = max(ahead / square, 0.0) if square > 0.0 else 0.0
+    if loading:
+        force = sense * limit * (held + (1.0 - held) * _used(slipped))
+    else:
+        force = turn + 2.0 * sense * limit * _used(slipped)
+        goal = earlier if branch == RELOADING else -turn
+        if limit > 0.0 and sense * force > sense * goal:  # past where it came from: loading
+            rest = 2.0 * (slipped - _edge(0.5 * sense * (goal - turn) / limit))
+            slipped, branch, held = _edge(sense * goal / limit) + rest, LOADING, 0.0
+            force = sense * limit * _used(slipped)
+    if slipped >= 1.0:  # gross slip: nothing is remembered
+        branch, held, force = LOADING, 0.0, sense * limit
+    return memory._replace(
+        force=min(max(force, -limit), limit),
+        limit=limit,
+        slipped=min(slipped, 1.0),
+        sense=sense if slipped > 0.0 else 0,  # 0: the slip zone has vanished
+        branch=branch,
+        held=held,
+        turn=turn,
+        earlier=earlier,
+        outrun=0.0,
+    )
+
+
+def _square(limit: float) -> float:
+    """Return M^(2/3)."""
+    return math.cbrt(limit) ** 2
+
+
+def _used(slipped: float) -> float:
+    """Return u = 1 - (1 - epsilon)^(3/2)."""
+    if slipped >= 1.0:
+        return 1.0
+    return -math.expm1(1.5 * math.log1p(-slipped))
+
+
+def _edge(used: float) -> float:
+    """Return epsilon = 1 - (1 - u)^(2/3)."""
+    if used >= 1.0:
+        return 1.0
+    return -math.expm1(math.log1p(-used) / 1.5)
+
+
+def _annulus(slipped: float) -> float:
+    """Return 1 - (3/2) theta + ½ theta³: mu p along the slipping part of the radius, over M."""
+    theta = math.sqrt(1.0 - slipped)
+    return (slipped / (1.0 + theta)) ** 2 * (1.0 + 0.5 * theta)
+
+
+def _sign(value: float) -> int:
+    return (value > 0.0) - (value < 0.0)
