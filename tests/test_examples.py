@@ -22,7 +22,10 @@ SCRIPTS = {
     "experiment": ("coulomb  rms 0.046", "kharaz2001.png"),
     "stick_slip_map": ("100% of the annuli", "stick_slip_map.png"),
     "custom_law": ("mindlin cap", None),
+    "sweep_on_a_cluster": ("the same to the last bit as here: True", None),
 }
+#: Those that wait for processes to start.
+SLOW = ("sweep_on_a_cluster",)
 
 
 def python(*arguments, folder, path="", warnings="error"):
@@ -41,7 +44,9 @@ def test_every_script_is_listed_here():
     assert {path.stem for path in EXAMPLES.glob("*.py")} == set(SCRIPTS)
 
 
-@pytest.mark.parametrize("name", SCRIPTS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in SLOW)) for name in SCRIPTS]
+)
 def test_script(name, tmp_path):
     words, picture = SCRIPTS[name]
     done = python(EXAMPLES / f"{name}.py", folder=tmp_path)

@@ -12,8 +12,10 @@ from contactlab_fronts.many.impacts import DONE, EDGE_SLIP, GROSS_SLIP, STUCK, I
 
 Array = NDArray[np.float64]
 
-#: Impacts in one call: an array of 8 nodes of them fits in the cache next to the processor.
-BLOCK = 2000
+#: Impacts in one call: an array of 8 nodes of them fits in the cache next to the processor. And no
+#: matrix product (25 by 8 by so many) is so large that OpenBLAS shares it among threads, beyond
+#: 2**18 terms: the last bits would depend on how many threads there are.
+BLOCK = 1250
 #: Impacts of which the memory is kept at one time: some 50 MB. Beyond this chi there is more of
 #: it for each impact, about as sqrt(chi).
 CHUNK, CHUNK_CHI = 10_000, 30.0
