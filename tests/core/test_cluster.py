@@ -9,10 +9,11 @@ import pytest
 
 from contactlab import Scene, Simulation
 from contactlab.collocation import lobatto
-from contactlab_fronts.many import march, stuck
+from contactlab_fronts.many import march, panel, stuck
 from tests.core.test_sweep import CHI, assert_same, blocks_of, scene
 from tests.ending_laws import Ending, Raising
 
+#: Terms of a matrix product up to which OpenBLAS takes one thread.
 SINGLE_THREAD = 2**18
 
 
@@ -66,6 +67,6 @@ def test_the_exact_solution_does_not_depend_on_the_number_of_threads():
     assert found[0].stdout == found[1].stdout
 
 
-def test_no_product_of_the_exact_solution_is_shared_among_threads():
-    nodes = lobatto(stuck.NODES)
-    assert nodes.to_fine.size * march.BLOCK <= SINGLE_THREAD
+@pytest.mark.parametrize(("part", "block"), [(panel, march.BLOCK), (stuck, stuck.BLOCK)])
+def test_no_product_of_the_exact_solution_is_shared_among_threads(part, block):
+    assert lobatto(part.NODES).to_fine.size * block <= SINGLE_THREAD

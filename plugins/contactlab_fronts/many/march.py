@@ -12,9 +12,9 @@ from contactlab_fronts.many.impacts import DONE, EDGE_SLIP, GROSS_SLIP, STUCK, I
 
 Array = NDArray[np.float64]
 
-#: Impacts in one call: an array of 8 nodes of them fits in the cache next to the processor. And no
-#: matrix product (25 by 8 by so many) is so large that OpenBLAS shares it among threads, beyond
-#: 2**18 terms: the last bits would depend on how many threads there are.
+#: Impacts in one call while edges slip: an array of 8 nodes of them fits in the cache next to the
+#: processor, and the largest matrix product, with 25 finer points, has less than 2**18 terms:
+#: OpenBLAS shares larger ones among threads, and the last bits depend on how many there are.
 BLOCK = 1250
 #: Impacts of which the memory is kept at one time: some 50 MB. Beyond this chi there is more of
 #: it for each impact, about as sqrt(chi).
@@ -60,8 +60,8 @@ def _round(impacts: Impacts, tolerance: float) -> bool:
     if sliding.size:
         impacts.slide_through(sliding)
     sticking = np.flatnonzero(impacts.doing == STUCK)
-    for first in range(0, sticking.size, BLOCK):
-        stuck.advance(impacts, sticking[first : first + BLOCK])
+    for first in range(0, sticking.size, stuck.BLOCK):
+        stuck.advance(impacts, sticking[first : first + stuck.BLOCK])
     slipping = np.flatnonzero(impacts.doing == EDGE_SLIP)
     if not slipping.size:
         return bool(np.any(impacts.doing < DONE))

@@ -18,6 +18,9 @@ Rows = NDArray[np.intp]
 
 #: With 20 nodes a panel holds 4 radians of the fastest oscillation to 1e-12.
 NODES = 20
+#: Impacts in one call, so few that products with 61 finer points are left to one thread: see
+#: ``march.BLOCK``.
+BLOCK = 200
 LONGEST_SWING = 4.0
 LONGEST = 1.2
 #: (dT/dx)² u is at most 1.6; this times inertia is the square of the fastest oscillation in x.
