@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeVar
 
 import attrs
 import numpy as np
@@ -17,6 +17,7 @@ from contactlab.scene import Scene
 #: Most impacts of a grid: a slip of the finger should not fill the memory.
 MOST_IMPACTS = 10_000_000
 Array = NDArray[np.float64]
+Kind = TypeVar("Kind", bound=Scene)
 
 
 @attrs.frozen
@@ -100,7 +101,7 @@ def over(scene: Scene, axes: Mapping[str, Any]) -> Grid:
     return found
 
 
-def _copied(scene: Scene, kind: Any) -> Any:
+def _copied(scene: Scene, kind: type[Kind]) -> Kind:
     found = object.__new__(kind)  # every number was checked when the scene was made
     for field in attrs.fields(Scene):
         object.__setattr__(found, field.name, getattr(scene, field.name))

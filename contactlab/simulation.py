@@ -123,9 +123,9 @@ class Simulation:
 
         Impacts are solved in blocks of as many as the integrator asks for, counted from the first
         impact: 4000 of the exact solution, 20 where they are followed one by one, 1000 of most;
-        16384 where nothing is marched.
-        What is solved together depends on neither ``chunk`` nor ``executor``, and so does no bit
-        of an answer (of one installation, on one kind of processor).
+        16384 where nothing is marched. What is solved together depends on neither ``chunk`` nor
+        ``executor``, and so does no bit of an answer, of one installation on one kind of
+        processor; of laws that multiply large matrices, with one number of BLAS threads too.
 
         Parameters
         ----------

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from contactlab.simulation import Simulation
 
-#: Impacts of a block where everything is known in closed form: as many as fit into the cache.
-CLOSED_FORM = 1 << 14
+#: Impacts of a block where nothing is marched: as many as fit into the cache.
+WHOLE_IMPACTS = 1 << 14
 
 
 class Chunk(NamedTuple):
@@ -49,19 +49,21 @@ def block_of(simulation: Simulation) -> int:
     """
     whole_impacts = isinstance(simulation.tangential, WholeImpactTangentialLaw)
     if whole_impacts and isinstance(simulation.normal, ClosedFormNormalLaw):
-        return CLOSED_FORM
+        return WHOLE_IMPACTS
     return simulation.integrator.chunk(simulation.tangential)
 
 
 def solved(simulation: Simulation, scene: Scene, chunk: Chunk, block: int) -> Piece:
     """Return the piece of a chunk, ``scene`` being that chunk alone, solved block by block."""
     size = chunk.stop - chunk.first
-    results = [
-        simulation.run(scene.take(slice(first, min(first + block, size))))
-        for first in range(0, size, block)
-    ]
-    plan = Plan.joined([result.plan for result in results])
-    return Piece(chunk, plan, Motion.joined([result.motion for result in results], (size,)))
+    plans, motions = zip(
+        *(
+            simulation._outcome(scene.take(slice(first, min(first + block, size))), False, None)
+            for first in range(0, size, block)
+        ),
+        strict=True,
+    )
+    return Piece(chunk, Plan.joined(plans), Motion.joined(motions, (size,)))
 
 
 def unsolved(chunk: Chunk, status: Status, detail: str = "") -> Piece:

@@ -74,7 +74,7 @@ def test_killed_and_resumed_it_writes_the_same_file(run, tmp_path):
 
 
 def test_interrupted_it_keeps_what_is_done(run, monkeypatch, tmp_path):
-    solve, calls = Simulation.run, []
+    solve, calls = Simulation._outcome, []
 
     def interrupted(*arguments, **keywords):
         calls.append(None)
@@ -82,7 +82,7 @@ def test_interrupted_it_keeps_what_is_done(run, monkeypatch, tmp_path):
             raise KeyboardInterrupt
         return solve(*arguments, **keywords)
 
-    monkeypatch.setattr(Simulation, "run", interrupted)
+    monkeypatch.setattr(Simulation, "_outcome", interrupted)
     out = tmp_path / "a.npz"
     assert run(*SWEEP, "--out", out, "--resume").status == 130
     with np.load(out) as content:
