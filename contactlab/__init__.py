@@ -135,12 +135,10 @@ def read_scene(path: str | Path) -> SceneFile:
 
 def __getattr__(name: str) -> Any:
     """Return what only some need, when it is asked for."""
+    import importlib
+
     if name == "fit":
-        from contactlab.fitting import fit
-
-        return fit
+        return importlib.import_module("contactlab.fitting").fit
     if name == "materials":
-        import importlib
-
         return importlib.import_module("contactlab.materials")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

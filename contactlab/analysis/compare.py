@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import attrs
@@ -97,6 +97,16 @@ class Comparison:
     def names(self) -> list[str]:
         """Names of the laws, the reference first."""
         return [run.name for run in self.runs]
+
+    def only(self, laws: Iterable[str]) -> Comparison:
+        """Return the comparison of some of its laws, those of the names that it has."""
+        names = set(laws)
+        agreements = tuple(
+            attrs.evolve(one, results={law: r for law, r in one.results.items() if law in names})
+            for one in self.agreements
+        )
+        runs = tuple(run for run in self.runs if run.name in names)
+        return attrs.evolve(self, runs=runs, agreements=agreements)
 
     def values(self, quantity: str, law: str) -> Array:
         """Return a quantity over the scene or sweep as one law has it; NaN where it failed."""

@@ -1,8 +1,9 @@
-"""Check this installation against closed forms, reference values and an experiment.
+"""Check laws against closed forms, reference values, experiments and finite elements.
 
 Examples
 --------
   contactlab validate
+  contactlab validate --figures pictures
   contactlab validate --json
 """
 
@@ -10,38 +11,130 @@ from __future__ import annotations
 
 import argparse
 import json
+import textwrap
+from pathlib import Path
+from typing import Any
 
 import attrs
 
-from contactlab.analysis.validation import validate
+from contactlab.analysis.evidence import Evidence, gather
+from contactlab.analysis.validation import Finding, judged, validate
 from contactlab.cli import arguments as shared
-from contactlab.cli.table import table
+from contactlab.cli.table import WIDTH, table
 from contactlab.plain import plain
+from contactlab.quantities import QUANTITIES
+
+#: Laws that a picture shows, as far as they are installed: a reader tells no more apart.
+DRAWN = ("fronts", "springs, tsuji restitution=0.98", "mindlin_cap", "coulomb")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the outputs."""
-    parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
+    parser.add_argument(
+        "--figures", type=Path, metavar="DIR", help="draw a picture of each source in this folder"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON instead of the tables")
     shared.add_progress(parser)
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Validate and report; 1 if a bound is not met."""
+    folder: Path | None = arguments.figures
+    if folder is not None and not folder.parent.is_dir():
+        raise ValueError(f"--figures {folder}: there is no folder {folder.parent}")
     findings = validate(shared.progress(arguments.progress, "checks"))
-    if arguments.json:
-        rows = [attrs.asdict(found) | {"ok": found.ok} for found in findings]
-        print(json.dumps([{key: plain(value) for key, value in row.items()} for row in rows]))
-    else:
-        rows_shown = [
-            [
-                found.what,
-                found.against,
-                found.difference,
-                found.bound,
-                "ok" if found.ok else "FAILS",
-            ]
-            for found in findings
+    gathered = gather(
+        curves=folder is not None, progress=shared.progress(arguments.progress, "sources")
+    )
+    findings += [finding for evidence in gathered for finding in judged(evidence)]
+    saved = shared.OK
+    if folder is not None:
+        folder.mkdir(exist_ok=True)
+        drawings = [
+            (folder / f"{one.source.name}.png", lambda path, one=one: _draw(path, one))
+            for one in gathered
         ]
-        headings = ["what", "against", "worst difference", "bound", ""]
-        print(table(headings, rows_shown, digits=2))
-    return shared.OK if all(found.ok for found in findings) else shared.FAILED
+        saved = shared.save(*drawings)
+    if arguments.json:
+        checks = [attrs.asdict(finding) | {"ok": finding.ok} for finding in findings]
+        content = {
+            "checks": [{key: plain(value) for key, value in row.items()} for row in checks],
+            "sources": [_plain(one) for one in gathered],
+        }
+        print(json.dumps(content, indent=2, allow_nan=False))
+    else:
+        print("\n\n".join([_checks(findings), *map(_told, gathered)]))
+    return saved if all(finding.ok for finding in findings) else shared.FAILED
+
+
+def _checks(findings: list[Finding]) -> str:
+    rows = [
+        [one.what, one.against, one.difference, one.bound, "ok" if one.ok else "FAILS"]
+        for one in findings
+    ]
+    return table(["what", "against", "worst difference", "bound", ""], rows, digits=2)
+
+
+def _told(evidence: Evidence) -> str:
+    """Return a source, what every law is off by, and what to think of it."""
+    agreements = evidence.comparison.agreements
+    headings, rows = ["law"], [[law] for law in evidence.laws]
+    for agreement in agreements:
+        quantity = agreement.measured.quantity
+        unit = QUANTITIES[quantity].unit
+        name = quantity if unit == "1" else f"{quantity} ({unit})"
+        headings += [f"{name} rms", "largest", "at"]
+        for row in rows:
+            law = str(row[0])
+            found: list[Any] = [agreement.rms(law), agreement.largest(law)]
+            row += [*found, agreement.where_largest(law)]
+    scatters = [evidence.scatter(agreement) for agreement in agreements]
+    if any(scatter == scatter for scatter in scatters):
+        reading: list[Any] = ["(scatter of readings)"]
+        for scatter in scatters:
+            reading += [scatter, None, None]
+        rows.append(reading)
+    paragraphs = [
+        f"{evidence.file.title} ({evidence.source.kind})",
+        *(
+            textwrap.fill(text.strip(), WIDTH, break_on_hyphens=False, break_long_words=False)
+            for text in (evidence.file.citation, evidence.file.notes)
+        ),
+        table(headings, rows, digits=3),
+    ]
+    return "\n".join(paragraphs)
+
+
+def _plain(evidence: Evidence) -> dict[str, Any]:
+    """Return a source as plain numbers and text."""
+    return {
+        "name": evidence.source.name,
+        "kind": evidence.source.kind,
+        "title": evidence.file.title,
+        "citation": evidence.file.citation.strip(),
+        "notes": evidence.file.notes.strip(),
+        "left_out": dict(evidence.left_out),
+        "series": [
+            {
+                "quantity": agreement.measured.quantity,
+                "numbers": len(agreement.measured.values),
+                "scatter": plain(evidence.scatter(agreement)),
+                "laws": {
+                    law: {
+                        "rms": plain(agreement.rms(law)),
+                        "largest": plain(agreement.largest(law)),
+                    }
+                    for law in evidence.laws
+                },
+            }
+            for agreement in evidence.comparison.agreements
+        ],
+    }
+
+
+def _draw(path: Path, evidence: Evidence) -> None:
+    from contactlab.cli.drawing import draw_comparison  # matplotlib only when drawing
+
+    shown = evidence.comparison.only(DRAWN)
+    quantities = [agreement.measured.quantity for agreement in shown.agreements]
+    draw_comparison(path, shown, list(dict.fromkeys(quantities)))

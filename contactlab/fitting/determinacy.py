@@ -150,7 +150,7 @@ def _effect(model: Model, values: Array, place: int, quantity: str) -> Array:
     ends[0, place] = max(values[place] - 0.05 * size, parameter.least)
     ends[1, place] = min(values[place] + 0.05 * size, parameter.most)
     below, above = model.predicted(ends, [quantity])[quantity]
-    return np.abs(above - below) / (ends[1, place] - ends[0, place]) * size
+    return np.asarray(np.abs(above - below) / (ends[1, place] - ends[0, place]) * size)
 
 
 def _sizes(parameters: tuple[Parameter, ...], values: Array) -> Array:

@@ -148,11 +148,17 @@ def _minimum(problem: Problem, start: Array, scales: Mapping[str, Any]) -> Array
             known[key] = problem.linearised(values, scales)
         return known[key]
 
+    def residuals(values: Array) -> Array:
+        return linearised(values)[0]
+
+    def slopes(values: Array) -> Array:
+        return linearised(values)[1]
+
     low, high = problem.bounds()
     found = least_squares(
-        lambda values: linearised(values)[0],
+        residuals,
         np.clip(start, low, high),
-        jac=lambda values: linearised(values)[1],
+        jac=slopes,
         bounds=(low, high),
         x_scale=np.array([abs(v) or 1.0 for v in start.tolist()]),
         xtol=TOLERANCE,
