@@ -82,8 +82,9 @@ def _checks() -> Iterator[Callable[[], Finding]]:
     for case in hertz_scalars():
         yield lambda case=case: _scalars(case, ("force",), FORCE_READING)  # type: ignore[misc]
         if case.approach is not None:
-            others = ("approach", "duration")
-            yield lambda case=case: _scalars(case, others, OTHER_READING)  # type: ignore[misc]
+            yield lambda case=case: _scalars(  # type: ignore[misc]
+                case, ("approach", "duration"), OTHER_READING
+            )
 
 
 def _hertz() -> Finding:

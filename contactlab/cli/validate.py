@@ -78,7 +78,8 @@ def _checks(findings: list[Finding]) -> str:
 def _told(evidence: Evidence) -> str:
     """Return a source, what every law is off by, and what to think of it."""
     agreements = evidence.comparison.agreements
-    headings, rows = ["law"], [[law] for law in evidence.laws]
+    headings = ["law"]
+    rows: list[list[Any]] = [[law] for law in evidence.laws]
     for agreement in agreements:
         quantity = agreement.measured.quantity
         unit = QUANTITIES[quantity].unit

@@ -1,6 +1,6 @@
 """Parameters of laws and scenes from measured impacts: estimates, intervals, ranking of laws."""
 
-from contactlab.fitting.fit import fit
+from contactlab.fitting.estimation import fit
 from contactlab.fitting.measurements import Measurements, read_measurements
 from contactlab.fitting.outcome import Estimate, Fit
 from contactlab.fitting.ranking import Ranked, rank

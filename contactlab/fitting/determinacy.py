@@ -24,6 +24,9 @@ ALIKE = 1e-3
 #: Half-width of the 95 % interval, of the range or else of the value, from which on nothing is
 #: determined; and a half-width of friction that says something however small the value.
 VAGUE_IN_RANGE, VAGUE, SHARP = 0.5, 1.0, 0.05
+#: Difference of Akaike's criterion below which a second minimum is as good as the first: at 4 the
+#: second is the right one about one time in eight.
+CLOSE = 4.0
 #: Angles of incidence and, without bodies, psi1 at which a further measurement is thought of.
 ANGLES_DEG = np.array(
     [1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0]
@@ -99,6 +102,48 @@ def check_precise(problem: Problem, values: Array, reaches: Array) -> None:
                 f"the measured numbers hardly depend on {parameter.name}: {value:.3g} ± {reach:.2g}"
             )
             raise _undetermined(problem.model, values, [place], told)
+
+
+def check_single(problem: Problem, minima: list[Array]) -> None:
+    """Refuse data that two sets of values meet about as well.
+
+    Parameters
+    ----------
+    problem : Problem
+    minima : list of array
+        Values of the parameters at the minima that were found, the best first.
+
+    Raises
+    ------
+    ValueError
+        With both, and a measurement that would tell them apart.
+    """
+    for other in minima[1:]:
+        if problem.criterion(other) - problem.criterion(minima[0]) < CLOSE:
+            told = " and ".join(
+                ", ".join(
+                    f"{parameter.name} = {value:.4g}"
+                    for parameter, value in zip(problem.model.parameters, values, strict=True)
+                )
+                for values in (minima[0], other)
+            )
+            names = " and ".join(parameter.name for parameter in problem.model.parameters)
+            advice = _telling_apart(problem.model, np.array([minima[0], other]))
+            raise ValueError(
+                f"the data do not determine {names}: they are met as well by {told}; {advice}"
+            )
+
+
+def _telling_apart(model: Model, both: Array) -> str:
+    """Return a sentence on which measurement differs most between two sets of values."""
+    scene, x, words = _thought_of(model.setup.scene)
+    name = THOUGHT_OF[1] if scene.sphere is not None else "psi2"
+    one, other = model.at(scene).predicted(both, [name])[name]
+    best = int(np.argmax(np.abs(one - other)))
+    return (
+        f"measure {name} at {words} of about {x[best]:g}: {one[best]:.3g} of the first, "
+        f"{other[best]:.3g} of the second."
+    )
 
 
 def _undetermined(model: Model, values: Array, places: list[int], told: str) -> ValueError:

@@ -174,6 +174,11 @@ def _column(text: str, content: Any, *, gaps: bool) -> Array:
 def _complete(parts: dict[str, dict[str, Array]], unused: list[str]) -> None:
     """Check that the columns belong together, and make the velocities from an angle."""
     given, measured, errors = parts["given"], parts["measured"], parts["error"]
+    if {"speed", "normal_speed"} & set(given):
+        # Formed with the friction and stiffness that are sought, as an export has them.
+        for part, name in ((given, "psi1"), (given, "chi"), (measured, "psi2")):
+            if part.pop(name, None) is not None:
+                unused.append(name)
     if not measured:
         raise ValueError("nothing was measured: no column is a quantity of a rebound")
     lengths = {name: len(values) for part in parts.values() for name, values in part.items()}

@@ -23,8 +23,9 @@ FRICTION, FRICTION_STARTS = (1e-6, 10.0), tuple(np.geomspace(0.004, 4.0, 25).tol
 STIFFNESS = (2.0 / 3.0, 4.0 / 3.0)
 #: Numbers at which an option's rule is tried, to find the interval in which it holds.
 TRIED = np.concatenate([-np.geomspace(1e12, 1e-6, 37), [0.0], np.geomspace(1e-6, 1e12, 37)])
-#: Starts that are tried of a parameter with a finite range.
-STARTS = 7
+#: Starts that are tried of a parameter with a finite range: the best of few may be where nothing
+#: depends on it.
+STARTS = 15
 
 
 class Setup(NamedTuple):
@@ -146,7 +147,7 @@ def parameter_named(name: str, setup: Setup) -> Parameter:
         return known[name]()
     near = nearest(name, [*known, *short])
     told = f"known here: {', '.join(known)}" if known else "nothing can be fitted here"
-    remedy = "; an option of a law is there once the law is chosen, as normal.restitution"
+    remedy = "; options of a law are there once it is chosen and they have a number"
     raise ValueError(
         f"parameters = {name!r}: scene and laws have no such number; {near}{told}{remedy}"
     )
@@ -170,9 +171,7 @@ def _known(setup: Setup) -> dict[str, Callable[[], Parameter]]:
             value = getattr(law, field.name)
             if field.init and isinstance(value, float) and kind != "integrator":
                 full = f"{kind}.{field.name}"
-                found[full] = lambda field=field, value=value, kind=kind: _option(
-                    kind, field, value
-                )
+                found[full] = partial(_option, kind, field, value)
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -89,6 +90,14 @@ class Problem:
         ends = [(parameter.least, parameter.most) for parameter in self.model.parameters]
         return np.array([low for low, _ in ends]), np.array([high for _, high in ends])
 
+    def criterion(self, values: Array) -> float:
+        """Return Akaike's: -2 log likelihood + 2 parameters, Gaussian errors, up to a constant."""
+        scales = self.scales(values)
+        weighted = self.weighted(values[None], scales)[0]
+        unknown = [name for name in self.measured if name not in self.errors]
+        logs = sum(2.0 * self.counts[name] * math.log(scales[name]) for name in unknown)
+        return float(weighted @ weighted) + logs + 2.0 * (len(values) + len(unknown))
+
     def linearised(self, values: Array, scales: Mapping[str, Any]) -> tuple[Array, Array]:
         """Return weighted residuals, shape (numbers,), and their derivatives by the parameters.
 
@@ -108,16 +117,30 @@ class Problem:
         return found[0], slopes
 
 
-def starting(problem: Problem) -> Array:
-    """Return where the search begins: of each parameter the best of its starts, in turn."""
+def starting(problem: Problem) -> list[Array]:
+    """Return where searches begin, the best first: the least of the costs over the starts.
+
+    The starts of each parameter are tried in turn, the others at their best. Where the costs
+    have several minima a search begins at each: one quantity of one impact, as a rule, has the
+    same value at two coefficients of friction.
+    """
     scales = problem.scales()
     values = np.array([parameter.starts[0] for parameter in problem.model.parameters])
+    others: list[tuple[int, float]] = []
     for place, parameter in enumerate(problem.model.parameters):
-        points = np.tile(values, (len(parameter.starts), 1))
-        points[:, place] = parameter.starts
+        starts = np.sort(parameter.starts)
+        points = np.tile(values, (len(starts), 1))
+        points[:, place] = starts
         costs = np.sum(problem.weighted(points, scales) ** 2, axis=1)
-        values[place] = parameter.starts[int(np.argmin(costs))]
-    return values
+        lower = np.diff(np.concatenate([[np.inf], costs, [np.inf]]))
+        minima = np.flatnonzero((lower[:-1] < 0.0) & (lower[1:] >= 0.0))
+        values[place] = starts[int(np.argmin(costs))]
+        others += [(place, start) for start in starts[minima] if start != values[place]]
+    found = [values]
+    for place, start in others:
+        found.append(np.array(values))
+        found[-1][place] = start
+    return found
 
 
 def solved(problem: Problem, start: Array) -> Array:

@@ -7,7 +7,7 @@ from typing import Any
 
 import attrs
 
-from contactlab.fitting.fit import fit
+from contactlab.fitting.estimation import fit
 from contactlab.fitting.measurements import read_measurements
 from contactlab.fitting.outcome import Fit
 from contactlab.result import ImpactError

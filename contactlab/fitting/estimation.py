@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 import attrs
 import numpy as np
@@ -30,6 +29,8 @@ Array = NDArray[np.float64]
 TAIL = 0.025
 #: A reduced chi square beyond this says that errors, or the law, do not fit the data.
 LARGE_CHI_SQUARE = 2.0
+#: Searches that end so near to each other have found one minimum.
+SAME = 1e-3
 #: Nearness, of its range, of a value to the end of it.
 AT_END = 1e-6
 
@@ -95,10 +96,11 @@ def fit(
     model = _model(table, scene, parameters, simulation_of(simulation))
     problem = Problem.of(model, table)
     determinacy.check_enough(problem)
-    values = solved(problem, starting(problem))
+    values, *others = _solutions(problem)
     determinacy.check_determined(problem, values)
     found, reaches = _outcome(problem, table, values)
     determinacy.check_precise(problem, values, reaches)
+    determinacy.check_single(problem, [values, *others])
     samples = whole("bootstrap", bootstrap, least=0, most=100_000)
     if not samples:
         return found
@@ -124,6 +126,16 @@ def _model(
     if len(set(names)) < len(names):
         raise refuse("parameters", list(parameters), "names one of them twice")
     return Model(setup=setup, parameters=found)
+
+
+def _solutions(problem: Problem) -> list[Array]:
+    """Return the minima that searches from several starts have come to, the best first."""
+    found: list[Array] = []
+    for start in starting(problem):
+        values = solved(problem, start)
+        if not any(np.allclose(values, known, rtol=SAME, atol=SAME) for known in found):
+            found.append(values)
+    return sorted(found, key=problem.criterion)
 
 
 def _outcome(problem: Problem, table: Measurements, values: Array) -> tuple[Fit, Array]:
@@ -161,18 +173,11 @@ def _outcome(problem: Problem, table: Measurements, values: Array) -> tuple[Fit,
         laws=problem.model.laws,
         measurements=table,
         predicted={name: rows[0] for name, rows in predicted.items()},
-        aic=_criterion(problem, weighted, scales, len(values)),
+        aic=problem.criterion(values),
         reduced_chi_square=mean_square if known else None,
         notes=tuple(_notes(problem, values, mean_square if known else None, freedom)),
     )
     return found, reaches
-
-
-def _criterion(problem: Problem, weighted: Array, scales: Any, count: int) -> float:
-    """Return -2 log likelihood + 2 parameters, a constant left out: Gaussian errors."""
-    unknown = [name for name in problem.measured if name not in problem.errors]
-    logs = sum(2.0 * problem.counts[name] * math.log(scales[name]) for name in unknown)
-    return float(weighted @ weighted) + logs + 2.0 * (count + len(unknown))
 
 
 def _notes(problem: Problem, values: Array, chi_square: float | None, freedom: int) -> list[str]:

@@ -1,0 +1,225 @@
+"""What data cannot determine is refused, and the measurement that is advised would determine it."""
+
+import re
+
+import numpy as np
+import pytest
+
+from contactlab import Simulation, fit
+from contactlab.fitting import read_measurements
+from contactlab.scene_file import read_scene
+from tests.fitting.impacts import BODIES, restitution, table
+
+STEEP = np.array([0.1, 0.2, 0.3, 0.4, 0.5])
+GRAZING = np.array([55.0, 60.0, 65.0, 70.0])
+SCATTER = np.array([1.0, -1.0, 0.5, -0.8, 0.7, -0.4])
+ADVICE = re.compile(
+    r"measure (\w+) at angles of incidence \(degrees\) from [\d.]+ to [\d.]+, best about ([\d.]+), "
+    r"to determine (\w+)"
+)
+ANGLE = re.compile(r"about ([\d.]+)")
+
+
+def scattered(angles, friction=0.1, size=0.004):
+    return restitution(friction, angles) + size * SCATTER[: len(angles)]
+
+
+def refused(measurements, *parameters, **options):
+    with pytest.raises(ValueError, match="the data do not determine") as caught:
+        fit(measurements, BODIES, parameters=parameters, **options)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("angles", "parameters", "missing"),
+    [
+        (GRAZING, ["stiffness_ratio"], "stiffness_ratio"),
+        (GRAZING, ["friction_coefficient", "stiffness_ratio"], "stiffness_ratio"),
+        (STEEP, ["friction_coefficient"], "friction_coefficient"),
+        (STEEP, ["stiffness_ratio", "friction_coefficient"], "friction_coefficient"),
+    ],
+)
+def test_the_measurement_that_is_advised_determines_what_was_not(angles, parameters, missing):
+    """Gross slip says nothing of stiffness, and impacts that stick next to nothing of friction."""
+    told = refused(table(scattered(angles), angles), *parameters)
+    assert f"do not determine {missing}:" in told
+    assert ADVICE.search(told).groups()[::2] == ("tangential_restitution", missing)
+    for _ in range(3):  # a parameter may then have two values, or another be missing
+        angles = np.append(angles, [float(ANGLE.search(told)[1])] * 2)
+        values = restitution(0.1, angles) + 0.004 * np.resize(SCATTER, len(angles))
+        try:
+            found = fit(table(values, angles), BODIES, parameters=parameters)
+        except ValueError as error:
+            told = str(error)
+        else:
+            break
+    truth = {"friction_coefficient": 0.1, "stiffness_ratio": 14 / 17}
+    for name, one in found.parameters.items():
+        assert one.value == pytest.approx(truth[name], abs=3.0 * one.standard_error)
+        assert one.standard_error < 0.1 * truth[name]
+
+
+def test_a_law_without_the_property_is_no_help():
+    laws = Simulation(tangential="coulomb")
+    told = refused(table(scattered(GRAZING), GRAZING), "stiffness_ratio", simulation=laws)
+    assert "no rebound of these laws depends on stiffness_ratio" in told
+    assert "fix it" in told
+
+
+def test_restitution_needs_a_measurement_of_it():
+    """Rolling does not depend on the normal impulse; the normal rebound always does."""
+    laws = Simulation(normal="tsuji", tangential="coulomb")
+    told = refused(table(scattered(STEEP), STEEP), "normal.restitution", simulation=laws)
+    assert "measure normal_restitution" in told
+    assert "at any angles" in told
+
+
+def test_effects_that_are_alike_are_not_told_apart():
+    """In gross slip only mu (1 + e) counts."""
+    laws = Simulation(normal="tsuji", tangential="coulomb")
+    names = ("friction_coefficient", "normal.restitution")
+    told = refused(table(scattered(GRAZING), GRAZING), *names, simulation=laws)
+    assert "a change of friction_coefficient and normal.restitution together" in told
+    assert "measure normal_restitution" in told
+    data = table(scattered(GRAZING), GRAZING) | {"normal_restitution": 0.9 + 0.01 * SCATTER[:4]}
+    found = fit(data, BODIES, parameters=names, simulation=laws)
+    assert found["normal.restitution"] == pytest.approx(0.9, abs=0.02)
+    assert found["friction_coefficient"] == pytest.approx(0.1 * 2.0 / 1.9, rel=0.05)
+
+
+def test_fewer_numbers_than_parameters():
+    with pytest.raises(ValueError, match="1 measured numbers cannot determine 2 parameters"):
+        fit(table([0.7], [20.0]), BODIES, parameters=["friction_coefficient", "stiffness_ratio"])
+
+
+def test_as_many_numbers_as_parameters_have_no_interval_and_it_is_said():
+    found = fit(table(restitution(0.1, np.array([60.0])), [60.0]), BODIES)
+    one = found.parameters["friction_coefficient"]
+    assert one.value == pytest.approx(0.1, abs=1e-6)
+    assert np.isnan([one.standard_error, *one.interval]).all()
+    assert "nothing is left to tell the scatter by" in str(found)
+
+
+def test_two_values_that_meet_the_data_alike():
+    """One impact at 25 degrees has the same e_t at two frictions; a second one tells them apart."""
+    angles = np.array([25.0])
+    told = refused(table(restitution(0.1, angles), angles), "friction_coefficient")
+    first, second = map(float, re.findall(r"friction_coefficient = ([\d.]+)", told))
+    assert sorted([first, second])[0] == pytest.approx(0.1, abs=1e-4)
+    alike = [restitution(friction, angles)[0] for friction in (first, second)]
+    assert alike[0] == pytest.approx(alike[1], abs=1e-3)
+    assert abs(first - second) > 0.05
+    advised = re.search(r"of about ([\d.]+): ([\d.]+) of the first, ([\d.]+) of the second", told)
+    more = np.array([25.0, float(advised[1])])
+    values = restitution(0.1, more)
+    assert min(abs(values[1] - float(advised[k])) for k in (2, 3)) < 0.01
+    assert fit(table(values, more), BODIES)["friction_coefficient"] == pytest.approx(0.1, abs=1e-5)
+
+
+def test_a_law_that_is_not_that_of_the_data_ends_at_the_end_of_a_range():
+    data = {"angle_deg": np.zeros(3), "speed (m/s)": np.ones(3)}
+    data["normal_restitution"] = np.array([1.1, 1.2, 1.15])
+    laws = Simulation(normal="tsuji", tangential="coulomb")
+    found = fit(data, BODIES, parameters=["restitution"], simulation=laws)
+    assert found["normal.restitution"] == pytest.approx(1.0, abs=1e-3)
+    assert "end of its range, 0.01 to 1" in str(found)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"parameters": ["mu"]}, "did you mean 'friction_coefficient'"),
+        ({"parameters": ["normal.restitution"]}, "once it is chosen"),
+        ({"parameters": "friction_coefficient"}, "must be a list of names"),
+        ({"parameters": []}, "must be a list of names"),
+        ({"parameters": ["friction_coefficient"] * 2}, "twice"),
+        ({"simulation": "coulomb"}, "must be a Simulation"),
+        ({"quantities": ["rebound_spin"]}, "was not measured"),
+        ({"bootstrap": -1}, "bootstrap"),
+        ({"paramters": ["friction_coefficient"]}, "did you mean 'parameters'"),
+    ],
+)
+def test_bad_arguments(arguments, words):
+    with pytest.raises(ValueError, match=re.escape(words)):
+        fit(table(scattered(GRAZING), GRAZING), BODIES, **arguments)
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ({"spin out": [1.0]}, "neither an entry of a scene"),
+        ({"tangential_restituton": [0.5]}, "did you mean 'tangential_restitution'"),
+        ({"rebound_spin": [1.0]}, "has no unit; write 'rebound_spin (rad/s)'"),
+        ({"speed (km/h)": [1.0]}, "is in km/h, which is not known here"),
+        ({"tangential_restitution (%)": [50.0]}, "is in %"),
+        ({"speed (m/s": [1.0]}, "write a name and its unit"),
+        ({"angle_deg": [5.0]}, "nothing was measured"),
+        ({"angle_deg": [5.0, 6.0], "slip_restitution": [0.1]}, "equal length"),
+        ({"slip_restitution": [np.nan]}, "holds no number"),
+        ({"slip_restitution": [np.inf, np.nan]}, "must be finite"),
+        ({"slip_restitution": ["a"]}, "must be a list of numbers"),
+        ({"slip_restitution": [1.0], "slip_restitution_error": [0.0]}, "must be positive"),
+        ({"slip_restitution": [1.0], "psi2_error": [0.1]}, "there is no column psi2"),
+        ({"rebound_angle (deg)": [1.0], "rebound_angle_deg": [1.0]}, "there twice"),
+    ],
+)
+def test_bad_columns(columns, words):
+    with pytest.raises(ValueError, match=re.escape(words)):
+        read_measurements(columns)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "needs a line of headings"),
+        ("psi2\n", "needs a line of headings"),
+        ("psi2;angle_deg\n1;2\n", "separated by commas"),
+        ("# made up\npsi2,angle_deg\n1,2\n1\n", "line 4: has 1 columns, the headings are 2"),
+        ("psi2,angle_deg\n1,2\n\n1,x\n", "line 4, 'angle_deg': 'x' is not a number"),
+        ("psi2,angle_deg\n1,\n", "line 2, 'angle_deg': is empty"),
+        ("psi2,psi2\n1,2\n", "the same heading"),
+    ],
+)
+def test_bad_files(tmp_path, text, words):
+    path = tmp_path / "bad.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=re.escape(words)) as caught:
+        read_measurements(path)
+    assert str(path) in str(caught.value)
+
+
+def test_no_file_and_no_scene(tmp_path):
+    with pytest.raises(ValueError, match="no such file"):
+        read_measurements(tmp_path / "none.csv")
+    with pytest.raises(ValueError, match=r"scene = None: must be given"):
+        fit(table(scattered(GRAZING), GRAZING))
+    with pytest.raises(ValueError, match="must be a CSV file"):
+        read_measurements(7)
+
+
+def test_columns_of_an_export_are_read_and_those_without_use_named(tmp_path):
+    from contactlab.export import write_csv
+    from tests.fitting.impacts import scene
+
+    path = tmp_path / "export.csv"
+    write_csv(Simulation().sweep(scene(0.12)), path)
+    found = read_measurements(path)
+    assert {"normal_speed", "tangential_velocity", "spin"} <= set(found.given)
+    assert {"rebound_spin", "tangential_restitution"} <= set(found.measured)
+    assert {"energy_imbalance (J)", "psi1", "psi2", "chi", "angle_deg"} <= set(found.unused)
+    mu = fit(found, BODIES, quantities=["rebound_spin"])["friction_coefficient"]
+    assert mu == pytest.approx(0.12, abs=1e-6)
+
+
+def test_a_scene_file_needs_no_friction_and_no_velocity(tmp_path):
+    path = tmp_path / "bodies.toml"
+    path.write_text(
+        "[sphere]\nradius = 0.01\nmaterial = 'steel'\n[target]\nkind = 'half-space'\n"
+        "material = 'steel'\n[impact]\nnormal_speed = 7.0\n",
+        encoding="utf-8",
+    )
+    with pytest.raises(ValueError, match="friction_coefficient: is missing"):
+        read_scene(path)
+    found = fit(table(restitution(0.12)), path)
+    assert found["friction_coefficient"] == pytest.approx(0.12, abs=1e-6)
+    assert fit(table(restitution(0.12)), str(path))["friction_coefficient"] == pytest.approx(0.12)
