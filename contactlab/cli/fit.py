@@ -22,7 +22,8 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
 from contactlab.composition import DEFAULT_NORMAL
 from contactlab.files import write_table
-from contactlab.fitting import Fit, Ranked, fit, rank, read_measurements
+from contactlab.fitting import Fit, Ranked, fit, in_order, rank, read_measurements
+from contactlab.fitting.model import SOME_FRICTION
 from contactlab.quantities import QUANTITIES
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.scene_file.entries import entry_unit
@@ -98,49 +99,60 @@ def execute(arguments: argparse.Namespace) -> int:
     """Fit and report; 1 if one of several laws could not be fitted."""
     whole("--bootstrap", arguments.bootstrap, least=0, most=100_000)
     data, path = _files(arguments.files)
-    table_of_impacts = read_measurements(data)
-    simulations = _simulations(
-        arguments,
-        read_scene(path, entries=table_of_impacts.given, defaults={"friction_coefficient": 0.1}),
-    )
+    impacts = read_measurements(data)
+    defaults = {"friction_coefficient": SOME_FRICTION}
+    file = read_scene(path, entries=impacts.given, defaults=defaults)
+    simulations = _simulations(arguments, file)
     asked: dict[str, Any] = {"parameters": arguments.fit, "quantities": arguments.quantity}
     first, *others = simulations
-    found = fit(
-        table_of_impacts,
-        path,
-        simulation=simulations[first],
-        bootstrap=arguments.bootstrap,
-        progress=shared.progress(arguments.progress, "bootstrap"),
-        **asked,
-    )
-    ranked = []
-    if others:
-        rest = {name: simulations[name] for name in others}
-        progress = shared.progress(arguments.progress, "laws")
-        ranked = rank(table_of_impacts, path, rest, progress=progress, **asked)
-        ranked.append(Ranked(name=first, fit=found))
-        ranked.sort(key=lambda one: (one.fit is None, one.fit.aic if one.fit else 0.0))
+    found = fit(impacts, path, simulation=simulations[first], **asked)
+    ranked: list[Ranked] = []
+    interrupted = False
+    try:
+        if others:
+            progress = shared.progress(arguments.progress, "laws")
+            rest = {name: simulations[name] for name in others}
+            ranked = rank(impacts, path, rest, progress=progress, **asked)
+        if arguments.bootstrap:
+            progress = shared.progress(arguments.progress, "bootstrap")
+            options = {"bootstrap": arguments.bootstrap, "progress": progress}
+            found = fit(impacts, path, simulation=simulations[first], **asked, **options)
+    except KeyboardInterrupt:  # what is done is worth telling
+        interrupted = True
+    if ranked:
+        ranked = in_order([*ranked, Ranked(name=first, fit=found)])
     shown = [one for one in ranked if one.fit] or [Ranked(name=first, fit=found)]
     saved = shared.save(
         (arguments.figure, lambda file: _draw(file, shown)),
         (arguments.csv, lambda file: _write(file, shown)),
     )
-    if arguments.json:
-        content = found.to_dict() | {
-            "ranking": [
-                {"law": one.name, "refusal": one.refusal, "fit": one.fit and one.fit.to_dict()}
-                for one in ranked
-            ]
-        }
+    _report(found, ranked, complete=not interrupted, as_json=arguments.json)
+    return shared.INTERRUPTED if interrupted else max(saved, _failures(ranked))
+
+
+def _report(found: Fit, ranked: list[Ranked], *, complete: bool, as_json: bool) -> None:
+    """Print the fit and the ranking."""
+    if as_json:
+        ranking = [
+            {"law": one.name, "refusal": one.refusal, "fit": one.fit and one.fit.to_dict()}
+            for one in ranked
+        ]
+        content = found.to_dict() | {"ranking": ranking, "complete": complete}
         print(json.dumps(content, indent=2, allow_nan=False))
-    else:
-        print(describe(found))
-        if ranked:
-            print("\n" + _ranking(ranked))
+        return
+    print(describe(found))
+    if ranked:
+        print("\n" + _ranking(ranked))
+    if not complete:
+        print("\nnot complete: interrupted")
+
+
+def _failures(ranked: list[Ranked]) -> int:
+    """Say which laws could not be fitted, and return the status."""
     failed = [one for one in ranked if one.fit is None]
     for one in failed:
         print(f"contactlab fit: {one.name}: {one.refusal}", file=sys.stderr)
-    return shared.FAILED if failed else saved
+    return shared.FAILED if failed else shared.OK
 
 
 def _files(names: list[str]) -> tuple[Any, Path]:

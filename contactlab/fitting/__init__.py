@@ -3,6 +3,15 @@
 from contactlab.fitting.estimation import fit
 from contactlab.fitting.measurements import Measurements, read_measurements
 from contactlab.fitting.outcome import Estimate, Fit
-from contactlab.fitting.ranking import Ranked, rank
+from contactlab.fitting.ranking import Ranked, in_order, rank
 
-__all__ = ["Estimate", "Fit", "Measurements", "Ranked", "fit", "rank", "read_measurements"]
+__all__ = [
+    "Estimate",
+    "Fit",
+    "Measurements",
+    "Ranked",
+    "fit",
+    "in_order",
+    "rank",
+    "read_measurements",
+]

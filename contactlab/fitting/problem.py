@@ -20,6 +20,9 @@ Array = NDArray[np.float64]
 STEP = 1e-3
 #: Share of a parameter to which it is found: far below any scatter, far above the table's error.
 TOLERANCE = 1e-6
+#: Points of the grid on which searches begin: of those that can be run together, and of others;
+#: and most searches.
+GRID, GRID_ALONE, SEARCHES = 400, 100, 4
 #: Rounds in which the errors of several quantities are taken from their own residuals.
 ROUNDS = 4
 #: Least error of a quantity, of the size of its values: data made by the model itself have none.
@@ -118,29 +121,35 @@ class Problem:
 
 
 def starting(problem: Problem) -> list[Array]:
-    """Return where searches begin, the best first: the least of the costs over the starts.
+    """Return where searches begin: the least of the costs on a grid of starts, the best first.
 
-    The starts of each parameter are tried in turn, the others at their best. Where the costs
-    have several minima a search begins at each: one quantity of one impact, as a rule, has the
-    same value at two coefficients of friction.
+    One quantity of one impact, as a rule, has the same value at two coefficients of friction, and
+    a search goes no further than the minimum that is next.
     """
-    scales = problem.scales()
-    values = np.array([parameter.starts[0] for parameter in problem.model.parameters])
-    others: list[tuple[int, float]] = []
-    for place, parameter in enumerate(problem.model.parameters):
-        starts = np.sort(parameter.starts)
-        points = np.tile(values, (len(starts), 1))
-        points[:, place] = starts
-        costs = np.sum(problem.weighted(points, scales) ** 2, axis=1)
-        lower = np.diff(np.concatenate([[np.inf], costs, [np.inf]]))
-        minima = np.flatnonzero((lower[:-1] < 0.0) & (lower[1:] >= 0.0))
-        values[place] = starts[int(np.argmin(costs))]
-        others += [(place, start) for start in starts[minima] if start != values[place]]
-    found = [values]
-    for place, start in others:
-        found.append(np.array(values))
-        found[-1][place] = start
-    return found
+    parameters = problem.model.parameters
+    together = all(parameter.batched for parameter in parameters)
+    most = int((GRID if together else GRID_ALONE) ** (1.0 / len(parameters)) + 1e-9)
+    axes = [_some(sorted(set(parameter.starts)), most) for parameter in parameters]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    points = grid.reshape(-1, len(parameters))
+    weighted = problem.weighted(points, problem.scales())
+    costs = np.sum(weighted**2, axis=1).reshape(grid.shape[:-1])
+    least = np.ones(costs.shape, dtype=bool)
+    for axis in range(costs.ndim):
+        ends = [(1, 1) if other == axis else (0, 0) for other in range(costs.ndim)]
+        steps = np.diff(np.pad(costs, ends, constant_values=np.inf), axis=axis)
+        count = costs.shape[axis]
+        least &= np.take(steps, range(count), axis) < 0.0
+        least &= np.take(steps, range(1, count + 1), axis) >= 0.0
+    least.flat[int(np.argmin(costs))] = True  # also on a plain, where nothing is lower
+    order = np.argsort(costs[least], kind="stable")[:SEARCHES]
+    return list(grid[least][order])
+
+
+def _some(starts: list[float], most: int) -> Array:
+    """Return at most so many of the starts, from end to end."""
+    places = np.linspace(0, len(starts) - 1, min(len(starts), max(most, 2)))
+    return np.array(starts)[np.unique(places.round().astype(int))]
 
 
 def solved(problem: Problem, start: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import attrs
@@ -60,4 +60,9 @@ def rank(
             found.append(Ranked(name=name, fit=None, refusal=str(error)))
         if progress is not None:
             progress(done, len(simulations))
-    return sorted(found, key=lambda one: (one.fit is None, one.fit.aic if one.fit else 0.0))
+    return in_order(found)
+
+
+def in_order(ranked: Iterable[Ranked]) -> list[Ranked]:
+    """Return laws with the lowest Akaike criterion first, those without a fit last."""
+    return sorted(ranked, key=lambda one: (one.fit is None, one.fit.aic if one.fit else 0.0))

@@ -10,6 +10,7 @@ from contactlab.fitting import rank
 from contactlab.fitting.model import Model, scene_of
 from contactlab.fitting.parameters import Setup, parameter_named
 from tests.fitting.impacts import ANGLES, BODIES, STEEL, restitution, scene, table
+from tests.outside_laws import Walton
 
 SLIPPING = np.array([45.0, 50.0, 55.0, 60.0, 65.0, 70.0])
 BOTH = ("friction_coefficient", "stiffness_ratio")
@@ -85,11 +86,22 @@ def test_a_law_s_restitution_is_the_mean_of_those_measured():
 
 
 def test_any_law_is_fitted_by_its_steps():
-    laws = Simulation(tangential="springs")
-    found = fit(table(restitution(0.2, laws=laws)), BODIES, simulation=laws)
+    laws, angles = Simulation(tangential="springs"), ANGLES[::3]
+    found = fit(table(restitution(0.2, angles, laws=laws), angles), BODIES, simulation=laws)
     assert found["friction_coefficient"] == pytest.approx(0.2, abs=1e-5)
-    exact = fit(table(restitution(0.2)), BODIES, simulation=laws)
+    exact = fit(table(restitution(0.2, angles), angles), BODIES, simulation=laws)
     assert exact["friction_coefficient"] == pytest.approx(0.2, abs=2e-4)  # its numerical error
+
+
+def test_an_option_of_somebody_s_law_is_fitted_by_its_name():
+    """Walton: rolling with the share beta of the slip given back, (1 + beta) M_t v_x."""
+    angles = np.array([2.0, 4.0, 6.0, 8.0, 40.0, 50.0, 60.0])
+    values = restitution(0.2, angles, laws=Simulation(tangential=Walton(beta=0.37)))
+    laws = Simulation(tangential=Walton())
+    names = ["beta", "friction_coefficient"]
+    found = fit(table(values, angles), BODIES, parameters=names, simulation=laws)
+    assert found["tangential.beta"] == pytest.approx(0.37, abs=1e-6)
+    assert found["friction_coefficient"] == pytest.approx(0.2, abs=1e-6)
 
 
 def test_many_points_are_predicted_as_one_by_one():
@@ -204,17 +216,21 @@ def test_the_bootstrap_is_as_wide_as_the_covariance_and_the_same_each_time():
 
 
 def test_laws_are_ranked_by_their_fit():
-    laws = {name: Simulation(tangential=name) for name in ("coulomb", "mindlin_cap")}
-    laws = {"exact": None, **laws}
-    for name, law in laws.items():
+    others = {name: Simulation(tangential=name) for name in ("coulomb", "mindlin_cap")}
+    laws = {"exact": None, **others}
+    for name in ("exact", "coulomb"):
+        law = laws[name]
         data = table(scattered(restitution(0.1, laws=law), 0.003))
         ranked = rank(data, BODIES, laws)
         assert ranked[0].name == name
         assert ranked[0].fit["friction_coefficient"] == pytest.approx(0.1, abs=0.01)
         assert ranked[1].fit.aic - ranked[0].fit.aic > 10.0
-    refused = rank(data, BODIES, laws, parameters=["stiffness_ratio"])
-    assert (refused[-1].name, refused[-1].fit) == ("coulomb", None)
-    assert "no rebound of these laws depends" in refused[-1].refusal
+    only = {"exact": None, "coulomb": others["coulomb"]}
+    data = table(scattered(restitution(0.1), 0.003))
+    ranked = rank(data, BODIES, only, parameters=["stiffness_ratio"])
+    assert [one.name for one in ranked] == ["exact", "coulomb"]
+    assert ranked[1].fit is None
+    assert "no rebound of these laws depends" in ranked[1].refusal
 
 
 def test_a_spinning_sphere_of_two_bodies():

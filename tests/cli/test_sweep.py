@@ -1,11 +1,10 @@
-"""`contactlab sweep` and `contactlab validate`."""
+"""`contactlab sweep`."""
 
 import json
 
 import numpy as np
 import pytest
 
-from contactlab.analysis import validation
 from contactlab.closed_forms import rigid_body_rebound
 
 LAWS = ("--tangential", "coulomb", "--integrator", "symplectic")
@@ -49,22 +48,3 @@ def test_bad_ranges_are_one_line_and_status_2(run, arguments, words):
     assert ran.status == 2
     assert len(ran.err.splitlines()) == 1
     assert words in ran.err
-
-
-def test_validate_passes_here(run):
-    ran = run("validate", "--json")
-    rows = json.loads(ran.out)
-    assert ran.status == 0
-    assert len(rows) >= 6
-    assert all(row["ok"] and row["difference"] <= row["bound"] for row in rows)
-
-
-def test_validate_fails_on_a_wrong_value(run, monkeypatch):
-    wrong = {
-        chi: tuple(value + 1e-6 for value in row) for chi, row in validation.REFERENCE_PSI2.items()
-    }
-    monkeypatch.setattr(validation, "REFERENCE_PSI2", wrong)
-    monkeypatch.setattr(validation, "COMPOSITIONS", validation.COMPOSITIONS[:1])
-    ran = run("validate")
-    assert ran.status == 1
-    assert "FAILS" in ran.out

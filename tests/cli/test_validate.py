@@ -1,0 +1,134 @@
+"""`contactlab validate`: bounds met, evidence told with its scatter, pictures drawn."""
+
+import json
+
+import numpy as np
+import pytest
+
+from contactlab.analysis import evidence, validation
+from contactlab.scene_file import read_scene
+from tests.cli.conftest import EXAMPLES
+
+SOURCES = {source.name: source for source in evidence.SOURCES}
+
+
+@pytest.fixture(scope="module")
+def gathered():
+    return {one.source.name: one for one in evidence.gather()}
+
+
+def rms(one, law, series=0):
+    return one.comparison.agreements[series].rms(law)
+
+
+def test_the_mean_readings_are_those_of_the_example():
+    packaged = SOURCES["kharaz2001"].read()
+    example = read_scene(EXAMPLES / "kharaz2001.toml")
+    for one, other in zip(packaged.measured, example.measured, strict=True):
+        assert (one.quantity, one.against) == (other.quantity, other.against)
+        assert one.x == pytest.approx(other.x, abs=1e-4)
+        assert one.values == pytest.approx(other.values, abs=1e-5)
+        assert one.error == pytest.approx(np.nan_to_num(other.error), abs=1e-5)
+    assert packaged.scene.pair == example.scene.pair
+
+
+def test_every_installed_law_is_told(gathered):
+    for one in gathered.values():
+        told = set(one.laws) | set(one.left_out)
+        assert {"fronts", "springs", "annulus", "mindlin_cap", "coulomb"} <= told
+        assert np.isfinite([rms(one, law) for law in one.laws]).all()
+
+
+def test_the_experiment_is_met_to_its_bound_by_partial_slip_alone(gathered):
+    one = gathered["kharaz2001"]
+    for law in ("fronts", "springs, tsuji restitution=0.98"):
+        assert rms(one, law) <= 0.015
+        assert rms(one, law) < 0.3 * min(rms(one, "coulomb"), rms(one, "mindlin_cap"))
+    assert 0.0 < one.scatter(one.comparison.agreements[0]) < 0.002
+
+
+def test_what_is_said_of_the_experiment_holds(gathered):
+    """e_t tan(angle)/tan(rebound angle) is the restitution; the two figures have it near 1."""
+    one = gathered["kharaz2001"]
+    tangential, angle = (series.measured for series in one.comparison.agreements)
+    known = angle.x > 20.0
+    at = np.interp(angle.x[known], tangential.x, tangential.values)
+    slopes = np.tan(np.radians(angle.x[known])) / np.tan(np.radians(angle.values[known]))
+    assert np.median(at * slopes) == pytest.approx(1.0, abs=0.01)
+    assert rms(one, "springs", 1) < rms(one, "springs, tsuji restitution=0.98", 1)
+    assert 0.02 < one.comparison.agreements[0].largest("fronts") < 0.035
+
+
+def test_finite_elements_are_nearest_to_the_exact_law_and_miss_it_about_psi1_1(gathered):
+    one = gathered["finite-elements"]
+    series = one.comparison.agreements[0]
+    psi1 = series.results["fronts"].psi1
+    assert rms(one, "fronts") == pytest.approx(0.050, abs=0.001)
+    assert rms(one, "mindlin_cap") > 5.0 * rms(one, "fronts")
+    assert psi1[np.argmax(np.abs(series.difference("fronts")))] == pytest.approx(1.0, abs=0.1)
+    assert 0.1 < series.largest("fronts") < 0.13
+    # Theory §9: 4 chi less at the end, to the reading.
+    assert series.difference("fronts")[-3:] == pytest.approx([-0.03] * 3, abs=0.03)
+
+
+@pytest.mark.parametrize("name", ["codes-test4-oxide", "codes-test4-alloy", "codes-mfix"])
+def test_curves_of_codes_are_those_of_the_capped_spring(gathered, name):
+    """Simulations, not experiments: the cap is right by construction, to the reading."""
+    one = gathered[name]
+    assert one.source.kind == "other codes"
+    assert rms(one, "mindlin_cap") < 0.005
+    assert 0.055 < rms(one, "fronts") < 0.1
+
+
+def test_scalars_of_hertz_are_the_codes(monkeypatch):
+    monkeypatch.setattr(validation, "COMPOSITIONS", ())
+    bounds = [validation.FORCE_READING, validation.OTHER_READING]
+    found = [one for one in validation.validate() if one.what.startswith("hertz: test")]
+    assert len(found) == 6
+    assert all(one.ok and one.bound in bounds for one in found)
+    monkeypatch.setattr(validation, "FORCE_READING", 1e-6)
+    assert not all(one.ok for one in validation.validate() if "force" in one.what)
+
+
+@pytest.fixture
+def short(monkeypatch):
+    """Validate against one source of few laws, and no reference values."""
+    monkeypatch.setattr(validation, "COMPOSITIONS", validation.COMPOSITIONS[:1])
+    monkeypatch.setattr(evidence, "SOURCES", (SOURCES["codes-test4-alloy"],))
+    monkeypatch.setattr(
+        evidence.REGISTRY,
+        "names",
+        lambda kind=None: [f"{kind or 'tangential'}.{name}" for name in ("coulomb", "mindlin_cap")],
+    )
+
+
+def test_tables_pictures_and_json(run, short, tmp_path):
+    ran = run("validate", "--figures", tmp_path / "pictures")
+    assert ran.status == 0
+    assert "capped" not in ran.err
+    assert "Simulations by other codes" in ran.out
+    assert "right here by construction" in " ".join(ran.out.split())
+    assert (tmp_path / "pictures" / "codes-test4-alloy.png").read_bytes().startswith(b"\x89PNG")
+    content = json.loads(run("validate", "--json").out)
+    assert all(row["ok"] and row["difference"] <= row["bound"] for row in content["checks"])
+    laws = content["sources"][0]["series"][0]["laws"]
+    assert list(laws) == ["mindlin_cap", "coulomb"]
+    assert laws["mindlin_cap"]["rms"] < 0.005
+
+
+def test_a_folder_that_cannot_be(run, tmp_path):
+    ran = run("validate", "--figures", tmp_path / "no" / "pictures")
+    assert (ran.status, ran.out) == (2, "")
+    assert "there is no folder" in ran.err
+
+
+def test_a_wrong_value_fails(run, monkeypatch):
+    wrong = {
+        chi: tuple(value + 1e-6 for value in row) for chi, row in validation.REFERENCE_PSI2.items()
+    }
+    monkeypatch.setattr(validation, "REFERENCE_PSI2", wrong)
+    monkeypatch.setattr(validation, "COMPOSITIONS", validation.COMPOSITIONS[:1])
+    monkeypatch.setattr(evidence, "SOURCES", ())
+    ran = run("validate")
+    assert ran.status == 1
+    assert "FAILS" in ran.out

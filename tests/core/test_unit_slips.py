@@ -1,0 +1,70 @@
+"""Numbers that look as if they were in another unit are cautioned, and others are not."""
+
+import math
+
+import attrs
+import numpy as np
+import pytest
+
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, materials
+from contactlab.unit_slips import unit_slips
+
+STEEL = Material.named("steel")
+BALL = Scene(Sphere(6.35e-3, STEEL), HalfSpace(STEEL), 0.15, 1.0, 0.5)
+
+
+def steel(**changes):
+    numbers = {"young_modulus": 207e9, "poisson_ratio": 0.3, "density": 7850.0}
+    return Material(**(numbers | changes))
+
+
+@pytest.mark.parametrize(
+    ("scene", "words"),
+    [
+        (attrs.evolve(BALL, sphere=Sphere(6.35, STEEL)), "sphere.radius = 6.35 m: is it in mm?"),
+        (attrs.evolve(BALL, sphere=Sphere(6.35e-3, steel(density=7.85))),
+         "sphere.material.density = 7.85 kg/m³: is it in g/cm³?"),
+        (attrs.evolve(BALL, target=HalfSpace(steel(young_modulus=207.0))), "is it in GPa?"),
+        (attrs.evolve(BALL, target=Sphere(1e-3, steel(young_modulus=207e12))),
+         "stiffer than diamond"),
+        (attrs.evolve(BALL, sphere=Sphere(6.35e-3, STEEL, mass=8.4)), "mean density"),
+        (attrs.evolve(BALL, target=Sphere(40.0, STEEL)), "target.radius = 40 m"),
+        (attrs.evolve(BALL, friction_coefficient=15.0), "friction_coefficient = 15"),
+        (attrs.evolve(BALL, tangential_velocity=math.tan(math.radians(0.7854))),
+         "45° are as many radians"),
+        (attrs.evolve(BALL, tangential_velocity=-math.tan(math.radians(0.5236))), "30° are"),
+    ],
+)  # fmt: skip
+def test_slips(scene, words):
+    plan = Simulation().plan(scene)
+    assert any(words in str(caution) for caution in plan.cautions)
+    assert len(unit_slips(scene)) == 1
+
+
+def test_a_batch_is_judged_by_its_extremes():
+    angles = np.radians(np.radians([5.0, 15.0, 45.0]))
+    batch = attrs.evolve(BALL, tangential_velocity=np.tan(angles), friction_coefficient=0.1)
+    assert "45°" in unit_slips(batch)[0]
+    frictions = attrs.evolve(BALL, friction_coefficient=np.array([0.1, 20.0]))
+    assert "friction_coefficient = 20" in unit_slips(frictions)[0]
+
+
+@pytest.mark.parametrize("name", materials.names())
+@pytest.mark.parametrize("radius", [1e-6, 1e-3, 0.5])
+def test_what_there_is_is_not_cautioned(name, radius):
+    material = Material.named(name)
+    scene = Scene(Sphere(radius, material), HalfSpace(material), 1.2, 1.0, 0.3)
+    assert unit_slips(scene) == []
+
+
+def test_round_angles_and_scenes_without_bodies_are_not_cautioned():
+    for angle in (0.0, 0.5, 1.0, 1.5, 2.0, 45.0, 89.0):
+        scene = attrs.evolve(BALL, tangential_velocity=math.tan(math.radians(angle)))
+        assert unit_slips(scene) == []
+    assert unit_slips(Scene.nondimensional(psi1=1.0, chi=1.0)) == []
+
+
+def test_extremes_of_what_a_float_holds_raise_nothing():
+    with np.errstate(all="raise"):
+        scene = Scene(Sphere(1e-150, STEEL, mass=1e-3), HalfSpace(STEEL), 0.1, 1.0, 1e150)
+        assert len(unit_slips(scene)) == 1
