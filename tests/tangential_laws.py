@@ -19,3 +19,16 @@ class Creator(SteppedTangentialLaw):
 
     def advance(self, state, increment, before, after):
         return TangentialResponse(-0.1 * state * increment.friction_load, 0.0), state
+
+
+@attrs.frozen(kw_only=True)
+class Slinger(SteppedTangentialLaw):
+    """Drives the slip on, and declares nothing of its books."""
+
+    api_version: ClassVar[int] = 2
+
+    def start(self, scene, normal):
+        return scene.friction_coefficient
+
+    def advance(self, state, increment, before, after):
+        return TangentialResponse(-state * increment.friction_load, 0.0), state

@@ -5,6 +5,7 @@ import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
 from tests.normal_laws import Damped
+from tests.tangential_laws import Creator, Slinger
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
 
@@ -71,3 +72,34 @@ def test_bodies_that_part_faster_than_they_met_are_a_status(batch):
     told = np.ravel(np.array(result.motion.detail, dtype=object))
     for item, e in zip(told, np.ravel(result.normal_restitution), strict=True):
         assert item == f"The bodies part {e:.4g} times as fast as they met."
+
+
+def statuses(result):
+    return [status.name for status in result.status]
+
+
+def test_of_a_batch_only_those_that_part_too_fast_have_the_status():
+    """What damping of the wrong sign makes grows with the speed."""
+    makes_energy = Simulation(
+        normal=Damped(damping=-0.3), tangential="coulomb", integrator="symplectic"
+    )
+    result = makes_energy.run(scene(np.array([1e-3, 0.5]), np.array([0.1, 0.2])))
+    assert statuses(result) == ["SUCCESS", "UNBALANCED"]
+    assert result[1].motion.detail.startswith("The bodies part")
+    assert result.normal_restitution[0] == pytest.approx(1.0, abs=1e-3)
+
+
+def test_of_a_batch_only_those_that_slip_too_fast_have_the_status():
+    """Friction that drives the slip on adds 4 chi to psi: little to much slip, much to little."""
+    sim = Simulation(tangential=Slinger(), integrator="symplectic")
+    result = sim.run(Scene.nondimensional(psi1=[100.0, 0.5], chi=1.44))
+    assert statuses(result) == ["SUCCESS", "UNBALANCED"]
+    assert result[1].motion.detail == "The contact slips 12.52 times as fast as it met."
+
+
+def test_of_a_batch_only_those_whose_books_miss_have_the_status():
+    sim = Simulation(tangential=Creator(), integrator="symplectic")
+    result = sim.run(Scene.nondimensional(psi1=[1e4, 6.0], chi=1.44))
+    assert statuses(result) == ["SUCCESS", "UNBALANCED"]
+    share = abs(result.energy.relative_imbalance[1])
+    assert f"Off by {share:.2g} of the energy at the start" in result[1].motion.detail

@@ -15,7 +15,7 @@ from contactlab.closed_forms import hertz_scales
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from tests.guards import cost, without
 from tests.normal_laws import LinearSpring
-from tests.tangential_laws import Creator
+from tests.tangential_laws import Creator, Slinger
 
 
 def annulus(integrator, **options):
@@ -191,19 +191,6 @@ def test_the_cost_of_the_guards_is_measured_against_none():
         assert creator.run(scene).status is Status.SUCCESS
     assert creator.run(scene).status is Status.UNBALANCED
     assert all(seconds > 0.0 for seconds in cost(lambda: creator.run(scene), repeats=1))
-
-
-@attrs.frozen(kw_only=True)
-class Slinger(SteppedTangentialLaw):
-    """Drives the slip on, and declares nothing of its books."""
-
-    api_version: ClassVar[int] = 2
-
-    def start(self, scene, normal):
-        return scene.friction_coefficient
-
-    def advance(self, state, increment, before, after):
-        return TangentialResponse(-state * increment.friction_load, 0.0), state
 
 
 @pytest.mark.parametrize("integrator", ["paper", "symplectic", "adaptive"])

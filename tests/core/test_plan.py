@@ -1,0 +1,233 @@
+"""What a plan contains: each sentence, the impacts that it is said of, and the declared error."""
+
+import re
+from typing import ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
+from contactlab.contracts import (
+    NormalContact,
+    NormalLaw,
+    SteppedTangentialLaw,
+    TangentialResponse,
+    WholeImpactTangentialLaw,
+)
+from contactlab.contracts.whole_impact import no_force
+from tests.normal_laws import Damped, ForceFree, LinearSpring
+
+CHI = 1.4411764706
+MIXED = [0.0, 1.2, 9.0, 50.0]
+SPRINGS = {"tangential": "springs", "integrator": "symplectic"}
+
+
+def scene(psi1=1.2):
+    return Scene.nondimensional(psi1=psi1, chi=CHI)
+
+
+def said(sentences):
+    """Return each sentence of a batch with the impacts that it is said of."""
+    return {sentence.text: sentence.where.tolist() for sentence in sentences}
+
+
+def test_the_plan_of_one_impact_that_is_marched():
+    plan = Simulation(**SPRINGS).plan(scene())
+    assert list(map(str, plan.computed)) == [
+        "normal motion: Hertz, in closed form",
+        "tangential motion: Symplectic(steps=200, refine=True) over Springs(springs=50)",
+        f"numerical error of psi2: at most {plan.psi2_error:.2g}, declared",
+    ]
+    assert list(map(str, plan.left_out)) == ["history: not asked for"]
+    assert plan.cautions == ()
+    assert plan.marched
+    assert str(plan).splitlines()[1] == f"computed: {plan.computed[1]}"
+    assert str(plan).splitlines()[-1] == "left out: history: not asked for"
+
+
+def test_the_plan_of_a_batch_says_which_impacts():
+    plan = Simulation(**SPRINGS).plan(scene(MIXED))
+    most = plan.psi2_error.max()
+    assert said(plan.computed) == {
+        "normal motion: Hertz, in closed form": [True] * 4,
+        "tangential motion: Symplectic(steps=200, refine=True) over Springs(springs=50)": [
+            False, True, False, False,
+        ],
+        f"numerical error of psi2: at most {most:.2g}, declared": [True] * 4,
+    }  # fmt: skip
+    march = "march of the tangential motion: "
+    assert said(plan.left_out) == {
+        f"{march}central impact, no slip velocity": [True, False, False, False],
+        f"{march}the impact slips from start to end, eq. (45)": [False, False, True, True],
+        "history: not asked for": [True] * 4,
+    }
+    assert plan.to_dict()["left_out"] == list(map(str, plan.left_out))
+    assert plan.to_dict()["psi2_error"] == plan.psi2_error.tolist()
+
+
+@pytest.mark.parametrize(
+    ("history", "left_out"),
+    [
+        (False, ["history: not asked for"]),
+        (True, ["traction and stick/slip fields: not asked for (history='fields')"]),
+        ("fields", []),
+    ],
+)
+def test_what_of_the_history_is_left_out(history, left_out):
+    plan = Simulation(**SPRINGS).plan(scene(), history=history)
+    assert list(map(str, plan.left_out)) == left_out
+
+
+def test_a_closed_form_is_declared_to_rounding_and_an_integrator_to_its_tolerance():
+    """The error of psi2 is 1e-12 max(1, |psi1|) of closed forms, and the tolerance times that."""
+    largest = np.maximum(1.0, MIXED)
+    plan = Simulation(integrator=contactlab.create("integrator.events", tolerance=1e-5)).plan(
+        scene(MIXED)
+    )
+    assert plan.psi2_error[1] == pytest.approx(1.2e-5)
+    closed = plan.psi2_error[[0, 2, 3]] / largest[[0, 2, 3]]
+    assert ((closed >= 1e-12) & (closed < 1.1e-12)).all()
+    assert f"at most {1.2e-5:.2g}, declared" in str(plan)
+    for index, psi1 in enumerate(MIXED):
+        alone = Simulation(integrator=plan_integrator(1e-5)).plan(scene(psi1)).psi2_error
+        assert alone == pytest.approx(plan.psi2_error[index], rel=1e-12)
+    doubled = Simulation(
+        tangential="springs", integrator=contactlab.create("integrator.adaptive", tolerance=1e-2)
+    ).plan(scene([0.5, 2.0]))
+    assert doubled.psi2_error[0] > 2e-2
+    assert doubled.psi2_error[1] - doubled.psi2_error[0] >= 2e-2
+
+
+@attrs.frozen(kw_only=True)
+class Clutches(NormalLaw):
+    """A linear spring, that holds what comes faster than 1 m/s for ever at an overlap of 1 m."""
+
+    api_version: ClassVar[int] = 2
+
+    def start(self, scene):
+        return np.where(np.asarray(scene.normal_speed) > 1.0, 1.0, 0.0)
+
+    def respond(self, state, approach, rate):
+        overlap = np.maximum(approach, state)
+        if np.ndim(approach) == 0:
+            overlap = float(overlap)
+        return NormalContact(1e7 * approach, 0.0 * approach, overlap), state
+
+
+def plan_integrator(tolerance):
+    return contactlab.create("integrator.events", tolerance=tolerance)
+
+
+def test_a_solved_normal_motion_is_not_declared_exact():
+    """Its load impulse is good to 1e-7, and friction can change psi by 4 chi."""
+    plan = Simulation(normal=LinearSpring(), tangential="coulomb").plan(scene(MIXED))
+    assert plan.psi2_error == pytest.approx(np.full(4, 4e-7 * CHI), rel=1e-3)
+    assert "integrated from first touch to separation" in str(plan)
+
+
+def test_impacts_that_do_not_part_are_left_out_and_nothing_is_said_of_their_numbers():
+    steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+    speeds = np.array([0.5, 2.0, 0.7])
+    batch = Scene(Sphere(0.01, steel), HalfSpace(steel), 0.1, speeds, 0.05)
+    result = Simulation(normal=Clutches(), tangential="coulomb").run(batch)
+    parted = [True, False, True]
+    assert [status is Status.SUCCESS for status in result.status] == parted
+    came = "march of the tangential motion: the normal motion came to no end"
+    assert said(result.plan.left_out)[came] == [False, True, False]
+    errors = [where for text, where in said(result.plan.computed).items() if "error" in text]
+    assert errors == [parted]
+    assert result.plan.cautions
+    none = Simulation(normal=ForceFree(), tangential="coulomb").plan(scene())
+    assert none.cautions == ()
+    assert "error" not in str(none)
+
+
+def test_undeclared_errors_are_said_of_the_impacts_that_are_marched():
+    """Of a damped contact the springs declare nothing; a central impact is known without them."""
+    plan = Simulation(normal=Damped(), **SPRINGS).plan(scene([0.0, 1.2]))
+    told = said(plan.computed)
+    assert told["numerical error of psi2: none is declared for these laws"] == [False, True]
+    declared = [text for text, where in told.items() if where == [True, False]]
+    assert re.fullmatch(r"numerical error of psi2: at most 5.8e-07, declared", declared[0])
+
+
+def test_a_sweep_in_parts_has_the_plan_of_the_whole():
+    """Sentences that differ in their numbers only are one."""
+    psi1 = [0.0, 0.5, 1.2, 9.0, 0.0, 50.0]
+    simulation = Simulation(**SPRINGS)
+    whole = simulation.plan(scene(psi1))
+    parts = simulation.sweep(scene(psi1), chunk=2).plan
+    assert parts.marched.tolist() == whole.marched.tolist()
+    assert parts.psi2_error.tolist() == whole.psi2_error.tolist()
+    for kind in ("computed", "left_out", "cautions"):
+        joined = {str(text).partition(" at most")[0]: where
+                  for text, where in said(getattr(parts, kind)).items()}  # fmt: skip
+        once = {str(text).partition(" at most")[0]: where
+                for text, where in said(getattr(whole, kind)).items()}  # fmt: skip
+        assert joined == once
+
+
+def test_the_plan_of_one_impact_of_a_batch():
+    plan = Simulation(**SPRINGS).plan(scene(MIXED))
+    assert [bool(plan[index].marched) for index in range(4)] == [False, True, False, False]
+    assert isinstance(plan[1].psi2_error, float)
+    assert plan[1:3].psi2_error.tolist() == plan.psi2_error[1:3].tolist()
+
+
+@attrs.frozen(kw_only=True)
+class Partly(WholeImpactTangentialLaw):
+    """Knows impacts below psi = 2 only, in a contract that promises all."""
+
+    api_version: ClassVar[int] = 2
+    change: object = 0.0
+
+    def whole_impacts(self, scene, normal):
+        slow = np.abs(scene.slip_velocity) < 2.0
+        known = no_force(scene, where=slow, reason="slow")
+        return (attrs.evolve(known, slip_velocity_change=self.change),)
+
+
+@pytest.mark.parametrize("psi1", [3.0, [1.0, 3.0]])
+def test_a_law_of_whole_impacts_that_leaves_some_out_is_named(psi1):
+    result = Simulation(tangential=Partly()).run(scene(psi1))
+    assert {*np.ravel(np.array(result.status, dtype=object))} == {Status.MALFORMED}
+    assert "no answer to some impacts" in result.failures[0]
+    assert "Partly" in result.failures[0]
+
+
+@pytest.mark.parametrize("psi1", [1.0, [0.5, 1.0]])
+@pytest.mark.parametrize("change", [None, "0", 1j, np.zeros(3)])
+def test_an_answer_that_is_no_number_is_named(psi1, change):
+    result = Simulation(tangential=Partly(change=change)).run(scene(psi1))
+    assert {*np.ravel(np.array(result.status, dtype=object))} == {Status.MALFORMED}
+    assert "to a whole impact" in result.failures[0]
+
+
+@attrs.frozen(kw_only=True)
+class KnowsTwice(SteppedTangentialLaw):
+    """Two answers hold for an impact; the first counts."""
+
+    api_version: ClassVar[int] = 2
+
+    def whole_impacts(self, scene, normal):
+        first = no_force(scene, where=np.asarray(scene.slip_velocity) >= 0.0, reason="first")
+        second = no_force(scene, where=True, reason="second")
+        return first, attrs.evolve(second, slip_velocity_change=0.25)
+
+    def start(self, scene, normal):
+        return None
+
+    def advance(self, state, increment, before, after):
+        return TangentialResponse(0.0 * increment.velocity, 0.0 * increment.velocity), state
+
+
+def test_of_two_answers_the_first_is_taken():
+    simulation = Simulation(tangential=KnowsTwice(), integrator="symplectic")
+    psi1 = [1.0, -1.0]
+    result = simulation.run(scene(psi1)).check()
+    assert result.psi_change == pytest.approx([0.0, 0.25])
+    assert said(result.plan.left_out)["march of the tangential motion: second"] == [False, True]
+    alone = [simulation.run(scene(one)).check().psi_change for one in psi1]
+    assert alone == pytest.approx([0.0, 0.25])
