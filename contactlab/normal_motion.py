@@ -149,9 +149,10 @@ class _Solver:
     def _step(self, solver: Any) -> tuple[_Instant, Array]:
         """Take a step; return where it leads, and approach and rate (scaled) at its nodes."""
         law, start = self.law, float(solver.t)
+        law.steps += 1
         solver.step()
         end = float(solver.t)
-        law.steps, law.time = law.steps + 1, end * float(law.unit.max())
+        law.time = end * float(law.unit.max())
         if solver.status == "failed":
             if law.finite:
                 raise law.fault(Status.UNRESOLVED, "steps became too short")

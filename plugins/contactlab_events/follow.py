@@ -135,7 +135,7 @@ class _Walk:
         self.nodes = lobatto(NODES)
         self.state = PhaseState(0.0, 0.0, 0.0, velocity, 0.0, 0.0, 0.0)
         self.pieces: list[Piece] = []
-        self.solves = self.idle = self.rejects = 0
+        self.solves = self.idle = 0
         self.begun: float | None = None  # where the first panel began
 
     def go(self) -> str:
@@ -150,7 +150,7 @@ class _Walk:
 
     def _enter(self, phase: Phase) -> None:
         """Begin a phase: its first panel, and no guess of its motion."""
-        self.phase = phase
+        self.phase, self.rejects = phase, 0
         self.guess: Array | None = None
         self.aim: int | None = None
         span = phase.span

@@ -12,6 +12,7 @@ import pytest
 
 from contactlab import Simulation, read_scene
 from contactlab.analysis.compare import compare
+from contactlab.cli import progress
 from tests.tangential_laws import Creator
 
 BOTH = ("--tangential", "coulomb,frictionless")
@@ -154,6 +155,24 @@ def test_an_answer_that_is_not_sound_is_no_number(short_sweep):
     assert "creator (2 of 3)" in comparison.failures()[0]
     with pytest.raises(ValueError, match=r"scene = 3\.0"):
         compare(3.0, {})
+
+
+def test_progress_counts_every_run(run, measured, monkeypatch):
+    """Each law is run on the sweep and at the measured points."""
+    monkeypatch.setattr(progress, "QUIET", 0.0)
+    monkeypatch.setattr(progress, "SELDOM", 0.0)
+    shown = run("compare", measured, *BOTH, "--json", "--progress")
+    lines = shown.err.splitlines()
+    assert [line.partition(",")[0] for line in lines] == [
+        "runs: 25 % (1/4)", "runs: 50 % (2/4)", "runs: 75 % (3/4)", "runs: 100 % (4/4)",
+    ]  # fmt: skip
+    json.loads(shown.out)
+    assert run("compare", measured, *BOTH, "--json").err == ""
+    seen = []
+    file = read_scene(measured)
+    laws = {"rigid": file.laws.simulation(), "again": file.laws.simulation()}
+    compare(file.scene, laws, progress=lambda *count: seen.append(count))
+    assert seen == [(1, 2), (2, 2)]
 
 
 def test_single_scene_object_can_be_compared(short_sweep):

@@ -159,9 +159,13 @@ def test_bad_input_is_one_line_and_status_2(run, arguments, words):
     assert words in ran.err
 
 
-def test_file_and_numbers_do_not_mix(run, ball):
-    ran = run("run", ball, "--psi1", "1", "--chi", "1")
+@pytest.mark.parametrize(
+    "numbers", [("--psi1", "1", "--chi", "1"), ("--psi1", "1"), ("--chi", "1")]
+)
+def test_file_and_numbers_do_not_mix(run, ball, numbers):
+    ran = run("run", ball, *numbers)
     assert (ran.status, ran.out) == (2, "")
+    assert "--psi1, --chi: stand in place of a scene file" in ran.err
 
 
 def test_history_of_a_sweep_is_refused_before_it_runs(run, short_sweep, tmp_path):

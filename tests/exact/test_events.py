@@ -1,10 +1,14 @@
 """Other laws under the event-locating integrator."""
 
+from typing import ClassVar
+
+import attrs
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation
+from contactlab import Scene, Simulation, Status
 from contactlab.closed_forms import rigid_body_rebound
+from contactlab.contracts import ClosedPhase, Phase, PhasedTangentialLaw, PhaseResponse
 
 CHI = 1.4411764706
 
@@ -52,3 +56,60 @@ def test_frictionless_under_events():
         Scene.nondimensional(psi1=2.0, chi=CHI), history=True
     )
     assert result.check().psi2 == 2.0
+
+
+class Nowhere(ClosedPhase):
+    """A motion in closed form that ends where it began."""
+
+    def __init__(self, state):
+        self.end, self.event = state, 0
+
+    def states(self, contact):
+        return np.zeros_like(contact.phase), np.zeros_like(contact.phase)
+
+
+@attrs.frozen
+class Turning(Phase):
+    """Phases without force that end at once, so many of them one after another."""
+
+    left: int
+    closed: bool
+
+    rough = (False,)
+
+    def respond(self, contact, slip, memo):
+        return PhaseResponse(0.0 * slip, None, None, ())
+
+    def margin(self, event, contact, slip, velocity, response):
+        return contact.phase[0] - contact.phase if self.left else np.ones_like(slip)
+
+    def follow(self, event, state, contact, path):
+        return Turning(self.left - 1, self.closed)
+
+    def closed_form(self, state, motion, inertia):
+        return Nowhere(state) if self.left and self.closed else None
+
+
+@attrs.frozen(kw_only=True)
+class Turns(PhasedTangentialLaw):
+    """No force, after so many phases of no length."""
+
+    api_version: ClassVar[int] = 2
+    phases: int
+    closed: bool
+
+    def begin(self, velocity, inertia, motion):
+        return Turning(self.phases, self.closed)
+
+
+@pytest.mark.parametrize("closed", [False, True])
+@pytest.mark.parametrize("psi1", [1.2, [0.5, 1.2]])
+def test_phases_of_no_length_are_followed_but_not_without_end(closed, psi1):
+    """A law may take leave of a long history at one point, in up to a hundred phases."""
+    scene = Scene.nondimensional(psi1=psi1, chi=CHI)
+    some = Simulation(tangential=Turns(phases=100, closed=closed), integrator="events").run(scene)
+    assert some.check().psi2 == pytest.approx(np.asarray(psi1), abs=1e-15)
+    endless = Turns(phases=101 if np.ndim(psi1) else -1, closed=closed)
+    result = Simulation(tangential=endless, integrator="events").run(scene)
+    assert {*np.ravel(np.array(result.status, dtype=object))} == {Status.UNRESOLVED}
+    assert "Events follow one another without end. In phase Turning" in result.failures[0]

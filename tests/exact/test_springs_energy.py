@@ -53,3 +53,14 @@ def test_books_stay_within_what_the_law_declares(law, name, count):
         )
         assert np.abs(result.energy.relative_imbalance).max() < chosen.books_bound
         result.check()
+
+
+@pytest.mark.parametrize(("law", "name"), BOTH)
+def test_finer_laws_declare_tighter_books(law, name):
+    """A bound that grew with the parts would bound nothing: all the energy is 1."""
+    bounds = [
+        contactlab.create(f"tangential.{law}", **{name: count}).books_bound
+        for count in (1, 2, 10, 50, 200)
+    ]
+    assert bounds == sorted(bounds, reverse=True)
+    assert 0.03 < bounds[-1] < bounds[0] < 0.3
