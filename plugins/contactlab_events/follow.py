@@ -25,10 +25,10 @@ from contactlab_events.search import first_event
 
 Array = NDArray[np.float64]
 
-NODES = 24
+NODES = 32
 #: The normal motion's nearest singularity in x lies at 0.22 + 0.86 i (theory §3), hence the
 #: first. An impact that fails, or whose books do not add up, is followed again in shorter ones.
-LONGEST_PANELS = (0.9, 0.4, 0.15)
+LONGEST_PANELS = (1.6, 0.6, 0.2)
 #: Friction work and loss of energy may differ by this part of the tangential energy, taken at
 #: LEAST_AUDITED if psi1 is less. Work is less accurate than motion, most of all near psi1 = 1
 #: and for small psi1; an event missed shows at 1e-2 and above.
@@ -48,13 +48,14 @@ REJECT_CAP = 60
 SURELY_RESOLVED = 1e-6
 #: A panel is resolved if its highest Legendre terms, in velocity, are below this times the
 #: tolerance: collocation gains far more digits at a panel's end than inside it.
-TAIL_PER_TOLERANCE = 0.003
+TAIL_PER_TOLERANCE = 0.01
 #: A first panel is tried this much longer than the law's guess of its phase's length.
 SPAN_MARGIN = 1.08
 SHORTEST_SPAN = 1e-3
 #: An event in a panel that is not resolved is not trusted to shorten it further than this.
 LEAST_PART = 0.1
 RATE_GAP = 0.01
+TINY = 1e-300
 
 
 class Piece(NamedTuple):
@@ -152,7 +153,6 @@ class _Walk:
         """Begin a phase: its first panel, and no guess of its motion."""
         self.phase, self.rejects = phase, 0
         self.guess: Array | None = None
-        self.aim: int | None = None
         span = phase.span
         self.length = self.longest
         if span is not None:
@@ -183,9 +183,7 @@ class _Walk:
     def _panel(self) -> str:
         """Try one panel; accept it, or set out what to try next."""
         left = math.pi - self.state.x
-        if self.aim is None and (
-            self.length > left or (not self.rejects and 1.3 * self.length > left)
-        ):
+        if self.length > left or (not self.rejects and 1.3 * self.length > left):
             self.length = left
         if self.begun is None:
             self.begun = self.state.x
@@ -195,99 +193,86 @@ class _Walk:
         if self.rejects > REJECT_CAP or self.length < min(SHORTEST_PANEL, 0.5 * left):
             return "Newton's method fails on the shortest panel allowed."
         given = self.phase, self.motion, self.nodes, self.state, self.length, self.inertia
-        solved = newton(*given, self.guess, fit=self.aim)
+        solved = newton(*given, self.guess)
         self.solves += 1
         self.rejects += 1
-        aim, self.guess, self.aim = self.aim, None, None
+        self.guess = None
         if solved is None:
             self.length *= 0.5
             return ""
-        resolved = self._resolved(solved)
-        if aim is not None:
-            if resolved:
-                self._accept(solved, aim, 1.0, rooted=True)
-            else:
-                self.length = 0.5 * solved.length
-            return ""
+        tail = self._tail(solved)
         found = first_event(self.nodes, self.phase, solved)
         if found is not None and found[1] == 0.0:
-            if resolved or self.length < SURELY_RESOLVED:
+            if tail <= 1.0 or solved.length < SURELY_RESOLVED:
                 self._turn(found[0])
                 return self._stand_still()
             found = None
-        if resolved:
-            event, stop = (None, 1.0) if found is None else found
-            self._accept(solved, event, stop, rooted=False)
+        if tail <= 1.0:
+            self._accept(solved, found, tail)
         else:
-            self._retry(solved, found)
+            self._retry(solved, found, tail)
         return ""
 
-    def _resolved(self, solved: Solved) -> bool:
-        """Say whether the highest Legendre terms of the force are small."""
+    def _tail(self, solved: Solved) -> float:
+        """Return the highest Legendre terms of the force over what is allowed of them."""
         one, two = (self.nodes.tail @ (solved.contact.time_rate * solved.force)).tolist()
         middle = abs(solved.velocity[NODES // 2].item())
         scale = abs(self.state.velocity) + abs(solved.change[-1].item()) + middle
         largest = self.inertia * solved.length * max(abs(one), abs(two))
-        return bool(largest <= self.tail * scale)
+        return largest / (self.tail * scale)
 
-    def _retry(self, solved: Solved, found: tuple[int, float] | None) -> None:
+    def _retry(self, solved: Solved, found: tuple[int, float] | None, tail: float) -> None:
         """Set out another panel, shorter, after one that was not accepted."""
-        if found is None:
-            self.length *= 0.5
-            return
-        event, part = found
-        if self.phase.rough[event]:
-            self.guess = rows(self.nodes, part * self.nodes.rooted[0]) @ solved.change
-            self.length *= part
-            self.aim = event
+        part = 1.0 if found is None else found[1]
+        if solved.fitted is not None:
+            self.length = 0.5 * solved.length
         elif part < 0.97:
             part = max(1.03 * part, LEAST_PART)
             self.guess = rows(self.nodes, part * self.nodes.points) @ solved.change
             self.length *= part
         else:
-            self.length *= 0.5
+            self.length *= max(0.9 * tail ** (-1.0 / NODES), 0.3)
 
     def _turn(self, event: int) -> None:
         """Go over to the next phase at once."""
         state = self.state
         self._enter(self.phase.follow(event, state, self.motion.scaled_at(state.x), None))
 
-    def _accept(self, solved: Solved, event: int | None, stop: float, *, rooted: bool) -> None:
-        """Move to tau = ``stop`` of a solved panel."""
+    def _accept(self, solved: Solved, found: tuple[int, float] | None, tail: float) -> None:
+        """Move to the event found in a solved panel, or to its end."""
         self.rejects = 0
+        event, stop = (solved.fitted, 1.0) if found is None else found
         start, motion = self.state, self.motion
-        x = min(start.x + solved.length * stop, math.pi)
+        part = stop if solved.fitted is None else stop * (2.0 - stop)
+        x = min(start.x + solved.length * part, math.pi)
         self.idle = self.idle + 1 if x == start.x else 0
-        path = PanelPath(solved, self.nodes, start.x, rooted)
+        path = PanelPath(solved, self.nodes, start.x)
         self.pieces.append(Piece(self.phase, start, path, x))
         self.state = self._arrive(solved, stop, x)
         if event is None:
             self.phase = self.phase.carry_on(self.state, motion.scaled_at(x), path)
-            self.length = min(self.longest, 1.5 * solved.length)
+            growth = min(0.9 * (tail + TINY) ** (-1.0 / NODES), 2.0)
+            self.length = min(self.longest, growth * solved.length)
         else:
             self._enter(self.phase.follow(event, self.state, motion.scaled_at(x), path))
 
     def _arrive(self, solved: Solved, stop: float, x: float) -> PhaseState:
         """Return the state at tau = ``stop`` of a solved panel."""
-        start, nodes = self.state, self.nodes
-        here, earlier = row(nodes, stop), row(nodes, stop - RATE_GAP)
-        change = float(here @ solved.change)
-        force = float(here @ solved.force)
-        time = solved.time_matrix.sum(axis=1)
-        passed = float((here - earlier) @ time)
-        rate = (force - float(earlier @ solved.force)) / passed
-        work = start.work
+        start, known = self.state, [solved.change, solved.force, solved.slip, solved.time]
         if self.phase.dissipates:
             power = self.phase.friction_power(
                 solved.contact, solved.slip, solved.velocity, solved.response
             )
-            work += float(here @ (solved.time_matrix @ power))
+            known.append(solved.time_matrix.dot(power))
+        table = np.array(known)
+        change, force, slip, time, *work = table.dot(row(self.nodes, stop)).tolist()
+        _, earlier, _, before, *_ = table.dot(row(self.nodes, stop - RATE_GAP)).tolist()
         return PhaseState(
             x=x,
-            slip=float(here @ solved.slip),
+            slip=slip,
             change=start.change + change,
             velocity=start.velocity + change,
             force=force,
-            force_rate=rate,
-            work=work,
+            force_rate=(force - earlier) / (time - before),
+            work=start.work + sum(work),
         )

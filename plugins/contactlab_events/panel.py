@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
@@ -17,17 +17,23 @@ Array = NDArray[np.float64]
 NEWTON_CAP = 25
 #: Newton's method is quadratic: after a relative update this small, the error is rounding.
 LAST_UPDATE = 1e-7
+#: From this update on a panel shows whether a rough event comes within it.
+LOOK_UPDATE = 0.1
 #: Radians of the fastest oscillation that one panel may hold.
 LONGEST_SWING = 9.0
-#: A fitted length is not moved for less than this, relative; nor by more than half.
-FIT_MOVE = 1e-10
+#: A fitted length is not moved for less than this, relative; nor by more than half. What a move
+#: leaves is its square.
+FIT_MOVE, SHIFT_PART = 1e-10, 0.1
 TINY = 1e-300
 #: The square of a change beyond this is no number; a shorter panel changes less.
 LARGEST_CHANGE = 1e150
 
 
 class Solved(NamedTuple):
-    """Converged values at a panel's nodes; ``change`` is counted from the panel's start."""
+    """Converged values at a panel's nodes; ``change`` is counted from the panel's start.
+
+    ``fitted`` is the event at which the panel was made to end, if any: its nodes are rooted then.
+    """
 
     contact: ScaledContact
     response: PhaseResponse
@@ -36,7 +42,9 @@ class Solved(NamedTuple):
     velocity: Array
     force: Array
     time_matrix: Array
+    time: Array
     length: float
+    fitted: int | None
 
 
 @attrs.frozen(eq=False, slots=False)
@@ -46,12 +54,13 @@ class PanelPath:
     solved: Solved
     nodes: Nodes
     origin: float
-    rooted: bool
 
     def tau(self, x: Array) -> Array:
         """Return the panel coordinate of ``x``."""
         tau = (x - self.origin) / self.solved.length
-        return 1.0 - np.sqrt(np.maximum(0.0, 1.0 - tau)) if self.rooted else tau
+        if self.solved.fitted is None:
+            return tau
+        return 1.0 - np.sqrt(np.maximum(0.0, 1.0 - tau))
 
     @cached_property
     def _columns(self) -> Array:
@@ -123,14 +132,29 @@ def newton(
     length: float,
     inertia: float,
     guess: Array | None,
-    *,
-    fit: int | None = None,
 ) -> Solved | None:
-    """Solve a panel of given length or, with ``fit``, of the length at which that event ends it.
+    """Return a solved panel, of the given length unless a rough event comes within it.
 
-    Returns None if Newton's method does not converge or the panel is too long for its nodes.
+    A panel with a rough event is fitted: it ends at the event, and its nodes crowd there.
+
+    Parameters
+    ----------
+    phase : Phase
+    motion : ClosedFormMotion
+    nodes : Nodes
+    start : PhaseState
+    length : float
+        In x.
+    inertia : float
+    guess : ndarray, shape (nodes,), or None
+        Of the change of velocity.
+
+    Returns
+    -------
+    Solved or None
+        None if Newton's method does not converge or the panel is too long for its nodes.
     """
-    spacing = nodes.plain if fit is None else nodes.rooted
+    spacing, fitted, rough = nodes.plain, None, any(phase.rough)
     grid = _Grid.of(motion, nodes, spacing, start, length)
     change = guess
     if change is None:  # force as it was, growing as it did
@@ -154,27 +178,27 @@ def newton(
         residual = time_matrix.dot(force)
         residual *= inertia
         if last:
-            np.negative(residual, out=residual)
-            velocity = start.velocity + residual
+            change = -residual
+            velocity = start.velocity + change
             return Solved(
-                grid.contact, response, slip, residual, velocity, force, time_matrix, length
-            )
+                grid.contact, response, slip, change, velocity, force, time_matrix, grid.time,
+                length, fitted,
+            )  # fmt: skip
         residual += change
         slope = gathered if response.stiffness is None else response.stiffness
-        if (
-            step == 0
-            and slope is not None
-            and not inertia * float((slope * grid.rate * grid.rate).max()) < LONGEST_SWING**2
-        ):
-            return None
+        if step == 0 and slope is not None:
+            swing = inertia * float((slope * grid.rate * grid.rate).max())
+            if not swing < LONGEST_SWING**2:
+                return None
         delta = _update(residual, response, inertia, time_matrix, nodes)
         change = change - delta
         size = float(change.dot(change)) / count + first_size
         update = (float(delta.dot(delta)) / size) ** 0.5
         if not update < 1e6:
             return None
-        if fit is not None:
-            margin = phase.margin(fit, grid.contact, slip, start.velocity + change, response)
+        if fitted is not None:
+            slip -= time_matrix.dot(delta)
+            margin = phase.margin(fitted, grid.contact, slip, start.velocity + change, response)
             shift = _shift(margin, spacing[0], length)
             if not abs(shift) < 0.5 * length:
                 return None
@@ -182,9 +206,37 @@ def newton(
                 change -= (inertia * shift) * (force * grid.contact.time_rate * spacing[0])
                 length += shift
                 grid = _Grid.of(motion, nodes, spacing, start, length)
-                update = max(update, 1e-3 * abs(shift) / length)
+                update = max(update, SHIFT_PART * abs(shift) / length)
+        elif rough and update < LOOK_UPDATE:
+            known = grid.contact, slip, start.velocity + change, response
+            event, part = _rough_event(phase, known, nodes)
+            if part < 1.0:
+                fitted, spacing, memo = event, nodes.rooted, ()
+                change = rows(nodes, part * spacing[0]) @ change
+                length *= part
+                grid = _Grid.of(motion, nodes, spacing, start, length)
+                continue
         last = update < LAST_UPDATE or phase.linear
     return None
+
+
+def _rough_event(phase: Phase, known: Any, nodes: Nodes) -> tuple[int, float]:
+    """Return the first rough event of a panel, and its tau by linear interpolation; 1 if none."""
+    best = 0, 1.0
+    for event, rough in enumerate(phase.rough):
+        if not rough:
+            continue
+        margin = phase.margin(event, *known)
+        k = int((margin < 0.0).argmax())
+        if k and margin[k] < 0.0:
+            before, after = margin[k - 1 : k + 1].tolist()
+            left, right = nodes.points[k - 1 : k + 1].tolist()
+            best = min(best, (event, left + (right - left) * before / (before - after)), key=_tau)
+    return best
+
+
+def _tau(found: tuple[int, float]) -> float:
+    return found[1]
 
 
 def _update(

@@ -23,29 +23,27 @@ ROOT_WIDTH = 1e-15
 
 
 def first_event(nodes: Nodes, phase: Phase, solved: Solved) -> tuple[int, float] | None:
-    """Return (event, tau) of the first margin that falls below zero, or None."""
-    count = len(phase.rough)
-    if not count:
+    """Return (event, tau) of the first margin that falls below zero, or None.
+
+    An event to which the panel is fitted is not looked for.
+    """
+    events = [event for event in range(len(phase.rough)) if event != solved.fitted]
+    if not events:
         return None
-    contact, response = solved.contact, solved.response
-    table = np.array(
-        [
-            phase.margin(event, contact, solved.slip, solved.velocity, response)
-            for event in range(count)
-        ]
-    )
+    known = solved.contact, solved.slip, solved.velocity, solved.response
+    table = np.array([phase.margin(event, *known) for event in events])
     finer = table @ nodes.to_fine
     lowest = finer.min(axis=1).tolist()
     firsts, largest = table[:, 0].tolist(), np.abs(table).max(axis=1).tolist()
     best: tuple[int, float] | None = None
-    for event in range(count):
-        first = firsts[event]
-        if first > ZERO and (lowest[event] > 0.0 or first > ZERO_PART * largest[event]):
-            if lowest[event] > 0.0:
+    for place, event in enumerate(events):
+        first = firsts[place]
+        if first > ZERO and (lowest[place] > 0.0 or first > ZERO_PART * largest[place]):
+            if lowest[place] > 0.0:
                 continue
-            margin, fine, noise, begin = table[event], finer[event], 0.0, 0
+            margin, fine, noise, begin = table[place], finer[place], 0.0, 0
         else:
-            margin, noise, begin = _quotient(nodes, table[event], first, solved)
+            margin, noise, begin = _quotient(nodes, table[place], first, solved)
             fine = margin @ nodes.to_fine
         below = fine[begin:] < noise
         k = int(below.argmax())

@@ -14,19 +14,20 @@ from contactlab_fronts.profile import Front, Memo, Piece
 
 Array = NDArray[np.float64]
 
-#: Moves of Newton's method from the first guess of a front, kept between bounds: where the edge
-#: almost slipped the level is nearly stationary. Of many impacts each later call takes one move:
-#: their panels iterate by themselves. Of one impact it is exact: its panel takes Newton's method.
+#: Moves of Newton's method: from the first guess of a front, and of many impacts later on, when
+#: their panels iterate by themselves. The front of one impact is found within its panel's move.
 FIRST_MOVES, LATER_MOVES = 6, 1
-EXACT_MOVES = 60
-#: Squared length of moves that need no further look; at 1e-7 psi2 would lose 1e-8.
-EXACT_MOVE = 1e-12
+MOST_MOVES = 60
+#: Moves before a front is kept between bounds: where the edge almost slipped the level is nearly
+#: stationary, and Newton's method leaps.
+FREE_MOVES = 3
+#: Squared length of moves (in x) that need no further look: what they leave of the front is its
+#: square, and of the force the square of that.
+SMALL_MOVE = 1e-10
 #: A front may leave its piece a little while a panel reaches beyond it, in parts of the piece.
 LEEWAY, LEAST_PART = 0.2, 1e-6
-#: A root's slope below this part of its mean is rounding error at the very end of the piece.
+#: A slope of the angle below this part of its mean is rounding error at the very end of the piece.
 STEEP_PART = 0.1
-#: Part of a piece, in the guess of a front, by which an end is pushed out of the way.
-ONE_STEEP, BOTH_STEEP = 0.5, 1.0 / (1.0 + 2.0**0.5)
 TINY = 1e-300
 
 
@@ -59,11 +60,12 @@ class Laid(Piece):
         return cls(path, start, stop, began, ended, inner_q, -slip[0], q[1], -slip[1])
 
     def front(self, sign: Any, contact: ScaledContact, slip: Array, memo: Memo) -> Front:
-        """Find, by Newton's method, the phase y at which the edge was where the front is now.
+        """Return the front, by Newton's method for the phase y at which the edge was there.
 
-        There s D - zeta had its present value, the level. At an end where slip of this sign
-        stopped or begins that is flat in y, so that moves are made in the square root of its
-        distance from the nearer end; a steep end is pushed out of the way.
+        There s D - zeta had its present value, the level. It falls with y, and is stationary at an
+        end where slip of this sign stopped or begins. The angle of which it is the cosine, 0 at
+        the highest level and pi at the lowest, is linear in y at such ends; ends that are not
+        stationary are put inside this range.
         """
         level = sign * slip
         level -= contact.approach
@@ -71,42 +73,46 @@ class Laid(Piece):
         length = stop - start
         high = -(sign * self.inner_f + self.inner_q)
         low = -(sign * self.outer_f + self.outer_q)
-        drop = np.maximum(high - low, TINY)
+        drop = abs(high - low) + TINY
         turning, flat = sign == self.ended, self.flat(sign)
-        low, high = np.where(turning, low, low - drop), np.where(flat, high, high + drop)
-        lowest = start + np.where(flat, LEAST_PART, -LEEWAY) * length
-        below, above = _root(level - low), _root(high - level)
-        inside, steep = above < below, -STEEP_PART * drop**0.5 / length
+        mean = 0.5 * (high + low + drop * (1.0 * turning - flat))
+        parts = 3.0 - turning - flat
+        half = 0.5 * drop * parts
+        lowest = start + (LEAST_PART * flat - LEEWAY * (1.0 - flat)) * length
+        level -= mean
+        level /= half
+        target = np.arccos(_within(level, -1.0, 1.0))
         if memo:
-            y = np.minimum(np.maximum(memo[1], lowest), stop)
+            y = memo[1]
         else:
-            first = np.where(flat, 0.0, np.where(turning, ONE_STEEP, BOTH_STEEP))
-            last = np.where(turning, 1.0, 1.0 - np.where(flat, ONE_STEEP, BOTH_STEEP))
-            part = (above / (above + below + TINY) - first) / (last - first)
-            y = np.minimum(np.maximum(start + length * part, lowest), stop)
-        inner, outer = lowest, stop
+            first = np.arccos(1.0 - 2.0 * (1.0 - flat) / parts)
+            last = np.arccos(2.0 * (1.0 - turning) / parts - 1.0)
+            y = _within(start + (target - first) * (length / (last - first)), lowest, stop)
         many = slip.ndim > 1
-        if many:
-            moves = LATER_MOVES if memo else FIRST_MOVES
-        for _ in range(moves if many else EXACT_MOVES):
+        moves = (LATER_MOVES if memo else FIRST_MOVES) if many else MOST_MOVES
+        inner, outer = lowest, stop
+        for count in range(moves):
             old_slip, old_force, q, c, slip_rate, q_rate = self.path.fields(y)
             here = sign * old_slip
             here -= q
-            fall = sign * slip_rate - q_rate
-            under, over = _root(here - low), _root(high - here)
-            root = np.where(inside, over, under)
-            move = np.where(inside, over - above, below - under)
-            move *= 2.0 * root
-            move /= np.minimum(fall, steep * root - TINY)
-            new = y + move
-            if not (many and memo):  # the level falls with y: stay between what was seen so far
+            here -= mean
+            here /= half
+            _within(here, -1.0, 1.0)
+            slope = sign * slip_rate
+            slope -= q_rate
+            slope /= half * np.sqrt((1.0 - here) * (1.0 + here)) + TINY
+            move = np.arccos(here)
+            move -= target
+            move /= np.minimum(slope, -STEEP_PART / length)
+            move += y
+            new = _within(move, lowest, stop)
+            if count >= FREE_MOVES:
                 ahead = here > level
                 inner, outer = np.where(ahead, y, inner), np.where(ahead, outer, y)
                 outside = (new < inner) | (new > outer)
                 new = np.where(outside, 0.5 * (inner + outer), new)
-            np.minimum(np.maximum(new, lowest, out=new), stop, out=new)
             move, y = new - y, new
-            if not many and move.dot(move) < EXACT_MOVE:
+            if not many and move.dot(move) < SMALL_MOVE:
                 break
         gap = contact.radius - c
         force = slip - old_slip
@@ -126,7 +132,7 @@ class Laid(Piece):
         return float(self.stop - self.start) if sign == self.ended else None
 
 
-def _root(value: Array) -> Array:
-    """Return the square root, 0 of what is negative."""
-    np.maximum(value, 0.0, out=value)
-    return np.asarray(np.sqrt(value, out=value))
+def _within(values: Array, least: Any, most: Any) -> Array:
+    """Return ``values``, changed in place, between two bounds."""
+    np.maximum(values, least, out=values)
+    return np.minimum(values, most, out=values)

@@ -20,7 +20,7 @@ from contactlab.contracts import (
 from contactlab_fronts.gross import GrossMotion
 from contactlab_fronts.laid import Laid
 from contactlab_fronts.locked import Locked
-from contactlab_fronts.profile import Memo, Piece
+from contactlab_fronts.profile import Front, Memo, Piece
 
 Array = NDArray[np.float64]
 Profile = tuple[Piece, ...]
@@ -125,15 +125,18 @@ class EdgeSlip(FrontPhase):
             return slipping(sign, self.profile[:-1])
         if event == 2:
             return slipping(-sign, self.profile)
-        c, _ = self.division(contact, state.slip)
-        locked = Locked.between(c * c, sign, contact, state.slip, state.force)
+        front = contact.approach - max(self._front(contact, state.slip).memo[0].item(), 0.0)
+        locked = Locked.between(front, sign, contact, state.slip, state.force)
         return sticking(sign, (*self.profile, locked), state, contact)
 
     def division(self, contact: ScaledContact, slip: float) -> tuple[float, int]:
+        """Return radius of the front and sense of slip."""
+        return self._front(contact, slip).radius.item(), self.sign
+
+    def _front(self, contact: ScaledContact, slip: float) -> Front:
         """Return the front at one instant."""
         here = ScaledContact(*(np.array([value]) for value in contact))
-        front = self.profile[-1].front(self.sign, here, np.array([slip]), ())
-        return front.radius.item(), self.sign
+        return self.profile[-1].front(self.sign, here, np.array([slip]), ())
 
     def friction_power(
         self, contact: ScaledContact, slip: Array, velocity: Array, response: PhaseResponse
