@@ -90,7 +90,7 @@ class ScaledNormalLaw:
 
     def fault(self, status: Status, what: str) -> faults.LawFaultError:
         """Return the error of a law that failed."""
-        detail = faults.sentence(self.law, what, self.steps + 1, self.time)
+        detail = faults.sentence(self.law, what, max(self.steps, 1), self.time)
         return faults.LawFaultError(status, detail)
 
     def _respond(self, scaled: Array) -> tuple[NormalContact, Any]:
