@@ -253,9 +253,7 @@ def _run(simulation: Simulation, scene: Any) -> ImpactResult:
     return simulation.sweep(scene) if len(scene.shape) == 1 else simulation.run(scene)
 
 
-def _elastic(
-    where: slice, part: Encounter, contact: Contact, pair: Pair
-) -> tuple[Any, Any, Any]:
+def _elastic(where: slice, part: Encounter, contact: Contact, pair: Pair) -> tuple[Any, Any, Any]:
     """Return what becomes of elastic bodies, from ``rebound``.
 
     Slip throughout, eq. (46), is the same from psi1 = 4 chi + 1 on, so that psi1 is cut there:
@@ -290,9 +288,7 @@ def _answer_of(encounter: Encounter, result: ImpactResult, met: Any) -> Answer:
     return answer
 
 
-def _moved(
-    encounter: Encounter, answer: Answer, *, strict: bool = False, **rest: Any
-) -> Collision:
+def _moved(encounter: Encounter, answer: Answer, *, strict: bool = False, **rest: Any) -> Collision:
     """Return the collision with these answers; bodies that separate move on, or are refused."""
     shape = encounter.shape
     moved = {
@@ -351,7 +347,9 @@ def _push(moved: dict[str, Array], part: Encounter, contact: Contact, push: Any,
         inertia = body.mass * body.gyration_ratio * body.gyration_ratio * body.radius
         ahead, aside, turn = sense * push / body.mass, sense * drag / body.mass, drag / inertia
         for k, (v, w) in enumerate(zip(components(velocity), components(spin), strict=True)):
-            moved[f"{name}velocity"][:, k] = v + (ahead * contact.normal[k] + aside * contact.along[k])
+            moved[f"{name}velocity"][:, k] = v + (
+                ahead * contact.normal[k] + aside * contact.along[k]
+            )
             moved[f"{name}spin"][:, k] = w + turn * across[k]
 
 

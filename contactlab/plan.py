@@ -64,6 +64,12 @@ class Plan:
         lines += [f"caution:  {sentence}" for sentence in self.cautions]
         return "\n".join(lines)
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows: lists of what is computed, left out and doubtful."""
+        from contactlab.pages.notebook import plan_html  # only in notebooks
+
+        return plan_html(self)
+
     def to_dict(self) -> dict[str, Any]:
         """Return the sentences as plain lists, and the declared error."""
         return {

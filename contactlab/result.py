@@ -84,6 +84,12 @@ class ImpactResult:
         told = ", ".join(f"{count} {name}" if shape else name for name, count in statuses.items())
         return f"ImpactResult({found}; {told}; {laws})"
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows: answer, tables and plan of one impact; or a sweep's."""
+        from contactlab.pages.notebook import result_html  # only in notebooks
+
+        return result_html(self)
+
     @property
     def status(self) -> Any:
         """A ``Status``, or an array of them."""
@@ -174,7 +180,9 @@ class ImpactResult:
         0 for a half-space, None for a non-dimensional scene; so are the next two.
         """
         motion, pair = self.motion, self.scene.pair
-        return self._of_target(pair.normal_mass * (self.scene.normal_speed - motion.normal_velocity))
+        return self._of_target(
+            pair.normal_mass * (self.scene.normal_speed - motion.normal_velocity)
+        )
 
     @property
     def target_rebound_tangential_velocity(self) -> Real | None:

@@ -8,10 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import attrs
-import numpy as np
 
 from contactlab import composition
-from contactlab.cautions import vectors
 from contactlab.checks import refuse
 from contactlab.composition import Laws
 from contactlab.contracts.integrator import Integrator
@@ -22,7 +20,7 @@ from contactlab.error_estimate import estimated
 from contactlab.history import Recorder
 from contactlab.motion import Motion
 from contactlab.outcome import normal_or_failed, outcome, prepare
-from contactlab.plan import Plan, Sentence
+from contactlab.plan import Plan
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.signatures import named_arguments

@@ -19,9 +19,10 @@ import attrs
 from contactlab.analysis.bench_methods import methods
 from contactlab.analysis.work_precision import Benchmark, Row, bench
 from contactlab.cli import arguments as shared
-from contactlab.cli.table import table, time
+from contactlab.cli.table import table
 from contactlab.files import write_table
 from contactlab.plain import plain
+from contactlab.reading import time
 
 #: Why a report may not be complete.
 BUDGET = "the budget ran out"

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 #: A new subcommand is a module of this package and its name here.
 COMMANDS = (
     "run", "sweep", "compare", "fit", "bench", "stability", "validate", "figures", "animate",
-    "explore", "materials", "plugins", "guide",
+    "explore", "report", "cite", "materials", "plugins", "guide",
 )  # fmt: skip
 
 EPILOG = """examples:

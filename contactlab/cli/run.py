@@ -23,7 +23,7 @@ import numpy as np
 
 from contactlab import export
 from contactlab.cli import arguments as shared
-from contactlab.cli.report import describe
+from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, given
 from contactlab.collision import Collision
 from contactlab.export import WRITERS

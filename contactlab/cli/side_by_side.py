@@ -8,9 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from contactlab.analysis.compare import Agreement, Comparison
-from contactlab.cli.table import number, table, time
+from contactlab.cli.table import table
 from contactlab.export import COMPARISON_TABLE
 from contactlab.quantities import QUANTITIES
+from contactlab.reading import number, time
 from contactlab.scene_file import SceneFile
 from contactlab.scene_file.entries import entry_unit
 

@@ -7,28 +7,10 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
+from contactlab.reading import number
 
 #: Columns of a terminal that a table keeps to, if it can, and the least for a text.
 WIDTH, LEAST_TEXT = 100, 30
-
-
-def number(value: Any, *, digits: int = 6) -> str:
-    """Return a number for reading: ``digits`` significant, a dash where undefined."""
-    if value is None or (isinstance(value, float | np.floating) and np.isnan(value)):
-        return "-"
-    if isinstance(value, float | np.floating):
-        text = f"{float(value):.{digits}g}"
-        return "0" if text == "-0" else text
-    return str(value)
-
-
-def time(seconds: float) -> str:
-    """Return a time with a unit that suits it."""
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
-        if seconds >= size:
-            return f"{seconds / size:.3g} {unit}"
-    return f"{seconds / 1e-9:.3g} ns"
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[Any]], *, digits: int = 6) -> str:

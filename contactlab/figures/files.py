@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -53,15 +54,40 @@ def save(
         Of a page or of a screen: see ``contactlab.figures.style``.
     """
     with styled(look):
-        scale = sum(heights) / max(heights)
-        width = WIDTH * (0.85 * columns if columns > 1 else 1.6 if wide else 1.0)
-        figure = Figure(figsize=(width, HEIGHT * scale * (1.25 if wide else 1.0)))
-        FigureCanvasAgg(figure)
-        axes = figure.subplots(
-            rows, columns, sharex="col", gridspec_kw={"height_ratios": heights}, squeeze=False
-        )
-        draw(axes[0, 0] if rows == columns == 1 else axes)
+        figure = _drawn(draw, rows=rows, columns=columns, heights=heights, wide=wide)
         save_figure(figure, path)
+
+
+def as_svg(
+    draw: Callable[[Any], object], *, rows: int = 1, heights: tuple[float, ...] = (1.0,)
+) -> str:
+    """Return a picture as SVG that can stand within a page; arguments are those of ``save``."""
+    text = io.StringIO()
+    with styled(), mpl.rc_context({"svg.hashsalt": "contactlab"}):
+        figure = _drawn(draw, rows=rows, columns=1, heights=heights, wide=False)
+        figure.savefig(text, format="svg", metadata=METADATA["svg"])
+    content = text.getvalue()
+    return content[content.index("<svg") :]
+
+
+def _drawn(
+    draw: Callable[[Any], object],
+    *,
+    rows: int,
+    columns: int,
+    heights: tuple[float, ...],
+    wide: bool,
+) -> Figure:
+    """Return a figure that is drawn; arguments are those of ``save``."""
+    scale = sum(heights) / max(heights)
+    width = WIDTH * (0.85 * columns if columns > 1 else 1.6 if wide else 1.0)
+    figure = Figure(figsize=(width, HEIGHT * scale * (1.25 if wide else 1.0)))
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(
+        rows, columns, sharex="col", gridspec_kw={"height_ratios": heights}, squeeze=False
+    )
+    draw(axes[0, 0] if rows == columns == 1 else axes)
+    return figure
 
 
 def save_figure(figure: Figure, path: str | Path, **options: Any) -> None:

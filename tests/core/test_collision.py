@@ -65,8 +65,9 @@ def test_gross_slip_by_hand():
 
 def test_a_moving_half_space():
     wall = np.array([0.3, -0.2, 0.4])
-    still, moving = collide(meeting()), collide(
-        meeting(velocity=(0.8, -0.2, -0.6), target_velocity=wall)
+    still, moving = (
+        collide(meeting()),
+        collide(meeting(velocity=(0.8, -0.2, -0.6), target_velocity=wall)),
     )
     assert moving.velocity - wall == pytest.approx(still.velocity, abs=1e-9)
     assert moving.target_velocity.tolist() == wall.tolist()
@@ -151,7 +152,9 @@ def test_bodies_that_separate_pass_if_asked(laws):
 
 def test_the_default_is_that_of_the_tabulated_and_of_the_exact_law():
     rng = np.random.default_rng(4)
-    met = meeting(target=BALL, velocity=rng.normal(size=(40, 3)) + (0, 0, -5), spin=rng.normal(size=3))
+    met = meeting(
+        target=BALL, velocity=rng.normal(size=(40, 3)) + (0, 0, -5), spin=rng.normal(size=3)
+    )
     made = collide(met)
     for laws in ({"tangential": "tabulated"}, {}):
         other = collide(met, Simulation(**laws))
@@ -188,7 +191,9 @@ def test_alone_and_together_are_the_same():
 
 def test_parts_of_a_large_batch_are_the_whole(monkeypatch):
     rng = np.random.default_rng(7)
-    met = meeting(target=BALL, velocity=rng.normal(size=(6, 7, 3)) - (0, 0, 9), spin=np.ones((7, 3)))
+    met = meeting(
+        target=BALL, velocity=rng.normal(size=(6, 7, 3)) - (0, 0, 9), spin=np.ones((7, 3))
+    )
     whole = collide(met)
     monkeypatch.setattr("contactlab.encounter.TOGETHER", 5)
     parts = collide(met)

@@ -1,0 +1,63 @@
+"""Sources of laws and data: as their docstrings give them, and as BibTeX."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Iterable
+from importlib import resources
+from typing import Any
+
+#: The section of a NumPy docstring, to the next heading or the end.
+SECTION = re.compile(r"^References\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", re.MULTILINE | re.DOTALL)
+DOI = re.compile(r"10\.\d{4,9}/[^\s,;]+[^\s,;.]")
+
+
+def references(law: Any) -> list[str]:
+    """Return what the section References of a law's docstring says, an entry a source."""
+    found = SECTION.search(inspect.getdoc(type(law)) or "")
+    if found is None:
+        return []
+    entries = re.split(r"\n\n+", found[1].strip())
+    return [" ".join(entry.split()) for entry in entries]
+
+
+def bibtex(texts: Iterable[str]) -> str:
+    """Return BibTeX entries for sources in words.
+
+    A source with a DOI or a name and a year that ``contactlab/references.bib`` knows has its
+    entry from there; any other is an entry of its own with the words as a note.
+    """
+    known = _known()
+    found: dict[str, str] = {}
+    for number, text in enumerate(texts, start=1):
+        keys = [key for key, (entry, names) in known.items() if _names(text, entry, names)]
+        for key in keys:
+            found[key] = known[key][0]
+        if not keys:
+            found[f"source{number}"] = f"@misc{{source{number},\n  note = {{{text}}}\n}}"
+    return "\n\n".join(found.values())
+
+
+def _names(text: str, entry: str, names: tuple[str, str]) -> bool:
+    """Return whether a source in words is an entry: by its DOI, or by first author and year."""
+    doi = DOI.search(entry)
+    if doi is not None and doi[0] in text:
+        return True
+    author, year = names
+    return re.search(rf"\b{re.escape(author)}\b[^;]*\b{year}\b", text) is not None
+
+
+def _known() -> dict[str, tuple[str, tuple[str, str]]]:
+    """Return the entries by key, with the first author's surname and the year."""
+    text = resources.files("contactlab").joinpath("references.bib").read_text("utf-8")
+    found = {}
+    for entry in re.split(r"\n(?=@)", text.strip()):
+        key = re.match(r"@\w+\{(\w+),", entry)
+        author = re.search(r"author = \{(.*?)[,}]", entry)
+        year = re.search(r"year = \{(\d+)\}", entry)
+        assert key is not None
+        assert author is not None
+        assert year is not None
+        found[key[1]] = (entry.strip(), (author[1], year[1]))
+    return found

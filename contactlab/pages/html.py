@@ -1,0 +1,63 @@
+"""Parts of a page: headings, tables, lists. Text is escaped here and nowhere else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+from typing import Any
+
+from contactlab.plan import Plan
+from contactlab.reading import answer, closing, number, sections
+from contactlab.result import ImpactResult
+
+
+def table(headings: Sequence[str], rows: Iterable[Sequence[Any]], *, digits: int = 6) -> str:
+    """Return a table: columns of text to the left, numbers to the right."""
+    head = "".join(f"<th>{escape(str(name))}</th>" for name in headings)
+    body = "".join(f"<tr>{''.join(_cell(item, digits) for item in row)}</tr>" for row in rows)
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def pairs(entries: Iterable[tuple[str, str]]) -> str:
+    """Return names and words, a line each."""
+    lines = "".join(f"<dt>{escape(name)}</dt><dd>{escape(words)}</dd>" for name, words in entries)
+    return f"<dl>{lines}</dl>"
+
+
+def paragraph(text: str) -> str:
+    """Return a paragraph."""
+    return f"<p>{escape(text)}</p>"
+
+
+def titled(title: str, *parts: str) -> str:
+    """Return a section of a page with its heading."""
+    return f"<section><h2>{escape(title)}</h2>{''.join(parts)}</section>"
+
+
+def figure(svg: str, caption: str) -> str:
+    """Return a picture, already SVG, with a caption."""
+    return f"<figure>{svg}<figcaption>{escape(caption)}</figcaption></figure>"
+
+
+def plan(of: Plan) -> str:
+    """Return a plan as three lists: what is computed, left out, and doubtful."""
+    kinds = (("computed", of.computed), ("left out", of.left_out), ("cautions", of.cautions))
+    found = []
+    for name, sentences in kinds:
+        if sentences:
+            items = "".join(f"<li>{escape(str(sentence))}</li>" for sentence in sentences)
+            found.append(f"<h3>{name}</h3><ul>{items}</ul>")
+    return "".join(found)
+
+
+def one_impact(result: ImpactResult) -> str:
+    """Return answer, tables and status of one impact."""
+    parts = [pairs(answer(result))]
+    parts += [table(*section) for section in sections(result)]
+    return "".join([*parts, pairs(closing(result))])
+
+
+def _cell(item: Any, digits: int) -> str:
+    if isinstance(item, str):
+        return f"<td>{escape(item)}</td>"
+    return f'<td class="number">{escape(number(item, digits=digits))}</td>'

@@ -1,0 +1,149 @@
+"""One file to send: a scene, its plan, its results, the laws compared, figures and sources."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Mapping
+from html import escape
+from importlib import metadata, resources
+from string import Template
+from typing import Any
+
+import numpy as np
+
+import contactlab
+from contactlab.analysis.compare import Agreement, Comparison, compare
+from contactlab.citations import references
+from contactlab.figures.comparison import differences, forces_over_contact, laws_over_sweep
+from contactlab.figures.files import as_svg
+from contactlab.pages import html
+from contactlab.pages.drawing import scene_drawing
+from contactlab.quantities import QUANTITIES
+from contactlab.reading import closing, largest_imbalance, scene_section, sweep_section, time
+from contactlab.result import ImpactResult
+from contactlab.scene import Scene
+from contactlab.scene_file import SceneFile
+from contactlab.scene_file.entries import entry_unit
+from contactlab.simulation import Simulation
+
+#: Rows of a sweep that are printed; the rest is in the file of ``contactlab sweep --out``.
+ROWS = 25
+
+
+def report_page(
+    file: SceneFile,
+    simulations: Mapping[str, Simulation],
+    *,
+    progress: Callable[[int, int], object] | None = None,
+) -> str:
+    """Return the page of a scene file.
+
+    Parameters
+    ----------
+    file : SceneFile
+    simulations : mapping of str to Simulation
+        Name to laws: the first is that of the report, the others are compared with it.
+    progress : callable, optional
+        Called as ``progress(done, total)`` after each law.
+    """
+    comparison = compare(file, simulations, history=True, progress=progress)
+    result = comparison.runs[0].result
+    first = next(iter(simulations.values()))
+    if not result.scene.shape:
+        result = first.run(result.scene, history=True, estimate_error=True)
+    title = file.title or file.path.name
+    parts = [
+        _about(file),
+        html.titled("The scene", scene_drawing(result), *_scene(file, result.scene)),
+        html.titled("The answer", *_answer(result, file.varied)),
+        html.titled("The laws compared", *_comparison(comparison)),
+        html.titled("The plan", html.plan(result.plan)),
+        html.titled("Sources", *map(html.paragraph, _sources(file, simulations))),
+        html.titled("How this was made", html.pairs(_provenance(file, result))),
+    ]
+    page = resources.files("contactlab").joinpath("pages", "report.html").read_text("utf-8")
+    return Template(page).substitute(title=escape(title), body="\n".join(parts))
+
+
+def _about(file: SceneFile) -> str:
+    return "".join(html.paragraph(" ".join(text.split())) for text in (file.notes,) if text)
+
+
+def _scene(file: SceneFile, scene: Scene) -> list[str]:
+    """Return the scene in numbers, and what a sweep varies."""
+    found = [html.table(*scene_section(scene))]
+    if file.varied:
+        count = np.size(next(iter(file.varied.values())))
+        found.append(html.paragraph(f"A sweep of {count} impacts over {', '.join(file.varied)}."))
+    return found
+
+
+def _answer(result: ImpactResult, varied: Mapping[str, Any]) -> list[str]:
+    if not result.scene.shape:
+        return [html.one_impact(result)]
+    shown = {name: (entry_unit(name), values) for name, values in varied.items()}
+    headings, rows = sweep_section(result, shown)
+    found = [f"<div class='wide'>{html.table(headings, rows[:ROWS])}</div>"]
+    if len(rows) > ROWS:
+        found.append(html.paragraph(f"{ROWS} of {len(rows)} impacts are shown."))
+    found.append(html.paragraph(largest_imbalance(result)))
+    return [*found, html.pairs(closing(result))]
+
+
+def _comparison(comparison: Comparison) -> list[str]:
+    """Return pictures and table of the laws, and their distance from what was measured."""
+    found = []
+    if not comparison.scene.shape:
+        if any(run.result.history is not None for run in comparison.runs):
+            picture = as_svg(lambda axes: forces_over_contact(axes, comparison))
+            words = "Tangential force over the contact, inside friction's limit."
+            found.append(html.figure(picture, words))
+    elif comparison.agreements:
+        found += [_measured(comparison, agreement) for agreement in comparison.agreements]
+    else:
+        picture = as_svg(lambda axes: laws_over_sweep(axes, comparison, "psi2"))
+        found.append(html.figure(picture, "psi2 over the sweep."))
+    first = comparison.names[0]
+    rows = []
+    for run in comparison.runs:
+        apart = np.abs(comparison.difference("psi2", run.name))
+        rows.append([run.name, float(np.max(apart)), time(run.run_time_per_impact)])
+    headings = ["law", f"largest difference of psi2 from {first}", "run time an impact"]
+    found.append(html.table(headings, rows, digits=3))
+    found += [html.paragraph(f"failed: {sentence}") for sentence in comparison.failures()]
+    return found
+
+
+def _measured(comparison: Comparison, agreement: Agreement) -> str:
+    name = agreement.measured.quantity
+
+    def draw(axes: Any) -> None:
+        laws_over_sweep(axes[0, 0], comparison, name, agreement)
+        differences(axes[1, 0], comparison, name, agreement)
+        axes[0, 0].set_xlabel("")
+
+    picture = as_svg(draw, rows=2, heights=(2.4, 1.0))
+    unit = QUANTITIES[name].unit
+    rows = [[law, agreement.rms(law), agreement.largest(law)] for law in agreement.predicted]
+    table = html.table(["law", f"rms difference ({unit})", "largest"], rows, digits=3)
+    return html.figure(picture, f"{name}, measured: {agreement.measured.source}") + table
+
+
+def _sources(file: SceneFile, simulations: Mapping[str, Simulation]) -> list[str]:
+    laws = [
+        law
+        for simulation in simulations.values()
+        for law in (simulation.normal, simulation.tangential, simulation.integrator)
+    ]
+    found = [" ".join(file.citation.split())] if file.citation else []
+    return list(dict.fromkeys([*found, *(text for law in laws for text in references(law))]))
+
+
+def _provenance(file: SceneFile, result: ImpactResult) -> list[tuple[str, str]]:
+    versions = [f"{name} {metadata.version(name)}" for name in ("numpy", "scipy")]
+    return [
+        ("scene file", file.path.name),
+        ("laws", ", ".join(result.laws.values())),
+        ("contactlab", contactlab.__version__),
+        ("with", ", ".join([f"Python {platform.python_version()}", *versions])),
+    ]

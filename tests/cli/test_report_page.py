@@ -1,0 +1,78 @@
+"""``contactlab report`` and ``contactlab cite``."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from contactlab import create
+from contactlab.citations import bibtex, references
+from tests.cli.conftest import EXAMPLES
+from tests.core.test_notebook import Balanced
+
+
+@pytest.fixture
+def reported(run, tmp_path):
+    def call(*arguments):
+        page = tmp_path / "report.html"
+        ran = run("report", *arguments, "--out", page)
+        assert (ran.status, ran.out) == (0, f"{page}\n")
+        text = page.read_text("utf-8")
+        assert not re.search(r"src=|@import|<link|url\((?!#)", text)
+        return text
+
+    return call
+
+
+def test_one_impact_in_one_file(reported, ball):
+    text = reported(ball)
+    for heading in ("scene", "answer", "laws compared", "plan", "Sources", "How this was made"):
+        assert re.search(f"<h2>[^<]*{heading}</h2>", text)
+    assert text.count("<svg") == 2  # the drawing and the forces
+    assert "2 m/s" in text
+    assert "Wear 38" in text
+    assert "estimated" in text
+
+
+def test_a_measured_sweep_has_its_residuals(reported, measured):
+    text = reported(measured, "--tangential", "coulomb,frictionless")
+    assert "rms difference" in text
+    assert '<td class="number">0.1</td>' in text  # measured 0.1 beside the rigid law
+    assert "made up" in text
+
+
+def test_text_of_a_file_is_escaped(reported, tmp_path):
+    path = tmp_path / "odd.toml"
+    path.write_text(
+        "[about]\ntitle = 'a < b & $c'\n[nondimensional]\npsi1 = 1.0\nchi = 1.0\n", encoding="utf-8"
+    )
+    text = reported(path, "--tangential", "coulomb")
+    assert "<h1>a &lt; b &amp; $c</h1>" in text
+
+
+def test_every_tag_is_closed(reported, short_sweep):
+    text = reported(short_sweep, "--tangential", "coulomb")
+    reader = Balanced()
+    reader.feed(re.sub(r"<svg.*?</svg>|<meta[^>]*>|<!doctype html>", "", text, flags=re.DOTALL))
+    assert reader.open == []
+
+
+def test_cite_prints_data_and_laws(run):
+    ran = run("cite", EXAMPLES / "kharaz2001.toml", "--tangential", "springs")
+    assert ran.status == 0
+    assert re.findall(r"^@\w+\{(\w+),", ran.out, re.MULTILINE) == [
+        "kharaz2001",
+        "maw1976",
+        "jaeger1995",
+        "popov2015",
+    ]
+
+
+def test_a_source_that_is_not_known_is_kept_in_words():
+    assert "note = {Somebody, J. Odd Res. 1 (1900)}" in bibtex(["Somebody, J. Odd Res. 1 (1900)"])
+
+
+def test_a_law_without_references_has_none():
+    assert references(create("tangential.frictionless")) == []
+    assert len(references(create("normal.hertz"))) == 1
