@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import attrs
+import numpy as np
 
 from contactlab import composition
+from contactlab.cautions import vectors
 from contactlab.checks import refuse
 from contactlab.composition import Laws
 from contactlab.contracts.integrator import Integrator
@@ -20,7 +22,7 @@ from contactlab.error_estimate import estimated
 from contactlab.history import Recorder
 from contactlab.motion import Motion
 from contactlab.outcome import normal_or_failed, outcome, prepare
-from contactlab.plan import Plan
+from contactlab.plan import Plan, Sentence
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.signatures import named_arguments
@@ -189,6 +191,16 @@ class Simulation:
     ) -> tuple[Plan, Motion]:
         """Return plan and motion."""
         return outcome(self._laws, scene, history, recorder)
+
+
+def _complete(plan: Plan, scene: Scene) -> Plan:
+    """Return a plan with what can be said of its scene as a whole only, not of a chunk."""
+    cautions = vectors(scene)
+    if not cautions:
+        return plan
+    everywhere = np.ones(scene.shape, dtype=bool)
+    more = tuple(Sentence(text, everywhere) for text in cautions)
+    return attrs.evolve(plan, cautions=plan.cautions + more)
 
 
 def _scene(scene: object) -> Scene:

@@ -14,11 +14,11 @@ from contactlab.analysis.stability_references import ACTIVE, Reference, load_imp
 from contactlab.contracts import ClosedFormNormalLaw
 from contactlab.declared import LARGEST_SHARE, range_of
 from contactlab.motion import Motion, sound
-from contactlab.normal_motion import ACCURACY
 from contactlab.registry import PluginError
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.simulation import Simulation
+from contactlab.solved_motion import ACCURACY
 from contactlab.status import Status
 
 #: Outcomes. Only the last two are failures of the program.
