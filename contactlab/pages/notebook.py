@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 from typing import TYPE_CHECKING, Any
 
-import attrs
 import numpy as np
 
 from contactlab.citations import references
