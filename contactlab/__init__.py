@@ -12,7 +12,7 @@ The modules, each of which imports from those above it only:
 ``signatures``        refusals of unknown arguments
 ``batch``             trees of numbers stacked, taken apart and joined
 ``collocation``       nodes and matrices of Lobatto collocation
-``plain``             numbers as JSON takes them
+``json_values``       values as JSON takes them
 ``files``             output files that are whole or not there
 *the problem*
 ``bodies``            materials, spheres, half-spaces, pairs

@@ -46,8 +46,8 @@ def range_of(scene: Scene) -> Range:
     with np.errstate(over="ignore", under="ignore"):
         friction: Any = scene.friction_coefficient * scene.normal_speed
         # 4 chi in psi, without forming psi, which is infinite without friction.
-        grip = 2.0 * (friction * (pair.normal_mass / pair.tangential_mass))
-        return Range(friction / pair.stiffness_ratio, lesser(grip, 2.0 * speed), speed)
+        most = 2.0 * (friction * (pair.normal_mass / pair.tangential_mass))
+        return Range(friction / pair.stiffness_ratio, lesser(most, 2.0 * speed), speed)
 
 
 def psi2_range(scene: Scene) -> Any:

@@ -9,8 +9,8 @@ import numpy as np
 
 from contactlab.bodies import Pair
 from contactlab.checks import Real
+from contactlab.json_values import json_value
 from contactlab.motion import Motion
-from contactlab.plain import plain
 from contactlab.scene import Scene
 from contactlab.status import Status
 
@@ -60,7 +60,7 @@ class EnergyLedger:
     def to_dict(self) -> dict[str, Any]:
         """Return the five entries and the relative imbalance as plain numbers or lists."""
         entries = attrs.asdict(self) | {"relative_imbalance": self.relative_imbalance}
-        return {name: plain(value) for name, value in entries.items()}
+        return {name: json_value(value) for name, value in entries.items()}
 
 
 def ledger(scene: Scene, motion: Motion) -> EnergyLedger:

@@ -17,7 +17,7 @@ import numpy as np
 
 from contactlab.collision import Collision
 from contactlab.files import write_table, written
-from contactlab.plain import plain
+from contactlab.json_values import json_value
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 
@@ -63,10 +63,10 @@ COMPARISON_TABLE = (
 
 def to_dict(result: ImpactResult) -> dict[str, Any]:
     """Return everything but the history as plain numbers, lists and text."""
-    numbers = {name: plain(read(result)) for name, _, read in COLUMNS}
+    numbers = {name: json_value(read(result)) for name, _, read in COLUMNS}
     return numbers | {
-        "detail": plain(result.motion.detail),
-        "psi2_error_estimate": plain(result.psi2_error_estimate),
+        "detail": json_value(result.motion.detail),
+        "psi2_error_estimate": json_value(result.psi2_error_estimate),
         "run_time_s": result.run_time,
         "energy": result.energy.to_dict(),
         "counters": dict(result.counters),
@@ -92,7 +92,9 @@ def write_json(result: ImpactResult, path: str | Path) -> None:
     content = to_dict(result)
     if result.history is not None:
         columns = result.history.columns() | result.history.fields
-        content["history"] = {name: plain(np.asarray(column)) for name, column in columns.items()}
+        content["history"] = {
+            name: json_value(np.asarray(column)) for name, column in columns.items()
+        }
     text = json.dumps(content, indent=2, allow_nan=False) + "\n"
     with written(path) as stream:
         stream.write(text)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from contactlab.batch import share, taken
 from contactlab.checks import Real
-from contactlab.plain import plain
+from contactlab.json_values import json_value
 
 Mask = NDArray[np.bool_]
 
@@ -76,7 +76,7 @@ class Plan:
             "computed": list(map(str, self.computed)),
             "left_out": list(map(str, self.left_out)),
             "cautions": list(map(str, self.cautions)),
-            "psi2_error": plain(self.psi2_error),
+            "psi2_error": json_value(self.psi2_error),
         }
 
     def __getitem__(self, index: Any) -> Plan:

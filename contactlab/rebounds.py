@@ -90,8 +90,8 @@ def rebound(
     >>> round(rebound(1.2, 49 / 34), 6)
     -0.180519
     """
-    plain = isinstance(tolerance, float) and TABULATED < tolerance < 1.0 and not derivatives
-    if plain and isinstance(psi1, float) and isinstance(chi, float):
+    usual = isinstance(tolerance, float) and TABULATED < tolerance < 1.0 and not derivatives
+    if usual and isinstance(psi1, float) and isinstance(chi, float):
         alone = _alone(psi1, chi)
         if alone is not None:
             return alone

@@ -27,7 +27,7 @@ QUICK = ((0.5, 49 / 34), (1.2, 49 / 34), (3.0, 49 / 34), (1.2, 3.0))
 #: Ladders. A law's own resolution is the number of steps over ``STEPS_PER_PART``.
 STEPS = (25, 50, 100, 200, 400)
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
-QUICK_RUNGS = 3
+QUICK_RESOLUTIONS = 3
 STEPS_PER_PART = 4
 #: Parts under a tolerance, however coarse.
 LEAST_PARTS = 10
@@ -60,7 +60,7 @@ class Method:
             return self.tangential
         return f"{self.tangential} / {self.integrator}"
 
-    def rungs(self, *, quick: bool = False) -> list[dict[str, dict[str, Any]]]:
+    def resolutions(self, *, quick: bool = False) -> list[dict[str, dict[str, Any]]]:
         """Return options of the two laws, coarse to fine."""
         law = _law("tangential", self.tangential).resolution
         steps = None if self.whole else _law("integrator", self.integrator).resolution
@@ -70,7 +70,7 @@ class Method:
         elif law or steps:
             values = STEPS
         per_part = PAPER_STEPS_PER_PART if self.integrator == "paper" else STEPS_PER_PART
-        ladder: list[dict[str, dict[str, Any]]] = []
+        found: list[dict[str, dict[str, Any]]] = []
         for value in values:
             options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {}}
             if steps is not None:
@@ -80,13 +80,13 @@ class Method:
                 least = 2 if isinstance(value, int) else LEAST_PARTS
                 options["tangential"][law] = max(count // per_part, least)
             if _accepted(f"integrator.{self.integrator}", options["integrator"]):
-                ladder.append(options)
-        return ladder[::2][:QUICK_RUNGS] if quick and len(ladder) > 1 else ladder
+                found.append(options)
+        return found[::2][:QUICK_RESOLUTIONS] if quick and len(found) > 1 else found
 
     def simulation(
         self, options: dict[str, dict[str, Any]], *, normal: str = "hertz"
     ) -> Simulation:
-        """Return the composition at one rung."""
+        """Return the composition at one resolution."""
         return Simulation(
             normal=normal,
             tangential=REGISTRY.create(f"tangential.{self.tangential}", **options["tangential"]),

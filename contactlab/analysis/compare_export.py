@@ -9,7 +9,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from contactlab.analysis.compare import Comparison
-from contactlab.plain import plain
+from contactlab.json_values import json_value
 from contactlab.quantities import QUANTITIES
 
 CSV_HEADINGS = (
@@ -24,9 +24,9 @@ def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]
             run.name: {
                 "versions": dict(run.result.laws),
                 "run_time_per_impact_s": run.run_time_per_impact,
-                "status": plain(np.array(run.result.status, dtype=object))
+                "status": json_value(np.array(run.result.status, dtype=object))
                 if comparison.scene.shape
-                else plain(run.result.status),
+                else json_value(run.result.status),
                 "values": {name: _list(comparison.values(name, run.name)) for name in quantities},
                 "differences": {
                     name: _list(comparison.difference(name, run.name)) for name in quantities
@@ -47,8 +47,8 @@ def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]
                 "laws": {
                     law: {
                         "values": _list(values),
-                        "rms": plain(agreement.rms(law)),
-                        "largest": plain(agreement.largest(law)),
+                        "rms": json_value(agreement.rms(law)),
+                        "largest": json_value(agreement.largest(law)),
                     }
                     for law, values in agreement.predicted.items()
                 },
@@ -85,4 +85,4 @@ def _rows(*columns: Any) -> Iterator[list[Any]]:
 
 
 def _list(values: Any) -> Any:
-    return plain(np.asarray(values)) if np.ndim(values) else plain(float(values))
+    return json_value(np.asarray(values)) if np.ndim(values) else json_value(float(values))

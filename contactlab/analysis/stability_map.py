@@ -76,10 +76,10 @@ def region_cells(method: Method, *, quick: bool = False) -> list[tuple[float, fl
     if word is None:
         return []
     if word == "steps":
-        ladder: tuple[float, ...] = QUICK_STEPS if quick else STEPS
+        resolutions: tuple[float, ...] = QUICK_STEPS if quick else STEPS
     else:
-        ladder = QUICK_TOLERANCES if quick else TOLERANCES
-    return [(fine, chi) for fine in ladder for chi in (QUICK_CHIS if quick else CHIS)]
+        resolutions = QUICK_TOLERANCES if quick else TOLERANCES
+    return [(fine, chi) for fine in resolutions for chi in (QUICK_CHIS if quick else CHIS)]
 
 
 def region(

@@ -104,8 +104,8 @@ def rigid(scene: Scene, law: TangentialLaw) -> float:  # noqa: ARG001
     if scale == 0.0:
         return 0.0
     psi1 = float(scene.slip_velocity) / scale
-    grip = 0.0 if scale != unit else float(scene.chi)
-    return (float(rigid_body_rebound(psi1, grip)) - psi1) * scale
+    ratio = 0.0 if scale != unit else float(scene.chi)
+    return (float(rigid_body_rebound(psi1, ratio)) - psi1) * scale
 
 
 def continuum(scene: Scene, law: TangentialLaw) -> float | None:  # noqa: ARG001

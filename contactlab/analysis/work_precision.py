@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 #: The composition that gives the exact answers, and how exact: so that at its default
 #: tolerance it is measured too.
 EXACT, EXACT_TOLERANCE = ("fronts", "events"), 1e-12
-#: Repeats of a timed run; fewer once ``LONG`` seconds have gone into a method's rung.
+#: Repeats of a timed run; fewer once ``LONG`` seconds have gone into a method's resolution.
 REPEATS, LONG = 5, 1.0
 #: Impacts in the sweep whose cost per impact is timed, where a sweep is expected to take
 #: less than ``SWEEP_BUDGET`` seconds.
@@ -36,7 +36,7 @@ SWEEP, SWEEP_BUDGET = 500, 2.0
 SLOW, SLOW_QUICK = 0.1, 0.05
 #: Errors below this are rounding: an order is fitted above it.
 ROUNDING = 1e-11
-#: A method whose log error falls by less than this over its ladder does not converge.
+#: A method whose log error falls by less than this over its resolutions does not converge.
 LEAST_GAIN = 0.5
 
 
@@ -118,32 +118,36 @@ def bench(
     quick : bool
         Fewer scenes and resolutions.
     budget : float
-        Seconds after which no further rung is begun; ``complete`` then is False.
+        Seconds after which no further resolution is begun; ``complete`` then is False.
     progress : callable, optional
-        Called as ``progress(done, total)`` after each rung.
+        Called as ``progress(done, total)`` after each resolution.
 
     Returns
     -------
     Benchmark
-        Interrupting (Ctrl-C) keeps the rungs that are done.
+        Interrupting (Ctrl-C) keeps the resolutions that are done.
     """
     given = scenes(quick=quick)
     exact = [_exact(scene) for scene in given]
-    rungs = [(method, rung) for method in methods for rung in method.rungs(quick=quick)]
+    resolutions = [
+        (method, resolution) for method in methods for resolution in method.resolutions(quick=quick)
+    ]
     started, rows, slow = time.perf_counter(), [], set[str]()
     limit = SLOW_QUICK if quick else SLOW
     interrupted = False
     try:
-        for done, (method, rung) in enumerate(rungs, start=1):
+        for done, (method, resolution) in enumerate(resolutions, start=1):
             if time.perf_counter() - started > budget:
                 break
             rows.append(
-                _left_out(method, rung) if method.name in slow else _row(method, rung, given, exact)
+                _left_out(method, resolution)
+                if method.name in slow
+                else _row(method, resolution, given, exact)
             )
             if rows[-1].time_s > limit:
                 slow.add(method.name)
             if progress is not None:
-                progress(done, len(rungs))
+                progress(done, len(resolutions))
     except KeyboardInterrupt:
         interrupted = True
     orders = {
@@ -153,7 +157,7 @@ def bench(
     return Benchmark(
         rows=tuple(rows),
         orders=orders,
-        complete=len(rows) == len(rungs),
+        complete=len(rows) == len(resolutions),
         interrupted=interrupted,
     )
 
@@ -165,20 +169,23 @@ def _exact(scene: Scene) -> ImpactResult:
 
 
 def _row(
-    method: Method, rung: dict[str, dict[str, Any]], given: list[Scene], exact: list[ImpactResult]
+    method: Method,
+    resolution: dict[str, dict[str, Any]],
+    given: list[Scene],
+    exact: list[ImpactResult],
 ) -> Row:
     """Return error and cost of a method at one resolution.
 
     Parameters
     ----------
     method : Method
-    rung : mapping of str to mapping
+    resolution : mapping of str to mapping
         Options of tangential law and integrator, by kind: one resolution.
     given : list of Scene
     exact : list of ImpactResult
         Of the same scenes, with history.
     """
-    simulation = method.simulation(rung)
+    simulation = method.simulation(resolution)
     results = [simulation.run(scene, history=True) for scene in given]
     failed = [result for result in results if not result.status]
     good = not failed
@@ -194,7 +201,7 @@ def _row(
     least = _least_time(simulation, given) if good else np.nan
     return Row(
         method=method.name,
-        options=_words(rung),
+        options=_words(resolution),
         error_rms=float(np.sqrt(np.mean(errors**2))) if good else np.nan,
         error_worst=float(np.max(np.abs(errors))) if good else np.nan,
         force_error_rms=float(np.sqrt(np.mean(np.square(forces)))),
@@ -206,12 +213,12 @@ def _row(
     )
 
 
-def _left_out(method: Method, rung: dict[str, dict[str, Any]]) -> Row:
+def _left_out(method: Method, resolution: dict[str, dict[str, Any]]) -> Row:
     """Return the gap that a resolution leaves which would take too long."""
     nothing = dict.fromkeys(("error_rms", "error_worst", "force_error_rms", "books_worst"), np.nan)
     return Row(
         method=method.name,
-        options=_words(rung),
+        options=_words(resolution),
         **nothing,
         time_s=np.nan,
         sweep_time_s=np.nan,
@@ -220,8 +227,8 @@ def _left_out(method: Method, rung: dict[str, dict[str, Any]]) -> Row:
     )
 
 
-def _words(rung: dict[str, dict[str, Any]]) -> str:
-    options = {key: value for part in rung.values() for key, value in part.items()}
+def _words(resolution: dict[str, dict[str, Any]]) -> str:
+    options = {key: value for part in resolution.values() for key, value in part.items()}
     return ", ".join(f"{key}={value:g}" for key, value in options.items())
 
 
@@ -272,7 +279,7 @@ def _sweep_time(simulation: Simulation) -> float:
 def _order(rows: list[Row]) -> float:
     """Return the slope of rms error against the number of steps or parts, NaN if it has none.
 
-    Only rungs above rounding count; a tolerance has no order.
+    Only resolutions above rounding count; a tolerance has no order.
     """
     points = []
     for row in rows:

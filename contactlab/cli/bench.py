@@ -21,7 +21,7 @@ from contactlab.analysis.work_precision import Benchmark, Row, bench
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
 from contactlab.files import write_table
-from contactlab.plain import plain
+from contactlab.json_values import json_value
 from contactlab.reading import time
 
 #: Why a report may not be complete.
@@ -63,9 +63,10 @@ def _draw(path: Path, benchmark: Benchmark) -> None:
 
 def _content(benchmark: Benchmark) -> dict[str, object]:
     rows = [
-        {key: plain(value) for key, value in attrs.asdict(row).items()} for row in benchmark.rows
+        {key: json_value(value) for key, value in attrs.asdict(row).items()}
+        for row in benchmark.rows
     ]
-    orders = {name: plain(order) for name, order in benchmark.orders.items()}
+    orders = {name: json_value(order) for name, order in benchmark.orders.items()}
     return {"rows": rows, "orders": orders, "complete": benchmark.complete}
 
 

@@ -45,8 +45,8 @@ class Progress:
     def _line(self, done: int, total: int, elapsed: float) -> str:
         head = f"{self.what}: {100 * done // max(total, 1)} % ({done}/{total})"
         if done >= total:
-            return f"{head}, took {span(elapsed)}"
-        return f"{head}, {span(elapsed * (total - done) / done)} left" if done else head
+            return f"{head}, took {in_words(elapsed)}"
+        return f"{head}, {in_words(elapsed * (total - done) / done)} left" if done else head
 
     def _overwrite(self, text: str) -> None:
         overwrite = getattr(sys.stderr, "overwrite", None)
@@ -54,15 +54,15 @@ class Progress:
             overwrite(text)
 
 
-def progress(asked: bool | None, what: str) -> Callable[[int, int], object] | None:
+def progress(wanted: bool | None, what: str) -> Callable[[int, int], object] | None:
     """Return what shows progress on stderr, or None: by default only on a terminal."""
     terminal = sys.stderr.isatty()
-    if not (terminal if asked is None else asked):
+    if not (terminal if wanted is None else wanted):
         return None
     return Progress(what, terminal=terminal)
 
 
-def span(seconds: float) -> str:
+def in_words(seconds: float) -> str:
     """Return a time to wait for, in whole seconds, minutes or hours."""
     for unit, size in (("s", 1.0), ("min", 60.0)):
         if seconds < 90.0 * size:

@@ -27,7 +27,7 @@ from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, given
 from contactlab.collision import Collision
 from contactlab.export import WRITERS
-from contactlab.plain import plain
+from contactlab.json_values import json_value
 from contactlab.result import ImpactResult
 from contactlab.status import Status
 
@@ -114,7 +114,7 @@ def report(
         Both bodies in space, where the scene was given by vectors.
     """
     if as_json:
-        swept = {name: plain(values) for name, values in (varied or {}).items()}
+        swept = {name: json_value(values) for name, values in (varied or {}).items()}
         content = export.to_dict(result) | {"varied": swept}
         if collision is not None:
             content["collision"] = export.vectors(collision)

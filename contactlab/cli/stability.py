@@ -24,7 +24,7 @@ from contactlab.analysis.stability_outcome import RAISED, WRONG, Outcome, judge
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
 from contactlab.files import write_table
-from contactlab.plain import plain
+from contactlab.json_values import json_value
 
 #: Failures listed one by one under the table; all of them are in the CSV and the JSON.
 LISTED = 40
@@ -121,7 +121,7 @@ def _content(found: Stability) -> dict[str, object]:
 
 
 def _plain(item: Outcome | Region) -> dict[str, object]:
-    return {key: plain(value) for key, value in attrs.asdict(item, recurse=False).items()}
+    return {key: json_value(value) for key, value in attrs.asdict(item, recurse=False).items()}
 
 
 def _write_csv(path: Path, found: Stability) -> None:

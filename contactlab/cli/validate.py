@@ -21,7 +21,7 @@ from contactlab.analysis.evidence import Evidence, gather
 from contactlab.analysis.validation import Finding, judged, validate
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import WIDTH, table
-from contactlab.plain import plain
+from contactlab.json_values import json_value
 from contactlab.quantities import QUANTITIES
 
 #: Laws that a picture shows, as far as they are installed: a reader tells no more apart.
@@ -58,7 +58,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.json:
         checks = [attrs.asdict(finding) | {"ok": finding.ok} for finding in findings]
         content = {
-            "checks": [{key: plain(value) for key, value in row.items()} for row in checks],
+            "checks": [{key: json_value(value) for key, value in row.items()} for row in checks],
             "sources": [_plain(one) for one in gathered],
         }
         print(json.dumps(content, indent=2, allow_nan=False))
@@ -119,11 +119,11 @@ def _plain(evidence: Evidence) -> dict[str, Any]:
             {
                 "quantity": agreement.measured.quantity,
                 "numbers": len(agreement.measured.values),
-                "scatter": plain(evidence.scatter(agreement)),
+                "scatter": json_value(evidence.scatter(agreement)),
                 "laws": {
                     law: {
-                        "rms": plain(agreement.rms(law)),
-                        "largest": plain(agreement.largest(law)),
+                        "rms": json_value(agreement.rms(law)),
+                        "largest": json_value(agreement.largest(law)),
                     }
                     for law in evidence.laws
                 },

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from contactlab.checks import refuse
 from contactlab.fitting.measurements import Measurements
-from contactlab.plain import plain
+from contactlab.json_values import json_value
 
 Array = NDArray[np.float64]
 Interval = tuple[float, float]
@@ -108,20 +108,20 @@ class Fit:
                 name: {
                     "value": one.value,
                     "unit": one.unit,
-                    "standard_error": plain(one.standard_error),
-                    "interval_95": [plain(end) for end in one.interval],
+                    "standard_error": json_value(one.standard_error),
+                    "interval_95": [json_value(end) for end in one.interval],
                     "bootstrap_95": list(one.bootstrap) if one.bootstrap else None,
                 }
                 for name, one in self.parameters.items()
             },
-            "correlation": plain(self.correlation),
+            "correlation": json_value(self.correlation),
             "rms": self.rms,
             "largest": self.largest,
-            "aic": plain(self.aic),
-            "reduced_chi_square": plain(self.reduced_chi_square),
-            "given": {name: plain(values) for name, values in content.given.items()},
-            "measured": {name: plain(values) for name, values in content.measured.items()},
-            "predicted": {name: plain(values) for name, values in self.predicted.items()},
+            "aic": json_value(self.aic),
+            "reduced_chi_square": json_value(self.reduced_chi_square),
+            "given": {name: json_value(values) for name, values in content.given.items()},
+            "measured": {name: json_value(values) for name, values in content.measured.items()},
+            "predicted": {name: json_value(values) for name, values in self.predicted.items()},
             "notes": list(self.notes),
         }
 

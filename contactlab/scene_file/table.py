@@ -103,8 +103,8 @@ def nearest_of(name: str, known: Iterable[str]) -> str:
 
 def number_list(path: str, value: object, *, remedy: str) -> Real:
     """Return ``value`` as an array of shape (n,), or refuse it."""
-    plain = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)
-    if not plain or any(isinstance(item, bool) for item in value):  # type: ignore[attr-defined]
+    listed = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    if not listed or any(isinstance(item, bool) for item in value):  # type: ignore[attr-defined]
         raise refuse(path, value, "must be a list of numbers", remedy)
     array = real(path, value, remedy=remedy)
     if np.ndim(array) != 1:

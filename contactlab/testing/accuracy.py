@@ -70,8 +70,8 @@ def sliding_impulse_by(integrator: Any) -> None:
     """
     tried = 0
     room = FIRST_ORDER if integrator.order == 1 else BETTER
-    for pressing in ("normal.hertz", DampedHertz()):
-        for way in fitting(integrator, (Slider(), SlidingForEver()), pressing):
+    for normal_law in ("normal.hertz", DampedHertz()):
+        for way in fitting(integrator, (Slider(), SlidingForEver()), normal_law):
             for psi1 in (-40.0, 12.0):
                 given = scene(psi1, CHI)
                 normal = normal_motion(way.normal, given)

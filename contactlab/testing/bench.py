@@ -176,7 +176,7 @@ def continue_from(
         response, state = law.advance(
             state, bench.increment(now - slip, after, duration), before, after
         )
-        hold(np.all(response.settled), "The law found no answer on a plain load path.")
+        hold(np.all(response.settled), "The law found no answer on a straight load path.")
         forces.append(response.force / bench.friction_force)
         works.append(response.friction_work / (bench.friction_force * bench.slip))
         before, slip = after, now

@@ -27,10 +27,10 @@ CHI = 1.4411764706
 
 def fitting(integrator: Any, tangential: tuple[Any, ...], normal: Any) -> Iterator[Simulation]:
     """Iterate over simulations with those of the tangential laws that it can run."""
-    pressing = REGISTRY.create(normal) if isinstance(normal, str) else normal
+    normal_law = REGISTRY.create(normal) if isinstance(normal, str) else normal
     for law in tangential:
-        if composition.misfit(pressing, law, integrator) is None:
-            yield Simulation(normal=pressing, tangential=law, integrator=integrator)
+        if composition.misfit(normal_law, law, integrator) is None:
+            yield Simulation(normal=normal_law, tangential=law, integrator=integrator)
 
 
 def sound(integrator: Any) -> list[Simulation]:
@@ -92,11 +92,11 @@ def observer_changes_nothing(integrator: Any) -> None:
     """An observer sees increasing times, and having one changes no result (Integrator, 3)."""
     for way in sound(integrator):
         recorder = Recorder((), with_fields=True)
-        plain, watched = run(way, 2.0), run(way, 2.0, recorder=recorder)
+        alone, watched = run(way, 2.0), run(way, 2.0, recorder=recorder)
         for name in ENTRIES:
             hold(
-                same(getattr(plain, name), getattr(watched, name)),
-                f"Watched, the {name} is {getattr(watched, name)!r}, not {getattr(plain, name)!r}.",
+                same(getattr(alone, name), getattr(watched, name)),
+                f"Watched, the {name} is {getattr(watched, name)!r}, not {getattr(alone, name)!r}.",
             )
         times = recorder.history().time
         duration = normal_motion(way.normal, scene(2.0, CHI)).duration

@@ -29,8 +29,8 @@ def turning_points(law: Any) -> None:
         )
         loop = [(0.4 * turn, LEVEL), (turn, LEVEL), (1.4 * turn, LEVEL)]
         looped = drive(law, bench, straight(press, (turn, LEVEL), *loop, steps=STEPS)).force
-        plain = straight(press, (turn, LEVEL), (1.4 * turn, LEVEL), steps=STEPS)
-        straight_on = drive(law, bench, plain).force
+        direct = straight(press, (turn, LEVEL), (1.4 * turn, LEVEL), steps=STEPS)
+        straight_on = drive(law, bench, direct).force
         gap = float(np.max(np.abs(looped[-STEPS:] - straight_on[-STEPS:])))
         hold(
             gap <= slack(law, 1e-6),

@@ -47,17 +47,22 @@ def motion_obeys_newton(law: Any) -> None:
     phases = np.linspace(0.0, math.pi, PHASES)
     time, approach, rate, contact, impulse = motion.at(phases)
     per_time = motion.maximum_approach / given.normal_speed
-    pace, span = np.asarray(motion.scaled(phases).time_rate) * per_time, np.diff(phases)
+    time_rate, width = np.asarray(motion.scaled(phases).time_rate) * per_time, np.diff(phases)
 
     def gathered(slope: Any) -> Any:
-        return np.concatenate(([0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]) * span)))
+        return np.concatenate(([0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]) * width)))
 
     unit = 2.0 * given.normal_speed
     for name, change, slope, scale in (
-        ("rate", np.asarray(rate) - rate[0], -contact.force * pace / given.pair.normal_mass, unit),
-        ("approach", np.asarray(approach), rate * pace, motion.maximum_approach),
-        ("time", np.asarray(time), pace, motion.duration),
-        ("load impulse", impulse, contact.friction_load * pace, motion.total_load_impulse),
+        (
+            "rate",
+            np.asarray(rate) - rate[0],
+            -contact.force * time_rate / given.pair.normal_mass,
+            unit,
+        ),
+        ("approach", np.asarray(approach), rate * time_rate, motion.maximum_approach),
+        ("time", np.asarray(time), time_rate, motion.duration),
+        ("load impulse", impulse, contact.friction_load * time_rate, motion.total_load_impulse),
     ):
         gap = float(np.max(np.abs(change - gathered(slope)))) / scale
         hold(gap <= 1e-5, f"The {name} is {gap:.1e} off what its derivative adds up to.")

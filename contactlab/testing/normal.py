@@ -140,12 +140,12 @@ def contacts_non_finite(law: Any) -> None:
     given, approach, rate = strokes()
     batch = strokes(bodies=bodies(2))[0]
     depth, speed = float(approach[STEPS]), float(rate[0])
-    for place, *asked in (
+    for one, *motion in (
         (given, math.nan, speed),
         (batch, np.array([math.nan, depth]), np.array([speed, speed])),
     ):
         try:
-            contact, _ = law.respond(law.start(place), *asked)
+            contact, _ = law.respond(law.start(one), *motion)
         except (ValueError, ArithmeticError):
             continue
         force, _, overlap, load = (float(np.ravel(part)[0]) for part in contact.complete)

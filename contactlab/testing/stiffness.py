@@ -35,10 +35,10 @@ def stiffness(law: Any) -> None:
 
     In contacts as large as Hertz's, and larger: under a softer normal law.
     """
-    for pressing in (REGISTRY.create("normal.hertz"), SoftHertz()):
-        if not law.needs <= pressing.offers:
+    for normal_law in (REGISTRY.create("normal.hertz"), SoftHertz()):
+        if not law.needs <= normal_law.offers:
             continue
-        bench = Bench.along(normal_motion(pressing, scene(0.0, HEAVY)))
+        bench = Bench.along(normal_motion(normal_law, scene(0.0, HEAVY)))
         bound = float(law.stiffness(bench.scene, bench.normal)) * bench.slip / bench.friction_force
         hold(bound >= 0.0 and math.isfinite(bound), f"stiffness = {bound!r}.")
         if bound == 0.0:
@@ -49,7 +49,7 @@ def stiffness(law: Any) -> None:
             hold(
                 found <= bound * (1.0 + slack(law, 1e-6)),
                 f"dF/dD is {found / bound:.3g} times the stiffness it states, at zeta = {level} "
-                f"under {type(pressing).__name__}.",
+                f"under {type(normal_law).__name__}.",
             )
 
 

@@ -100,19 +100,19 @@ def ways(law: TangentialLaw, normal: NormalLaw | None = None) -> list[Way]:
     NotApplicableError
         If there is none under this normal law, Hertz's by default.
     """
-    pressing = REGISTRY.create("normal.hertz") if normal is None else normal
+    normal_law = REGISTRY.create("normal.hertz") if normal is None else normal
     found = []
     if isinstance(law, SteppedTangentialLaw):
-        found.append(Way(law, pressing, REGISTRY.create("integrator.symplectic", steps=STEPS)))
+        found.append(Way(law, normal_law, REGISTRY.create("integrator.symplectic", steps=STEPS)))
     if isinstance(law, PhasedTangentialLaw):
         events: Integrator = REGISTRY.create("integrator.events")
-        if isinstance(pressing, events.normal_contract):
-            found.append(Way(law, pressing, events))
+        if isinstance(normal_law, events.normal_contract):
+            found.append(Way(law, normal_law, events))
     if isinstance(law, WholeImpactTangentialLaw):
-        found.append(Way(law, pressing, None))
-    if not law.needs <= pressing.offers:
+        found.append(Way(law, normal_law, None))
+    if not law.needs <= normal_law.offers:
         found = []
-    apply_if(found, f"There is no way to run it under {type(pressing).__name__}.")
+    apply_if(found, f"There is no way to run it under {type(normal_law).__name__}.")
     return found
 
 

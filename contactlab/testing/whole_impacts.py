@@ -44,9 +44,9 @@ class Known(NamedTuple):
         return f"psi1 = {self.psi1}, chi = {self.chi:.3g}, {self.answer.reason!r}"
 
 
-def known(law: TangentialLaw, pressing: NormalLaw | None = None) -> Iterator[Known]:
+def known(law: TangentialLaw, normal_law: NormalLaw | None = None) -> Iterator[Known]:
     """Iterate over the impacts that the law answers as wholes."""
-    normal_law = REGISTRY.create("normal.hertz") if pressing is None else pressing
+    normal_law = normal_law or REGISTRY.create("normal.hertz")
     for chi, psi1 in itertools.product(CHI, ANGLES):
         given = scene(psi1, chi)
         normal = normal_motion(normal_law, given)
@@ -157,14 +157,14 @@ def sliding_impulse(law: Any) -> None:
     the law knows of whole impacts.
     """
     tried = 0
-    for pressing in (REGISTRY.create("normal.hertz"), DampedHertz()):
+    for normal_law in (REGISTRY.create("normal.hertz"), DampedHertz()):
         try:
-            marches = ways(law, pressing)
+            marches = ways(law, normal_law)
         except NotApplicableError:
             continue
         for chi in CHI:
             given = scene(GRAZING * 4.0 * chi, chi)
-            normal = normal_motion(pressing, given)
+            normal = normal_motion(normal_law, given)
             bounce = 1.0 - float(normal.final_rate) / float(given.normal_speed)
             taken = -2.0 * chi * bounce
             for way in marches:
@@ -174,7 +174,7 @@ def sliding_impulse(law: Any) -> None:
                 room = slack(law, 0.0) + (1e-6 if way.exact else INTEGRATION)
                 hold(
                     off <= room,
-                    f"A grazing impact under {type(pressing).__name__}, chi = {chi:.3g}, is "
+                    f"A grazing impact under {type(normal_law).__name__}, chi = {chi:.3g}, is "
                     f"{off:.2g} off mu (1 + e) v1 M_n/M_t ({way}).",
                 )
             for _, answer in answers(given, normal, law, history=False):
@@ -182,7 +182,7 @@ def sliding_impulse(law: Any) -> None:
                 off = abs(float(given.psi(change)) / taken - 1.0)
                 hold(
                     off <= 1e-6,
-                    f"A grazing impact under {type(pressing).__name__}, chi = {chi:.3g}, is "
+                    f"A grazing impact under {type(normal_law).__name__}, chi = {chi:.3g}, is "
                     f"{off:.2g} off mu (1 + e) v1 M_n/M_t ({answer.reason}).",
                 )
     apply_if(tried, "There is no way to run it.")

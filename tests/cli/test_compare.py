@@ -109,7 +109,7 @@ def test_a_dollar_in_a_label_begins_no_formula(run, measured, tmp_path):
         (("--tangential", ","), "at least one"),
         (("--tangential", "coulomb,coulomb"), "twice"),
         (("--quantity", "psi3", *BOTH), "did you mean 'psi2'"),
-        (("--figure", "figure.pdf"), ".png"),
+        (("--figure", "figure.bmp"), ".png"),
         (("--json", "--csv"), "not allowed"),
         (("--set", "annuli=3", *BOTH), "tangential.annuli = 50"),
     ],

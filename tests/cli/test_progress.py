@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from contactlab.cli import progress as module
-from contactlab.cli.progress import progress, span
+from contactlab.cli.progress import in_words, progress
 from contactlab.cli.terminal import fitted
 
 
@@ -78,6 +78,6 @@ def test_elsewhere_a_line_now_and_then_and_only_when_asked(work):
 
 
 def test_times():
-    assert [span(seconds) for seconds in (0.2, 89.0, 600.0, 7200.0)] == [
+    assert [in_words(seconds) for seconds in (0.2, 89.0, 600.0, 7200.0)] == [
         "0 s", "89 s", "10 min", "2.0 h",
     ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Numbers as JSON takes them."""
+"""Values as JSON takes them."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 from contactlab.status import Status
 
 
-def plain(value: Any) -> Any:
+def json_value(value: Any) -> Any:
     """Return ``value`` as JSON takes it: floats, lists, None for what is undefined."""
     if isinstance(value, Status):
         return value.name
     if isinstance(value, np.ndarray):
-        return [plain(item) for item in value.tolist()]
+        return [json_value(item) for item in value.tolist()]
     if isinstance(value, float | np.floating):
         return float(value) if np.isfinite(value) else None
     return value
