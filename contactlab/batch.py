@@ -16,7 +16,7 @@ import numpy as np
 
 
 def locked(value: Any) -> Any:
-    """Return ``value``, read-only if it is an array: what leaves the core is nobody's to change."""
+    """Return ``value``, made read-only if it is an array, as whatever leaves the core is."""
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
     return value
@@ -64,7 +64,7 @@ def taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
 
 
 def merged(parts: Sequence[tuple[Any, Any]], shape: tuple[int, ...], kind: Any = float) -> Any:
-    """Return an array of ``shape`` from (mask, values) pairs; of several the last has the word."""
+    """Return an array of ``shape`` from (mask, values) pairs; later pairs overwrite earlier."""
     entry = np.empty(shape, dtype=kind)
     for where, values in parts:
         entry[where] = np.ravel(np.asarray(values, dtype=kind)) if np.ndim(values) else values

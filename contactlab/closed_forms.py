@@ -29,7 +29,7 @@ class HertzScales(NamedTuple):
 def size_ratio(
     normal_mass: Real, effective_modulus: Real, radius: Real, normal_speed: Real
 ) -> Real:
-    """C of eq. (9), general pair: C⁵ = 15 M v1² / (16 E* R³).
+    """Return C of eq. (9), general pair: C⁵ = 15 M v1² / (16 E* R³).
 
     Each factor is raised to its power on its own, so that v1² and R³ neither underflow
     nor overflow.
@@ -77,7 +77,7 @@ def hertz_stiffness(scene: Scene) -> Real:
 
 
 def slips_throughout_elastic(psi1: Real, chi: Real) -> Mask:
-    """Whether an elastic impact slips from start to end, eqs (44) and (46).
+    """Return whether an elastic impact slips from start to end, eqs (44) and (46).
 
     ``|psi1| >= max(1, 4 chi - 1)``. For chi < 1/2 eq. (46) alone is not enough:
     below ``|psi1| = 1`` the contact sticks from the start (44).
@@ -86,6 +86,6 @@ def slips_throughout_elastic(psi1: Real, chi: Real) -> Mask:
 
 
 def rigid_body_rebound(psi1: Real, chi: Real, restitution: Real = 1.0) -> Real:
-    """psi2 of the rigid-body theory (paper §4.3): slip until rolling, then rolling to the end."""
+    """Return psi2 of the rigid-body theory (paper §4.3): slip until rolling, then rolling."""
     reduced = np.maximum(np.abs(psi1) - 2.0 * chi * (1.0 + restitution), 0.0)
     return np.copysign(reduced, psi1)

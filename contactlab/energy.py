@@ -17,8 +17,6 @@ from contactlab.status import Status
 #: e beyond this is energy from nothing, and not the error of a scheme: the fewest steps
 #: that an explicit one takes leave e - 1 = 3e-3.
 LARGEST_RESTITUTION = 1.02
-
-
 #: Slip faster at the end than this many times the slip at the start is energy from nothing too:
 #: the capped spring of discrete-element codes, which makes some by its nature, stays below.
 LARGEST_SLIP = 1.1

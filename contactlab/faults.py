@@ -1,4 +1,4 @@
-"""What to say of a law that fails in the middle of a run, and how to know that it did.
+"""Faults of laws in the middle of a run: how they are found, and what is said of them.
 
 For integrators: nothing here is called in a step that goes well, but for ``malformed``, and
 that only where an answer is not a plain float.
@@ -26,7 +26,7 @@ class LawFaultError(Exception):
 
 @contextmanager
 def blaming(law: Law) -> Iterator[None]:
-    """Say of what is raised within that it was ``law``; nothing but Ctrl-C gets past.
+    """Turn whatever is raised within, but Ctrl-C, into a fault of ``law``.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def sentence(law: Law, what: str, step: int, time: Any = None) -> str:
 
 
 def raised(error: BaseException) -> str:
-    """Say what was raised and where."""
+    """Return what was raised, and where, as a sentence."""
     import traceback  # only where there is something to tell
 
     where = traceback.extract_tb(error.__traceback__)[-1]

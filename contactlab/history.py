@@ -1,4 +1,4 @@
-"""The course of an impact: recorded only when asked for."""
+"""The history of an impact: recorded only when asked for."""
 
 from __future__ import annotations
 
@@ -112,9 +112,9 @@ class Recorder:
 
 
 def show(normal: NormalMotion, known: Sequence[Answer], observer: Observer) -> None:
-    """Call ``observer`` along the course of impacts that are answered as wholes.
+    """Call ``observer`` at instants of impacts that have whole-impact answers.
 
-    NaN stands for the tangential course of an answer that has none.
+    NaN stands for slip velocity and force where an answer has no ``course``.
     """
     scene = normal.scene
     for phase in np.linspace(0.0, np.pi, INSTANTS).tolist():

@@ -77,7 +77,20 @@ class _Instant(NamedTuple):
 
 
 class _Solver:
-    """One normal motion under way; of a batch all impacts take the same steps, scaled."""
+    """The solution of one normal motion, step by step; all impacts of a batch take the same steps.
+
+    Attributes
+    ----------
+    law : ScaledNormalLaw
+    begun : array of bool, shape (items,)
+        Impacts that have been in contact: only those can end it.
+    ends : array, shape (items,)
+        Time of separation, scaled.
+    load_impulse : array, shape (items,)
+        So far, in N s.
+    turns : array, shape (items,)
+        Changes of sign of the rate so far.
+    """
 
     def __init__(self, law: NormalLaw, scene: Scene) -> None:
         self.law = ScaledNormalLaw(law, scene)

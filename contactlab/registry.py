@@ -1,4 +1,4 @@
-"""Finds laws by name among the installed distributions and makes them, one at a time."""
+"""The registry of laws: found by name among the installed distributions, and made one at a time."""
 
 from __future__ import annotations
 
@@ -55,14 +55,13 @@ class PluginInfo:
 class Registry:
     """The laws installed in this environment.
 
-    Entry points of the group ``contactlab`` are read when asked for; a module is
-    imported only when one of its laws is made, so that a broken plug-in is in
-    nobody's way but its own.
+    Entry points of the group ``contactlab`` are read when they are needed first; a module is
+    imported only when one of its laws is made, so that a broken plug-in stops no other.
     """
 
     def __init__(self) -> None:
         self._loaded: dict[str, tuple[type[Law], PluginInfo]] = {}
-        self._remarked: set[str] = set()
+        self._warned: set[str] = set()
         self._found: set[tuple[str, str, str, str]] = set()
         self._stamp: object = None
         self._origins: WeakKeyDictionary[type[Law], PluginInfo | None] = WeakKeyDictionary()
@@ -88,14 +87,14 @@ class Registry:
             PluginInfo(name, distribution, version, module, name in blocked)
             for name, distribution, version, module in self._found
         }
-        self._remark({info.name for info in infos})
+        self._warn_of_unknown({info.name for info in infos})
         return sorted(infos, key=lambda info: (_rank(info.kind), info.name, info.distribution))
 
-    def _remark(self, known: set[str]) -> None:
-        """Warn of each name that is blocked and not installed: a slip of the pen blocks nothing."""
+    def _warn_of_unknown(self, known: set[str]) -> None:
+        """Warn once of each name that is blocked and not installed: misspelt, it blocks nothing."""
         others = {name for name in blocked_names() if name.startswith(OTHER_GROUPS)}
-        unknown = blocked_names() - known - others - self._remarked
-        self._remarked |= unknown
+        unknown = blocked_names() - known - others - self._warned
+        self._warned |= unknown
         for name in sorted(unknown):
             hint = nearest(name, known).strip()
             text = f"{BLOCK_VARIABLE} names {name!r}, which is not installed; {hint}"
@@ -182,21 +181,21 @@ class Registry:
 
     def describe(self, law: Law) -> str:
         """Return a law's name and version: of its distribution, or its class if unregistered."""
-        kind = type(law)
-        if kind not in self._origins:
-            self._origins[kind] = self._origin(kind)
-        info = self._origins[kind]
+        law_class = type(law)
+        if law_class not in self._origins:
+            self._origins[law_class] = self._origin(law_class)
+        info = self._origins[law_class]
         if info is None:
-            return f"{kind.__module__}.{kind.__qualname__} (not registered)"
+            return f"{law_class.__module__}.{law_class.__qualname__} (not registered)"
         return f"{info.name.partition('.')[2]} ({info.distribution} {info.version})"
 
-    def _origin(self, kind: type[Law]) -> PluginInfo | None:
+    def _origin(self, law_class: type[Law]) -> PluginInfo | None:
         """Return the plug-in that offers this class, asked for by name or not, if any does."""
         for name, module in self._modules:
-            if f"{kind.__module__}.".startswith(f"{module}."):
+            if f"{law_class.__module__}.".startswith(f"{module}."):
                 with contextlib.suppress(ValueError, PluginError):
                     self.law_class(name)
-        return next((info for known, info in self._loaded.values() if known is kind), None)
+        return next((info for known, info in self._loaded.values() if known is law_class), None)
 
     def _load(self, info: PluginInfo) -> type[Law]:
         source = f"{info.name!r} of {info.distribution} {info.version}"

@@ -66,8 +66,8 @@ class Simulation:
         self.__attrs_init__(**laws._asdict())
 
     def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
-        """Say what ``run`` would compute for ``scene``, what it leaves out and why."""
-        return _complete(prepare(self._laws, _scene(scene), _asked(history)).plan, scene)
+        """Return what ``run`` would compute for ``scene``, what it would leave out and why."""
+        return _complete(prepare(self._laws, _scene(scene), _history(history)).plan, scene)
 
     def run(
         self, scene: Scene, *, history: bool | str = False, estimate_error: bool = False
@@ -97,7 +97,7 @@ class Simulation:
         """
         started = time.perf_counter()
         recorder = Recorder(_scene(scene).shape, with_fields=history == "fields")
-        plan, motion = self._outcome(scene, _asked(history), recorder if history else None)
+        plan, motion = self._outcome(scene, _history(history), recorder if history else None)
         result = ImpactResult(
             scene=scene,
             plan=_complete(plan, scene),
@@ -179,7 +179,7 @@ class Simulation:
         )
 
     def normal_motion(self, scene: Scene) -> NormalMotion:
-        """Return the normal motion of ``scene``; a law that fails gives one without an end."""
+        """Return the normal motion of ``scene``; of a law that fails, NaN throughout."""
         return normal_or_failed(self._laws, scene)
 
     @property
@@ -189,7 +189,7 @@ class Simulation:
     def _outcome(
         self, scene: Scene, history: bool | str, recorder: Recorder | None
     ) -> tuple[Plan, Motion]:
-        """Return plan and motion."""
+        """Return plan and motion; ``recorder`` keeps the history."""
         return outcome(self._laws, scene, history, recorder)
 
 
@@ -204,12 +204,14 @@ def _complete(plan: Plan, scene: Scene) -> Plan:
 
 
 def _scene(scene: object) -> Scene:
+    """Return ``scene``, or refuse what is none."""
     if not isinstance(scene, Scene):
         raise refuse("scene", scene, "must be a Scene", "make one: Scene(...)")
     return scene
 
 
-def _asked(history: bool | str) -> bool | str:
+def _history(history: bool | str) -> bool | str:
+    """Return ``history``, or refuse what is none of its three values."""
     if history in (True, False, "fields"):
         return history
     raise refuse("history", history, "must be True, False or 'fields'")

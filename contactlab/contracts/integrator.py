@@ -93,9 +93,9 @@ class TangentialMotion:
 
     @classmethod
     def merged(cls, parts: Sequence[tuple[Any, Self]], shape: tuple[int, ...]) -> Self:
-        """Return one motion of ``shape`` from motions of those impacts that a mask says of each.
+        """Return one motion of ``shape`` from pairs of a mask and the motion of its impacts.
 
-        Of an impact in several parts the last has the word.
+        An impact in several parts has the motion of the last.
         """
         counters: Counter[str] = Counter()
         for _, motion in parts:
@@ -119,7 +119,7 @@ class TangentialMotion:
         )
 
     def failing(self, where: Mask, status: Status, detail: Any) -> Self:
-        """Return this motion with ``status`` and ``detail`` on those successes ``where`` says.
+        """Return this motion with ``status`` and ``detail`` on the successes that ``where`` marks.
 
         ``detail`` is a sentence, or an array of one for each impact.
         """
@@ -142,7 +142,7 @@ def _numbers(kind: Any) -> tuple[str, ...]:
 
 
 class Integrator(Law):
-    """Follows the tangential motion along a normal motion that is given.
+    """An integrator of the tangential motion along a normal motion that is given.
 
     Contract
     --------

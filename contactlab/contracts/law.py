@@ -1,4 +1,4 @@
-"""What every plug-in object has in common: a kind, needs, offers, and an interface version."""
+"""The base of every law: its kind, needs, offers, and the version of its contract."""
 
 from __future__ import annotations
 

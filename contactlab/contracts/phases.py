@@ -1,7 +1,7 @@
 """The contract of a tangential law that is smooth in pieces, for integrators that locate events.
 
 Such a law is a sequence of phases (stuck, edge slip, gross slip, ...). The integrator knows
-inertia, the normal motion and collocation; the law knows traction; they meet here only.
+inertia, the normal motion and collocation; the law knows traction. Neither knows the other's part.
 
 All quantities are scaled, theory §1, so that a law reads like the paper and a change of units
 changes no digit. The normal motion is a ``ScaledContact``; besides it:
@@ -32,7 +32,7 @@ Array = NDArray[np.float64]
 
 
 class PhaseState(NamedTuple):
-    """Where the tangential motion stands at one x.
+    """The state of the tangential motion at one x.
 
     ``change`` is the velocity gained since first touch, apart from the velocity, which may be
     so large that it would swallow it; ``force_rate`` is d(force)/dT and serves guesses only.
@@ -69,7 +69,7 @@ class PhaseResponse(NamedTuple):
 
 
 class Path(Protocol):
-    """What a law may ask of a stretch just finished, and may keep in its history."""
+    """The motion in a stretch just finished, which a law may ask for and may keep."""
 
     def fields(self, x: Array) -> Array:
         """Return rows slip, force, approach, radius, d(slip)/dx, d(approach)/dx at each x."""

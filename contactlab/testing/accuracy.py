@@ -12,7 +12,7 @@ from contactlab.normal_motion import normal_motion
 from contactlab.simulation import Simulation
 from contactlab.testing.bench import scene
 from contactlab.testing.check import apply_if, check, hold
-from contactlab.testing.integrators import CHI, fitting, follow, run
+from contactlab.testing.integrators import CHI, fitting, marched, marched_impact
 from contactlab.testing.laws import DampedHertz, PressedSpring, Slider, SlidingForEver, Yielding
 
 #: Numbers of steps over which the order is regressed.
@@ -28,12 +28,16 @@ BOOKS = 0.03
 def order(integrator: Any) -> None:
     """The error falls with the steps as the declared order says, for a smooth law (4)."""
     apply_if(integrator.order and integrator.resolution, "It declares no order.")
-    for way in fitting(integrator, (PressedSpring(),), "normal.hertz"):
-        exact = _exact(way, 2.0)
+    for simulation in fitting(integrator, (PressedSpring(),), "normal.hertz"):
+        exact = _exact(simulation, 2.0)
         errors = []
         for steps in LADDER:
             finer = attrs.evolve(integrator, **{integrator.resolution: steps})
-            errors.append(abs(run(_with(way, finer), 2.0).slip_velocity_change / exact - 1.0))
+            errors.append(
+                abs(
+                    marched_impact(_with(simulation, finer), 2.0).slip_velocity_change / exact - 1.0
+                )
+            )
         found = -float(np.polyfit(np.log(LADDER), np.log(errors), 1)[0])
         hold(
             found >= integrator.order - ORDER_ROOM,
@@ -44,17 +48,19 @@ def order(integrator: Any) -> None:
 @check(Integrator)
 def finer_is_better(integrator: Any) -> None:
     """The resolution makes answers finer, and the accuracy stated is kept (Law, 4)."""
-    for way in fitting(integrator, (PressedSpring(), SlidingForEver()), "normal.hertz"):
-        exact = _exact(way, 7.0)
+    for simulation in fitting(integrator, (PressedSpring(), SlidingForEver()), "normal.hertz"):
+        exact = _exact(simulation, 7.0)
         unit = abs(scene(7.0, CHI).slip_velocity)
-        off = abs(run(way, 7.0).slip_velocity_change - exact) / unit
+        off = abs(marched_impact(simulation, 7.0).slip_velocity_change - exact) / unit
         hold(off <= (integrator.accuracy or 0.05), f"psi2 is {off:.1e} off the exact solution.")
         if integrator.resolution is None or integrator.accuracy is not None:
             continue
         value = getattr(integrator, integrator.resolution)
         better = 4 * value if isinstance(value, int) else value / 16.0
         finer = attrs.evolve(integrator, **{integrator.resolution: better})
-        left = abs(run(_with(way, finer), 7.0).slip_velocity_change - exact) / unit
+        left = (
+            abs(marched_impact(_with(simulation, finer), 7.0).slip_velocity_change - exact) / unit
+        )
         hold(
             left <= max(0.6 * off, 1e-12),
             f"Made finer, the error goes from {off:.1e} to {left:.1e}.",
@@ -71,18 +77,20 @@ def sliding_impulse_by(integrator: Any) -> None:
     tried = 0
     room = FIRST_ORDER if integrator.order == 1 else BETTER
     for normal_law in ("normal.hertz", DampedHertz()):
-        for way in fitting(integrator, (Slider(), SlidingForEver()), normal_law):
+        for simulation in fitting(integrator, (Slider(), SlidingForEver()), normal_law):
             for psi1 in (-40.0, 12.0):
                 given = scene(psi1, CHI)
-                normal = normal_motion(way.normal, given)
+                normal = normal_motion(simulation.normal, given)
                 bounce = 1.0 - float(normal.final_rate) / float(np.asarray(given.normal_speed))
                 exact = -np.sign(psi1) * 2.0 * CHI * bounce
                 tried += 1
-                off = abs(given.psi(run(way, psi1).slip_velocity_change) / exact - 1.0)
+                off = abs(
+                    given.psi(marched_impact(simulation, psi1).slip_velocity_change) / exact - 1.0
+                )
                 hold(
                     off <= room,
                     f"The impulse of sliding is {off:.2g} off mu (1 + e) v1 M_n under "
-                    f"{type(way.normal).__name__}.",
+                    f"{type(simulation.normal).__name__}.",
                 )
     apply_if(tried, "It runs neither of the sliding laws of the kit.")
 
@@ -93,16 +101,16 @@ def books_by(integrator: Any) -> None:
 
     Where steps can be made finer the imbalance falls.
     """
-    ways = list(fitting(integrator, (Yielding(), SlidingForEver()), "normal.hertz"))
-    apply_if(ways, "It runs neither of the laws of the kit whose books close.")
-    for way in ways:
+    simulations = list(fitting(integrator, (Yielding(), SlidingForEver()), "normal.hertz"))
+    apply_if(simulations, "It runs neither of the laws of the kit whose books close.")
+    for simulation in simulations:
         for psi1 in (0.5, 1.2, 2.0, 8.0):
-            off = _imbalance(way, psi1)
+            off = _imbalance(simulation, psi1)
             hold(off <= BOOKS, f"psi1 = {psi1}: {off:.1%} of the energy is in no book.")
         if isinstance(getattr(integrator, integrator.resolution or "", None), int):
-            worst = max(_imbalance(way, psi1) for psi1 in (0.5, 1.2, 2.0))
+            worst = max(_imbalance(simulation, psi1) for psi1 in (0.5, 1.2, 2.0))
             many = {integrator.resolution: 8 * getattr(integrator, integrator.resolution)}
-            finer = _with(way, attrs.evolve(integrator, **many))
+            finer = _with(simulation, attrs.evolve(integrator, **many))
             left = max(_imbalance(finer, psi1) for psi1 in (0.5, 1.2, 2.0))
             hold(
                 left <= max(0.5 * worst, 1e-9),
@@ -111,24 +119,26 @@ def books_by(integrator: Any) -> None:
             )
 
 
-def _imbalance(way: Simulation, psi1: float) -> float:
+def _imbalance(simulation: Simulation, psi1: float) -> float:
     """Return what is in no book, over the energy of psi1, or of 1."""
     given: Any = scene(psi1, CHI)
-    motion = follow(way, given)
+    motion = marched(simulation, given)
     change, unit = given.psi(motion.slip_velocity_change), given.pair.tangential_mass
     work = motion.friction_work * given.psi_scale**2 / unit
     return float(abs(change * (psi1 + 0.5 * change) + work) / (0.5 * max(psi1, 1.0) ** 2))
 
 
-def _exact(way: Simulation, psi1: float) -> Any:
+def _exact(simulation: Simulation, psi1: float) -> Any:
     """Return the exact change of slip velocity."""
     given: Any = scene(psi1, CHI)
-    if not isinstance(way.tangential, PressedSpring):
+    if not isinstance(simulation.tangential, PressedSpring):
         return -4.0 * CHI / given.psi_scale  # eq. (45)
-    assert isinstance(way.normal, ClosedFormNormalLaw)
-    motion = way.normal.motion(given)
+    assert isinstance(simulation.normal, ClosedFormNormalLaw)
+    motion = simulation.normal.motion(given)
     return given.slip_velocity * (PressedSpring.rebound(motion) - 1.0)
 
 
-def _with(way: Simulation, integrator: Integrator) -> Simulation:
-    return Simulation(normal=way.normal, tangential=way.tangential, integrator=integrator)
+def _with(simulation: Simulation, integrator: Integrator) -> Simulation:
+    return Simulation(
+        normal=simulation.normal, tangential=simulation.tangential, integrator=integrator
+    )

@@ -142,9 +142,9 @@ def impact_batch(law: Any) -> None:
     psi1, chi = (np.ravel(grid) for grid in np.meshgrid((-2.0, 0.3, 1.2, 40.0), CHI))
     given = scene(psi1, chi, bodies=bodies(len(psi1)), friction=np.linspace(0.1, 0.7, len(psi1)))
     for way in ways(law):
-        change, _, work = way.follow(given)
+        change, _, work = way.run(given)
         for place in range(len(psi1)):
-            alone, _, lost = way.follow(given.take(place))
+            alone, _, lost = way.run(given.take(place))
             gap = max(abs(float(change[place]) - alone), abs(float(work[place]) - lost))
             gap /= max(1.0, abs(float(psi1[place])))
             hold(gap <= 1e-8, f"Impact {place} of a batch is off by {gap:.1e} in psi ({way}).")

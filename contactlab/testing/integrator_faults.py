@@ -15,7 +15,7 @@ from contactlab.testing.faulty_laws import (
     TooManyCallsError,
     Unyielding,
 )
-from contactlab.testing.integrators import CHI, fitting, run
+from contactlab.testing.integrators import CHI, fitting, marched_impact
 from contactlab.testing.laws import PressedSpring, Slider, SlidingForEver
 
 NONE_FIT = "None of the faulty laws of the kit fits it."
@@ -36,10 +36,13 @@ def faults_named(integrator: Any) -> None:
         FailingSpring(raises=True, at=0),
         SlidingForEver(at_once=True),
     )
-    ways = [*fitting(integrator, faulty, "normal.hertz")]
-    apply_if(ways, NONE_FIT)
-    for way in ways:
-        detail, name = way.run(scene(2.0, CHI)).motion.detail, type(way.tangential).__name__
+    simulations = [*fitting(integrator, faulty, "normal.hertz")]
+    apply_if(simulations, NONE_FIT)
+    for simulation in simulations:
+        detail, name = (
+            simulation.run(scene(2.0, CHI)).motion.detail,
+            type(simulation.tangential).__name__,
+        )
         hold(name in detail, f"{name} raised, and is not named: {detail!r}.")
 
 
@@ -53,26 +56,26 @@ def normal_faults_reported(integrator: Any) -> None:
 @check(Integrator)
 def bounded(integrator: Any) -> None:
     """A law of any stiffness, or of events without end, is followed so far (Integrator, 2)."""
-    ways = list(fitting(integrator, (Unyielding(), Endless()), "normal.hertz"))
-    apply_if(ways, NONE_FIT)
-    for way in ways:
-        name = type(way.tangential).__name__
+    simulations = list(fitting(integrator, (Unyielding(), Endless()), "normal.hertz"))
+    apply_if(simulations, NONE_FIT)
+    for simulation in simulations:
+        name = type(simulation.tangential).__name__
         try:
-            motion = run(way, 2.0)
+            motion = marched_impact(simulation, 2.0)
         except TooManyCallsError:
             hold(False, f"{name} is asked without end.")
             continue
         hold(TooManyCallsError.__name__ not in motion.detail, f"{name} is asked without end.")
-        if isinstance(way.tangential, Endless):
+        if isinstance(simulation.tangential, Endless):
             hold(not motion.status, "Events without end are said to have come to one.")
 
 
-def _reported(ways: list[Simulation], *, least: int) -> None:
+def _reported(simulations: list[Simulation], *, least: int) -> None:
     """Hold that each of these runs ends with a status, what and where, and its history so far."""
-    apply_if(ways, NONE_FIT)
-    for way in ways:
-        result = way.run(scene(2.0, CHI), history=True)
-        who = f"{type(way.normal).__name__} and {type(way.tangential).__name__}"
+    apply_if(simulations, NONE_FIT)
+    for simulation in simulations:
+        result = simulation.run(scene(2.0, CHI), history=True)
+        who = f"{type(simulation.normal).__name__} and {type(simulation.tangential).__name__}"
         hold(not result.status, f"A fault in {who} reads as success.")
         hold(result.motion.detail, f"{result.status.name} says nothing of what and where: {who}.")
         hold(result.history is not None, "There is no history.")

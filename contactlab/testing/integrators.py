@@ -41,30 +41,32 @@ def sound(integrator: Any) -> list[Simulation]:
     return found
 
 
-def run(way: Simulation, psi1: Any, chi: Any = CHI, recorder: Any = None) -> TangentialMotion:
-    """Run an impact past the plan, which might take a short cut.
+def marched_impact(
+    simulation: Simulation, psi1: Any, chi: Any = CHI, recorder: Any = None
+) -> TangentialMotion:
+    """Return the motion of an impact by the integrator alone: a plan might take a short cut.
 
     Parameters
     ----------
-    way : Simulation
+    simulation : Simulation
     psi1, chi : float or array
     recorder : callable, optional
         An observer.
     """
-    return follow(way, scene(psi1, chi), recorder)
+    return marched(simulation, scene(psi1, chi), recorder)
 
 
-def follow(way: Simulation, given: Any, recorder: Any = None) -> TangentialMotion:
-    """Run a scene past the plan."""
-    normal = normal_motion(way.normal, given)
-    return way.integrator.integrate(normal, way.tangential, given, recorder)
+def marched(simulation: Simulation, given: Any, recorder: Any = None) -> TangentialMotion:
+    """Return the motion of a scene by the integrator alone."""
+    normal = normal_motion(simulation.normal, given)
+    return simulation.integrator.integrate(normal, simulation.tangential, given, recorder)
 
 
 @check(Integrator)
 def ends_well(integrator: Any) -> None:
     """Sound laws are followed from first touch to separation, to plain numbers (Integrator, 1)."""
-    for way in sound(integrator):
-        motion = run(way, 2.0)
+    for simulation in sound(integrator):
+        motion = marched_impact(simulation, 2.0)
         hold(
             isinstance(motion, TangentialMotion),
             f"It returns a {type(motion).__name__}, not a TangentialMotion.",
@@ -90,16 +92,19 @@ def slip_velocity(psi1: float) -> float:
 @check(Integrator)
 def observer_changes_nothing(integrator: Any) -> None:
     """An observer sees increasing times, and having one changes no result (Integrator, 3)."""
-    for way in sound(integrator):
+    for simulation in sound(integrator):
         recorder = Recorder((), with_fields=True)
-        alone, watched = run(way, 2.0), run(way, 2.0, recorder=recorder)
+        alone, watched = (
+            marched_impact(simulation, 2.0),
+            marched_impact(simulation, 2.0, recorder=recorder),
+        )
         for name in ENTRIES:
             hold(
                 same(getattr(alone, name), getattr(watched, name)),
                 f"Watched, the {name} is {getattr(watched, name)!r}, not {getattr(alone, name)!r}.",
             )
         times = recorder.history().time
-        duration = normal_motion(way.normal, scene(2.0, CHI)).duration
+        duration = normal_motion(simulation.normal, scene(2.0, CHI)).duration
         hold(len(times) > 1, "The observer was not called.")
         hold(np.all(np.diff(times) > 0.0), "The observer was called at times that do not increase.")
         reach = times[-1] / duration if len(times) else 0.0
@@ -111,11 +116,14 @@ def observer_changes_nothing(integrator: Any) -> None:
 @check(Integrator)
 def integrator_pure(integrator: Any) -> None:
     """Two runs are alike, whatever was run between them, and leave the integrator as it was."""
-    for way in sound(integrator):
+    for simulation in sound(integrator):
         kept = copy.deepcopy(integrator)
-        first = run(way, 2.0)
-        run(way, 0.3, 3.0)
-        hold(same(first, run(way, 2.0)), "The same impact, run twice, ends differently.")
+        first = marched_impact(simulation, 2.0)
+        marched_impact(simulation, 0.3, 3.0)
+        hold(
+            same(first, marched_impact(simulation, 2.0)),
+            "The same impact, run twice, ends differently.",
+        )
         hold(same(kept, integrator), "A run changed the integrator.")
 
 
@@ -125,8 +133,8 @@ def impacts_batch(integrator: Any) -> None:
     psi1 = np.array([[-2.0, 0.0, 0.3], [1.2, 5.0, 40.0]])
     chi = np.array([[0.4, 1.0, 1.5], [1.5, 3.0, 3.0]])
     given = scene(psi1, chi, bodies=bodies(*psi1.shape))
-    for way in sound(integrator):
-        together = follow(way, given)
+    for simulation in sound(integrator):
+        together = marched(simulation, given)
         for name in ENTRIES:
             hold(
                 np.shape(getattr(together, name)) == psi1.shape,
@@ -134,7 +142,7 @@ def impacts_batch(integrator: Any) -> None:
             )
         for place in np.ndindex(psi1.shape):
             one = given.take(place)
-            alone = follow(way, one)
+            alone = marched(simulation, one)
             hold(together.status[place] is alone.status, "An impact of a batch ends otherwise.")
             speed = float(np.asarray(one.normal_speed))
             mass = float(np.asarray(one.pair.tangential_mass))

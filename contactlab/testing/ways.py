@@ -34,8 +34,8 @@ INTEGRATION = 2e-3
 ROUNDING = 1e-9
 
 
-class Followed(NamedTuple):
-    """An impact followed: the change of psi, the motion, and friction work over unit energy."""
+class Answer(NamedTuple):
+    """What a way gives: the change of psi, the motion, and friction work over unit energy."""
 
     change: Any
     motion: TangentialMotion
@@ -58,8 +58,8 @@ class Way(NamedTuple):
         """Whether nothing is added by steps."""
         return self.integrator is None or bool(self.integrator.accuracy)
 
-    def follow(self, given: Scene, recorder: Observer | None = None) -> Followed:
-        """Follow the impacts of a scene.
+    def run(self, given: Scene, recorder: Observer | None = None) -> Answer:
+        """Return what it gives for the impacts of a scene.
 
         An integrator is called itself, as a simulation would take short cuts; whole impacts are
         those of a simulation.
@@ -74,7 +74,7 @@ class Way(NamedTuple):
             hold(False, f"{_which(given)}: {_detail(motion)} ({self})")
         unit = given.pair.tangential_mass / np.square(given.psi_scale)
         change = given.psi(motion.slip_velocity_change)
-        return Followed(change, motion, motion.friction_work / unit)
+        return Answer(change, motion, motion.friction_work / unit)
 
 
 def _which(given: Scene) -> str:
@@ -118,8 +118,8 @@ def ways(law: TangentialLaw, normal: NormalLaw | None = None) -> list[Way]:
 
 def meet(
     way: Way, psi1: Any, chi: Any, *, units: Units | None = None, recorder: Observer | None = None
-) -> Followed:
-    """Follow an impact of given psi1 and chi.
+) -> Answer:
+    """Return what a way gives for an impact of given psi1 and chi.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def meet(
     recorder : callable, optional
         An observer.
     """
-    return way.follow(scene(psi1, chi, units=units), recorder)
+    return way.run(scene(psi1, chi, units=units), recorder)
 
 
 def course(way: Way, psi1: float, chi: float) -> tuple[History, TangentialMotion]:

@@ -66,7 +66,7 @@ def whole_impacts(law: Any) -> None:
     apply_if(found, "It knows of no impact with slip as a whole.")
     for way, each in itertools.product(marches, found):
         psi1, chi, given, _, answer = each
-        change = way.follow(given).change
+        change = way.run(given).change
         room, unit = allowed(way), given.pair.tangential_mass / given.psi_scale**2
         off = abs(change - given.psi(float(np.asarray(answer.slip_velocity_change))))
         hold(off <= room * 4.0 * chi, f"{each}: psi2 is {off:.2g} off the law's own run ({way}).")
@@ -169,7 +169,7 @@ def sliding_impulse(law: Any) -> None:
             taken = -2.0 * chi * bounce
             for way in marches:
                 tried += 1
-                off = abs(way.follow(given).change / taken - 1.0)
+                off = abs(way.run(given).change / taken - 1.0)
                 # Discs and steps apart: a law with a grid slips at a limit of its own.
                 room = slack(law, 0.0) + (1e-6 if way.exact else INTEGRATION)
                 hold(
