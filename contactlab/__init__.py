@@ -24,6 +24,7 @@ The modules, each of which imports from those above it only:
 ``contracts``         what a law promises: normal, tangential, integrator
 ``hookspecs``         the hook of a plug-in
 ``installed``         entry points that are installed
+``loading``           the loading of one plug-in
 ``registry``          laws by name
 ``faults``            what is said of a law that fails
 ``composition``       which laws fit together

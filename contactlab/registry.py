@@ -4,52 +4,30 @@ from __future__ import annotations
 
 import contextlib
 import os
-import sys
 import warnings
-from collections.abc import Iterator
 from functools import cached_property
-from types import ModuleType
 from typing import Any
 from weakref import WeakKeyDictionary
 
-import attrs
-import numpy as np
-import pluggy
-
 from contactlab import hookspecs
 from contactlab.checks import nearest, refuse
-from contactlab.contracts.law import API_VERSION, Law
-from contactlab.installed import GROUP, PluginWarning, entry_points, short, stamp
+from contactlab.contracts.law import Law
+from contactlab.installed import PluginWarning, entry_points, stamp
+from contactlab.loading import KINDS, Loader, PluginError, PluginInfo
+
+__all__ = [
+    "BLOCK_VARIABLE",
+    "KINDS",
+    "REGISTRY",
+    "PluginError",
+    "PluginInfo",
+    "Registry",
+    "blocked_names",
+]
 
 BLOCK_VARIABLE = "CONTACTLAB_BLOCK_PLUGINS"
 #: Names that are not of laws, and may be blocked too.
 OTHER_GROUPS = ("rebound.",)
-KINDS = ("normal", "tangential", "integrator")
-
-
-class PluginError(RuntimeError):
-    """A plug-in is broken or at odds with another; names plug-in and distribution."""
-
-
-@attrs.frozen
-class PluginInfo:
-    """One installed law, as the listing shows it; nothing has been imported."""
-
-    name: str
-    distribution: str
-    version: str
-    module: str
-    blocked: bool
-
-    @property
-    def kind(self) -> str:
-        """The part of the name before the dot."""
-        return self.name.partition(".")[0]
-
-    @property
-    def malformed(self) -> bool:
-        """Whether the name is not a kind, a dot and a name; no such law can be made."""
-        return self.kind not in KINDS or not self.name.partition(".")[2]
 
 
 class Registry:
@@ -60,17 +38,12 @@ class Registry:
     """
 
     def __init__(self) -> None:
+        self._loader = Loader()
         self._loaded: dict[str, tuple[type[Law], PluginInfo]] = {}
         self._warned: set[str] = set()
         self._found: set[tuple[str, str, str, str]] = set()
         self._stamp: object = None
         self._origins: WeakKeyDictionary[type[Law], PluginInfo | None] = WeakKeyDictionary()
-
-    @cached_property
-    def _manager(self) -> pluggy.PluginManager:
-        manager = pluggy.PluginManager(hookspecs.PROJECT)
-        manager.add_hookspecs(hookspecs)
-        return manager
 
     @cached_property
     def _modules(self) -> list[tuple[str, str]]:
@@ -145,7 +118,7 @@ class Registry:
         """Import the plug-in that offers ``name`` and return the law's class."""
         if name not in self._loaded or name in blocked_names():
             info = self.info(name)
-            self._loaded[name] = (self._load(info), info)
+            self._loaded[name] = (self._loader.law_class(info), info)
         return self._loaded[name][0]
 
     def create(self, name: str, **options: Any) -> Any:
@@ -197,36 +170,6 @@ class Registry:
                     self.law_class(name)
         return next((info for known, info in self._loaded.values() if known is law_class), None)
 
-    def _load(self, info: PluginInfo) -> type[Law]:
-        source = f"{info.name!r} of {info.distribution} {info.version}"
-        from importlib import metadata
-
-        with _guarded(f"{source} could not be imported"):
-            module = metadata.EntryPoint(info.name, info.module, GROUP).load()
-        self._register(module, info, source)
-        others = [plugin for plugin in self._manager.get_plugins() if plugin is not module]
-        ask = self._manager.subset_hook_caller("contactlab_law", others)
-        with _guarded(f"{source} raised when asked for its law"):
-            law = ask(name=info.name)
-        return _checked(law, info, source)
-
-    def _register(self, module: ModuleType, info: PluginInfo, source: str) -> None:
-        if self._manager.is_registered(module):
-            return
-        try:
-            self._manager.register(module, name=info.module)
-            self._manager.check_pending()
-        except Exception as error:
-            # pluggy leaves a plug-in that failed validation registered.
-            if self._manager.is_registered(module):
-                self._manager.unregister(module)
-            raise PluginError(f"{source} does not fit the hooks: {short(error)}") from error
-        if not self._manager.get_hookcallers(module):
-            self._manager.unregister(module)
-            raise PluginError(
-                f"{source} has no hook: define @contactlab.hookimpl def contactlab_law(name)"
-            )
-
     def _unknown(self, name: str) -> ValueError:
         kind, _, short = str(name).rpartition(".")
         names = self.names(kind if kind in KINDS else None)
@@ -243,38 +186,6 @@ class Registry:
 def blocked_names() -> set[str]:
     """Return the names in ``CONTACTLAB_BLOCK_PLUGINS``, separated by commas or blanks."""
     return set(os.environ.get(BLOCK_VARIABLE, "").replace(",", " ").split())
-
-
-@contextlib.contextmanager
-def _guarded(failed: str) -> Iterator[None]:
-    """Keep a plug-in's code from ending the program, writing among data or changing settings.
-
-    Whatever it raises but an interruption becomes a ``PluginError``; what it prints goes to
-    stderr, for stdout may be read by a program; numpy's handling of errors is put back.
-    """
-    try:
-        with np.errstate(), contextlib.redirect_stdout(sys.stderr):
-            yield
-    except KeyboardInterrupt:
-        raise
-    except BaseException as error:
-        raise PluginError(f"{failed}: {short(error)}") from error
-
-
-def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
-    if not (isinstance(law, type) and issubclass(law, Law)):
-        raise PluginError(f"{source} returned {law!r}, which is not the class of a law")
-    if law.kind != info.kind:
-        raise PluginError(f"{source} returned {law.__name__}, a {law.kind} law")
-    if law.__abstractmethods__:
-        missing = ", ".join(sorted(law.__abstractmethods__))
-        raise PluginError(f"{source}: {law.__name__} does not define {missing}")
-    version = getattr(law, "api_version", None)
-    if version != API_VERSION:
-        raise PluginError(
-            f"{source}: {law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}"
-        )
-    return law
 
 
 def _rank(kind: str) -> int:

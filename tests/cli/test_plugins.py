@@ -68,8 +68,8 @@ def test_blocked_law_is_marked(run, monkeypatch):
 @pytest.mark.parametrize(
     "command", [("plugins", "list", "--json"), ("run", "--psi1", "6", "--chi", "1", "--json")]
 )
-def test_a_blocked_name_that_is_not_installed_is_remarked_on(run, monkeypatch, command):
-    monkeypatch.setattr(REGISTRY, "_remarked", set())
+def test_a_blocked_name_that_is_not_installed_is_warned_of(run, monkeypatch, command):
+    monkeypatch.setattr(REGISTRY, "_warned", set())
     monkeypatch.setattr(REGISTRY, "_loaded", {})
     monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "tangential.coulom")
     ran = run(*command)
