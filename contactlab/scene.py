@@ -27,11 +27,13 @@ OBLIQUE = Rule(
 
 
 def is_sphere(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
+    """Refuse what is neither a sphere nor None."""
     if value is not None and not isinstance(value, Sphere):
         raise refuse(attribute.name, value, "must be a Sphere", "make one: Sphere(...)")
 
 
 def is_target(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
+    """Refuse what is neither a target nor None."""
     if value is not None and not isinstance(value, Sphere | HalfSpace):
         raise refuse(attribute.name, value, "must be a HalfSpace or a Sphere")
 

@@ -23,9 +23,12 @@ SCRIPTS = {
     "stick_slip_map": ("100% of the annuli", "stick_slip_map.png"),
     "custom_law": ("mindlin cap", None),
     "sweep_on_a_cluster": ("the same to the last bit as here: True", None),
+    "billiards": ("does not add up: ", "billiards.gif"),
 }
 #: Those that wait for processes to start.
 SLOW = ("sweep_on_a_cluster",)
+#: Options that make a script short.
+OPTIONS = {"billiards": ("--collisions", 40, "--frames", 3)}
 
 
 def python(*arguments, folder, path="", warnings="error"):
@@ -49,7 +52,7 @@ def test_every_script_is_listed_here():
 )
 def test_script(name, tmp_path):
     words, picture = SCRIPTS[name]
-    done = python(EXAMPLES / f"{name}.py", folder=tmp_path)
+    done = python(EXAMPLES / f"{name}.py", *OPTIONS.get(name, ()), folder=tmp_path)
     assert done.returncode == 0, done.stderr
     assert words in done.stdout
     assert [path.name for path in tmp_path.iterdir()] == ([picture] if picture else [])

@@ -51,7 +51,7 @@ def test_a_plane_encounter_is_the_scene():
 
 
 def test_gross_slip_by_hand():
-    """mu (1 + e) M_n v1 against the slip, whichever way it points; a ball that slides begins to roll.
+    """mu (1 + e) M_n v1 against the slip, whichever way it points; the ball begins to roll.
 
     Rolling along x on a floor below is spin about y, rolling along y is spin about -x.
     """
@@ -153,7 +153,7 @@ def test_bodies_that_separate_pass_if_asked(laws):
 def test_the_default_is_that_of_the_tabulated_and_of_the_exact_law():
     rng = np.random.default_rng(4)
     met = meeting(
-        target=BALL, velocity=rng.normal(size=(40, 3)) + (0, 0, -5), spin=rng.normal(size=3)
+        target=BALL, velocity=rng.normal((0, 0, -5), size=(40, 3)), spin=rng.normal(size=3)
     )
     made = collide(met)
     for laws in ({"tangential": "tabulated"}, {}):
@@ -192,7 +192,7 @@ def test_alone_and_together_are_the_same():
 def test_parts_of_a_large_batch_are_the_whole(monkeypatch):
     rng = np.random.default_rng(7)
     met = meeting(
-        target=BALL, velocity=rng.normal(size=(6, 7, 3)) - (0, 0, 9), spin=np.ones((7, 3))
+        target=BALL, velocity=rng.normal((0, 0, -9), size=(6, 7, 3)), spin=np.ones((7, 3))
     )
     whole = collide(met)
     monkeypatch.setattr("contactlab.encounter.TOGETHER", 5)

@@ -25,7 +25,10 @@ def test_it_is_the_exact_solution_within_what_it_declares():
     assert np.all(np.abs(found.psi2 - exact.psi2) <= error)
     assert np.all(error <= 1.1e-9 * np.maximum(1.0, np.abs(grid().psi1)))
     assert np.all(error[np.abs(grid().psi1) == 40.0] < 1e-10)  # slips throughout: a closed form
-    assert np.all(np.asarray(found.plan.psi2_error)[np.abs(grid().psi1) == 0.3] == pytest.approx(1e-9, rel=0.01))
+    assert np.all(
+        np.asarray(found.plan.psi2_error)[np.abs(grid().psi1) == 0.3]
+        == pytest.approx(1e-9, rel=0.01)
+    )
     work, other = found.motion.friction_work, exact.motion.friction_work
     assert np.allclose(work, other, rtol=0.0, atol=1e-6 * exact.energy.start)
 
@@ -70,7 +73,7 @@ def test_it_needs_the_elastic_impact():
 def test_a_sweep_takes_many_together():
     scene = Scene.nondimensional(psi1=np.linspace(0.0, 4.0, CLOSED_FORM_CHUNK + 7), chi=1.3)
     calls = []
-    result = tabulated().sweep(scene, progress=lambda done, total: calls.append(done))
+    result = tabulated().sweep(scene, progress=lambda done, _: calls.append(done))
     assert calls == [CLOSED_FORM_CHUNK, CLOSED_FORM_CHUNK + 7]
     assert set(result.status.tolist()) == {Status.SUCCESS}
     assert np.allclose(result.psi2, tabulated().run(scene).psi2, rtol=0.0, atol=1e-11)

@@ -1,0 +1,143 @@
+"""A break shot with side spin, collision after collision: balls without cloth or air to slow them.
+
+The only loss is friction where balls rub against each other and the cushions. All motion stays in
+the plane of the table, and spin is about the vertical: the white line on a ball turns with it.
+
+    python billiards.py --collisions 10000
+"""
+
+import argparse
+from itertools import combinations
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.animation import FuncAnimation, PillowWriter
+
+from contactlab import Encounter, HalfSpace, Material, Sphere, collide
+
+RESIN = Material(young_modulus=5.8e9, poisson_ratio=0.34, density=1750.0)
+BALL, CUSHION = Sphere(0.0286, RESIN), HalfSpace(RESIN)
+TABLE = np.array([1.6, 0.8])  # m
+BALLS_FRICTION, CUSHION_FRICTION = 0.08, 0.3
+CUE_SPEED, CUE_SPIN = 4.0, 150.0  # m/s, rad/s
+GAP = 2e-4  # m, between balls of the rack, so that they meet one at a time
+COLOURS = ("gold", "royalblue", "firebrick", "indigo", "darkorange", "seagreen", "maroon")
+COLOURS = ("ivory", *COLOURS, "black", *COLOURS)
+FIRST, SECOND = np.array(list(combinations(range(16), 2))).T
+
+
+def rack():
+    """Return places of 16 balls, the cue ball first; a little disorder, always the same."""
+    step = 2.0 * BALL.radius + GAP
+    spots = [
+        (row * 0.875 * step, (k - 0.5 * row) * step) for row in range(5) for k in range(row + 1)
+    ]
+    disorder = np.random.default_rng(8).uniform(-0.2, 0.2, (15, 2)) * GAP
+    racked = np.array(spots) + disorder + (0.6 * TABLE[0], 0.5 * TABLE[1])
+    return np.vstack(([0.15 * TABLE[0], 0.48 * TABLE[1]], racked))
+
+
+def next_event(place, velocity):
+    """Return time, ball, and other ball (or minus one less the axis of a cushion)."""
+    apart, closing = place[SECOND] - place[FIRST], velocity[SECOND] - velocity[FIRST]
+    along, speed = (apart * closing).sum(axis=1), (closing**2).sum(axis=1)
+    left = along**2 - speed * ((apart**2).sum(axis=1) - 4.0 * BALL.radius**2)
+    with np.errstate(all="ignore"):
+        meet = (-along - np.sqrt(left)) / speed
+        wall = np.where(velocity > 0.0, TABLE - BALL.radius - place, BALL.radius - place) / velocity
+    meet[~((along < 0.0) & (left >= 0.0))] = np.inf
+    wall[velocity == 0.0] = np.inf
+    pair, (ball, axis) = meet.argmin(), np.unravel_index(wall.argmin(), wall.shape)
+    if meet[pair] < wall[ball, axis]:
+        return max(meet[pair], 0.0), FIRST[pair], SECOND[pair]
+    return max(wall[ball, axis], 0.0), ball, -1 - axis
+
+
+def play(collisions):
+    """Yield time, places, velocities, angles, spins and friction work (J) after each collision."""
+    place, velocity = rack(), np.zeros((16, 2))
+    angle, spin, time, lost = np.zeros(16), np.zeros(16), 0.0, 0.0
+    velocity[0], spin[0] = (CUE_SPEED, 0.0), CUE_SPIN
+    yield time, place, velocity, angle, spin, lost
+    for _ in range(collisions):
+        wait, one, other = next_event(place, velocity)
+        time, place, angle = time + wait, place + wait * velocity, angle + wait * spin
+        velocity, spin = velocity.copy(), spin.copy()
+        normal = place[other] - place[one] if other >= 0 else np.zeros(2)
+        target, friction, struck = BALL, BALLS_FRICTION, {}
+        if other < 0:
+            target, friction = CUSHION, CUSHION_FRICTION
+            normal[-1 - other] = np.sign(velocity[one, -1 - other])
+        else:
+            struck = {
+                "target_velocity": (*velocity[other], 0.0),
+                "target_spin": (0, 0, spin[other]),
+            }
+        met = Encounter(
+            BALL, target, friction, normal=(*normal, 0.0),
+            velocity=(*velocity[one], 0.0), spin=(0.0, 0.0, spin[one]), **struck,
+        )  # fmt: skip
+        made = collide(met)
+        velocity[one], spin[one] = made.velocity[:2], made.spin[2]
+        if other >= 0:
+            velocity[other], spin[other] = made.target_velocity[:2], made.target_spin[2]
+        lost += made.friction_work
+        yield time, place, velocity, angle, spin, lost
+
+
+def draw(shot, frames, seconds, path):
+    """Write an animation: as many frames, evenly over the first seconds."""
+    figure = plt.figure(figsize=(6.4, 3.5), facecolor="saddlebrown")
+    axes = figure.add_axes((0.03, 0.05, 0.94, 0.86), facecolor="darkgreen", aspect="equal")
+    axes.set(xlim=(0.0, TABLE[0]), ylim=(0.0, TABLE[1]), xticks=[], yticks=[])
+    discs = [plt.Circle((0, 0), BALL.radius, color=colour) for colour in COLOURS]
+    inks = ["black" if colour in ("ivory", "gold") else "white" for colour in COLOURS]
+    marks = [axes.plot([], [], color=ink, lw=2.0)[0] for ink in inks]
+    (trail,) = axes.plot([], [], color="white", lw=0.8, alpha=0.5)
+    title = figure.text(0.03, 0.945, "", color="white", family="monospace", size=9)
+    for disc in discs:
+        axes.add_patch(disc)
+    times = np.array([event[0] for event in shot])
+    energy = 0.5 * BALL.mass * (CUE_SPEED**2 + 0.4 * (BALL.radius * CUE_SPIN) ** 2)
+    seen = []
+
+    def show(frame):
+        now = seconds * frame / frames
+        count = np.searchsorted(times, now, side="right") - 1
+        time, place, velocity, angle, spin, lost = shot[count]
+        place, angle = place + (now - time) * velocity, angle + (now - time) * spin
+        arm = 0.9 * BALL.radius * np.stack((np.cos(angle), np.sin(angle)), axis=1)
+        for disc, mark, centre, end in zip(discs, marks, place, arm, strict=True):
+            disc.center = centre
+            mark.set_data(*np.stack((centre - end, centre + end), axis=1))
+        seen.append(place[0])
+        trail.set_data(*np.array(seen[-12:]).T)
+        title.set_text(
+            f"{now:4.1f} s   {count:3} collisions   {lost / energy:6.2%} lost to friction"
+        )
+
+    film = FuncAnimation(figure, show, frames, init_func=lambda: None)
+    film.save(path, PillowWriter(fps=20), dpi=90)
+    plt.close(figure)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--collisions", type=int, default=300)
+    parser.add_argument("--frames", type=int, default=120)
+    asked = parser.parse_args()
+    shot = list(play(asked.collisions))
+    time, _, velocity, _, spin, lost = shot[-1]
+    before = 0.5 * BALL.mass * (CUE_SPEED**2 + 0.4 * (BALL.radius * CUE_SPIN) ** 2)
+    after = 0.5 * BALL.mass * ((velocity**2).sum() + 0.4 * ((BALL.radius * spin) ** 2).sum())
+    print(f"{asked.collisions} collisions in {time:.1f} s of play")
+    print(f"kinetic energy {before:.4f} J, then {after:.4f} J; friction took {lost:.4f} J")
+    print(f"what does not add up: {abs(before - after - lost) / before:.0e} of it")
+    draw(shot, asked.frames, min(time, 5.0), "billiards.gif")
+
+
+if __name__ == "__main__":
+    main()
