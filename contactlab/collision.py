@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
@@ -10,13 +9,13 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.batch import filled, locked
-from contactlab.bodies import Pair, Sphere
+from contactlab import impulses
+from contactlab.batch import filled
+from contactlab.bodies import Sphere
 from contactlab.checks import Real, refuse
-from contactlab.encounter import LEAST, Contact, Encounter, components
+from contactlab.encounter import Encounter, components
 from contactlab.energy import EnergyLedger, books
 from contactlab.plan import Plan, Sentence
-from contactlab.rebounds import rebound
 from contactlab.registry import REGISTRY
 from contactlab.result import ImpactResult
 from contactlab.signatures import named_arguments
@@ -31,10 +30,6 @@ SAME_ANSWERS = "tangential.tabulated"
 SEPARATING = ("refuse", "pass")
 #: Spin about the normal over the whole spin below which it is rounding.
 TURNING = 1e-12
-
-#: Rate of approach after the impact, change of slip velocity (m/s) and friction work (J) of a part
-#: of a batch.
-Answer = Callable[[slice, Encounter, Contact, Pair], tuple[Any, Any, Any]]
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
@@ -56,6 +51,10 @@ class Collision:
         In J.
     collided : bool or array of bool
         False where the bodies separated before, and passed through untouched.
+    simulation : Simulation or None
+        The laws; None for ``contactlab.rebound``.
+    known : ImpactResult or None
+        What the simulation returned, of those that collided.
     """
 
     encounter: Encounter
@@ -83,7 +82,7 @@ class Collision:
         if result.scene is not scene and result.scene != scene:
             why = "must be the result of encounter.scene"
             raise refuse("result", result, why, "run that: simulation.run(encounter.scene)")
-        return _moved(encounter, _answer_of(encounter, result, None), known=result)
+        return _collision(encounter, _columns(encounter, result), known=result)
 
     def __repr__(self) -> str:
         """Return how many collided, and how it went."""
@@ -234,123 +233,37 @@ def collide(
     if separating not in SEPARATING:
         raise refuse("separating", separating, "must be 'refuse' or 'pass'")
     if simulation is None:
-        return _moved(encounter, _elastic, strict=separating == "refuse")
-    met = encounter.approaching
-    if np.all(met):
-        known = _run(simulation, encounter.scene)
-        answer = _answer_of(encounter, known, None)
-        return _moved(encounter, answer, simulation=simulation, known=known)
-    if separating == "refuse":
+        return _collision(encounter, None, strict=separating == "refuse")
+    met: Any = encounter.approaching
+    if separating == "refuse" and not np.all(met):
         raise encounter.separate()
     if not np.any(met):
-        return _moved(encounter, _elastic, strict=False)
-    known = _run(simulation, encounter.take(met).scene)
-    answer = _answer_of(encounter, known, met)
-    return _moved(encounter, answer, simulation=simulation, known=known)
+        return _collision(encounter, None, simulation=simulation)
+    known = _run(simulation, (encounter if np.all(met) else encounter.take(met)).scene)
+    columns = _columns(encounter, known, met)
+    return _collision(encounter, columns, simulation=simulation, known=known)
 
 
 def _run(simulation: Simulation, scene: Any) -> ImpactResult:
     return simulation.sweep(scene) if len(scene.shape) == 1 else simulation.run(scene)
 
 
-def _elastic(where: slice, part: Encounter, contact: Contact, pair: Pair) -> tuple[Any, Any, Any]:
-    """Return what becomes of elastic bodies, from ``rebound``.
-
-    Slip throughout, eq. (46), is the same from psi1 = 4 chi + 1 on, so that psi1 is cut there:
-    whatever slip and friction are, it is finite and keeps its digits.
-    """
-    chi = pair.inertia_ratio
-    unit: Any = part.friction_coefficient * contact.approach / pair.stiffness_ratio  # of psi, m/s
-    with np.errstate(all="ignore"):
-        psi1: Any = np.fmin(np.divide(contact.slip, unit), 4.0 * chi + 1.0)
-        psi1 = np.where(contact.approach >= LEAST, psi1, 0.0)
-        psi2: Any = rebound(psi1, chi) if part.shape else rebound(float(psi1), float(chi))
-        change = (psi2 - psi1) * unit
-        work = -pair.tangential_mass * change * (contact.slip + 0.5 * change)
-    return -contact.approach, change, np.maximum(work, 0.0)
-
-
-def _answer_of(encounter: Encounter, result: ImpactResult, met: Any) -> Answer:
-    """Return the answers of a result, one after another; of the encounters ``met`` if not of all."""
+def _columns(encounter: Encounter, result: ImpactResult, met: Any = True) -> Array:
+    """Return the same three of a result, shape (3, encounters), 0 where bodies have not met."""
     motion = result.motion
-    columns = []
-    for column in (motion.normal_velocity, motion.slip_velocity_change, motion.friction_work):
-        whole = np.ravel(column)
-        if met is not None:
-            whole = np.zeros(encounter.shape)
-            whole[met] = np.ravel(column)
-        columns.append(whole.reshape(-1))
-
-    def answer(where: slice, part: Encounter, contact: Contact, pair: Pair) -> tuple[Any, Any, Any]:
-        after, change, work = (column[where] for column in columns)
-        return after, change, work
-
-    return answer
+    found = np.zeros((3, *encounter.shape))
+    columns = (motion.normal_velocity, motion.slip_velocity_change, motion.friction_work)
+    for k, column in enumerate(columns):
+        found[k, met] = column
+    return found.reshape(3, -1)
 
 
-def _moved(encounter: Encounter, answer: Answer, *, strict: bool = False, **rest: Any) -> Collision:
-    """Return the collision with these answers; bodies that separate move on, or are refused."""
-    shape = encounter.shape
-    moved = {
-        name: np.empty((*shape, 3))
-        for name in ("velocity", "spin", "target_velocity", "target_spin")
-    }
-    flat = {name: array.reshape(-1, 3) for name, array in moved.items()}
-    numbers = np.empty((3, *shape))
-    columns = numbers.reshape(3, -1)
-    collided = np.empty(shape, dtype=bool)
-    for where, part in encounter.parts():
-        contact, pair = part.contact(), part.pair
-        meets = contact.approach >= LEAST
-        if strict and not np.all(meets):
-            raise encounter.separate()
-        after, change, work = answer(where, part, contact, pair)
-        if not np.all(meets):
-            after = np.where(meets, after, contact.approach)
-            change, work = np.where(meets, change, 0.0), np.where(meets, work, 0.0)
-        columns[0, where], columns[1, where], columns[2, where] = after, change, work
-        collided.reshape(-1)[where] = meets
-        push, drag = pair.normal_mass * (after - contact.approach), pair.tangential_mass * change
-        _push({name: array[where] for name, array in flat.items()}, part, contact, push, drag)
-    after, change, work = (locked(each) if shape else float(each) for each in numbers)
-    return Collision(
-        encounter=encounter,
-        **{name: locked(array) for name, array in moved.items()},
-        normal_velocity=after,
-        slip_velocity_change=change,
-        friction_work=work,
-        collided=locked(collided) if shape else bool(collided),
-        **rest,
-    )
-
-
-def _push(moved: dict[str, Array], part: Encounter, contact: Contact, push: Any, drag: Any) -> None:
-    """Write velocities and spins after impulses along the normal and along the slip.
-
-    Parameters
-    ----------
-    moved : dict of arrays
-        To be written, each of shape (encounters, 3).
-    part : Encounter
-    contact : Contact
-    push, drag : array
-        Impulses on the sphere, in N s.
-    """
-    (n1, n2, n3), (t1, t2, t3) = contact.normal, contact.along
-    across = (n2 * t3 - n3 * t2, n3 * t1 - n1 * t3, n1 * t2 - n2 * t1)
-    bodies: list[tuple[str, Any, float]] = [("", part.sphere, 1.0), ("target_", part.target, -1.0)]
-    for name, body, sense in bodies:
-        velocity, spin = getattr(part, f"{name}velocity"), getattr(part, f"{name}spin")
-        if not isinstance(body, Sphere):
-            moved[f"{name}velocity"][:], moved[f"{name}spin"][:] = velocity, spin
-            continue
-        inertia = body.mass * body.gyration_ratio * body.gyration_ratio * body.radius
-        ahead, aside, turn = sense * push / body.mass, sense * drag / body.mass, drag / inertia
-        for k, (v, w) in enumerate(zip(components(velocity), components(spin), strict=True)):
-            moved[f"{name}velocity"][:, k] = v + (
-                ahead * contact.normal[k] + aside * contact.along[k]
-            )
-            moved[f"{name}spin"][:, k] = w + turn * across[k]
+def _collision(
+    encounter: Encounter, columns: Array | None, *, strict: bool = False, **rest: Any
+) -> Collision:
+    """Return the collision by these answers; ``rest`` are its other entries."""
+    made = impulses.moved(encounter, columns, strict=strict)
+    return Collision(encounter=encounter, **made._asdict(), **rest)
 
 
 def _rim(body: Sphere, spin: Array, normal: Array) -> Array:

@@ -51,7 +51,7 @@ def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
     return attrs.field(
         default=default,
         kw_only=True,
-        converter=attrs.Converter(_vector, takes_field=True),  # type: ignore[misc]
+        converter=attrs.Converter(_vector, takes_field=True),
         eq=key,
         metadata={"vector": True, "unit": unit},
     )
@@ -82,13 +82,10 @@ class Encounter:
 
     ::
 
-              spin                          x
-             ,-->-.                         |
-           /        \\     ,--------.        | right-handed,
-          |    +-----|--->|    +     |       | any orientation
-           \\  velocity   normal     /        +------ z
-             `----'        `------'        /
-            sphere          target        y
+          sphere      target, a sphere        sphere    target, a half-space
+          .----.      .----.                  .----.   |////
+         |  +--|--n->|   +  |                |  +--|n->|////      n: normal
+          '----'      '----'                  '----'   |////
 
     Every vector may be an array of shape ``(..., 3)``, every number an array; the encounters are
     then a batch of the broadcast ``shape``. Spins turn by the right-hand rule. Friction acts in the
@@ -247,9 +244,9 @@ class Encounter:
         along = sum(each * direction for each, direction in zip(u, contact.along, strict=True))
         along = np.broadcast_to(along, self.shape)
         spin = (contact.slip - along) / self.sphere.radius
-        numbers = (contact.approach, along, spin)
+        numbers: list[Any] = [contact.approach, along, spin]
         if not self.shape:
-            numbers = tuple(map(float, numbers))
+            numbers = [float(number) for number in numbers]
         return Scene(self.sphere, self.target, self.friction_coefficient, *numbers)
 
     def separate(self) -> ValueError:

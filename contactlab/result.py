@@ -191,7 +191,7 @@ class ImpactResult:
 
     @property
     def target_rebound_spin(self) -> Real | None:
-        """Spin of the target in rad/s, positive as that of the sphere: where it adds to the slip."""
+        """Spin of the target in rad/s, positive where it adds to the slip, as the sphere's."""
         turn = self.scene.pair.tangential_mass * self.motion.slip_velocity_change
         target = self.scene.target
         if isinstance(target, Sphere):

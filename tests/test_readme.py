@@ -32,7 +32,7 @@ def test_a_snippet_prints_what_is_shown(code, expected):
 
 
 def test_there_are_snippets():
-    assert len(SNIPPETS) == 3
+    assert len(SNIPPETS) == 4
 
 
 def test_the_law_of_ones_own_passes_the_kit_as_it_stands():
