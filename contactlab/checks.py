@@ -140,6 +140,8 @@ def real(argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "")
 
 def paired(first: str, second: str, values: tuple[Real, Real]) -> tuple[Any, Any]:
     """Return two quantities as arrays of one shape, or refuse shapes that do not fit."""
+    if np.ndim(values[0]) and np.shape(values[0]) == np.shape(values[1]):
+        return values  # broadcasting takes longer than this
     try:
         one, other = np.broadcast_arrays(*values)
     except ValueError:

@@ -53,10 +53,6 @@ STUCK_POWERS = tuple(range(9))
 FIRST_POWER = 5
 
 
-#: Impacts whose places are found together: larger arrays would be new memory at every step.
-TOGETHER = 1 << 15
-
-
 class Cuts(NamedTuple):
     """chi of both cuts by increasing powers: of abs(psi1) and of t, zeros included."""
 
@@ -136,13 +132,7 @@ class Places(NamedTuple):
 
 def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
     """Return the places of impacts with chi <= LARGEST_CHI, but for those slipping throughout."""
-    found: list[Part] = []
-    for first in range(0, speed.size, TOGETHER):
-        block = slice(first, first + TOGETHER)
-        for part in _parts(speed[block], chi[block], cuts):
-            if part.who.size:
-                part.who[:] += first
-                found.append(part)
+    found = [part for part in _parts(speed, chi, cuts) if part.who.size]
     if not found:
         none = np.empty(0)
         return Places((), (), np.empty(0, dtype=np.intp), none, none, none, none)
@@ -156,9 +146,9 @@ def _parts(speed: Array, chi: Array, cuts: Cuts) -> tuple[Part, ...]:
     below, light = speed <= 1.0, chi < 0.5
     slips = (speed < 4.0 * chi - 1.0) & ~below
     return (
-        *_small(np.flatnonzero(below & light), speed, chi),
-        *_stuck_first(np.flatnonzero(below & ~light), speed, chi, cuts),
-        *_slip_first(np.flatnonzero(slips), speed, chi, cuts),
+        *_small((below & light).nonzero()[0], speed, chi),
+        *_stuck_first((below & ~light).nonzero()[0], speed, chi, cuts),
+        *_slip_first(slips.nonzero()[0], speed, chi, cuts),
     )
 
 
@@ -167,7 +157,7 @@ def _small(who: Rows, speed: Array, chi: Array) -> tuple[Part, Part]:
     p = speed[who]
     delta, epsilon = 1.0 - p, 1.0 - 2.0 * chi[who]
     near = delta < epsilon
-    low, high = np.flatnonzero(near), np.flatnonzero(~near)
+    low, high = near.nonzero()[0], (~near).nonzero()[0]
     b, d = epsilon[low], delta[high]
     return (
         Part(SMALL_NEAR, who[low], (delta[low] / b) ** 0.2, b, p[low], b),
@@ -189,15 +179,15 @@ def _slip_first(who: Rows, speed: Array, chi: Array, cuts: Cuts) -> tuple[Part, 
     ratio = (p - 1.0) / epsilon
     height = epsilon * (0.5 / (LARGEST_CHI - 0.5))
     late = ratio > 1.0
-    k = np.flatnonzero(late)
+    k = late.nonzero()[0]
     last = Part(SLIP_LATE, who[k], ratio[k] - 1.0, height[k], p[k], epsilon[k])
-    k = np.flatnonzero(~late)
+    k = (~late).nonzero()[0]
     t = ratio[k] ** 0.2
     longer = t > CUT_END
-    j = np.flatnonzero(longer)
+    j = longer.nonzero()[0]
     a, i = (t[j] - CUT_END) * (1.0 / (1.0 - CUT_END)), k[j]
     longest = Part(SLIP_LONG, who[i], a, height[i], p[i], epsilon[i])
-    j = np.flatnonzero(~longer)
+    j = (~longer).nonzero()[0]
     t, k = t[j], k[j]
     cut = slip_cut(cuts.slip, t)
     t *= 1.0 / CUT_END
@@ -235,7 +225,7 @@ def _divided(
     who, p, a = impacts
     on = chi >= cut
     parts = []
-    for region, k in zip(regions, (np.flatnonzero(~on), np.flatnonzero(on)), strict=True):
+    for region, k in zip(regions, ((~on).nonzero()[0], on.nonzero()[0]), strict=True):
         x, edge = chi[k], cut[k]
         below = region == regions[0]
         b = (x - 0.5) / (edge - 0.5) if below else np.sqrt((x - edge) / (top - edge))

@@ -72,7 +72,7 @@ def gradient(table: Table, speed: Array, chi: Array) -> tuple[Array, Array]:
 
 
 def _slopes(table: Table, here: Places) -> Slopes:
-    patch = patches(table, here)
+    patch = patches(table, here, here.parts())
     order = np.argsort(patch, kind="stable")
     result = Slopes(np.empty_like(here.a), np.empty_like(here.a), np.empty_like(here.a))
     factor = np.arange(1, NODES)[:, None]

@@ -17,7 +17,7 @@ Rows = NDArray[np.intp]
 #: sorted by patch, which costs some 2 us a patch.
 FEW = 1500
 #: Impacts sorted together, and sorted places taken together, which fit into the cache.
-BLOCK, STRETCH = 1 << 18, 4096
+BLOCK, STRETCH = 1 << 17, 4096
 #: Regions where psi2 may come as near to that of full slip as rounding; there it is bounded.
 NEAR_FULL = (SMALL_NEAR, SMALL_FAR, SLIP_LATE)
 
@@ -35,7 +35,8 @@ def rebound(table: Table, speed: Array, chi: Array) -> Array:
 
 def _fill(table: Table, here: Places, psi2: Array) -> None:
     """Write psi2 of these places."""
-    patch = patches(table, here)
+    parts = here.parts()
+    patch = patches(table, here, parts)
     g = (_sorted if here.who.size >= FEW else _gathered)(table, patch, here)
     g *= here.measure
     g -= 1.0
@@ -43,21 +44,21 @@ def _fill(table: Table, here: Places, psi2: Array) -> None:
     np.maximum(g, -1.0, out=g)
     np.minimum(g, 1.0, out=g)
     g *= here.speed
-    for region, part in here.parts():
+    for region, part in parts:
         if region in NEAR_FULL:
             np.maximum(g[part], psi2[here.who[part]], out=g[part])
     psi2[here.who] = g
 
 
-def patches(table: Table, here: Places) -> NDArray[np.int16]:
-    """Return the patches of places."""
+def patches(table: Table, here: Places, parts: list[tuple[int, slice]]) -> NDArray[np.int16]:
+    """Return the patches of places; ``parts`` are those of the regions."""
     size = 1 << DEEPEST
     i, j = (here.a * size).astype(np.int32), (here.b * size).astype(np.int32)
     np.minimum(i, size - 1, out=i)
     np.minimum(j, size - 1, out=j)
     i *= size
     i += j
-    for region, part in here.parts():
+    for region, part in parts:
         i[part] += region * size * size
     return table.grid.ravel().take(i)
 
