@@ -16,7 +16,6 @@ from contactlab.checks import Real, refuse
 from contactlab.encounter import Encounter, components
 from contactlab.energy import EnergyLedger, books
 from contactlab.plan import Plan, Sentence
-from contactlab.registry import REGISTRY
 from contactlab.result import ImpactResult
 from contactlab.signatures import named_arguments
 from contactlab.simulation import Simulation
@@ -28,6 +27,8 @@ Array = NDArray[np.float64]
 #: their own; where it is not installed the default takes its place.
 SAME_ANSWERS = "tangential.tabulated"
 SEPARATING = ("refuse", "pass")
+PARTED = "collision: the bodies separate, they pass through untouched"
+TURNS = "spin about the normal: friction makes no moment about it, it passes through unchanged"
 #: Spin about the normal over the whole spin below which it is rounding.
 TURNING = 1e-12
 
@@ -107,17 +108,18 @@ class Collision:
     @cached_property
     def plan(self) -> Plan:
         """What was computed, what was left out, and what to be wary of."""
-        known = self.known
-        plan = self._simulation.plan(self._met.scene) if known is None else known.plan
+        passed = ~np.asarray(self.collided)
+        parted = Sentence(PARTED, passed)
+        if passed.all():
+            return Plan(computed=(), left_out=(parted,), marched=np.zeros_like(passed))
+        met, known = self._met, self.known
+        plan = self._simulation.plan(met.scene) if known is None else known.plan
         left_out = list(plan.left_out)
-        met = self._met
         turning = np.array(np.broadcast_to(_turns(met), met.shape))
         if turning.any():
-            text = "spin about the normal: friction makes no moment about it, it passes unchanged"
-            left_out.append(Sentence(text, turning))
-        if not np.all(self.collided):
-            text = "collision: the bodies separate, they pass through untouched"
-            left_out.append(Sentence(text, ~np.asarray(self.collided)))
+            left_out.append(Sentence(TURNS, turning))
+        if passed.any():
+            left_out.append(parted)
         return attrs.evolve(plan, left_out=tuple(left_out))
 
     @property
@@ -192,8 +194,10 @@ class Collision:
     def _simulation(self) -> Simulation:
         if self.simulation is not None:
             return self.simulation
-        installed = SAME_ANSWERS in REGISTRY.names()
-        return Simulation(tangential=SAME_ANSWERS) if installed else Simulation()
+        try:
+            return Simulation(tangential=SAME_ANSWERS)
+        except ValueError:  # blocked, or not installed
+            return Simulation()
 
 
 @named_arguments("collide(encounter, Simulation(tangential='springs'))")

@@ -99,7 +99,7 @@ class Encounter:
         Coulomb's mu, at least 0.
     normal : vector
         From the centre of the sphere towards the target: to the target's centre, or at right
-        angles into its surface. Of any length but zero; it is normalised.
+        angles into its surface. Of any length but zero: only the direction counts.
     velocity, target_velocity : vector
         Of the centres (of the surface of a half-space), in m/s; by default the target rests.
     spin, target_spin : vector
@@ -230,7 +230,9 @@ class Encounter:
         """The scene in the plane of friction, in which the target rests and does not spin.
 
         Its tangential velocity is that of the centres relative to each other, along the slip;
-        its spin is that which alone would make the same slip: (R1 omega1 + R2 omega2)/R1.
+        its spin is that which alone would make the same slip: (R1 omega1 + R2 omega2)/R1. So the
+        velocities and spins of its results are relative to the target; ``Collision.of`` gives each
+        body its own. Without slip it is the scene of a central impact.
 
         Raises
         ------

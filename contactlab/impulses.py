@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from contactlab.batch import locked
 from contactlab.bodies import Pair, Sphere
-from contactlab.checks import Real
+from contactlab.checks import Real, refuse
 from contactlab.encounter import LEAST, Contact, Encounter, components
 from contactlab.rebounds import rebound
+from contactlab.scene import LEAST_IMPULSE
 
 Array = NDArray[np.float64]
 
@@ -39,15 +40,33 @@ def elastic(part: Encounter, contact: Contact, pair: Pair) -> tuple[Any, Any, An
     whatever slip and friction are, it is finite and keeps its digits.
     """
     chi = pair.inertia_ratio
-    # m/s for each unit of psi, eq. (29)
-    unit: Any = part.friction_coefficient * contact.approach / pair.stiffness_ratio
     with np.errstate(all="ignore"):
+        # m/s for each unit of psi, eq. (29)
+        unit: Any = part.friction_coefficient * contact.approach / pair.stiffness_ratio
         psi1: Any = np.fmin(np.divide(contact.slip, unit), 4.0 * chi + 1.0)
         psi1 = np.where(contact.approach >= LEAST, psi1, 0.0)
         psi2: Any = rebound(psi1, chi) if part.shape else rebound(float(psi1), float(chi))
         change = (psi2 - psi1) * unit
         work = -pair.tangential_mass * change * (contact.slip + 0.5 * change)
     return -contact.approach, change, np.maximum(work, 0.0)
+
+
+def _check(part: Encounter, impulse: Any, change: Any) -> None:
+    """Refuse encounters whose numbers a float cannot hold; a scene does so for a simulation."""
+    if not np.min(impulse) >= LEAST_IMPULSE:
+        raise refuse(
+            "sphere, velocity",
+            float(np.min(impulse)),
+            f"mass times speed of approach must be at least {LEAST_IMPULSE:g} N s",
+            "give larger masses and speeds, or other units",
+        )
+    if not np.isfinite(np.sum(change)):
+        raise refuse(
+            "friction_coefficient",
+            part.friction_coefficient,
+            "with these velocities psi1 of eq. (29) cannot be held in floating point",
+            "give 0 for no friction, or less",
+        )
 
 
 def moved(encounter: Encounter, answers: Array | None = None, *, strict: bool = False) -> Moved:
@@ -74,6 +93,7 @@ def moved(encounter: Encounter, answers: Array | None = None, *, strict: bool = 
             raise encounter.separate()
         if answers is None:
             after, change, work = elastic(part, contact, pair)
+            _check(part, np.where(meets, pair.normal_mass * contact.approach, 1.0), change)
         else:
             after, change, work = answers[:, where]
         if not np.all(meets):

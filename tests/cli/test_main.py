@@ -112,8 +112,8 @@ def test_reader_that_has_gone_is_no_error():
 def test_interrupted_sweep_reports_what_is_done(tmp_path):
     path = tmp_path / "long.toml"
     path.write_text(
-        "[nondimensional]\nchi = 1\n[sweep]\npsi1 = {start = 0, stop = 3, count = 60000}\n"
-        "[simulation]\ntangential = 'coulomb'\nintegrator = 'symplectic'\n",
+        "[nondimensional]\nchi = 1\n[sweep]\npsi1 = {start = 6, stop = 9, count = 60000}\n"
+        "[simulation]\ntangential = 'springs'\nintegrator = 'symplectic'\n",
         encoding="utf-8",
     )
     talkative = "import sys; from contactlab.cli import main, progress; progress.QUIET = 0.0;"

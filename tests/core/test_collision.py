@@ -146,6 +146,9 @@ def test_bodies_that_separate_pass_if_asked(laws):
     assert np.allclose(made.target_spin[~away], alone.target_spin, rtol=0.0, atol=1e-9)
     assert "pass through untouched" in str(made.plan)
     none = collide(meeting(normal=(0, 0, 1)), simulation, separating="pass")
+    assert "pass through untouched" in str(none.plan)
+    with pytest.raises(ValueError, match="no bodies met"):
+        _ = none.result
     assert none.velocity.tolist() == [0.5, 0.0, -1.0]
     assert none.collided is False
 
@@ -211,6 +214,14 @@ def test_no_friction_no_slip_and_vast_slip():
     assert central.spin.tolist() == [0.0, 0.0, 7.0]
     vast = collide(meeting(velocity=(1e90, 0.0, -1.0)))
     assert vast.friction_work == pytest.approx(0.4 * BALL.mass * 1e90, rel=1e-12)
+
+
+def test_numbers_that_a_float_cannot_hold_are_refused():
+    with pytest.raises(ValueError, match="friction_coefficient"):
+        collide(meeting(friction_coefficient=1e250, velocity=(1e60, 0, -1e60)))
+    light = Sphere(0.01, STEEL, mass=1e-290)
+    with pytest.raises(ValueError, match="mass times speed"):
+        collide(meeting(sphere=light, velocity=(0.0, 0.0, -1e-9)))
 
 
 def test_the_plan_says_what_passes_through():
