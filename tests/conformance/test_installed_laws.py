@@ -16,6 +16,14 @@ FORMS = [
     ("tangential.annulus", {"annuli": 40, "displacement": "mean"}),
     ("tangential.mindlin_cap", {"form": "increment"}),
     ("tangential.mindlin_cap", {"form": "increment_rescaled"}),
+    ("normal.linear", {"restitution": 0.1, "stiffness": 1e7}),
+    ("normal.tsuji", {"restitution": 0.1}),
+    ("normal.hunt_crossley", {"damping": 0.2}),
+    ("normal.kuwabara_kono", {"relaxation_time": 1e-6}),
+    ("normal.walton_braun", {"restitution": 0.3, "stiffness": 1e7}),
+    ("normal.thornton", {"yield_pressure": 1e9}),
+    ("normal.jkr", {"work_of_adhesion": 20.0}),
+    ("normal.dmt", {"work_of_adhesion": 20.0}),
 ]
 CHOSEN = [(name, OPTIONS.get(name, {})) for name in REGISTRY.names()] + FORMS
 LAWS = [REGISTRY.create(name, **options) for name, options in CHOSEN]
