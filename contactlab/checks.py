@@ -232,7 +232,7 @@ def choice(*words: str, default: str) -> Any:
     return attrs.field(
         default=default,
         converter=attrs.Converter(checked, takes_field=True),
-        metadata={"unit": ""},
+        metadata={"unit": "", "words": words},
     )
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.analysis.interrupts import uninterrupted
 from contactlab.checks import refuse
+from contactlab.error_estimate import estimated
 from contactlab.quantities import quantity_named
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
@@ -116,6 +117,22 @@ class Comparison:
         """Return a law's value less that of the first law."""
         return self.values(quantity, law) - self.values(quantity, self.names[0])
 
+    def numerical_error(self, law: str) -> Array:
+        """Return the numerical error of psi2 as estimated, or else declared; NaN if neither is."""
+        result = next(run.result for run in self.runs if run.name == law)
+        estimate = np.nan if result.psi2_error_estimate is None else result.psi2_error_estimate
+        error = np.where(np.isfinite(estimate), estimate, result.plan.psi2_error)
+        return np.array(np.broadcast_to(error, result.scene.shape))
+
+    def band(self, quantity: str, law: str) -> Array:
+        """Return how far a quantity may be off by the numerical error of psi2; NaN if unknown."""
+        result = next(run.result for run in self.runs if run.name == law)
+        with np.errstate(all="ignore"):
+            off = self.numerical_error(law) / result.scene.psi_scale
+            change = np.asarray(result.motion.slip_velocity_change)
+        ends = [_values(quantity, _shifted(result, change + sign * off)) for sign in (1.0, -1.0)]
+        return np.array(0.5 * np.abs(ends[0] - ends[1]))
+
     def failures(self) -> list[str]:
         """Return one sentence for each law that did not follow every impact, measured or not."""
         found = [_failure(run.name, run.result) for run in self.runs]
@@ -132,6 +149,7 @@ def compare(
     simulations: Mapping[str, Simulation],
     *,
     history: bool = False,
+    estimate_error: bool = False,
     progress: Callable[[int, int], object] | None = None,
 ) -> Comparison:
     """Run each simulation on ``scene``, and at the measured points where a file has them.
@@ -144,6 +162,8 @@ def compare(
         By the names under which they are to appear.
     history : bool
         Keep the course of a single impact; a sweep has none.
+    estimate_error : bool
+        Estimate the numerical error of psi2 of each law, from runs at other resolutions.
     progress : callable, optional
         Called as ``progress(done, total)`` after each run.
 
@@ -169,7 +189,8 @@ def compare(
         jobs: list[Measured | None] = [None, *series]
         for number, job in enumerate(jobs):
             if job is None:
-                runs.append(_timed(name, simulation, single, history=history and not single.shape))
+                run = _timed(name, simulation, single, history=history and not single.shape)
+                runs.append(_estimated(run, simulation) if estimate_error else run)
             else:
                 assert file is not None
                 there = file.scene_at(**{job.against: job.x})
@@ -193,6 +214,16 @@ def _values(quantity: str, result: ImpactResult) -> Array:
     """Return a quantity of a result, with NaN for impacts that failed."""
     good = np.asarray(result.status, dtype=object) == Status.SUCCESS
     return np.where(good, quantity_named(quantity).of(result), np.nan)
+
+
+def _shifted(result: ImpactResult, change: Array) -> ImpactResult:
+    """Return a result with another change of slip velocity."""
+    return attrs.evolve(result, motion=attrs.evolve(result.motion, slip_velocity_change=change))
+
+
+def _estimated(run: LawRun, simulation: Simulation) -> LawRun:
+    result = attrs.evolve(run.result, psi2_error_estimate=estimated(simulation, run.result))
+    return attrs.evolve(run, result=result)
 
 
 def _failure(name: str, result: ImpactResult) -> str:

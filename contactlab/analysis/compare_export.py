@@ -6,9 +6,11 @@ import csv
 from collections.abc import Iterator, Sequence
 from typing import Any, TextIO
 
+import attrs
 import numpy as np
 
 from contactlab.analysis.compare import Comparison
+from contactlab.analysis.scores import Score
 from contactlab.json_values import json_value
 from contactlab.quantities import QUANTITIES
 
@@ -27,6 +29,7 @@ def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]
                 "status": json_value(np.array(run.result.status, dtype=object))
                 if comparison.scene.shape
                 else json_value(run.result.status),
+                "psi2_numerical_error": _list(comparison.numerical_error(run.name)),
                 "values": {name: _list(comparison.values(name, run.name)) for name in quantities},
                 "differences": {
                     name: _list(comparison.difference(name, run.name)) for name in quantities
@@ -56,6 +59,11 @@ def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]
             for agreement in comparison.agreements
         ],
     }
+
+
+def plain_score(score: Score) -> dict[str, Any]:
+    """Return a score as plain numbers and text, None where a number is not known."""
+    return {name: json_value(value) for name, value in attrs.asdict(score).items()}
 
 
 def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO) -> None:

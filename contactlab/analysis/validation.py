@@ -11,9 +11,11 @@ import numpy as np
 from contactlab.analysis.evidence import Evidence
 from contactlab.analysis.hertz_scalars import Scalars, hertz_scalars
 from contactlab.analysis.interrupts import uninterrupted
+from contactlab.analysis.scores import DEFAULT_SCENE
 from contactlab.closed_forms import hertz_scales, rigid_body_rebound
 from contactlab.registry import REGISTRY
 from contactlab.scene import Scene
+from contactlab.scene_file import read_scene
 from contactlab.simulation import Simulation
 
 #: psi2 of the continuum limit for seven psi1 and three chi, to ten digits, by two independent
@@ -44,6 +46,10 @@ COMPOSITIONS: tuple[tuple[str, dict[str, Any], str, dict[str, Any], float], ...]
     ("annulus", {"annuli": 50}, "symplectic", {"steps": 200}, 0.03),
     ("annulus", {"annuli": 50}, "paper", {"steps": 500}, 0.03),
 )
+#: Form of ``mindlin_cap`` of each series of ``compiled_codes.toml``; implementations of one law
+#: agree to about 1e-3.
+CODE_FORMS = ("displacement", "increment", "increment_rescaled")
+CODE_BOUND = 2e-3
 
 
 @attrs.frozen(kw_only=True)
@@ -85,6 +91,9 @@ def _checks() -> Iterator[Callable[[], Finding]]:
             yield lambda case=case: _scalars(  # type: ignore[misc]
                 case, ("approach", "duration"), OTHER_READING
             )
+    if "tangential.mindlin_cap" in installed:
+        for number, form in enumerate(CODE_FORMS):
+            yield lambda number=number, form=form: _codes(number, form)  # type: ignore[misc]
 
 
 def _hertz() -> Finding:
@@ -144,6 +153,21 @@ def _reference(
         against="21 reference values of psi2",
         difference=worst,
         bound=bound,
+    )
+
+
+def _codes(number: int, form: str) -> Finding:
+    file = read_scene(DEFAULT_SCENE)
+    series = file.measured[number]
+    sim = Simulation(
+        tangential=REGISTRY.create("tangential.mindlin_cap", form=form), integrator="symplectic"
+    )
+    psi2 = uninterrupted(sim.sweep(file.scene_at(psi1=series.x))).psi2
+    return Finding(
+        what=f"mindlin_cap, form={form}: psi2",
+        against=series.label,
+        difference=float(np.max(np.abs(psi2 - series.values))),
+        bound=CODE_BOUND,
     )
 
 

@@ -1,7 +1,12 @@
 """Run several laws on one scene or sweep: differences, cost, and measured values.
 
+With --all every installed friction law that fits is run, each under the integrator that suits it,
+and gets one row: its distance from the exact law, energy made from nothing, force from normal load
+alone, cost. Without a scene that is a solid sphere hit at 65 angles.
+
 Examples
 --------
+  contactlab compare --all --figure laws.png
   contactlab compare examples/kharaz2001.toml --figure kharaz.png
   contactlab compare examples/steel_ball.toml --tangential annulus,coulomb
   contactlab compare examples/sweep.toml --integrator paper,symplectic --csv > sweep.csv
@@ -19,7 +24,8 @@ from pathlib import Path
 from typing import Any
 
 from contactlab.analysis.compare import Comparison, compare
-from contactlab.analysis.compare_export import to_dict, write_csv
+from contactlab.analysis.compare_export import plain_score, to_dict, write_csv
+from contactlab.analysis.scores import DEFAULT_SCENE, candidates, scores
 from contactlab.cli import arguments as shared
 from contactlab.cli import side_by_side
 from contactlab.quantities import quantity_named
@@ -33,7 +39,17 @@ DEFAULT_LAWS = ["annulus", "coulomb"]
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the scene, the laws, the quantities and the outputs."""
-    parser.add_argument("scene", metavar="SCENE.toml", help="a scene or a sweep")
+    parser.add_argument(
+        "scene",
+        metavar="SCENE.toml",
+        nargs="?",
+        help="a scene or a sweep (default: psi2 over psi1 of a solid sphere, chi = 49/34)",
+    )
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help="every installed tangential law that fits, one row a law",
+    )
     shared.add_laws(parser, many=True)
     parser.add_argument(
         "--quantity",
@@ -47,6 +63,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="also draw the comparison",
     )
+    parser.add_argument(
+        "--estimate-error",
+        action="store_true",
+        help="estimate the numerical error of each law for the figure's bands (--all always does)",
+    )
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="print JSON instead of tables")
     form.add_argument("--csv", action="store_true", help="print CSV instead of tables")
@@ -57,21 +78,29 @@ def execute(arguments: argparse.Namespace) -> int:
     """Compare and report; 1 if a law did not follow every impact."""
     for quantity in arguments.quantity or ():
         quantity_named(quantity, where="--quantity")
-    file = read_scene(arguments.scene)
-    simulations = _simulations(arguments, file)
+    file = read_scene(arguments.scene or DEFAULT_SCENE)
+    simulations = _all(arguments, file) if arguments.all else _simulations(arguments, file)
     comparison = compare(
         file,
         simulations,
-        history=bool(arguments.figure),
+        history=bool(arguments.figure) and not arguments.all,
+        estimate_error=arguments.estimate_error or arguments.all,
         progress=shared.progress(arguments.progress, "runs"),
     )
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
-    saved = shared.save((arguments.figure, lambda path: _draw(path, comparison, quantities)))
+    draw = _draw_all if arguments.all else _draw
+    saved = shared.save((arguments.figure, lambda path: draw(path, comparison, quantities)))
     if arguments.json:
         content = to_dict(comparison, quantities) | {"title": file.title}
+        if arguments.all:
+            found = scores(comparison, simulations)
+            content["scores"] = [plain_score(score) for score in found]
         print(json.dumps(content, indent=2, allow_nan=False))
     elif arguments.csv:
         write_csv(comparison, quantities, sys.stdout)
+    elif arguments.all:
+        found = scores(comparison, simulations)
+        print(side_by_side.describe_scores(found, comparison, file))
     else:
         print(side_by_side.describe(comparison, quantities, file))
     failures = comparison.failures()
@@ -86,8 +115,43 @@ def _draw(path: Path, comparison: Comparison, quantities: Sequence[str]) -> None
     draw_comparison(path, comparison, quantities)
 
 
+def _draw_all(path: Path, comparison: Comparison, quantities: Sequence[str]) -> None:
+    from contactlab.cli.drawing import draw_all  # matplotlib only when drawing
+
+    draw_all(path, comparison, quantities[0])
+
+
+def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation]:
+    """Return every law that fits, and say on stderr which do not.
+
+    Raises
+    ------
+    ValueError
+        With laws that were asked for beside all, or a file of a single impact.
+    """
+    if arguments.tangential or arguments.integrator or (arguments.normal and arguments.normal[1:]):
+        raise ValueError(
+            "--all takes every tangential law, each under its integrator; leave out --tangential "
+            "and --integrator, and name one normal law at most"
+        )
+    for path, _ in arguments.settings:
+        if path.count(".") < 2 and not path.startswith("normal."):
+            example = "--set integrator.symplectic.steps=400"
+            raise ValueError(f"--set {path}: with --all say of which law, such as {example}")
+    if not file.scene.shape:
+        raise ValueError(f"{file.path}: --all compares over a sweep; give the file a [sweep]")
+    chosen = file.laws.choose(normal=arguments.normal[0] if arguments.normal else None)
+    found = candidates(chosen.set(dict(arguments.settings)))
+    for name, reason in found.left_out.items():
+        print(f"contactlab compare: {name} is left out: {reason}", file=sys.stderr)
+    return found.simulations
+
+
 def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation]:
-    """Return every combination of the laws asked for, named by what differs between them."""
+    """Return every combination of the laws asked for, named by what differs between them.
+
+    A file's integrator is taken for the laws that it runs, another that suits for the others.
+    """
     asked = {kind: getattr(arguments, kind) or [getattr(file.laws, kind)] for kind in KINDS}
     if arguments.tangential is None:
         own = file.laws.resolved().tangential
@@ -101,7 +165,8 @@ def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Si
     used: set[str] = set()
     for combination in itertools.product(*asked.values()):
         chosen = dict(zip(KINDS, combination, strict=True))
-        choice = file.laws.choose(**chosen).resolved()
+        choice = file.laws.choose(**chosen)
+        choice = (choice if arguments.integrator else choice.suited()).resolved()
         settings = {path: value for path, value in arguments.settings if _knows(choice, path, used)}
         name = " + ".join(getattr(choice, kind) for kind in several)
         simulations[name] = choice.set(settings).simulation()

@@ -7,7 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from contactlab.analysis.compare import Comparison
-from contactlab.figures.comparison import differences, forces_over_contact, laws_over_sweep
+from contactlab.figures.comparison import (
+    all_laws,
+    differences,
+    forces_over_contact,
+    laws_over_sweep,
+)
 from contactlab.figures.files import save
 
 
@@ -32,6 +37,14 @@ def draw_comparison(path: Path, comparison: Comparison, quantities: Sequence[str
         axes[0, 0].figure.align_ylabels()
 
     save(path, draw, rows=2, columns=len(panels), heights=(2.4, 1.0))
+
+
+def draw_all(path: Path, comparison: Comparison, quantity: str) -> None:
+    """Draw every law over the sweep, and below what parts it from the first."""
+    save(
+        path, lambda axes: all_laws(*axes[:, 0], comparison, quantity),
+        rows=2, heights=(1.9, 1.0), wide=True,
+    )  # fmt: skip
 
 
 def _labels(axes: Any) -> list[str]:

@@ -8,12 +8,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from contactlab.analysis.compare import Agreement, Comparison
+from contactlab.analysis.scores import Score
 from contactlab.cli.table import table
 from contactlab.export import COMPARISON_TABLE
 from contactlab.quantities import QUANTITIES
 from contactlab.reading import number, time
 from contactlab.scene_file import SceneFile
 from contactlab.scene_file.entries import entry_unit
+
+#: What a row of scores shows as 0: rounding.
+ZERO = 1e-12
 
 
 def default_quantities(comparison: Comparison) -> list[str]:
@@ -48,6 +52,41 @@ def describe(comparison: Comparison, quantities: Sequence[str], file: SceneFile)
         parts.append(_agreement(comparison))
     parts.append(_cost(comparison))
     return "\n\n".join(parts)
+
+
+def describe_scores(scores: Sequence[Score], comparison: Comparison, file: SceneFile) -> str:
+    """Return title and one row a law; the rows after the first in the order of their rms."""
+    reference = scores[0].law
+    headings = [
+        "law", "integrator", "psi2: rms", "worst", "at psi1", "numerical error",
+        "energy from nothing", "force from load alone", "time an impact",
+    ]  # fmt: skip
+    rows = []
+    for score in [scores[0], *sorted(scores[1:], key=lambda score: score.rms)]:
+        distance: list[object] = [score.rms, score.worst, score.where]
+        if score.law == reference:
+            distance = ["reference", "", ""]
+        rows.append([
+            score.law, score.integrator, *(_short(each) for each in distance),
+            *map(_short, (score.numerical_error, score.energy_made, score.pressed_force)),
+            time(score.run_time_per_impact),
+        ])  # fmt: skip
+    count = comparison.scene.shape[0]
+    notes = (
+        f"psi2: distance from {reference} over {count} impacts, which is the error of the model "
+        "and the numerical error together. Numerical error of psi2: the largest that is "
+        "estimated, or declared. Energy from nothing: over the energy at the start. Force from "
+        "load alone: what pressing adds to a sheared contact, over mu P_max; a dash for laws that "
+        "answer to no step. Time: in the sweep."
+    )
+    parts = [part for part in (file.title, _wrapped(file.citation)) if part]
+    return "\n\n".join([*parts, table(headings, rows), _wrapped(notes)])
+
+
+def _short(value: object) -> str:
+    if isinstance(value, str):
+        return value
+    return "0" if abs(float(value)) < ZERO else number(value, digits=2)  # type: ignore[arg-type]
 
 
 def _one_impact(comparison: Comparison, quantities: Sequence[str]) -> str:

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from contactlab.analysis.compare import Agreement, Comparison
 from contactlab.analysis.paper_figures import scaled_forces
 from contactlab.figures.style import (
+    LAW_COLOURS,
     MEASURED_COLOUR,
     friction_limit,
     label,
@@ -25,6 +26,78 @@ POINTS: dict[str, Any] = {
     "markerfacecolor": "white", "markeredgewidth": 1.1, "elinewidth": 0.9, "capsize": 2.0,
     "zorder": 5,
 }  # fmt: skip
+
+
+#: Laws this close to the first, over the range drawn, would lie within its line: they are named
+#: with it.
+AS_GOOD_AS = 0.01
+#: A band narrower than this, over the range drawn, would not be seen.
+VISIBLE = 0.004
+FORM_DASHES: tuple[Any, ...] = ("-", (0, (6, 1.5)), (0, (2.5, 1.2)), (0, (1, 1)))
+MARKERS = "os^Dv"
+#: What points without error bars take of the look of measured ones.
+CODE_LOOK = ("color", "linestyle", "markersize", "markerfacecolor", "markeredgewidth", "zorder")
+
+
+def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) -> None:
+    """Draw many laws: the first thick, above; below what the others are off by.
+
+    Laws that agree with the first are named with it; those that make no force are left out.
+    Forms of one law share its colour. Bands are numerical errors.
+    """
+    varied, x = _abscissa(comparison, None)
+    first, *others = comparison.names
+    exact = comparison.values(quantity, first)
+    size = float(np.nanmax(exact) - np.nanmin(exact)) or 1.0
+    drawn, close = [], []
+    for name in others:
+        off = np.abs(comparison.difference(quantity, name))
+        if (np.nan_to_num(comparison.values("psi2", name) - comparison.scene.psi1) == 0.0).all():
+            continue
+        (close if np.nanmax(off) < AS_GOOD_AS * size else drawn).append(name)
+    drawn.sort(key=lambda name: -float(np.nanmax(np.abs(comparison.difference(quantity, name)))))
+    families = list(dict.fromkeys(name.split()[0] for name in sorted(drawn)))
+    known = f"{first}, the reference"
+    if close:
+        known += "; on its line:\n" + ",\n".join(close)
+    upper.plot(x, exact, color="black", linewidth=3.2, label=verbatim(known), zorder=4)
+    zero_line(upper), zero_line(lower)
+    forms: dict[str, int] = {}
+    for name in drawn:
+        family = name.split()[0]
+        number = forms[family] = forms.get(family, -1) + 1
+        look: Any = {
+            "color": LAW_COLOURS[families.index(family) % len(LAW_COLOURS)],
+            "linestyle": FORM_DASHES[number % len(FORM_DASHES)],
+            "linewidth": 1.6,
+        }
+        values, apart = comparison.values(quantity, name), comparison.difference(quantity, name)
+        upper.plot(x, values, label=verbatim(name), zorder=3, **look)
+        lower.plot(x, apart, **look)
+        band(upper, x, values, comparison.band(quantity, name), size, look["color"])
+        band(lower, x, apart, comparison.band(quantity, name), size, look["color"])
+    _codes(upper, comparison, quantity, varied)
+    upper.set_ylabel(label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
+    lower.set_ylabel(rf"law $-$ {verbatim(first)}")
+    lower.set_xlabel(label(varied, entry_unit(varied)))
+    upper.legend(loc="upper left", bbox_to_anchor=(1.0, 1.03), borderaxespad=0.0)
+
+
+def _codes(axes: Axes, comparison: Comparison, quantity: str, varied: str) -> None:
+    """Draw the series that the scene file carries, as points."""
+    found = [item.measured for item in comparison.agreements]
+    for number, item in enumerate(one for one in found if (one.quantity, one.against) == (
+        quantity, varied
+    )):  # fmt: skip
+        look = {key: POINTS[key] for key in CODE_LOOK} | {"marker": MARKERS[number % len(MARKERS)]}
+        axes.plot(item.x, item.values, label=verbatim(item.label), **look)
+
+
+def band(axes: Axes, x: Any, middle: Any, half: Any, size: float, colour: Any) -> None:
+    """Shade the numerical error around a curve, where it is known and wide enough to be seen."""
+    half = np.nan_to_num(half)
+    if float(np.max(half)) >= VISIBLE * size:
+        axes.fill_between(x, middle - half, middle + half, color=colour, alpha=0.22, linewidth=0.0)
 
 
 def laws_over_sweep(
@@ -44,7 +117,10 @@ def laws_over_sweep(
     """
     varied, x = _abscissa(comparison, agreement)
     for number, name in enumerate(comparison.names):
-        axes.plot(x, comparison.values(quantity, name), label=verbatim(name), **law_style(number))
+        values, style = comparison.values(quantity, name), law_style(number)
+        axes.plot(x, values, label=verbatim(name), **style)
+        size = float(np.nanmax(values) - np.nanmin(values)) if np.isfinite(values).any() else 1.0
+        band(axes, x, values, comparison.band(quantity, name), size or 1.0, style["color"])
     if agreement is not None:
         measured = agreement.measured
         axes.errorbar(

@@ -82,6 +82,19 @@ class LawChoice:
             made.append(choice.made(kind))
         return choice
 
+    def suited(self) -> LawChoice:
+        """Return the choice without its integrator, if that does not run the tangential law."""
+        if self.integrator is None:
+            return self
+        free = attrs.evolve(
+            self,
+            integrator=None,
+            options={key: value for key, value in self.options.items() if key != "integrator"},
+        ).resolved()
+        kept = attrs.evolve(free, integrator=self.integrator, options=self.options)
+        laws = (kept.made("normal"), kept.made("tangential"), kept.made("integrator"))
+        return free if composition.misfit(*laws) else kept
+
     def made(self, kind: str) -> Any:
         """Return the law of one kind with its options."""
         name = f"{kind}.{getattr(self, kind)}"

@@ -197,12 +197,14 @@ class MindlinCap(SteppedTangentialLaw):
         stiffness: Any = state.modulus * after.radius
         cap = state.friction_coefficient * after.friction_load
         compliance = (stiffness > 0.0) / (stiffness + (stiffness == 0.0))
-        shrunk, shrinks = 1.0, after.radius < before.radius
+        shrunk, entered, shrinks = 1.0, 1.0, after.radius < before.radius
         if self.form.endswith("rescaled"):
             wide = before.radius + (before.radius == 0.0)
             shrunk = np.where(shrinks, after.radius / wide, 1.0)
+            # u/b grows by the mean of 1/b times dD, b² changing evenly.
+            entered = np.where(shrinks, 2.0 * after.radius / (wide + after.radius), 1.0)
         if self.form.startswith("displacement"):
-            trial = state.held * shrunk + increment.displacement
+            trial = state.held * shrunk + entered * increment.displacement
             held = cut(trial, cap * compliance)
             spring, slip = stiffness * held, trial - held
         else:

@@ -14,6 +14,9 @@ OPTIONS = {
 #: Laws that an option makes another law.
 FORMS = [
     ("tangential.annulus", {"annuli": 40, "displacement": "mean"}),
+    ("tangential.linear_spring", {"damping": 0.3}),
+    ("tangential.mindlin_cap", {"stiffness_factor": 2.0 / 3.0, "damping": 0.2}),
+    ("tangential.mindlin_cap", {"form": "displacement_rescaled"}),
     ("tangential.mindlin_cap", {"form": "increment"}),
     ("tangential.mindlin_cap", {"form": "increment_rescaled"}),
     ("normal.linear", {"restitution": 0.1, "stiffness": 1e7}),
