@@ -120,9 +120,8 @@ def _turned(memory: Memory, step: Step) -> Memory:
         # It began to slip between the middle of the last step and the middle of this one, and
         # the gap to the limit then stood still.
         began = -memory.outrun / (ahead - memory.outrun) if memory.outrun < 0.0 else 0.5
-        later = (began - 0.5) * (step.limit - memory.limit)
-        at = max(memory.limit + later, 0.5 * memory.limit)
-        held = min((begun * memory.force + at - memory.limit) / at, MOST_HELD)
+        later = max((began - 0.5) * (step.limit - memory.limit), -0.5 * memory.limit)
+        held = min((begun * memory.force + later) / (memory.limit + later), MOST_HELD)
         slipped = _edge((begun * memory.force / memory.limit - held) / (1.0 - held))
     return memory._replace(sense=begun, branch=LOADING, slipped=slipped, held=held)
 

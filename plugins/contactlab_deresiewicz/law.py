@@ -26,7 +26,7 @@ from contactlab_deresiewicz.branches import Memory, Step, followed
 LARGEST_IMBALANCE = 0.1
 SHORT_MEMORY = (
     "the contact remembers its force and two turning points, not its traction, which moves psi2 "
-    "of an elastic impact by up to about 0.1 (model, not numerical error)"
+    "of solid spheres by up to about 0.15 (model, not numerical error)"
 )
 
 

@@ -30,8 +30,8 @@ DAMPED: Mapping[str, str] = {
 }
 
 PARTIAL_SLIP = (
-    "one spring: no part of the contact slips before the whole does, which moves psi2 by up to "
-    "about 1 (model, not numerical error)"
+    "one spring: no part of the contact slips before the whole does, which moves psi2 of "
+    "solid spheres by up to about 0.7 (model, not numerical error)"
 )
 
 

@@ -62,8 +62,8 @@ DAMPED = {
     "stiffness": "the force of a dashpot is no force of displacement",
 }
 PARTIAL_SLIP = (
-    "one spring: no part of the contact slips before the whole does, which moves psi2 by up to "
-    "about 0.6 (model, not numerical error)"
+    "one spring: no part of the contact slips before the whole does, which moves psi2 of "
+    "solid spheres by up to about 0.7 (model, not numerical error)"
 )
 
 #: Measured over 100 runs of 29 impacts against the law's own limit, see ``ErrorModel``.

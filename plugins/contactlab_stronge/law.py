@@ -76,7 +76,7 @@ class Stronge(WholeImpactTangentialLaw):
         """Return that the contact is lumped."""
         return (
             "lumped contact: springs that do not know the contact's area, and no partial slip, "
-            "which moves psi2 by up to about 1 (model, not numerical error)",
+            "which moves psi2 of solid spheres by up to about 0.4 (model, not numerical error)",
         )
 
 

@@ -72,5 +72,5 @@ class Walton(WholeImpactTangentialLaw):
         """Return that one number stands for the elasticity of the surfaces."""
         return (
             "hard spheres: one slip restitution stands for the tangential elasticity, at every "
-            "angle; it moves psi2 by up to about 1 (model, not numerical error)",
+            "angle; it moves psi2 of solid spheres by up to about 0.8 (model, not numerical error)",
         )
