@@ -91,7 +91,7 @@ def candidates(laws: LawChoice) -> Candidates:
 def _forms(law: TangentialLaw) -> list[dict[str, str]]:
     """Return the choices of words that a law has: none, for its defaults, and each other one."""
     found: list[dict[str, str]] = [{}]
-    for field in attrs.fields(type(law)):
+    for field in getattr(type(law), "__attrs_attrs__", ()):  # a law of a stranger may be no attrs
         others = field.metadata.get("words", ())
         found += [{field.name: word} for word in others if word != getattr(law, field.name)]
     return found
@@ -108,7 +108,7 @@ def scores(comparison: Comparison, simulations: dict[str, Simulation]) -> list[S
         known = np.isfinite(off)
         place = int(np.argmax(np.where(known, off, -1.0)))
         whole = isinstance(law, WholeImpactTangentialLaw)
-        integrator = type(simulations[run.name].integrator).__name__.lower()
+        integrator = run.result.laws["integrator"].partition(" ")[0]
         found.append(
             Score(
                 law=run.name,

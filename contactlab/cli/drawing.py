@@ -41,10 +41,11 @@ def draw_comparison(path: Path, comparison: Comparison, quantities: Sequence[str
 
 def draw_all(path: Path, comparison: Comparison, quantity: str) -> None:
     """Draw every law over the sweep, and below what parts it from the first."""
-    save(
-        path, lambda axes: all_laws(*axes[:, 0], comparison, quantity),
-        rows=2, heights=(1.9, 1.0), wide=True,
-    )  # fmt: skip
+
+    def draw(axes: Any) -> None:
+        all_laws(axes[0, 0], axes[1, 0], comparison, quantity)
+
+    save(path, draw, rows=2, heights=(1.9, 1.0), wide=True)
 
 
 def _labels(axes: Any) -> list[str]:

@@ -49,7 +49,8 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
     first, *others = comparison.names
     exact = comparison.values(quantity, first)
     size = float(np.nanmax(exact) - np.nanmin(exact)) or 1.0
-    drawn, close = [], []
+    drawn: list[str] = []
+    close: list[str] = []
     for name in others:
         off = np.abs(comparison.difference(quantity, name))
         if (np.nan_to_num(comparison.values("psi2", name) - comparison.scene.psi1) == 0.0).all():
@@ -61,7 +62,8 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
     if close:
         known += "; on its line:\n" + ",\n".join(close)
     upper.plot(x, exact, color="black", linewidth=3.2, label=verbatim(known), zorder=4)
-    zero_line(upper), zero_line(lower)
+    for axes in (upper, lower):
+        zero_line(axes)
     forms: dict[str, int] = {}
     for name in drawn:
         family = name.split()[0]

@@ -197,7 +197,9 @@ class MindlinCap(SteppedTangentialLaw):
         stiffness: Any = state.modulus * after.radius
         cap = state.friction_coefficient * after.friction_load
         compliance = (stiffness > 0.0) / (stiffness + (stiffness == 0.0))
-        shrunk, entered, shrinks = 1.0, 1.0, after.radius < before.radius
+        shrunk: Any = 1.0
+        entered: Any = 1.0
+        shrinks = after.radius < before.radius
         if self.form.endswith("rescaled"):
             wide = before.radius + (before.radius == 0.0)
             shrunk = np.where(shrinks, after.radius / wide, 1.0)
