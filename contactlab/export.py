@@ -17,6 +17,7 @@ import numpy as np
 
 from contactlab.collision import Collision
 from contactlab.files import write_table, written
+from contactlab.grid import Grid, product
 from contactlab.json_values import json_value
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
@@ -63,7 +64,7 @@ COMPARISON_TABLE = (
 
 def to_dict(result: ImpactResult) -> dict[str, Any]:
     """Return everything but the history as plain numbers, lists and text."""
-    numbers = {name: json_value(read(result)) for name, _, read in COLUMNS}
+    numbers = {name: json_value(values) for name, _, values in columns(result)}
     return numbers | {
         "detail": json_value(result.motion.detail),
         "psi2_error_estimate": json_value(result.psi2_error_estimate),
@@ -102,9 +103,10 @@ def write_json(result: ImpactResult, path: str | Path) -> None:
 
 def write_csv(result: ImpactResult, path: str | Path) -> None:
     """Write one row an impact, the unit in each heading."""
-    table = [_spread(read(result), result.scene.shape) for _, _, read in COLUMNS]
-    headings = [heading(name, unit, result.scene) for name, unit, _ in COLUMNS]
-    write_table(path, headings, list(zip(*table, strict=True)))
+    table = columns(result)
+    headings = [heading(name, unit, result.scene) for name, unit, _ in table]
+    cells = [_spread(values, result.scene.shape) for _, _, values in table]
+    write_table(path, headings, list(zip(*cells, strict=True)))
 
 
 def write_history_csv(result: ImpactResult, path: str | Path) -> None:
@@ -125,18 +127,30 @@ def write_history_csv(result: ImpactResult, path: str | Path) -> None:
 
 def write_npz(result: ImpactResult, path: str | Path) -> None:
     """Write every column, and the history's arrays with the prefix ``history_``."""
-    arrays = {
-        name: np.array(_spread(read(result), result.scene.shape)) for name, _, read in COLUMNS
-    }
+    arrays = {name: _flat(values, result.scene.shape) for name, _, values in columns(result)}
     if result.history is not None:
-        columns = result.history.columns() | result.history.fields
-        arrays |= {f"history_{name}": column for name, column in columns.items()}
+        course = result.history.columns() | result.history.fields
+        arrays |= {f"history_{name}": column for name, column in course.items()}
     with written(path, binary=True) as stream:  # a path that ends otherwise would get .npz added
         np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
 
 
 #: Form of file by the end of its name.
 WRITERS = {".json": write_json, ".csv": write_csv, ".npz": write_npz}
+
+
+def columns(result: ImpactResult) -> list[tuple[str, str, Any]]:
+    """Return name, unit and values of every column, those entries of a grid first that are none."""
+    found = [(name, unit, read(result)) for name, unit, read in COLUMNS]
+    if not isinstance(result.scene, Grid):
+        return found
+    from contactlab.scene_file.entries import UNITS  # only for those who have a grid
+
+    varied = product(result.scene.axes)
+    for name, _, _ in COLUMNS:
+        varied.pop(name, None)
+    units = {name: UNITS.get(name.rpartition(".")[2], "") for name in varied}
+    return [(name, units[name], values) for name, values in varied.items()] + found
 
 
 def heading(name: str, unit: str, scene: Scene) -> str:
@@ -147,6 +161,14 @@ def heading(name: str, unit: str, scene: Scene) -> str:
 def unit_in(unit: str, scene: Scene) -> str:
     """Return the unit that a column has in ``scene``: the paper's own have only angles."""
     return "1" if scene.sphere is None and unit not in ("rad", "deg") else unit
+
+
+def _flat(value: Any, shape: tuple[int, ...]) -> Any:
+    """Return a column as an array of numbers, or of the names of statuses."""
+    array = np.asarray(math.nan if value is None else value)
+    if array.dtype == object:
+        return np.array(_spread(value, shape))
+    return np.broadcast_to(array.astype(np.float64), shape).ravel()
 
 
 def _spread(value: Any, shape: tuple[int, ...]) -> list[Any]:

@@ -3,39 +3,43 @@
 from __future__ import annotations
 
 import importlib
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab.export import COLUMNS, unit_in
+from contactlab import export
 from contactlab.grid import Grid
 from contactlab.result import ImpactResult
 
-#: Units of the entries of a scene that are no columns of a result.
-OTHER_UNITS = {
-    "friction_coefficient": "1", "speed": "m/s", "angle_deg": "deg", "angle": "rad",
-    "radius": "m", "mass": "kg", "gyration_ratio": "1", "density": "kg/m³",
-    "shear_modulus": "Pa", "young_modulus": "Pa", "poisson_ratio": "1",
-}  # fmt: skip
+
+class Labelled(NamedTuple):
+    """The columns of a result that are defined for its scene, and their axes.
+
+    Attributes
+    ----------
+    columns : dict of str to array, shape of the scene
+        Without those that are axes; statuses by their names.
+    axes : dict of str to array, shape (n_i,)
+        Of a grid; empty for any other batch, and for one impact.
+    units : dict of str to str
+        Of both; empty for words.
+    """
+
+    columns: dict[str, Any]
+    axes: dict[str, Any]
+    units: dict[str, str]
 
 
 def to_dataframe(result: ImpactResult) -> Any:
     """Return a ``pandas.DataFrame`` of one row an impact; see ``ImpactResult.to_dataframe``."""
     pandas = _needed("pandas", "to_dataframe")
-    columns = _columns(result)
-    axes = _axes(result)
+    columns, axes, units = _labelled(result)
     if axes:
         index = pandas.MultiIndex.from_product(list(axes.values()), names=list(axes))
     else:
         index = pandas.RangeIndex(np.size(result.status), name="impact")
-    content = {
-        name: np.broadcast_to(values, result.scene.shape).ravel()
-        for name, values in columns.items()
-        if name not in axes
-    }
-    frame = pandas.DataFrame(content, index=index)
-    frame.attrs["units"] = {name: _unit(name, result) for name in (*axes, *content)}
-    frame.attrs["laws"] = dict(result.laws)
+    frame = pandas.DataFrame({name: values.ravel() for name, values in columns.items()}, index)
+    frame.attrs |= {"units": units, **result.laws}
     return frame
 
 
@@ -45,54 +49,37 @@ def to_xarray(result: ImpactResult) -> Any:
     A batch that is no grid has the dimension ``impact``, or ``impact_0``, ``impact_1``, ...
     """
     xarray = _needed("xarray", "to_xarray")
-    axes, shape = _axes(result), result.scene.shape
-    if axes:
-        dimensions, shape = tuple(axes), tuple(map(np.size, axes.values()))
-    else:
-        names = [f"impact_{number}" for number in range(len(shape))]
-        dimensions = tuple(names) if len(shape) > 1 else ("impact",) * len(shape)
-    variables = {
-        name: (
-            dimensions,
-            np.broadcast_to(values, result.scene.shape).reshape(shape),
-            _attributes(name, result),
-        )
-        for name, values in _columns(result).items()
-        if name not in axes
-    }
-    coordinates = {name: (name, values, _attributes(name, result)) for name, values in axes.items()}
-    return xarray.Dataset(variables, coordinates, {"laws": str(dict(result.laws))})
+    columns, axes, units = _labelled(result)
+    dimensions, shape = tuple(axes), tuple(map(np.size, axes.values()))
+    if not axes:
+        shape = result.scene.shape
+        numbered = tuple(f"impact_{number}" for number in range(len(shape)))
+        dimensions = numbered if len(shape) > 1 else ("impact",) * len(shape)
+    attributes = {name: {"units": unit} if unit else {} for name, unit in units.items()}
+    return xarray.Dataset(
+        {
+            name: (dimensions, values.reshape(shape), attributes[name])
+            for name, values in columns.items()
+        },
+        {name: (name, values, attributes[name]) for name, values in axes.items()},
+        dict(result.laws),
+    )
 
 
-def _columns(result: ImpactResult) -> dict[str, Any]:
-    """Return the columns that are defined for the scene, by name; statuses by theirs."""
-    found = {}
-    for name, _, read in COLUMNS:
-        value = read(result)
-        if value is None:
+def _labelled(result: ImpactResult) -> Labelled:
+    scene = result.scene
+    axes = dict(scene.axes) if isinstance(scene, Grid) else {}
+    columns, units = {}, {}
+    for name, unit, values in export.columns(result):
+        if values is None:  # not defined for a scene without bodies
+            continue
+        units[name] = export.unit_in(unit, scene) if unit else ""
+        if name in axes:
             continue
         if name == "status":
-            statuses = np.array(value, dtype=object)
-            value = np.array([status.name for status in statuses.flat]).reshape(statuses.shape)
-        found[name] = np.asarray(value)
-    return found
-
-
-def _axes(result: ImpactResult) -> dict[str, Any]:
-    """Return the axes of a grid; none of any other batch."""
-    return dict(result.scene.axes) if isinstance(result.scene, Grid) else {}
-
-
-def _unit(name: str, result: ImpactResult) -> str:
-    """Return the unit of a column or of an axis, ``"sphere.radius"`` too; empty for words."""
-    units = {column: unit for column, unit, _ in COLUMNS} | OTHER_UNITS
-    unit = units.get(name.rpartition(".")[2], "")
-    return unit_in(unit, result.scene) if unit else ""
-
-
-def _attributes(name: str, result: ImpactResult) -> dict[str, str]:
-    unit = _unit(name, result)
-    return {"units": unit} if unit else {}
+            values = np.reshape([status.name for status in np.ravel(np.array(values))], scene.shape)
+        columns[name] = np.broadcast_to(values, scene.shape)
+    return Labelled(columns, axes, units)
 
 
 def _needed(module: str, method: str) -> Any:

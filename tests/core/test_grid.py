@@ -8,7 +8,7 @@ import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scene
 from contactlab.closed_forms import rigid_body_rebound
-from contactlab.export import COLUMNS, write_csv
+from contactlab.export import COLUMNS, to_dict, write_csv, write_npz
 from contactlab.grid import MOST_IMPACTS, Grid
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
@@ -98,6 +98,40 @@ def test_columns_are_those_of_the_csv(result, tmp_path):
     named = [f"{name} ({units[name]})" if units[name] else name for name in frame.columns]
     undefined = [name for name, _, read in COLUMNS if read(result) is None]
     assert [one for one in headings if one.partition(" ")[0] not in undefined] == named
+
+
+def test_entries_that_are_no_columns_are_written_too(tmp_path):
+    (tmp_path / "grid.toml").write_text(
+        """
+[sphere]
+radius = 0.01
+material = { young_modulus = 208e9, poisson_ratio = 0.3, density = 7850 }
+[target]
+kind = "half-space"
+material = { young_modulus = 208e9, poisson_ratio = 0.3 }
+[impact]
+friction_coefficient = 0.2
+speed = 1.0
+angle_deg = 30
+[sweep]
+product = true
+sphere.radius = [0.01, 0.02]
+angle_deg = [10, 20, 30]
+""",
+        encoding="utf-8",
+    )
+    result = RIGID.sweep(read_scene(tmp_path / "grid.toml").scene)
+    write_csv(result, tmp_path / "a.csv")
+    write_npz(result, tmp_path / "a.npz")
+    lines = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0].startswith("sphere.radius (m),angle_deg (deg),psi1 (1),")
+    assert lines[4].startswith("0.02,10.0,")
+    with np.load(tmp_path / "a.npz") as content:
+        assert content["sphere.radius"].tolist() == [0.01] * 3 + [0.02] * 3
+    assert to_dict(result)["angle_deg"] == [10.0, 20.0, 30.0] * 2
+    data = result.to_xarray()
+    assert data.psi2.dims == ("sphere.radius", "angle_deg")
+    assert data["sphere.radius"].attrs == {"units": "m"}
 
 
 @pytest.mark.parametrize(
