@@ -59,6 +59,8 @@ class Kept:
     ) -> None:
         if not isinstance(folder, str | os.PathLike):
             raise refuse("keep", folder, "must be the path of a folder")
+        if os.path.exists(folder) and not os.path.isdir(folder):
+            raise refuse("keep", str(folder), "is a file", "name a folder")
         self.folder = Path(folder)
         laws = {kind: getattr(simulation, kind) for kind in KINDS}
         about = {
@@ -101,7 +103,9 @@ class Kept:
             np.savez(stream, **_arrays(piece))
 
     def pieces(self) -> list[Piece]:
-        """Return the pieces that are there.
+        """Return the pieces that are there, no impact in two of them.
+
+        Two runs at a time, with chunks of their own, may have written some impacts twice.
 
         Raises
         ------
@@ -109,7 +113,9 @@ class Kept:
             If a file is damaged.
         """
         found: list[Piece] = []
-        for path in self.folder.glob(PIECES):
+        for path in sorted(self.folder.glob(PIECES), key=_first):
+            if found and _first(path) < found[-1].chunk.stop:
+                continue
             try:
                 with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as content:
                     found.append(_piece(path, content))
@@ -171,6 +177,12 @@ def _arrays(piece: Piece) -> dict[str, Any]:
         masks = [sentence.where for sentence in sentences]
         arrays[f"{kind}_where"] = np.array(masks, dtype=bool)
     return arrays
+
+
+def _first(path: Path) -> int:
+    """Return the first impact of a piece by the name of its file; 0 if it is not one of ours."""
+    first = path.stem.split("-")[1]
+    return int(first) if first.isdigit() else 0
 
 
 def _piece(path: Path, content: Mapping[str, Any]) -> Piece:

@@ -80,6 +80,8 @@ def test_what_holds_no_sweep_is_refused_and_left_alone(tmp_path):
         simulation.sweep(scene(), keep=folder)
     with pytest.raises(ValueError, match="must be the path of a folder"):
         simulation.sweep(scene(), keep=3)
+    with pytest.raises(ValueError, match="is a file"):
+        simulation.sweep(scene(), keep=folder / "thesis.txt")
     with pytest.raises(FileNotFoundError):
         simulation.sweep(scene(), keep=tmp_path / "none" / "kept")
     (folder / "thesis.txt").rename(tmp_path / "thesis.txt")
@@ -105,6 +107,15 @@ def test_damaged_files_are_refused(tmp_path):
     (folder / "sweep.json").write_text("[")
     with pytest.raises(ValueError, match="cannot be read"):
         simulation.sweep(scene(), keep=folder)
+
+
+def test_impacts_that_were_kept_twice_count_once(tmp_path):
+    simulation, folder, other = Simulation(**RIGID), tmp_path / "kept", tmp_path / "other"
+    interrupted(simulation, folder)
+    interrupted(simulation, other, chunk=80)
+    (piece,) = other.glob("*.npz")
+    piece.rename(folder / piece.name)
+    assert_same(simulation.sweep(scene(), keep=folder), simulation.sweep(scene()))
 
 
 def test_impacts_whose_worker_died_are_tried_again(tmp_path):
