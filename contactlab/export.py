@@ -132,7 +132,7 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
         course = result.history.columns() | result.history.fields
         arrays |= {f"history_{name}": column for name, column in course.items()}
     with written(path, binary=True) as stream:  # a path that ends otherwise would get .npz added
-        np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
+        np.savez_compressed(stream, **arrays)
 
 
 #: Form of file by the end of its name.

@@ -138,7 +138,7 @@ def _pieces(
     executor : concurrent.futures.Executor, optional
     """
     if executor is not None:
-        from contactlab.shared_out import pieces_of  # only for those who share their work out
+        from contactlab.executors import pieces_of  # only for those who share their work out
 
         yield from pieces_of(simulation, scene, list(chunks), block, executor)
         return

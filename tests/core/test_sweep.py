@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Scene, Simulation, Status, shared_out, sweeping
+from contactlab import Scene, Simulation, Status, executors, sweeping
 from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.contracts.whole_impact import no_force
 from contactlab.registry import REGISTRY
@@ -210,7 +210,7 @@ def test_a_chunk_that_ends_its_workers_has_a_status(monkeypatch, workers, tmp_pa
     assert [status.name for status in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
     assert "SIGKILL" in result.failures[100]
     assert result.psi2[:100] == pytest.approx(scene().psi1[:100])
-    assert len(list(tmp_path.iterdir())) == shared_out.TRIES
+    assert len(list(tmp_path.iterdir())) == executors.TRIES
     assert Simulation(**RIGID).sweep(scene(), executor=workers).check()
 
 
@@ -275,7 +275,7 @@ def test_a_law_that_is_not_there_is_named(workers, monkeypatch):
 
 def test_other_versions_there_are_refused(monkeypatch):
     versions = itertools.chain([{"normal": "hertz 1"}], itertools.repeat({"normal": "hertz 2"}))
-    monkeypatch.setattr(shared_out, "_versions", lambda _: next(versions))
+    monkeypatch.setattr(executors, "_versions", lambda _: next(versions))
     with (
         ThreadPoolExecutor(1) as executor,
         pytest.raises(ValueError, match=r"hertz 2.*hertz 1.*same versions"),

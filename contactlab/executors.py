@@ -1,4 +1,4 @@
-"""Pieces of a sweep solved by an executor: its processes, or those of other machines."""
+"""Pieces of a sweep solved by an executor: processes, or other machines."""
 
 from __future__ import annotations
 
