@@ -27,7 +27,7 @@ from contactlab.workers import Workers
 
 #: A chunk that is lost so many times, with the process that solved it, is not tried again.
 TRIES = 2
-PLAIN_REMEDY = "define its class at the top of a module that can be imported"
+MODULE_REMEDY = "define its class at the top of a module that can be imported"
 
 
 class Answer(NamedTuple):
@@ -137,7 +137,7 @@ def _checked(found: Answer, versions: Mapping[str, str], executor: Executor) -> 
     """Return the piece of an answer by the same laws as here."""
     if found.unread:
         rule = f"its workers cannot load the laws: {found.unread}"
-        raise refuse("executor", executor, rule, f"install them there too, and {PLAIN_REMEDY}")
+        raise refuse("executor", executor, rule, f"install them there too, and {MODULE_REMEDY}")
     if found.raised is not None:
         raise found.raised
     if found.laws != versions:
@@ -159,7 +159,7 @@ def _sent(simulation: Simulation) -> bytes:
             pickle.dumps(law)
         except Exception as error:
             raise refuse(
-                kind, law, f"cannot be sent to an executor: {short(error)}", PLAIN_REMEDY
+                kind, law, f"cannot be sent to an executor: {short(error)}", MODULE_REMEDY
             ) from error
     return pickle.dumps(simulation)
 

@@ -85,7 +85,7 @@ VECTORS = (
 
 def vectors(collision: Collision) -> dict[str, Any]:
     """Return the vectors of both bodies after a collision as plain lists."""
-    return {name: plain(np.asarray(getattr(collision, name))) for name, _ in VECTORS}
+    return {name: json_value(np.asarray(getattr(collision, name))) for name, _ in VECTORS}
 
 
 def write_json(result: ImpactResult, path: str | Path) -> None:
