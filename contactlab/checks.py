@@ -29,6 +29,8 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "v": ("tangential_velocity", "speed"), "vx": ("tangential_velocity",),
     "v1": ("normal_speed",), "vn": ("normal_speed",), "vz": ("normal_speed",),
     "omega": ("spin",), "w": ("spin",), "e": ("restitution",),
+    "beta0": ("slip_restitution", "beta"), "kappa": ("stiffness_ratio",),
+    "shear_modulus_ratio": ("stiffness_ratio",),
     "angle": ("angle_deg",), "psi": ("psi1",), "dt": ("steps",), "n": ("steps",),
 }  # fmt: skip
 

@@ -28,6 +28,8 @@ def draw_fits(path: Path, fits: Mapping[str, Fit]) -> None:
             measured_and_laws(axes[0, column], fits, name)
             residuals(axes[1, column], fits, name)
             axes[0, column].set_xlabel("")
+            if column:
+                axes[0, column].get_legend().remove()  # the same laws in the same colours
         axes[0, 0].figure.align_ylabels()
 
     save(path, draw, rows=2, columns=len(names), heights=(2.0, 1.0))

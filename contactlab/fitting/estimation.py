@@ -170,7 +170,7 @@ def _outcome(problem: Problem, table: Measurements, values: Array) -> tuple[Fit,
     found = Fit(
         parameters=estimates,
         correlation=covariance / np.outer(deviation, deviation),
-        laws=problem.model.laws,
+        laws=problem.model.laws(values),
         measurements=table,
         predicted={name: rows[0] for name, rows in predicted.items()},
         aic=problem.criterion(values),

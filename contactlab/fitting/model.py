@@ -83,10 +83,12 @@ class Model:
         """Return the model of other impacts."""
         return attrs.evolve(self, setup=self.setup._replace(scene=scene))
 
-    @property
-    def laws(self) -> str:
-        """Names of the laws."""
-        simulation = self.setup.simulation
+    def laws(self, values: Array) -> str:
+        """Return the laws in words, with these values of the parameters in them."""
+        setup = self.setup
+        for parameter, value in zip(self.parameters, values.tolist(), strict=True):
+            setup = parameter.applied(setup, value)
+        simulation = setup.simulation
         if simulation is None:
             return TABULATED
         return f"{simulation.normal!r}, {simulation.tangential!r}, {simulation.integrator!r}"

@@ -42,6 +42,8 @@ def test_laws_are_ranked_on_kharaz(run, tmp_path):
     assert [one["law"] for one in ranking] == ["exact", "coulomb", "mindlin_cap"]
     criteria = [one["fit"]["aic"] for one in ranking]
     assert criteria[1] - criteria[0] > 10.0
+    rms = [one["fit"]["rms"]["tangential_restitution"] for one in ranking]
+    assert rms == pytest.approx([0.0119, 0.0463, 0.0888], abs=2e-4)
     rows = list(csv.DictReader(table.read_text(encoding="utf-8").splitlines()))
     assert [row["law"] for row in rows].count("coulomb") == 11
     first = rows[0]
@@ -60,12 +62,14 @@ def test_tables(run, impacts):
 
 
 def test_restitution_of_a_damped_law_comes_out_of_kharaz(run):
-    """The figures say 0.994, 0.984 to 1, beside the 0.98 that is quoted."""
-    ran = run("fit", KHARAZ, "--normal", "tsuji", "--fit", "restitution,friction_coefficient",
-              "--laws", "coulomb", "--bootstrap", 0, "--json")  # fmt: skip
-    found = json.loads(ran.out)["parameters"]["normal.restitution"]
-    assert 0.9 < found["value"] <= 1.0
-    assert "Tsuji" in json.loads(ran.out)["laws"]
+    """Of e_t and the rebound angle: nearer to 1 than the 0.98 that is quoted beside them."""
+    ran = run("fit", KHARAZ, "--normal", "tsuji", "--fit", "friction_coefficient,restitution",
+              "--bootstrap", 0, "--json")  # fmt: skip
+    content = json.loads(ran.out)
+    found = content["parameters"]["normal.restitution"]
+    assert found["value"] == pytest.approx(0.994, abs=0.002)
+    assert found["interval_95"] == pytest.approx([0.984, 1.0], abs=0.002)
+    assert content["laws"].startswith("Tsuji(restitution=0.99")
 
 
 @pytest.mark.parametrize(
