@@ -42,6 +42,8 @@ class Model:
     def predicted(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
         """Return quantities of all impacts, shape (m, n), at m points of the parameters.
 
+        Points that differ in numbers of the scene alone are run together, in one batch.
+
         Parameters
         ----------
         points : array, shape (m, parameters)
@@ -52,17 +54,24 @@ class Model:
         ImpactError
             If a law did not follow one of the impacts.
         """
-        if all(parameter.batched for parameter in self.parameters):
-            return self._together(points, quantities)
-        rows = [self._together(point[None], quantities) for point in points]
-        return {name: np.concatenate([row[name] for row in rows]) for name in quantities}
+        alone = [place for place, one in enumerate(self.parameters) if not one.batched]
+        _, group = np.unique(points[:, alone], axis=0, return_inverse=True)
+        group = np.reshape(group, -1)  # another shape in some versions of numpy
+        shape = (len(points), self.setup.scene.shape[0])
+        found = {name: np.empty(shape) for name in quantities}
+        for number in range(int(group.max()) + 1):
+            rows = np.flatnonzero(group == number)
+            for name, values in self._together(points[rows], quantities).items():
+                found[name][rows] = values
+        return found
 
     def _together(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
-        """Return the quantities at all points from one batch of impacts."""
+        """Return the quantities at points with the same laws, from one batch of impacts."""
         many, count = len(points), self.setup.scene.shape[0]
         setup = self.setup._replace(scene=self._times(many))
         for parameter, column in zip(self.parameters, points.T, strict=True):
-            value = np.repeat(column, count) if many > 1 else float(column[0])
+            each = parameter.batched and many > 1
+            value = np.repeat(column, count) if each else float(column[0])
             setup = parameter.applied(setup, value)
         if setup.simulation is None:
             result = _tabulated(setup.scene)

@@ -20,11 +20,11 @@ Array = NDArray[np.float64]
 STEP = 1e-3
 #: Share of a parameter to which it is found: far below any scatter, far above the table's error.
 TOLERANCE = 1e-6
-#: Points of the grid on which searches begin: of those that can be run together, and of others;
-#: and most searches.
-GRID, GRID_ALONE, SEARCHES = 400, 100, 4
-#: Rounds in which the errors of several quantities are taken from their own residuals.
-ROUNDS = 4
+#: Points of the grid on which searches begin, and most searches.
+GRID, SEARCHES = 400, 4
+#: Most rounds in which the errors of several quantities are taken from their own residuals, and
+#: share to which these then stand still.
+ROUNDS, STEADY = 6, 0.02
 #: Least error of a quantity, of the size of its values: data made by the model itself have none.
 LEAST_ERROR = 1e-9
 
@@ -127,8 +127,7 @@ def starting(problem: Problem) -> list[Array]:
     a search goes no further than the minimum that is next.
     """
     parameters = problem.model.parameters
-    together = all(parameter.batched for parameter in parameters)
-    most = int((GRID if together else GRID_ALONE) ** (1.0 / len(parameters)) + 1e-9)
+    most = int(GRID ** (1.0 / len(parameters)) + 1e-9)
     axes = [_some(sorted(set(parameter.starts)), most) for parameter in parameters]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     points = grid.reshape(-1, len(parameters))
@@ -149,7 +148,7 @@ def starting(problem: Problem) -> list[Array]:
 def _some(starts: list[float], most: int) -> Array:
     """Return at most so many of the starts, from end to end."""
     places = np.linspace(0, len(starts) - 1, min(len(starts), max(most, 2)))
-    return np.array(starts)[np.unique(places.round().astype(int))]
+    return np.array([starts[place] for place in sorted(set(places.round().astype(int).tolist()))])
 
 
 def solved(problem: Problem, start: Array) -> Array:
@@ -163,7 +162,9 @@ def solved(problem: Problem, start: Array) -> Array:
     scales = problem.scales()
     for _ in range(ROUNDS if len(problem.measured) > 1 and unknown else 1):
         values = _minimum(problem, values, scales)
-        scales = problem.scales(values)
+        before, scales = scales, problem.scales(values)
+        if all(np.allclose(scales[name], before[name], rtol=STEADY, atol=0.0) for name in unknown):
+            break
     return values
 
 

@@ -61,6 +61,7 @@ def test_tables(run, impacts):
     assert "columns not used: # remark" in ran.out
 
 
+@pytest.mark.slow
 def test_restitution_of_a_damped_law_comes_out_of_kharaz(run):
     """Of e_t and the rebound angle: nearer to 1 than the 0.98 that is quoted beside them."""
     ran = run("fit", KHARAZ, "--normal", "tsuji", "--fit", "friction_coefficient,restitution",
