@@ -21,7 +21,7 @@ from contactlab.checks import whole
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
 from contactlab.composition import DEFAULT_NORMAL
-from contactlab.files import write_table
+from contactlab.files import distinct, write_table
 from contactlab.fitting import Fit, Ranked, fit, in_order, rank, read_measurements
 from contactlab.fitting.model import SOME_FRICTION
 from contactlab.quantities import QUANTITIES
@@ -98,6 +98,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Fit and report; 1 if one of several laws could not be fitted."""
     whole("--bootstrap", arguments.bootstrap, least=0, most=100_000)
+    for number, name in enumerate(arguments.files, start=1):
+        distinct({f"FILE {number}": name, "--csv": arguments.csv, "--figure": arguments.figure})
     data, path = _files(arguments.files)
     impacts = read_measurements(data)
     defaults = {"friction_coefficient": SOME_FRICTION}

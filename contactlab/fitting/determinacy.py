@@ -53,6 +53,20 @@ def check_enough(problem: Problem) -> None:
         )
 
 
+def idle(problem: Problem, values: Array) -> list[str]:
+    """Return the quantities that depend on no parameter, where others do.
+
+    They can be met by none, and would only hide how sharply the others are: a restitution that
+    was measured, under an elastic law.
+    """
+    effects = problem.linearised(values, problem.sizes())[1]
+    effects = np.abs(effects * _sizes(problem.model.parameters, values)).max(axis=1)
+    ends = np.cumsum(list(problem.counts.values()))[:-1]
+    parts = zip(problem.measured, np.split(effects, ends), strict=True)
+    found = [name for name, part in parts if part.max() < NO_EFFECT]
+    return found if len(found) < len(problem.measured) else []
+
+
 def check_determined(problem: Problem, values: Array) -> None:
     """Refuse parameters that no measured number depends on, or that are not told apart.
 

@@ -97,6 +97,15 @@ def fit(
     problem = Problem.of(model, table)
     determinacy.check_enough(problem)
     values, *others = _solutions(problem)
+    idle = determinacy.idle(problem, values)
+    if idle:
+        left = [name for name in table.measured if name not in idle]
+        found = fit(
+            table, scene, parameters=parameters, simulation=simulation, quantities=left,
+            bootstrap=bootstrap, seed=seed, progress=progress,
+        )  # fmt: skip
+        told = f"{', '.join(idle)}: not met, for no parameter moves it under these laws"
+        return attrs.evolve(found, notes=(told, *found.notes))
     determinacy.check_determined(problem, values)
     found, reaches = _outcome(problem, table, values)
     determinacy.check_precise(problem, values, reaches)

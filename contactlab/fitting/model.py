@@ -96,7 +96,7 @@ class Model:
         """Return the laws in words, with these values of the parameters in them."""
         setup = self.setup
         for parameter, value in zip(self.parameters, values.tolist(), strict=True):
-            setup = parameter.applied(setup, value)
+            setup = parameter.applied(setup, float(f"{value:.6g}"))
         simulation = setup.simulation
         if simulation is None:
             return TABULATED

@@ -109,6 +109,14 @@ def test_files_that_are_not_there_or_too_many(run, files, words):
     assert words in ran.err
 
 
+def test_the_data_are_not_written_over(run, impacts):
+    before = impacts.read_text(encoding="utf-8")
+    ran = run("fit", impacts, KHARAZ, "--csv", impacts)
+    assert ran.status == 2
+    assert "is the same file" in ran.err
+    assert impacts.read_text(encoding="utf-8") == before
+
+
 def test_a_law_that_cannot_be_fitted_is_said_and_the_others_stay(run):
     ran = run("fit", KHARAZ, *E_T, "--fit", "stiffness_ratio", "--laws", "exact,coulomb",
               "--bootstrap", 0)  # fmt: skip

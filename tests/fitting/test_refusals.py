@@ -74,6 +74,18 @@ def test_restitution_needs_a_measurement_of_it():
     assert "at any angles" in told
 
 
+def test_a_quantity_that_no_parameter_moves_costs_the_others_nothing():
+    """Restitution of 0.9 under an elastic law: friction is found as if it had not been measured."""
+    data = table(scattered(GRAZING), GRAZING)
+    more = {"normal_restitution": np.full(4, 0.9), "normal_restitution_error": np.full(4, 0.01)}
+    alone, both = fit(data, BODIES), fit(data | more, BODIES)
+    assert both.parameters == alone.parameters
+    assert "normal_restitution: not met" in both.notes[0]
+    laws = Simulation(normal="tsuji", tangential="coulomb")
+    names = ["restitution", "friction_coefficient"]
+    assert fit(data | more, BODIES, parameters=names, simulation=laws).notes == ()
+
+
 def test_effects_that_are_alike_are_not_told_apart():
     """In gross slip only mu (1 + e) counts."""
     laws = Simulation(normal="tsuji", tangential="coulomb")
