@@ -77,6 +77,11 @@ def test_bad_material_is_refused_by_name(arguments, name):
         Material(**arguments)
 
 
+def test_one_material_of_a_batch_without_a_shear_modulus_is_refused():
+    with pytest.raises(ValueError, match="does not determine the shear modulus"):
+        Material(young_modulus=1e9, poisson_ratio=[0.3, -1.0])
+
+
 def test_auxetic_limit_is_allowed_by_shear_modulus():
     assert Material(shear_modulus=1e9, poisson_ratio=-1.0).young_modulus == 0.0
 

@@ -144,6 +144,24 @@ def test_impacts_that_do_not_part_are_left_out_and_nothing_is_said_of_their_numb
     assert "error" not in str(none)
 
 
+def test_fields_are_not_left_out_where_only_some_impacts_part():
+    steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+    batch = Scene(Sphere(0.01, steel), HalfSpace(steel), 0.1, [0.5, 2.0], [-0.05, -0.05])
+    simulation = Simulation(normal=Clutches(), tangential=KnowsTwice(), integrator="symplectic")
+    plan = simulation.plan(batch, history="fields")
+    assert plan.marched.tolist() == [True, False]
+    assert "no march to take them from" not in str(plan)
+
+
+def test_remarks_are_on_the_impacts_that_are_marched():
+    """Of two stiff impacts one is central: no steps are taken for it."""
+    few = contactlab.create("integrator.symplectic", steps=5)
+    plan = Simulation(tangential="springs", integrator=few).plan(
+        Scene.nondimensional(psi1=[0.0, 1.2], chi=30.0)
+    )
+    assert "steps raised from 5 to 75 for 1 of 1 impacts" in str(plan)
+
+
 def test_undeclared_errors_are_said_of_the_impacts_that_are_marched():
     """Of a damped contact the springs declare nothing; a central impact is known without them."""
     plan = Simulation(normal=Damped(), **SPRINGS).plan(scene([0.0, 1.2]))

@@ -46,9 +46,11 @@ def simulation(name):
 def test_refused_with_argument_and_remedy(numbers, argument):
     with pytest.raises(ValueError, match=rf"^{argument} = .*: .*; give "):
         scene(**numbers)
-    batch = {name: np.array([value, value]) for name, value in numbers.items()}
-    with pytest.raises(ValueError, match=rf"^{argument} = "):
-        scene(**batch)
+    sound = {"mu": 0.2, "speed": 1.0, "slip": 0.3}
+    for beside in (sound, numbers):  # all of a batch, or one of it
+        batch = {name: np.array([beside[name], value]) for name, value in numbers.items()}
+        with pytest.raises(ValueError, match=rf"^{argument} = "):
+            scene(**batch)
 
 
 @pytest.mark.parametrize("psi1", [1e155, -1e200, 1e308])
