@@ -159,6 +159,14 @@ class WholeTooStrong(Whole):
         return attrs.evolve(known, slip_velocity_change=change)
 
 
+class WholeStopsAnything(Whole):
+    """Brings to rest what friction cannot."""
+
+    def told(self, known, scene):
+        change = -1.0 * scene.slip_velocity * np.ones(scene.shape)
+        return attrs.evolve(known, slip_velocity_change=change)
+
+
 class WholeWithoutBooks(Whole):
     def told(self, known, scene):
         return attrs.evolve(known, friction_work=0.5 * known.friction_work)
@@ -300,6 +308,7 @@ BROKEN = [
     (WholeNotOdd, "impact_odd", "(as whole impacts)"),
     (WholeInMetres, "impact_units", "(as whole impacts)"),
     (WholeTooStrong, "impact_bounds", "energy from nothing (as whole impacts)"),
+    (WholeStopsAnything, "impact_bounds", "psi changes by -2, more than mu P can"),
     (WholeWithoutBooks, "impact_books", "of the energy is in no book (as whole impacts)"),
     (WholeBeyondCoulomb, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.74 of mu P_max"),
     (WholeBeyondCoulomb, "whole_impact_form", "the force along its course gives an impulse of"),

@@ -229,6 +229,28 @@ class Runaway(HERTZ):
         return attrs.evolve(super().motion(scene), final_rate=-1.5 * scene.normal_speed)
 
 
+class StillApproaches(HERTZ):
+    """Contact ends before the bodies have been stopped."""
+
+    def motion(self, scene):
+        return attrs.evolve(super().motion(scene), final_rate=0.1 * scene.normal_speed)
+
+
+class PartsSlowerThanItPushes(HERTZ):
+    """The force of an elastic impact, and a rate of separation that is less."""
+
+    def motion(self, scene):
+        return attrs.evolve(super().motion(scene), final_rate=-0.9 * scene.normal_speed)
+
+
+class MisstatesItsImpulse(HERTZ):
+    """An impulse of the friction load that is not that of its force."""
+
+    def motion(self, scene):
+        motion = super().motion(scene)
+        return attrs.evolve(motion, total_load_impulse=1.01 * motion.total_load_impulse)
+
+
 #: Each with the check meant for it, and words of what the check says of it.
 BROKEN = [
     (NegativeLoad, "presses", "N is negative"),
@@ -237,6 +259,9 @@ BROKEN = [
     (PushesBothWays, "normal_passive", "A closed cycle at rates (0.05, 1.0) of v1 gives"),
     (EndsUnderLoad, "ends_unloaded", "Contact ends under load: the force is still"),
     (Runaway, "rebounds", "The bodies part 1.5 times as fast"),
+    (StillApproaches, "rebounds", "The bodies part -0.1 times as fast"),
+    (PartsSlowerThanItPushes, "rebounds", "The force adds up to an impulse that is 0.053 off"),
+    (MisstatesItsImpulse, "rebounds", "The friction load's impulse is 0.01 off its integral"),
     (Wide, "elastic_hertz", "The radius is 0.01 off Hertz's"),
     (
         ALittleWide,
