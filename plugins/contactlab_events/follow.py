@@ -26,9 +26,11 @@ from contactlab_events.search import first_event
 Array = NDArray[np.float64]
 
 NODES = 32
-#: The normal motion's nearest singularity in x lies at 0.22 + 0.86 i (theory §3), hence the
-#: first. An impact that fails, or whose books do not add up, is followed again in shorter ones.
-LONGEST_PANELS = (1.6, 0.6, 0.2)
+#: Longest panels, and highest Legendre terms of a panel over the tolerance, both in velocity, by
+#: which it is resolved: collocation gains far more digits at a panel's end than inside it. The
+#: normal motion's nearest singularity in x lies at 0.22 + 0.86 i (theory §3). An impact that fails,
+#: or whose books do not add up, is followed again in shorter panels, held closer.
+ATTEMPTS = ((1.6, 1e-2), (0.6, 3e-3), (0.2, 1e-3))
 #: Friction work and loss of energy may differ by this part of the tangential energy, taken at
 #: LEAST_AUDITED if psi1 is less. Work is less accurate than motion, most of all near psi1 = 1
 #: and for small psi1; an event missed shows at 1e-2 and above.
@@ -46,9 +48,6 @@ ZERO_LENGTH_CAP = 100
 REJECT_CAP = 60
 #: Below this length an event at the very start of a panel is believed, resolved or not.
 SURELY_RESOLVED = 1e-6
-#: A panel is resolved if its highest Legendre terms, in velocity, are below this times the
-#: tolerance: collocation gains far more digits at a panel's end than inside it.
-TAIL_PER_TOLERANCE = 0.01
 #: A first panel is tried this much longer than the law's guess of its phase's length.
 SPAN_MARGIN = 1.08
 SHORTEST_SPAN = 1e-3
@@ -87,8 +86,8 @@ def follow(
     """Follow one impact of scaled velocity >= 0 to the end of contact."""
     solves, best = 0, None
     dense = 0.5 * inertia * motion.scaled_mass > DENSE_CHI
-    for longest in LONGEST_PANELS[-1:] if dense else LONGEST_PANELS:
-        walk = _Walk(law, motion, inertia, velocity, tolerance, longest)
+    for longest, part in ATTEMPTS[-1:] if dense else ATTEMPTS:
+        walk = _Walk(law, motion, inertia, velocity, longest, part * tolerance)
         missing, status = 0.0, Status.UNRESOLVED
         try:
             failure = walk.go()
@@ -128,11 +127,11 @@ class _Walk:
         motion: ClosedFormMotion,
         inertia: float,
         velocity: float,
-        tolerance: float,
         longest: float,
+        tail: float,
     ) -> None:
-        self.law, self.motion, self.inertia, self.longest = law, motion, inertia, longest
-        self.tail = TAIL_PER_TOLERANCE * tolerance
+        self.law, self.motion, self.inertia = law, motion, inertia
+        self.longest, self.tail = longest, tail
         self.nodes = lobatto(NODES)
         self.state = PhaseState(0.0, 0.0, 0.0, velocity, 0.0, 0.0, 0.0)
         self.pieces: list[Piece] = []
@@ -153,6 +152,7 @@ class _Walk:
         """Begin a phase: its first panel, and no guess of its motion."""
         self.phase, self.rejects = phase, 0
         self.guess: Array | None = None
+        self.fits = True  # not after a failure, which may be that of the fit
         span = phase.span
         self.length = self.longest
         if span is not None:
@@ -193,10 +193,10 @@ class _Walk:
         if self.rejects > REJECT_CAP or self.length < min(SHORTEST_PANEL, 0.5 * left):
             return "Newton's method fails on the shortest panel allowed."
         given = self.phase, self.motion, self.nodes, self.state, self.length, self.inertia
-        solved = newton(*given, self.guess)
+        solved = newton(*given, self.guess, fits=self.fits)
         self.solves += 1
         self.rejects += 1
-        self.guess = None
+        self.guess, self.fits = None, solved is not None
         if solved is None:
             self.length *= 0.5
             return ""

@@ -132,6 +132,8 @@ def newton(
     length: float,
     inertia: float,
     guess: Array | None,
+    *,
+    fits: bool,
 ) -> Solved | None:
     """Return a solved panel, of the given length unless a rough event comes within it.
 
@@ -148,13 +150,15 @@ def newton(
     inertia : float
     guess : ndarray, shape (nodes,), or None
         Of the change of velocity.
+    fits : bool
+        False to look for no event.
 
     Returns
     -------
     Solved or None
         None if Newton's method does not converge or the panel is too long for its nodes.
     """
-    spacing, fitted, rough = nodes.plain, None, any(phase.rough)
+    spacing, fitted, rough = nodes.plain, None, fits and any(phase.rough)
     grid = _Grid.of(motion, nodes, spacing, start, length)
     change = guess
     if change is None:  # force as it was, growing as it did

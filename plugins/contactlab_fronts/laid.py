@@ -21,9 +21,9 @@ MOST_MOVES = 60
 #: Moves before a front is kept between bounds: where the edge almost slipped the level is nearly
 #: stationary, and Newton's method leaps.
 FREE_MOVES = 3
-#: Squared length of moves (in x) that need no further look: what they leave of the front is its
-#: square, and of the force the square of that.
-SMALL_MOVE = 1e-10
+#: Squared length of moves, in parts of the piece, that need no further look: what is left of the
+#: front is their square, and of the force the square of that.
+SMALL_MOVE = 1e-12
 #: A front may leave its piece a little while a panel reaches beyond it, in parts of the piece.
 LEEWAY, LEAST_PART = 0.2, 1e-6
 #: A slope of the angle below this part of its mean is rounding error at the very end of the piece.
@@ -109,10 +109,10 @@ class Laid(Piece):
             if count >= FREE_MOVES:
                 ahead = here > level
                 inner, outer = np.where(ahead, y, inner), np.where(ahead, outer, y)
-                outside = (new < inner) | (new > outer)
+                outside = ((new <= inner) | (new >= outer)) & (new != y)
                 new = np.where(outside, 0.5 * (inner + outer), new)
             move, y = new - y, new
-            if not many and move.dot(move) < SMALL_MOVE:
+            if not many and move.dot(move) < SMALL_MOVE * length * length:
                 break
         gap = contact.radius - c
         force = slip - old_slip
