@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -292,6 +293,9 @@ class Scene:
     @property
     def psi_scale(self) -> Real:
         """Psi per m/s of slip velocity, kappa/(mu v1), eq. (29); infinite without friction."""
+        if not self.shape:  # one impact in plain numbers, which is ten times as fast
+            unit = float(self.friction_coefficient * self.normal_speed)
+            return float(self.pair.stiffness_ratio) / unit if unit else math.inf
         with np.errstate(divide="ignore", over="ignore"):
             scale = np.divide(
                 self.pair.stiffness_ratio, self.friction_coefficient * self.normal_speed
@@ -300,6 +304,8 @@ class Scene:
 
     def psi(self, velocity: Real) -> Real:
         """Return the non-dimensional local tangential velocity of ``velocity`` (m/s), eq. (29)."""
+        if isinstance(velocity, float) and not self.shape:
+            return 0.0 if velocity == 0.0 else float(velocity) * self.psi_scale
         with np.errstate(invalid="ignore", over="ignore"):
             value = np.where(np.asarray(velocity) == 0.0, 0.0, velocity * self.psi_scale)
         return float(value) if value.ndim == 0 else value
