@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from contactlab.checks import Real
 from contactlab.closed_forms import rigid_body_rebound
+from contactlab.rebounds import rebound
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.simulation import Simulation
@@ -152,7 +153,7 @@ def _forces(
 
 
 def _reflexion(number: int, simulation: Simulation, *, psi1: Real, chi: Real) -> FigureData:
-    """Return psi2, elastic and rigid-body, over psi1 or chi, whichever is an array.
+    """Return psi2 of a law, of rigid bodies, and exact, over psi1 or chi, whichever is an array.
 
     Parameters
     ----------
@@ -169,5 +170,6 @@ def _reflexion(number: int, simulation: Simulation, *, psi1: Real, chi: Real) ->
     curves = (
         Curve(law, np.nan, x, np.asarray(result.psi2)),
         Curve("rigid-body theory", np.nan, x, np.asarray(rigid_body_rebound(psi1, chi))),
+        Curve("exact solution", np.nan, x, np.asarray(rebound(psi1, chi))),
     )
     return FigureData(number=number, x=name, y="psi2", parameter="", curves=curves)

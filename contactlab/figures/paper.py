@@ -83,10 +83,10 @@ def figure_4(axes: Axes, data: FigureData) -> Axes:
     axes.set_ylim(top=1.05)  # room for the legend above the oscillation
     axes.axvspan(*SOLID_CHI_RANGE, color="#E4E4E4", zorder=-1, linewidth=0.0)
     axes.text(
-        np.sqrt(np.prod(SOLID_CHI_RANGE)),
+        0.97 * SOLID_CHI_RANGE[0],
         axes.get_ylim()[1],
-        "solid\nspheres,\n" r"$\nu$ 0 to 0.5",
-        ha="center",
+        "solid spheres,\n" r"$\nu$ from 0 to 0.5",
+        ha="right",
         va="top",
         color="#555555",
         fontsize=9.5,
@@ -114,7 +114,10 @@ def _forces(
 
 def _reflexion(axes: Axes, data: FigureData) -> None:
     zero_line(axes)
-    elastic, rigid = data.curves
-    axes.plot(elastic.x, elastic.y, color=LAW_COLOURS[0], label=f"{elastic.name} law")
+    elastic, rigid, exact = data.curves
+    axes.plot(
+        elastic.x, elastic.y, color=LAW_COLOURS[0], linewidth=3.0, label=f"{elastic.name} law"
+    )
+    axes.plot(exact.x, exact.y, color="black", linewidth=0.9, label=exact.name)
     axes.plot(rigid.x, rigid.y, **law_style(1), label=rigid.name)
     axes.set_ylabel(label("psi2"))

@@ -106,9 +106,10 @@ def test_figure_1_forces_stay_inside_the_friction_limit(simulation):
 
 
 def test_figure_2_has_the_papers_shape(simulation):
-    elastic, rigid = figure_2(simulation).curves
+    elastic, rigid, exact = figure_2(simulation).curves
     chi = 1.4411764706
     assert rigid.y.min() == 0.0
+    assert 1e-6 < np.abs(elastic.y - exact.y).max() < 0.03
     assert elastic.y.min() == pytest.approx(-1.48, abs=0.04)
     slips = elastic.x >= 4.0 * chi
     assert elastic.y[slips] == pytest.approx(rigid.y[slips], abs=1e-12)
@@ -123,7 +124,8 @@ def test_figure_3_reverses_more_often_as_chi_grows(simulation):
 
 
 def test_figure_4_oscillates_about_the_rigid_theory(simulation):
-    elastic, rigid = figure_4(simulation).curves
+    elastic, rigid, exact = figure_4(simulation).curves
     assert np.all(rigid.y[rigid.x > 0.3] == 0.0)
+    assert 1e-6 < np.abs(elastic.y - exact.y)[elastic.x < 4.0].max() < 0.03
     signs = np.sign(elastic.y[elastic.x > 0.35])
     assert np.sum(np.diff(signs) != 0) >= 4
