@@ -16,8 +16,14 @@ The modules, each of which imports from those above it only:
 ``files``             output files that are whole or not there
 *the problem*
 ``bodies``            materials, spheres, half-spaces, pairs
+``materials``         materials by name, with sources
 ``scene``             one oblique impact, or a batch
+``grid``              batches of every combination of some entries
+``encounter``         two bodies in space, by vectors
+``unit_slips``        numbers that look as if in another unit
 ``closed_forms``      Hertz's scales, gross slip, the rigid body
+``calibration``       one constant of a law from a restitution
+``adhesion``          which theory of adhesion holds
 ``cautions``          what a model leaves out, in sentences
 ``declared``          measured numerical errors, and the range of psi2
 *the laws*
@@ -40,17 +46,28 @@ The modules, each of which imports from those above it only:
 ``energy``            energy books
 ``marching``          the march, and failures within a batch
 ``outcome``           plan and motion of a scene under three laws
+``sweeping``          a batch in blocks
+``kept``              pieces of a sweep on disk
 *the answer*
 ``result``            velocities, books, cost
 ``error_estimate``    the numerical error, estimated by other resolutions
 ``simulation``        three laws composed: plan, run, sweep
+``workers``           processes of this machine
+``executors``         a sweep on any executor
 ``rebounds``          psi2 of arrays of psi1 and chi
+``impulses``          velocities and spins from an impulse
+``collision``         what any law makes of an encounter
 ``export``            results as files
+``labelled``          results with named axes: pandas, xarray
 ``quantities``        quantities of a result by name
+``reading``           a result as titled tables
+``citations``         sources of laws, BibTeX
 *around it*
 ``scene_file``        scenes in TOML
 ``analysis``          comparison, validation, stability, cost
+``fitting``           parameters from measured impacts
 ``figures``           one function a figure
+``pages``             pages that stand alone, notebooks
 ``testing``           the conformance kit
 ``cli``               the commands
 ===================== ==========================================================================

@@ -51,9 +51,8 @@ def law_html(law: Law) -> str:
     """Return what a law is, its options and its sources."""
     summary = (inspect.getdoc(type(law)) or "").partition("\n")[0]
     parts = [html.paragraph(f"{type(law).__name__} ({law.kind}): {summary}")]
-    if attrs.has(type(law)) and attrs.fields(type(law)):
-        options = [
-            [field.name, repr(getattr(law, field.name))] for field in attrs.fields(type(law))
-        ]
+    fields: tuple[Any, ...] = getattr(type(law), "__attrs_attrs__", ())
+    if fields:
+        options = [[field.name, repr(getattr(law, field.name))] for field in fields]
         parts.append(html.table(["option", "value"], options))
     return "".join([*parts, *map(html.paragraph, references(law))])
