@@ -79,8 +79,7 @@ class Collision:
         ValueError
             If the result is that of another scene.
         """
-        scene = encounter.scene
-        if result.scene is not scene and result.scene != scene:
+        if not isinstance(result, ImpactResult) or result.scene != encounter.scene:
             why = "must be the result of encounter.scene"
             raise refuse("result", result, why, "run that: simulation.run(encounter.scene)")
         return _collision(encounter, _columns(encounter, result), known=result)

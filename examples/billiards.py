@@ -1,7 +1,8 @@
 """A break shot with side spin, collision after collision: balls without cloth or air to slow them.
 
-The only loss is friction where balls rub against each other and the cushions. All motion stays in
-the plane of the table, and spin is about the vertical: the white line on a ball turns with it.
+The only loss is friction where balls rub against each other and the cushions; when they have come
+nearly to rest the cue ball is struck again. All motion stays in the plane of the table, and spin is
+about the vertical: the line on a ball turns with it.
 
     python billiards.py --collisions 10000
 """
@@ -26,6 +27,7 @@ CUE_SPEED, CUE_SPIN = 4.0, 150.0  # m/s, rad/s
 GAP = 2e-4  # m, between balls of the rack, so that they meet one at a time
 COLOURS = ("gold", "royalblue", "firebrick", "indigo", "darkorange", "seagreen", "maroon")
 COLOURS = ("ivory", *COLOURS, "black", *COLOURS)
+NEARLY_AT_REST = 0.02  # J, one per cent of a shot
 FIRST, SECOND = np.array(list(combinations(range(16), 2))).T
 
 
@@ -38,6 +40,12 @@ def rack():
     disorder = np.random.default_rng(8).uniform(-0.2, 0.2, (15, 2)) * GAP
     racked = np.array(spots) + disorder + (0.6 * TABLE[0], 0.5 * TABLE[1])
     return np.vstack(([0.15 * TABLE[0], 0.48 * TABLE[1]], racked))
+
+
+def energy(velocity, spin):
+    """Return the kinetic energy in J."""
+    rolling = 0.4 * (BALL.radius * spin) ** 2
+    return 0.5 * BALL.mass * float((velocity**2).sum() + rolling.sum())
 
 
 def next_event(place, velocity):
@@ -57,12 +65,15 @@ def next_event(place, velocity):
 
 
 def play(collisions):
-    """Yield time, places, velocities, angles, spins and friction work (J) after each collision."""
+    """Yield time, places, velocities, angles, spins, energy given and lost after each collision."""
     place, velocity = rack(), np.zeros((16, 2))
-    angle, spin, time, lost = np.zeros(16), np.zeros(16), 0.0, 0.0
-    velocity[0], spin[0] = (CUE_SPEED, 0.0), CUE_SPIN
-    yield time, place, velocity, angle, spin, lost
+    angle, spin, time, given, lost = np.zeros(16), np.zeros(16), 0.0, 0.0, 0.0
     for _ in range(collisions):
+        if (left := energy(velocity, spin)) <= NEARLY_AT_REST:
+            velocity, spin = velocity.copy(), spin.copy()
+            velocity[0], spin[0] = (CUE_SPEED, 0.0), CUE_SPIN
+            given += energy(velocity, spin) - left
+            yield time, place, velocity, angle, spin, given, lost
         wait, one, other = next_event(place, velocity)
         time, place, angle = time + wait, place + wait * velocity, angle + wait * spin
         velocity, spin = velocity.copy(), spin.copy()
@@ -85,7 +96,7 @@ def play(collisions):
         if other >= 0:
             velocity[other], spin[other] = made.target_velocity[:2], made.target_spin[2]
         lost += made.friction_work
-        yield time, place, velocity, angle, spin, lost
+        yield time, place, velocity, angle, spin, given, lost
 
 
 def draw(shot, frames, seconds, path):
@@ -101,13 +112,12 @@ def draw(shot, frames, seconds, path):
     for disc in discs:
         axes.add_patch(disc)
     times = np.array([event[0] for event in shot])
-    energy = 0.5 * BALL.mass * (CUE_SPEED**2 + 0.4 * (BALL.radius * CUE_SPIN) ** 2)
     seen = []
 
     def show(frame):
         now = seconds * frame / frames
         count = np.searchsorted(times, now, side="right") - 1
-        time, place, velocity, angle, spin, lost = shot[count]
+        time, place, velocity, angle, spin, given, lost = shot[count]
         place, angle = place + (now - time) * velocity, angle + (now - time) * spin
         arm = 0.9 * BALL.radius * np.stack((np.cos(angle), np.sin(angle)), axis=1)
         for disc, mark, centre, end in zip(discs, marks, place, arm, strict=True):
@@ -116,7 +126,7 @@ def draw(shot, frames, seconds, path):
         seen.append(place[0])
         trail.set_data(*np.array(seen[-12:]).T)
         title.set_text(
-            f"{now:4.1f} s   {count:3} collisions   {lost / energy:6.2%} lost to friction"
+            f"{now:4.1f} s   {count:3} collisions   {lost / given:6.2%} lost to friction"
         )
 
     film = FuncAnimation(figure, show, frames, init_func=lambda: None)
@@ -130,12 +140,11 @@ def main():
     parser.add_argument("--frames", type=int, default=120)
     asked = parser.parse_args()
     shot = list(play(asked.collisions))
-    time, _, velocity, _, spin, lost = shot[-1]
-    before = 0.5 * BALL.mass * (CUE_SPEED**2 + 0.4 * (BALL.radius * CUE_SPIN) ** 2)
-    after = 0.5 * BALL.mass * ((velocity**2).sum() + 0.4 * ((BALL.radius * spin) ** 2).sum())
+    time, _, velocity, _, spin, given, lost = shot[-1]
+    left = energy(velocity, spin)
     print(f"{asked.collisions} collisions in {time:.1f} s of play")
-    print(f"kinetic energy {before:.4f} J, then {after:.4f} J; friction took {lost:.4f} J")
-    print(f"what does not add up: {abs(before - after - lost) / before:.0e} of it")
+    print(f"kinetic energy {given:.4f} J given, {left:.4f} J left; friction took {lost:.4f} J")
+    print(f"what does not add up: {abs(given - left - lost) / given:.0e} of it")
     draw(shot, asked.frames, min(time, 5.0), "billiards.gif")
 
 

@@ -176,6 +176,8 @@ def test_a_result_is_turned_back():
     assert np.array_equal(made.velocity, collide(met, Simulation(tangential="coulomb")).velocity)
     with pytest.raises(ValueError, match=r"result of encounter\.scene"):
         Collision.of(meeting(), result)
+    with pytest.raises(ValueError, match="result = 3"):
+        Collision.of(met, 3)
 
 
 def test_alone_and_together_are_the_same():
