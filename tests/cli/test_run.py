@@ -212,3 +212,42 @@ def test_a_file_that_cannot_be_written_does_not_take_the_answer_with_it(
     assert np.ravel(json.loads(ran.out)["psi2"])[0] == pytest.approx(2.0)
     assert len(ran.err.splitlines()) == 1
     assert "No space left" in ran.err
+
+
+VECTORS = """
+[sphere]
+radius = 0.01
+material = {young_modulus = 208e9, poisson_ratio = 0.3, density = 7850}
+[target]
+kind = "sphere"
+radius = 0.02
+material = {young_modulus = 208e9, poisson_ratio = 0.3, density = 7850}
+[impact]
+friction_coefficient = 0.2
+normal = [0, 0, -1]
+velocity = [3, 4, -1]
+spin = [0, 0, 7]
+"""
+
+
+def test_vectors_of_both_bodies(run, tmp_path):
+    """Slip throughout: the impulse is that of mu (1 + e) M_n v1 against the slip."""
+    path, out = tmp_path / "vectors.toml", tmp_path / "vectors.csv"
+    path.write_text(VECTORS)
+    ran = run("run", path, "--out", out)
+    assert ran.status == 0
+    assert "target velocity" in ran.out
+    assert "spin about the normal" in ran.out
+    found = json.loads(run("run", path, "--json").out)["collision"]
+    one = 7850.0 * 4.0 / 3.0 * np.pi * 0.01**3
+    impulse = 2.0 * one * 8.0 / 9.0
+    assert found["impulse"] == pytest.approx([-0.12 * impulse, -0.16 * impulse, impulse])
+    pushed = np.array(found["impulse"]) / (-8.0 * one)
+    assert found["target_velocity"] == pytest.approx(pushed.tolist())
+    assert found["spin"][2] == 7.0
+    (row,) = table(out)
+    assert float(row["target_rebound_normal_velocity (m/s)"]) == pytest.approx(-pushed[2])
+    assert float(row["target_rebound_tangential_velocity (m/s)"]) == pytest.approx(
+        np.hypot(*pushed[:2])
+    )
+    assert float(row["target_rebound_spin (rad/s)"]) < 0.0
