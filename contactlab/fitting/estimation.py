@@ -144,7 +144,7 @@ def _solutions(problem: Problem) -> list[Array]:
         values = solved(problem, start)
         if not any(np.allclose(values, known, rtol=SAME, atol=SAME) for known in found):
             found.append(values)
-    return sorted(found, key=problem.criterion)
+    return sorted(found, key=problem.criterion) if len(found) > 1 else found
 
 
 def _outcome(problem: Problem, table: Measurements, values: Array) -> tuple[Fit, Array]:
@@ -152,7 +152,7 @@ def _outcome(problem: Problem, table: Measurements, values: Array) -> tuple[Fit,
     from scipy.special import stdtrit  # only those who fit pay for it
 
     parameters = problem.model.parameters
-    scales = problem.scales(values)
+    scales = problem.scales(problem.residuals(values[None]))
     weighted, jacobian = problem.linearised(values, scales)
     freedom = len(weighted) - len(values)
     mean_square = float(weighted @ weighted) / freedom if freedom > 0 else math.nan

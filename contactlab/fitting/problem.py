@@ -63,22 +63,23 @@ class Problem:
 
     def weighted(self, points: Array, scales: Mapping[str, Any]) -> Array:
         """Return residuals over errors, shape (m, numbers), quantity after quantity, no gaps."""
-        found = self.residuals(points)
+        return self._over(self.residuals(points), scales)
+
+    def _over(self, residuals: Mapping[str, Array], scales: Mapping[str, Any]) -> Array:
         known = {name: np.isfinite(values) for name, values in self.measured.items()}
-        parts = [(found[name] / scales[name])[:, known[name]] for name in found]
+        parts = [(residuals[name] / scales[name])[:, known[name]] for name in residuals]
         return np.concatenate(parts, axis=1)
 
     def sizes(self) -> dict[str, float]:
         """Return the size of the values of each quantity."""
         return {name: float(np.nanmax(np.abs(v))) or 1.0 for name, v in self.measured.items()}
 
-    def scales(self, values: Array | None = None) -> dict[str, Any]:
+    def scales(self, residuals: Mapping[str, Array] | None = None) -> dict[str, Any]:
         """Return the error of each quantity: known, or by the rms of its residuals.
 
         Before there are residuals the spread of the values stands for them.
         """
         found: dict[str, Any] = {}
-        residuals = None if values is None else self.residuals(values[None])
         for name, measured in self.measured.items():
             if name in self.errors:
                 found[name] = self.errors[name]
@@ -95,8 +96,9 @@ class Problem:
 
     def criterion(self, values: Array) -> float:
         """Return Akaike's: -2 log likelihood + 2 parameters, Gaussian errors, up to a constant."""
-        scales = self.scales(values)
-        weighted = self.weighted(values[None], scales)[0]
+        residuals = self.residuals(values[None])
+        scales = self.scales(residuals)
+        weighted = self._over(residuals, scales)[0]
         unknown = [name for name in self.measured if name not in self.errors]
         logs = sum(2.0 * self.counts[name] * math.log(scales[name]) for name in unknown)
         return float(weighted @ weighted) + logs + 2.0 * (len(values) + len(unknown))
@@ -158,11 +160,13 @@ def solved(problem: Problem, start: Array) -> Array:
     after round: the maximum of likelihood.
     """
     unknown = [name for name in problem.measured if name not in problem.errors]
-    values = start
     scales = problem.scales()
-    for _ in range(ROUNDS if len(problem.measured) > 1 and unknown else 1):
+    values = _minimum(problem, start, scales)
+    if len(problem.measured) == 1 or not unknown:
+        return values  # the one error, or none, changes nothing
+    for _ in range(ROUNDS):
+        before, scales = scales, problem.scales(problem.residuals(values[None]))
         values = _minimum(problem, values, scales)
-        before, scales = scales, problem.scales(values)
         if all(np.allclose(scales[name], before[name], rtol=STEADY, atol=0.0) for name in unknown):
             break
     return values
