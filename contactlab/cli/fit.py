@@ -15,18 +15,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from contactlab.checks import whole
 from contactlab.cli import arguments as shared
-from contactlab.cli.table import table
+from contactlab.cli.fit_report import describe, ranking, write_residuals
 from contactlab.composition import DEFAULT_NORMAL
-from contactlab.files import distinct, write_table
+from contactlab.files import distinct
 from contactlab.fitting import Fit, Ranked, fit, in_order, rank, read_measurements
 from contactlab.fitting.model import SOME_FRICTION
-from contactlab.quantities import QUANTITIES
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
-from contactlab.scene_file.entries import entry_unit
 from contactlab.simulation import Simulation
 
 #: The name of the exact elastic laws by their table, which are no law that is installed.
@@ -126,7 +122,7 @@ def execute(arguments: argparse.Namespace) -> int:
     shown = [one for one in ranked if one.fit] or [Ranked(name=first, fit=found)]
     saved = shared.save(
         (arguments.figure, lambda file: _draw(file, shown)),
-        (arguments.csv, lambda file: _write(file, shown)),
+        (arguments.csv, lambda file: write_residuals(file, shown)),
     )
     _report(found, ranked, complete=not interrupted, as_json=arguments.json)
     return shared.INTERRUPTED if interrupted else max(saved, _failures(ranked))
@@ -135,16 +131,16 @@ def execute(arguments: argparse.Namespace) -> int:
 def _report(found: Fit, ranked: list[Ranked], *, complete: bool, as_json: bool) -> None:
     """Print the fit and the ranking."""
     if as_json:
-        ranking = [
+        rows = [
             {"law": one.name, "refusal": one.refusal, "fit": one.fit and one.fit.to_dict()}
             for one in ranked
         ]
-        content = found.to_dict() | {"ranking": ranking, "complete": complete}
+        content = found.to_dict() | {"ranking": rows, "complete": complete}
         print(json.dumps(content, indent=2, allow_nan=False))
         return
     print(describe(found))
     if ranked:
-        print("\n" + _ranking(ranked))
+        print("\n" + ranking(ranked))
     if not complete:
         print("\nnot complete: interrupted")
 
@@ -184,71 +180,6 @@ def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Si
         ).choose(normal=arguments.normal, tangential=None if name == EXACT else name)
         found[name] = choice.set(dict(arguments.settings)).simulation()
     return found
-
-
-def describe(found: Fit) -> str:
-    """Return parameters with their intervals, and residuals, as tables."""
-    headings = ["parameter", "value", "standard error", "95 % from", "to"]
-    rows: list[list[Any]] = []
-    for one in found.parameters.values():
-        name = one.name if one.unit == "1" else f"{one.name} ({one.unit})"
-        rows.append([name, one.value, one.standard_error, *one.interval, *(one.bootstrap or ())])
-    if any(one.bootstrap for one in found.parameters.values()):
-        headings += ["bootstrap from", "to"]
-    measured = found.measurements.measured
-    residuals = [
-        [name, QUANTITIES[name].unit, found.counts[name], found.rms[name],
-         found.largest[name]]
-        for name in measured
-    ]  # fmt: skip
-    parts = [
-        f"{len(found.measurements)} impacts of {found.measurements.source or 'the data'}; "
-        f"laws: {found.laws}",
-        table(headings, rows, digits=5),
-        table(["measured", "unit", "numbers", "rms residual", "largest"], residuals, digits=3),
-    ]
-    if found.measurements.unused:
-        parts.append(f"columns not used: {', '.join(found.measurements.unused)}")
-    if found.reduced_chi_square is not None:
-        parts.append(f"reduced chi square: {found.reduced_chi_square:.3g}")
-    parts += [f"note: {note}" for note in found.notes]
-    return "\n\n".join(parts)
-
-
-def _ranking(ranked: list[Ranked]) -> str:
-    """Return the laws in order, each with its own parameters."""
-    fits = [one.fit for one in ranked if one.fit]
-    names, quantities = list(fits[0].parameters), list(fits[0].rms)
-    headings = ["law", "AIC - best", *names, *(f"rms {name}" for name in quantities)]
-    best = min(one.aic for one in fits)
-    rows = [
-        [one.name, one.fit.aic - best, *(one.fit[name] for name in names), *one.fit.rms.values()]
-        if one.fit
-        else [one.name, *[None] * (1 + len(names) + len(quantities))]
-        for one in ranked
-    ]
-    return f"laws by fit (a difference of 10 is beyond doubt)\n{table(headings, rows, digits=4)}"
-
-
-def _write(path: Path, shown: list[Ranked]) -> None:
-    """Write a row for each measured number and law."""
-    rows: list[list[Any]] = []
-    given: list[str] = []
-    for one in shown:
-        assert one.fit is not None
-        content = one.fit.measurements
-        given = list(content.given)
-        for name, residuals in one.fit.residuals.items():
-            columns = [*content.given.values(), content.measured[name]]
-            columns += [one.fit.predicted[name], residuals]
-            rows += [
-                [one.name, name, QUANTITIES[name].unit, impact + 1]
-                + [float(column[impact]) for column in columns]
-                for impact in np.flatnonzero(np.isfinite(residuals)).tolist()
-            ]
-    headings = [f"{name} ({entry_unit(name)})" for name in given]
-    head = ["law", "quantity", "unit", "impact", *headings, "measured", "predicted", "residual"]
-    write_table(path, head, rows)
 
 
 def _draw(path: Path, shown: list[Ranked]) -> None:
