@@ -93,15 +93,6 @@ class Fronts(ManyPhasedTangentialLaw):
 
         return march(velocity, inertia, motion, tolerance)
 
-    def rebound(self, psi1: Array, chi: Array, tolerance: float) -> tuple[Array, NDArray[np.bool_]]:
-        """Return psi2 of many elastic impacts at once, and where it was found.
-
-        See ``contactlab_fronts.rebound.rebound``.
-        """
-        from contactlab_fronts import rebound  # only for those who ask
-
-        return rebound.rebound(psi1, chi, tolerance)
-
     def phase_fields(
         self,
         normal: ClosedFormMotion,

@@ -21,15 +21,15 @@ CORNER = 1e-3
 FARTHER = (1.0, 2.0, 3.0)
 
 
-def _law() -> contactlab.Simulation:
-    integrator = contactlab.create("integrator.events", tolerance=ALONE)
+def _law(tolerance: float) -> contactlab.Simulation:
+    integrator = contactlab.create("integrator.events", tolerance=tolerance)
     return contactlab.Simulation(tangential="fronts", integrator=integrator)
 
 
 def alone(psi1: Array, chi: Array) -> Array:
     """Return psi2, shape (impacts,), each solved on its own, some 3 ms."""
     scene = contactlab.Scene.nondimensional(psi1=psi1, chi=chi)
-    return np.asarray(_law().run(scene).check().psi2)
+    return np.asarray(_law(ALONE).run(scene).check().psi2)
 
 
 def exact(psi1: Array, chi: Array) -> Array:
@@ -68,10 +68,10 @@ def together(psi1: Array, chi: Array) -> Array:
     """Return psi2 for psi1 >= 0, shape (impacts,); most impacts are solved together."""
     distance = np.abs(psi1 - 1.0)
     hard = (distance < NEAR_ONE) | (np.abs(chi - 0.5) < NEAR_HALF)
-    law = contactlab.create("tangential.fronts")
     psi2 = psi1.copy()
-    psi2[~hard], solved = law.rebound(psi1[~hard], chi[~hard], TOGETHER)
-    hard[np.flatnonzero(~hard)[~solved]] = True
+    if not hard.all():
+        scene = contactlab.Scene.nondimensional(psi1=psi1[~hard], chi=chi[~hard])
+        psi2[~hard] = _law(TOGETHER).sweep(scene).check().psi2
     if hard.any():
         psi2[hard] = exact(psi1[hard], chi[hard])
     return psi2
@@ -80,7 +80,7 @@ def together(psi1: Array, chi: Array) -> Array:
 def last_slip(psi1: float, chi: float) -> int:
     """Return the sign of the slip with which one impact ends."""
     scene = contactlab.Scene.nondimensional(psi1=psi1, chi=chi)
-    history = _law().run(scene, history=True).check().history
+    history = _law(ALONE).run(scene, history=True).check().history
     assert history is not None
     friction = history.tangential_force[history.normal_force > 0.0]
     return 1 if friction[-1] > 0.0 else -1
