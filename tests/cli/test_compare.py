@@ -81,6 +81,12 @@ def test_option_goes_to_the_laws_that_know_it(run, short_sweep):
     ran = run("compare", short_sweep, "--tangential", "annulus,coulomb", "--json",
               "--set", "tangential.annuli=5")  # fmt: skip
     assert ran.status == 0
+    named = run("compare", short_sweep, "--tangential", "annulus,coulomb", "--json",
+                "--set", "tangential.annulus.annuli=5")  # fmt: skip
+    assert named.status == 0
+    assert json.loads(named.out)["laws"]["annulus"]["values"]["psi2"] == pytest.approx(
+        json.loads(ran.out)["laws"]["annulus"]["values"]["psi2"], abs=1e-15
+    )
     unknown = run("compare", short_sweep, *BOTH, "--set", "tangential.annuli=5")
     assert unknown.status == 2
     assert "none of the laws" in unknown.err

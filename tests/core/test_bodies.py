@@ -51,6 +51,25 @@ def test_unlike_bodies_add_their_compliances():
 
 
 @pytest.mark.parametrize(
+    ("ratios", "moduli", "beta"),
+    [
+        ((0.25, 0.25), (1e9, 1e9), 0.0),
+        ((0.5, 0.5), (1e9, 3e9), 0.0),
+        ((0.0, 0.25), (1e9, 3e9), 1.0 / 3.0),
+        ((0.25, 0.0), (3e9, 1e9), -1.0 / 3.0),
+    ],
+)
+def test_dundurs_beta(ratios, moduli, beta):
+    """Half of (1-2nu)/G, body less body, over the sum of (1-nu)/G: none for like bodies."""
+    one, other = (
+        Material(shear_modulus=modulus, poisson_ratio=ratio, density=1e3)
+        for modulus, ratio in zip(moduli, ratios, strict=True)
+    )
+    for target in (HalfSpace(other), Sphere(0.02, other)):
+        assert Pair.of(Sphere(0.01, one), target).dundurs_beta == pytest.approx(beta, abs=1e-15)
+
+
+@pytest.mark.parametrize(
     "bad", [0.0, -1.0, math.nan, math.inf, "1", None, True, 1j, [], [[1], [1, 2]]]
 )
 def test_bad_radius_is_refused_by_name(bad):

@@ -101,5 +101,8 @@ def test_of_a_batch_only_those_whose_books_miss_have_the_status():
     sim = Simulation(tangential=Creator(), integrator="symplectic")
     result = sim.run(Scene.nondimensional(psi1=[1e4, 6.0], chi=1.44))
     assert statuses(result) == ["SUCCESS", "UNBALANCED"]
-    share = abs(result.energy.relative_imbalance[1])
+    books = result.energy
+    share = abs(books.relative_imbalance[1])
+    assert books.start[1] == pytest.approx(0.5 + 36.0 / (4.0 * 1.44))
+    assert share == pytest.approx(abs(books.imbalance[1]) / books.start[1])
     assert f"Off by {share:.2g} of the energy at the start" in result[1].motion.detail

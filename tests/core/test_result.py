@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 
+import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
+from contactlab.cli.report import describe
 from tests.normal_laws import Damped, LinearSpring
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
@@ -120,3 +122,22 @@ def test_restitutions_of_what_did_not_move_are_no_numbers():
     result = Simulation(tangential="coulomb").run(scene).check()
     assert np.isnan(result.tangential_restitution).all()
     assert np.isnan(result.slip_restitution).tolist() == [True, False]
+
+
+def test_the_result_of_one_impact_is_no_batch():
+    result = Simulation(tangential="coulomb").run(Scene.nondimensional(psi1=6.0, chi=1.0))
+    with pytest.raises(TypeError, match="cannot be indexed"):
+        result[0]
+    with pytest.raises(TypeError, match="no length"):
+        len(result)
+
+
+def test_failures_are_counted_sentence_by_sentence():
+    """Two alike make one line, and one alone has no count."""
+    few = contactlab.create("integrator.symplectic", steps=5, refine=False)
+    simulation = Simulation(tangential="springs", integrator=few)
+    result = simulation.run(Scene.nondimensional(psi1=[1.2, 0.5, 0.5], chi=[1e3, 30.0, 30.0]))
+    told = [line for line in describe(result, varied={}).splitlines() if line.startswith("status:")]
+    assert len(told) == 2
+    assert told[0].endswith("(2 impacts)")
+    assert not told[1].endswith("impacts)")

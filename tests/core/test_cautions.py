@@ -1,0 +1,60 @@
+"""The size that a plan gives to the elastic coupling of unlike bodies."""
+
+import re
+from pathlib import Path
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Scene, Simulation
+from contactlab.cautions import coupling_shift
+
+GUIDE = Path(contactlab.__file__).parent / "guide" / "theory.md"
+CHI = 49.0 / 34.0
+PSI1 = (0.5, 1.0, 1.5, 2.0, 3.0)
+
+
+def coupled(strength, psi1):
+    """Return the scene of psi1 whose Lambda = kappa beta/mu is ``strength``."""
+    scene = Scene.nondimensional(psi1=psi1, chi=CHI)  # kappa = mu = 1
+    return attrs.evolve(scene, pair=attrs.evolve(scene.pair, dundurs_beta=strength))
+
+
+def table():
+    """Return Lambda and the shifts at ``PSI1`` from the table of the guide."""
+    text = GUIDE.read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (0\.25|0\.5|1|2) \|((?: -[\d.]+ \|){5})$", text, re.MULTILINE)
+    rows = rows[:4]  # the first of the tables with a Lambda
+    return {float(name): [float(word) for word in re.findall(r"[\d.]+", row)] for name, row in rows}
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_shift_is_that_of_the_table_of_the_guide(sign):
+    """And of an impact from the other side, or with the bodies exchanged."""
+    for strength, shifts in table().items():
+        found = [float(coupling_shift(coupled(sign * strength, sign * psi1))) for psi1 in PSI1]
+        assert found == pytest.approx(shifts, abs=1e-12)
+
+
+def test_between_the_entries_the_shift_is_their_mean():
+    edges = [0.0, 0.25, 0.5, 1.0, 2.0]
+    for low, high in zip(edges, edges[1:], strict=False):
+        ends = [coupling_shift(coupled(strength, 1.0)) for strength in (low, high)]
+        middle = coupling_shift(coupled(0.5 * (low + high), 1.0))
+        assert float(middle) == pytest.approx(0.5 * float(sum(ends)), rel=1e-12)
+    ends = [coupling_shift(coupled(1.0, psi1)) for psi1 in (0.5, 1.0)]
+    middle = coupling_shift(coupled(1.0, 0.75))
+    assert float(middle) == pytest.approx(0.5 * float(sum(ends)), rel=1e-12)
+
+
+def test_the_plan_says_the_worst_of_a_batch():
+    simulation = Simulation()
+    alone = str(simulation.plan(coupled(0.5, 1.0)))
+    assert "Lambda = kappa beta/mu = 0.5; it moves psi2 by about 0.05 (model" in alone
+    batch = str(simulation.plan(coupled(0.5, np.array([2.0, 1.0, 3.0]))))
+    assert "Lambda = kappa beta/mu = 0.5; it moves psi2 by up to about 0.05 (model" in batch
+    assert "by at least 0.3" in str(simulation.plan(coupled(2.5, 1.0)))
+    assert "unlike bodies" not in str(simulation.plan(coupled(0.02, 0.1)))
+    assert "unlike bodies" not in str(simulation.plan(coupled(0.0, 1.0)))
