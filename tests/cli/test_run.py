@@ -80,7 +80,9 @@ def test_sweep(run, short_sweep):
     content = json.loads(ran.out)
     assert content["psi2"] == pytest.approx([0.0, 0.0, 2.0], abs=1e-9)
     assert content["varied"] == {"psi1": [0.0, 2.0, 6.0]}
-    assert "SUCCESS" in run("run", short_sweep).out
+    table = run("run", short_sweep).out
+    assert "SUCCESS" in table
+    assert "psi2 (1)" not in table  # a number without a unit has none in its heading
 
 
 def test_progress_is_on_stderr_and_only_when_asked(run, short_sweep, monkeypatch):

@@ -6,7 +6,7 @@ import pickle
 import numpy as np
 import pytest
 
-from contactlab import HalfSpace, Material, Pair, Sphere
+from contactlab import HalfSpace, Material, Pair, Scene, Sphere
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 
@@ -65,6 +65,7 @@ def test_dundurs_beta(ratios, moduli, beta):
         Material(shear_modulus=modulus, poisson_ratio=ratio, density=1e3)
         for modulus, ratio in zip(moduli, ratios, strict=True)
     )
+    assert Scene.nondimensional(psi1=1.0, chi=1.0).pair.dundurs_beta == 0.0
     for target in (HalfSpace(other), Sphere(0.02, other)):
         assert Pair.of(Sphere(0.01, one), target).dundurs_beta == pytest.approx(beta, abs=1e-15)
 

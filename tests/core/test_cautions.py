@@ -1,5 +1,6 @@
 """The size that a plan gives to the elastic coupling of unlike bodies."""
 
+import itertools
 import re
 from pathlib import Path
 
@@ -40,7 +41,7 @@ def test_the_shift_is_that_of_the_table_of_the_guide(sign):
 
 def test_between_the_entries_the_shift_is_their_mean():
     edges = [0.0, 0.25, 0.5, 1.0, 2.0]
-    for low, high in zip(edges, edges[1:], strict=False):
+    for low, high in itertools.pairwise(edges):
         ends = [coupling_shift(coupled(strength, 1.0)) for strength in (low, high)]
         middle = coupling_shift(coupled(0.5 * (low + high), 1.0))
         assert float(middle) == pytest.approx(0.5 * float(sum(ends)), rel=1e-12)

@@ -17,6 +17,7 @@ from contactlab.contracts import (
     WholeImpactTangentialLaw,
 )
 from contactlab.contracts.whole_impact import no_force
+from contactlab.declared import psi2_range, range_of
 from tests.normal_laws import Damped, ForceFree, LinearSpring
 
 CHI = 1.4411764706
@@ -118,6 +119,24 @@ class Clutches(NormalLaw):
 
 def plan_integrator(tolerance):
     return contactlab.create("integrator.events", tolerance=tolerance)
+
+
+def test_the_range_that_an_error_is_a_share_of():
+    """The lesser of 4 chi and 2 |psi1|, in m/s and in psi, alone and in a batch."""
+    psi1 = [-3.0, 0.2, 0.0, 50.0]
+    widths = [4.0 * CHI, 0.4, 0.0, 4.0 * CHI]
+    assert psi2_range(scene(psi1)).tolist() == pytest.approx(widths)
+    assert range_of(scene(psi1)).width.tolist() == pytest.approx(widths)
+    for one, width in zip(psi1, widths, strict=True):
+        assert range_of(scene(one)) == pytest.approx((1.0, width, abs(one)))
+
+
+def test_fields_are_kept_only_where_they_are_asked_for():
+    simulation = Simulation(**SPRINGS)
+    assert simulation.run(scene(), history=True).history.fields == {}
+    kept = simulation.run(scene(), history="fields").history
+    assert kept.fields
+    assert {len(field) for field in kept.fields.values()} == {len(kept.time)}
 
 
 def test_a_solved_normal_motion_is_not_declared_exact():

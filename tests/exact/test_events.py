@@ -9,6 +9,7 @@ import pytest
 from contactlab import Scene, Simulation, Status
 from contactlab.closed_forms import rigid_body_rebound
 from contactlab.contracts import ClosedPhase, Phase, PhasedTangentialLaw, PhaseResponse
+from tests.normal_laws import LinearSpring
 
 CHI = 1.4411764706
 
@@ -113,3 +114,10 @@ def test_phases_of_no_length_are_followed_but_not_without_end(closed, psi1):
     result = Simulation(tangential=endless, integrator="events").run(scene)
     assert {*np.ravel(np.array(result.status, dtype=object))} == {Status.UNRESOLVED}
     assert "Events follow one another without end. In phase Turning" in result.failures[0]
+
+
+def test_a_normal_law_without_closed_form_does_not_fit():
+    with pytest.raises(ValueError, match=r"Events.*ClosedFormNormalLaw.*LinearSpring"):
+        Simulation(
+            normal=LinearSpring(), tangential=Turns(phases=0, closed=False), integrator="events"
+        )
