@@ -40,6 +40,7 @@ def test_the_shift_is_that_of_the_table_of_the_guide(sign):
 
 
 def test_between_the_entries_the_shift_is_their_mean():
+    assert float(coupling_shift(coupled(0.0, 1.0))) == 0.0
     edges = [0.0, 0.25, 0.5, 1.0, 2.0]
     for low, high in itertools.pairwise(edges):
         ends = [coupling_shift(coupled(strength, 1.0)) for strength in (low, high)]
