@@ -1,0 +1,86 @@
+"""Where psi2(psi1, chi, e) under Tsuji's law is smooth: theory §11, "As a table"."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: The range of the table. chi of solid spheres and shells; e as it is called a restitution.
+CHI = (0.8, 1.8)
+RESTITUTION = (0.5, 1.0)
+#: Pieces of t = (1 - e)^(1/3), in which psi2 is smooth down to e = 1; the border is e = 0.9.
+BORDERS = (0.0, 0.1 ** (1.0 / 3.0), 0.5 ** (1.0 / 3.0))
+#: Pieces in psi1: the centre sticks until the end; it slips and sticks again; it slips for good.
+STICKS, TURNS, SLIPS = range(3)
+#: Nodes in psi1, chi and t.
+NODES = (24, 10, 10)
+
+
+def depth(restitution: Any) -> Any:
+    """Return t."""
+    return np.cbrt(1.0 - restitution)
+
+
+def restitution(depth: Any) -> Any:
+    """Return e."""
+    return 1.0 - depth**3
+
+
+def inner(value: Any, low: float, high: float) -> Any:
+    """Return ``value`` between ``low`` and ``high`` as a number in [-1, 1]."""
+    return (2.0 * value - (low + high)) / (high - low)
+
+
+def nodes(count: int, low: float, high: float) -> Array:
+    """Return Chebyshev's nodes between ``low`` and ``high``, ends excluded."""
+    return np.asarray(0.5 * (low + high) + 0.5 * (high - low) * chebyshev.chebpts1(count))
+
+
+def coefficients(values: Array) -> Array:
+    """Return Chebyshev coefficients of values at the nodes along every axis."""
+    for axis, count in enumerate(values.shape):
+        basis = chebyshev.chebvander(chebyshev.chebpts1(count), count - 1)
+        values = np.moveaxis(np.linalg.solve(basis, np.moveaxis(values, axis, 0)
+                             .reshape(count, -1)).reshape(count, *np.delete(values.shape, axis)),
+                             0, axis)  # fmt: skip
+    return values
+
+
+def place(piece: int, psi1: Any, cuts: tuple[Any, Any]) -> Any:
+    """Return the coordinate in [-1, 1] of ``psi1`` in a piece."""
+    low, high = cuts
+    if piece == STICKS:
+        return 2.0 * psi1 / low - 1.0
+    if piece == TURNS:  # rough where it begins: the root makes it smooth
+        return 2.0 * np.sqrt((psi1 - low) / (high - low)) - 1.0
+    return 2.0 * (high - 1.0) / (psi1 - 1.0) - 1.0
+
+
+def incidence(piece: int, at: Any, cuts: tuple[Any, Any]) -> Any:
+    """Return psi1 at a coordinate in [-1, 1] of a piece: the inverse of ``place``."""
+    low, high = cuts
+    share = 0.5 * (at + 1.0)
+    if piece == STICKS:
+        return low * share
+    if piece == TURNS:
+        return low + (high - low) * share**2
+    return 1.0 + (high - 1.0) / share
+
+
+def smooth(piece: int, psi1: Any, psi2: Any, chi: Any, e: Any) -> Any:
+    """Return what is tabulated: psi2/psi1, psi2, or what gross slip lacks."""
+    if piece == STICKS:
+        return psi2 / psi1
+    return psi2 if piece == TURNS else psi2 - (psi1 - 2.0 * chi * (1.0 + e))
+
+
+def rough(piece: int, psi1: Any, value: Any, chi: Any, e: Any) -> Any:
+    """Return psi2 of what is tabulated: the inverse of ``smooth``."""
+    if piece == STICKS:
+        return value * psi1
+    return value if piece == TURNS else value + (psi1 - 2.0 * chi * (1.0 + e))

@@ -1,0 +1,94 @@
+"""The rebound at a given restitution: its table against springs, its range, bad input."""
+
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab_damped_table.build import solve
+from contactlab_damped_table.function import rebound, shipped
+from contactlab_damped_table.table import read, write
+from tests.normal.test_dashpot import PSI2
+
+CHI = 49 / 34
+
+
+@pytest.mark.parametrize("e", [0.5, 0.63, 0.9, 0.97, 0.9999])
+def test_table_is_springs_to_its_error(e):
+    """At random impacts; ``python -m contactlab_damped_table verify`` draws more."""
+    draw = np.random.default_rng(round(1e4 * e))
+    psi1, chi = draw.uniform(0.0, 9.0, 40), draw.uniform(0.8, 1.8, 40)
+    assert rebound(psi1, chi, e) == pytest.approx(solve(psi1, chi, e), abs=2e-4)
+
+
+@pytest.mark.parametrize(("chi", "e"), PSI2)
+def test_table_holds_the_references(chi, e):
+    """Theory §11, converged to 5e-7."""
+    psi1, expected = zip(*PSI2[chi, e].items(), strict=True)
+    found = contactlab.rebound(np.array(psi1, dtype=float), chi, restitution=e)
+    assert found == pytest.approx(expected, abs=1e-4)
+
+
+def test_table_meets_the_elastic_rebound():
+    """Down to e = 1 - 1e-12 nothing jumps."""
+    psi1 = np.linspace(0.0, 9.0, 400)
+    for chi in (0.8, 1.2, CHI, 1.8):
+        elastic = contactlab.rebound(psi1, chi)
+        assert contactlab.rebound(psi1, chi, restitution=1.0 - 1e-12) == pytest.approx(
+            elastic, abs=2e-4
+        )
+        assert (contactlab.rebound(psi1, chi, restitution=1.0) == elastic).all()
+
+
+@pytest.mark.parametrize("e", [0.5, 0.9])
+def test_no_jump_at_cuts_and_borders(e):
+    """Over psi1, and over e where two pieces of the table meet."""
+    psi1 = np.linspace(0.01, 12.0, 20_001)
+    for chi in (0.8, CHI, 1.8):
+        psi2 = contactlab.rebound(psi1, chi, restitution=e)
+        slope = np.diff(psi2) / np.diff(psi1)
+        assert np.abs(slope).max() < 1.2  # a jump of 2e-4 would be a slope of 0.3 more
+        near = contactlab.rebound(psi1, chi, restitution=e + 1e-9)
+        assert psi2 == pytest.approx(near, abs=3e-4)
+
+
+def test_odd_to_the_last_bit_and_slip_throughout():
+    psi1 = np.array([0.0, 0.3, 1.2, 2.5, 9.0, 1e6, 1e16])
+    psi2 = contactlab.rebound(psi1, CHI, restitution=0.8)
+    assert (contactlab.rebound(-psi1, CHI, restitution=0.8) == -psi2).all()
+    assert psi2[-2] == pytest.approx(1e6 - 2.0 * CHI * 1.8, abs=1e-4)
+    assert np.isfinite(psi2).all()
+    assert psi2[0] == 0.0
+
+
+def test_beyond_the_range_springs_answer():
+    """On both sides of the border the same, and in one array."""
+    psi1 = np.full(4, 1.3)
+    chi = np.array([0.8, 0.8 - 1e-9, 1.8, 1.8 + 1e-9])
+    found = contactlab.rebound(psi1, chi, restitution=0.9)
+    assert found[0::2] == pytest.approx(found[1::2], abs=2e-4)
+    assert found[1] == pytest.approx(solve(psi1[1:2], chi[1:2], 0.9)[0], abs=2e-5)
+    low = contactlab.rebound(1.3, 1.0, restitution=0.4999)
+    assert low == pytest.approx(contactlab.rebound(1.3, 1.0, restitution=0.5), abs=4e-4)
+    assert isinstance(low, float)
+
+
+@pytest.mark.parametrize("wrong", [0.0, -0.5, 1.1, np.nan, "high", None, [0.5, 0.6]])
+def test_bad_restitution_is_refused(wrong):
+    with pytest.raises(ValueError, match="restitution = "):
+        contactlab.rebound(1.2, CHI, restitution=wrong)
+
+
+def test_derivatives_are_refused_with_a_restitution():
+    with pytest.raises(ValueError, match=r"derivatives = True.*restitution"):
+        contactlab.rebound(1.2, CHI, restitution=0.9, derivatives=True)
+
+
+def test_a_damaged_table_is_refused(tmp_path):
+    path = tmp_path / "table.npz"
+    write(path, shipped())
+    assert read(path).checksum() == shipped().checksum()
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+    with pytest.raises(ValueError, match=r"no table that can be trusted.*build"):
+        read(path)
