@@ -25,8 +25,11 @@ from contactlab_damped_table.table import SHIPPED, Table, read
 
 Array = NDArray[np.float64]
 
-#: Impacts computed together, which fit into a processor's cache.
-CHUNK = 2048
+#: Impacts computed together: fewer cost more calls, more leave the processor's cache.
+CHUNK = 8192
+#: The last terms along psi1 are left out that together are no more than this: less than the
+#: springs are off that the table is made of.
+SMALL = 1e-5
 
 
 @cache
@@ -61,19 +64,24 @@ def rebound(psi1: Array, chi: Array, restitution: float) -> Array:
 
 
 @lru_cache(maxsize=64)
-def _at(restitution: float) -> tuple[Array, Array]:
-    """Return the coefficients of cuts (chi, 2) and of values (3, chi, psi1) at a restitution."""
+def _at(restitution: float) -> tuple[Array, list[Array]]:
+    """Return coefficients at a restitution: of the cuts (2, chi), and of each piece (psi1, chi)."""
     table, t = shipped(), float(depth(restitution))
     piece = int(t > BORDERS[1])
     low, high = BORDERS[piece : piece + 2]
     basis = chebyshev.chebvander(inner(t, low, high), table.terms.shape[-1] - 1)[0]
-    cuts, terms = table.cuts[piece] @ basis, table.terms[piece] @ basis
-    return np.ascontiguousarray(cuts.T), np.ascontiguousarray(terms.swapaxes(1, 2))
+    return table.cuts[piece] @ basis, [_kept(each @ basis) for each in table.terms[piece]]
 
 
-def _chunk(psi1: Array, chi: Array, e: float, cuts: Array, terms: Array) -> Array:
-    along = chebyshev.chebvander(inner(chi, *CHI), cuts.shape[0] - 1)
-    low, high = (along @ cuts).T
+def _kept(terms: Array) -> Array:
+    """Return the terms up to the last that matters, two at least."""
+    rest = np.cumsum(np.abs(terms).sum(axis=1)[::-1])[::-1]
+    return np.ascontiguousarray(terms[: max(np.count_nonzero(rest > SMALL), 2)])
+
+
+def _chunk(psi1: Array, chi: Array, e: float, cuts: Array, terms: list[Array]) -> Array:
+    along = _polynomials(inner(chi, *CHI), cuts.shape[-1])
+    low, high = cuts @ along
     piece = (psi1 > low).astype(np.int8) + (psi1 > high)
     psi2 = np.empty(psi1.shape)
     for part in (STICKS, TURNS, SLIPS):
@@ -81,16 +89,27 @@ def _chunk(psi1: Array, chi: Array, e: float, cuts: Array, terms: Array) -> Arra
         if rows.size:
             ours = psi1[rows], chi[rows]
             at = place(part, ours[0], (low[rows], high[rows]))
-            columns = along[rows] @ terms[part]
-            value = _summed(at, columns)
+            value = _summed(at, terms[part] @ along.take(rows, axis=1))
             psi2[rows] = rough(part, ours[0], value, ours[1], e)
     return psi2
 
 
+def _polynomials(at: Array, count: int) -> Array:
+    """Return so many of Chebyshev's polynomials at ``at``, one a row."""
+    found = np.empty((count, len(at)))
+    found[0], found[1], twice = 1.0, at, 2.0 * at
+    for k in range(2, count):
+        np.multiply(twice, found[k - 1], out=found[k])
+        found[k] -= found[k - 2]
+    return found
+
+
 def _summed(at: Array, columns: Array) -> Array:
     """Return the sum of Chebyshev polynomials with coefficients of their own, by Clenshaw."""
-    columns = np.ascontiguousarray(columns.T)
-    twice, one, two = 2.0 * at, columns[-1], 0.0
+    twice, one, two = 2.0 * at, columns[-1], np.zeros_like(at)
     for row in columns[-2:0:-1]:
-        one, two = row + twice * one - two, one
+        row -= two
+        two = one
+        row += twice * one
+        one = row
     return np.asarray(columns[0] + at * one - two)

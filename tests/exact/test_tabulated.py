@@ -284,7 +284,7 @@ def test_contactlab_rebound_uses_the_table_up_to_its_tolerance(monkeypatch):
     def refuse_to_answer(*_, **__):
         raise AssertionError("the table was asked")
 
-    monkeypatch.setattr(rebounds, "_installed", lambda name: refuse_to_answer)
+    monkeypatch.setattr(rebounds, "_installed", lambda _: refuse_to_answer)
     assert np.abs(contactlab.rebound(psi1, chi, tolerance=1e-9) - mixture).max() < 1e-5
     monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "rebound.elastic")
     assert np.abs(contactlab.rebound(psi1, chi) - mixture).max() < 1e-5
