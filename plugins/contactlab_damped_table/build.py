@@ -70,7 +70,7 @@ def cuts_at(e: float, chi: Array) -> tuple[Array, Array]:
 def _looked_for(e: float, chi: Array, springs: int) -> Array:
     """Return the cuts as springs find them on a grid of psi1, shape (2, chi)."""
     first = np.broadcast_to(np.linspace(*FIRST, LOOKED)[:, None], (LOOKED, len(chi)))
-    second = 2.0 * chi * (1.0 + e) - np.linspace(*reversed(SECOND), LOOKED)[:, None]
+    second = 2.0 * chi * (1.0 + e) - np.linspace(SECOND[1], SECOND[0], LOOKED)[:, None]
     psi1 = np.stack([first, second])
     scene = Scene.nondimensional(psi1=psi1.ravel(), chi=np.broadcast_to(chi, psi1.shape).ravel())
     history = simulation(e, springs).run(scene, history=True).check().history

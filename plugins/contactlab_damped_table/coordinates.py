@@ -44,10 +44,8 @@ def nodes(count: int, low: float, high: float) -> Array:
 def coefficients(values: Array) -> Array:
     """Return Chebyshev coefficients of values at the nodes along every axis."""
     for axis, count in enumerate(values.shape):
-        basis = chebyshev.chebvander(chebyshev.chebpts1(count), count - 1)
-        values = np.moveaxis(np.linalg.solve(basis, np.moveaxis(values, axis, 0)
-                             .reshape(count, -1)).reshape(count, *np.delete(values.shape, axis)),
-                             0, axis)  # fmt: skip
+        inverse = np.linalg.inv(chebyshev.chebvander(chebyshev.chebpts1(count), count - 1))
+        values = np.moveaxis(np.tensordot(inverse, values, (1, axis)), 0, axis)
     return values
 
 
