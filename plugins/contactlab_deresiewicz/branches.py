@@ -133,9 +133,10 @@ def _slipped(memory: Memory, step: Step) -> Memory:
     # The last turn was made from slip in the sense -s, and moves with the load; so does the other.
     turn, earlier = memory.turn - sense * pressed, memory.earlier + sense * pressed
     held, loading = memory.held, branch == LOADING
-    weight = 1.0 / (1.0 - held) if loading else 0.5
+    # w and 1 - w, which cancels where h is tiny.
+    weight, rest = (1.0 / (1.0 - held), -held / (1.0 - held)) if loading else (0.5, 0.5)
     grown = square - _square(old)
-    ahead = memory.slipped * _square(old) + weight * sense * step.moved + (1.0 - weight) * grown
+    ahead = memory.slipped * _square(old) + weight * sense * step.moved + rest * grown
     slipped = max(ahead / square, 0.0) if square > 0.0 else 0.0
     if loading:
         force = sense * limit * (held + (1.0 - held) * _used(slipped))
@@ -143,8 +144,8 @@ def _slipped(memory: Memory, step: Step) -> Memory:
         force = turn + 2.0 * sense * limit * _used(slipped)
         goal = earlier if branch == RELOADING else -turn
         if limit > 0.0 and sense * force > sense * goal:  # past where it came from: loading
-            rest = 2.0 * (slipped - _edge(0.5 * sense * (goal - turn) / limit))
-            slipped, branch, held = _edge(sense * goal / limit) + rest, LOADING, 0.0
+            beyond = 2.0 * (slipped - _edge(0.5 * sense * (goal - turn) / limit))
+            slipped, branch, held = _edge(sense * goal / limit) + beyond, LOADING, 0.0
             force = sense * limit * _used(slipped)
     if slipped >= 1.0:  # gross slip: nothing is remembered
         branch, held, force = LOADING, 0.0, sense * limit

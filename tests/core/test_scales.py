@@ -16,6 +16,10 @@ ALL = {
     "sharp_annulus": {"annuli": 12},
     "annulus": {"annuli": 12},
     "mindlin_cap": {},
+    "mindlin_deresiewicz": {},
+    "linear_spring": {},
+    "stronge": {},
+    "walton": {},
     "coulomb": {},
     "frictionless": {},
 }

@@ -13,6 +13,8 @@ LAWS = {
     "sharp_annulus": {"annuli": 30},
     "annulus": {"annuli": 20},
     "mindlin_cap": {},
+    "mindlin_deresiewicz": {},
+    "linear_spring": {"damping": 0.1},
     "coulomb": {},
 }
 
