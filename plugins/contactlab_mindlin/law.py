@@ -101,9 +101,8 @@ class MindlinCap(SteppedTangentialLaw):
         the cap (LAMMPS ``mindlin/force``, YADE); ``"increment_rescaled"``: the same, F
         multiplied with b/b before while b shrinks (LAMMPS ``mindlin_rescale/force``, Kratos).
     stiffness_factor : float
-        k over 2 G* b; 2/3 in codes that take k = (16/3) G a, G of each of two like bodies
-        counted as 1/G = 2 (2 - nu)/G1, which in the displacement form is the secant of a
-        contact that grows as it is sheared (Di Renzo & Di Maio 2005; MFiX).
+        k over 2 G* b, Mindlin's stiffness; 2/3 in codes that take (16/3) G b for 8 G b, with
+        1/G the sum of (2 - nu)/G of the bodies (Di Renzo & Di Maio 2005; MFiX).
     damping : float
         Constant of a dashpot beside the spring, over 2 sqrt(k M_n) with the stiffness k of the
         instant: sqrt(5/6) ln e/sqrt(ln² e + pi²) in size in LIGGGHTS. 0 for none.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-#: Zeros closer to each other than this are one, or none. In it a function with bounded second
-#: derivative is a straight line to 1e-14 of that bound.
+#: Zeros closer to each other than this over the root of the second derivative's bound are one, or
+#: none: the function is a straight line there, to 1e-15.
 NARROWEST = 1e-7
 #: What is not below this is rounding.
 ROUNDING = 1e-14
@@ -27,13 +27,14 @@ def first_zero(
         Bound of the absolute second derivative.
     start, stop : float
     """
+    narrowest = NARROWEST / max(bend, 1.0) ** 0.5
     pending = [(start, function(start), stop, function(stop))]
     while pending:
         left, before, right, after = pending.pop()
         width = right - left
         if min(before, after) > 0.125 * bend * width * width:
             continue
-        if width <= NARROWEST:
+        if width <= narrowest:
             if after < -ROUNDING:
                 return left + width * max(before, 0.0) / (max(before, 0.0) - after)
             continue
