@@ -15,6 +15,11 @@ from contactlab.scene import Scene
 
 #: Tabor's parameter from which the theory holds.
 SOFT = 5.0
+#: Measured: 0.045 of the energy at the start where e = 0.95 by adhesion, 0.001 where e = 0.99.
+SNAP = (
+    "contact breaks while friction holds it: the elastic energy of that shear is lost, and the "
+    "energy books, which know only friction work, miss it (model, not numerical error)"
+)
 #: s at the least scaled approach at which a contact can be, s⁴ - s: its derivative is zero there.
 LAST = 4.0 ** (-1.0 / 3.0)
 LEAST = LAST**4 - LAST
@@ -96,6 +101,6 @@ class JohnsonKendallRoberts(NormalLaw):
         return contact, state
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return those of every law, and that of a contact too stiff for this theory."""
+        """Return those of every law, of a contact too stiff for this theory, and of its end."""
         stiff = tabor_caution(scene, self.work_of_adhesion, least=SOFT, other="normal.dmt")
-        return (*super().cautions(scene, motion), *stiff)
+        return (*super().cautions(scene, motion), *stiff, SNAP)
