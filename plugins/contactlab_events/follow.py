@@ -219,7 +219,7 @@ class _Walk:
         middle = abs(solved.velocity[NODES // 2].item())
         scale = abs(self.state.velocity) + abs(solved.change[-1].item()) + middle
         largest = self.inertia * solved.length * max(abs(one), abs(two))
-        return largest / (self.tail * scale)
+        return float(largest / (self.tail * scale))
 
     def _retry(self, solved: Solved, found: tuple[int, float] | None, tail: float) -> None:
         """Set out another panel, shorter, after one that was not accepted."""

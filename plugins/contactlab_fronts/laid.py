@@ -135,4 +135,4 @@ class Laid(Piece):
 def _within(values: Array, least: Any, most: Any) -> Array:
     """Return ``values``, changed in place, between two bounds."""
     np.maximum(values, least, out=values)
-    return np.minimum(values, most, out=values)
+    return np.asarray(np.minimum(values, most, out=values))
