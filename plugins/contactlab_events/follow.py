@@ -219,7 +219,9 @@ class _Walk:
         middle = abs(solved.velocity[NODES // 2].item())
         scale = abs(self.state.velocity) + abs(solved.change[-1].item()) + middle
         largest = self.inertia * solved.length * max(abs(one), abs(two))
-        return float(largest / (self.tail * scale))
+        if largest == 0.0:  # as in rolling, where nothing is left to be a share of
+            return 0.0
+        return float(largest / (self.tail * scale)) if scale > 0.0 else math.inf
 
     def _retry(self, solved: Solved, found: tuple[int, float] | None, tail: float) -> None:
         """Set out another panel, shorter, after one that was not accepted."""

@@ -86,7 +86,8 @@ def test_without_partial_slip_steps_must_keep_the_phase():
             tangential="mindlin_cap",
             integrator=contactlab.create("integrator.symplectic", steps=steps, refine=False),
         )
-        assert len(ringing.plan(scene).cautions) == cautions
+        said = [caution for caution in ringing.plan(scene).cautions if "steps" in caution.text]
+        assert len(said) == cautions
         assert (ringing.run(scene).status is Status.SUCCESS) is (not cautions)
 
 
