@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from contactlab import impulses
 from contactlab.batch import filled
 from contactlab.bodies import Sphere
-from contactlab.checks import Real, refuse
+from contactlab.checks import Real, real, refuse
 from contactlab.encounter import Encounter, components
 from contactlab.energy import EnergyLedger, books
 from contactlab.plan import Plan, Sentence
+from contactlab.rebounds import RESTITUTION, damped
 from contactlab.result import ImpactResult
 from contactlab.signatures import named_arguments
 from contactlab.simulation import Simulation
@@ -52,6 +53,8 @@ class Collision:
         In J.
     collided : bool or array of bool
         False where the bodies separated before, and passed through untouched.
+    restitution : float
+        e that ``contactlab.rebound`` was asked for, if it was.
     simulation : Simulation or None
         The laws; None for ``contactlab.rebound``.
     known : ImpactResult or None
@@ -67,6 +70,7 @@ class Collision:
     slip_velocity_change: Real
     friction_work: Real
     collided: Any
+    restitution: float = 1.0
     simulation: Simulation | None = None
     known: ImpactResult | None = None
 
@@ -193,6 +197,8 @@ class Collision:
     def _simulation(self) -> Simulation:
         if self.simulation is not None:
             return self.simulation
+        if self.restitution != 1.0:
+            return damped(self.restitution)
         try:
             return Simulation(tangential=SAME_ANSWERS)
         except ValueError:  # blocked, or not installed
@@ -201,7 +207,11 @@ class Collision:
 
 @named_arguments("collide(encounter, Simulation(tangential='springs'))")
 def collide(
-    encounter: Encounter, simulation: Simulation | None = None, *, separating: str = "refuse"
+    encounter: Encounter,
+    simulation: Simulation | None = None,
+    *,
+    restitution: float = 1.0,
+    separating: str = "refuse",
 ) -> Collision:
     """Return both bodies after an encounter, or after each of a batch.
 
@@ -211,6 +221,10 @@ def collide(
     simulation : Simulation, optional
         The laws. By default the exact answer for elastic spheres, Hertz contact with partial slip,
         by ``contactlab.rebound``: under a microsecond an encounter in a large batch.
+    restitution : float
+        e of the normal motion without a simulation, from 0.01 to 1: below 1 by Tsuji's law to 2e-4
+        in psi2. Other laws of the same e give another psi2, by up to 0.02 (viscoelastic) or 0.18
+        (plastic) at e = 0.9: see ``contactlab.rebound``.
     separating : "refuse" or "pass"
         What to do with bodies that do not approach each other: an error with the index of the
         first, or let them pass through untouched, which ``Collision.collided`` tells.
@@ -235,8 +249,12 @@ def collide(
         raise refuse("simulation", simulation, "must be a Simulation", "or leave it out")
     if separating not in SEPARATING:
         raise refuse("separating", separating, "must be 'refuse' or 'pass'")
+    e = real("restitution", restitution, rule=RESTITUTION, remedy="leave it out for 1")
     if simulation is None:
-        return _collision(encounter, None, strict=separating == "refuse")
+        return _collision(encounter, None, restitution=float(e), strict=separating == "refuse")
+    if e != 1.0:
+        remedy = "give it to the normal law: create('normal.tsuji', restitution=0.9)"
+        raise refuse("restitution", restitution, "stands in place of a simulation", remedy)
     met: Any = encounter.approaching
     if separating == "refuse" and not np.all(met):
         raise encounter.separate()
@@ -262,11 +280,29 @@ def _columns(encounter: Encounter, result: ImpactResult, met: Any = True) -> Arr
 
 
 def _collision(
-    encounter: Encounter, columns: Array | None, *, strict: bool = False, **rest: Any
+    encounter: Encounter,
+    columns: Array | None,
+    *,
+    restitution: float = 1.0,
+    strict: bool = False,
+    **rest: Any,
 ) -> Collision:
-    """Return the collision by these answers; ``rest`` are its other entries."""
-    made = impulses.moved(encounter, columns, strict=strict)
-    return Collision(encounter=encounter, **made._asdict(), **rest)
+    """Return the collision by these answers, or those of ``rebound``.
+
+    Parameters
+    ----------
+    encounter : Encounter
+    columns : array or None
+        Answers of a law, as ``impulses.moved`` takes them.
+    restitution : float
+        For ``rebound``.
+    strict : bool
+        Whether bodies that separate are refused.
+    **rest
+        The other entries of the collision.
+    """
+    made = impulses.moved(encounter, columns, restitution=restitution, strict=strict)
+    return Collision(encounter=encounter, restitution=restitution, **made._asdict(), **rest)
 
 
 def _rim(body: Sphere, spin: Array, normal: Array) -> Array:

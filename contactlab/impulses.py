@@ -16,6 +16,8 @@ from contactlab.scene import LEAST_IMPULSE
 
 Array = NDArray[np.float64]
 
+#: Beyond this psi1 the change of psi under a restitution is its limit to 1e-4.
+END_OF_DAMPED = 1e4
 #: Velocities and spins of both bodies.
 VECTORS = ("velocity", "spin", "target_velocity", "target_spin")
 
@@ -33,22 +35,37 @@ class Moved(NamedTuple):
     collided: Any
 
 
-def elastic(part: Encounter, contact: Contact, pair: Pair) -> tuple[Any, Any, Any]:
-    """Return rate of approach, change of slip velocity and friction work of elastic bodies.
+def rebounding(
+    part: Encounter, contact: Contact, pair: Pair, restitution: float
+) -> tuple[Any, Any, Any]:
+    """Return rate of approach, change of slip velocity and friction work by ``rebound``.
 
-    Slip throughout, eq. (46), is the same from psi1 = 4 chi + 1 on, so that psi1 is cut there:
-    whatever slip and friction are, it is finite and keeps its digits.
+    Slip throughout, eq. (46), is the same for elastic bodies from psi1 = 4 chi + 1 on, so that
+    psi1 is cut there: whatever slip and friction are, it is finite and keeps its digits. With a
+    restitution the change of psi tends to -2 chi (1 + e) as 1/psi1.
+
+    Parameters
+    ----------
+    part : Encounter
+    contact : Contact
+    pair : Pair
+        Of the two bodies.
+    restitution : float
+        e of the normal motion.
     """
     chi = pair.inertia_ratio
+    end: Any = 4.0 * chi + 1.0 if restitution == 1.0 else END_OF_DAMPED
     with np.errstate(all="ignore"):
         # m/s for each unit of psi, eq. (29)
         unit: Any = part.friction_coefficient * contact.approach / pair.stiffness_ratio
-        psi1: Any = np.fmin(np.divide(contact.slip, unit), 4.0 * chi + 1.0)
+        psi1: Any = np.fmin(np.divide(contact.slip, unit), end)
         psi1 = np.where(contact.approach >= LEAST, psi1, 0.0)
-        psi2: Any = rebound(psi1, chi) if part.shape else rebound(float(psi1), float(chi))
+        if not part.shape:
+            psi1, chi = float(psi1), float(chi)
+        psi2: Any = rebound(psi1, chi, restitution=restitution)
         change = (psi2 - psi1) * unit
         work = -pair.tangential_mass * change * (contact.slip + 0.5 * change)
-    return -contact.approach, change, np.maximum(work, 0.0)
+    return -restitution * contact.approach, change, np.maximum(work, 0.0)
 
 
 def _check(part: Encounter, impulse: Any, change: Any) -> None:
@@ -69,7 +86,13 @@ def _check(part: Encounter, impulse: Any, change: Any) -> None:
         )
 
 
-def moved(encounter: Encounter, answers: Array | None = None, *, strict: bool = False) -> Moved:
+def moved(
+    encounter: Encounter,
+    answers: Array | None = None,
+    *,
+    restitution: float = 1.0,
+    strict: bool = False,
+) -> Moved:
     """Return both bodies after an encounter; those that separate move on, or are refused.
 
     Parameters
@@ -77,7 +100,9 @@ def moved(encounter: Encounter, answers: Array | None = None, *, strict: bool = 
     encounter : Encounter
     answers : array, optional
         Of a law, shape (3, encounters): rate of approach after the impact, change of the slip
-        velocity (m/s), friction work (J). By default those of elastic bodies.
+        velocity (m/s), friction work (J). By default those of ``contactlab.rebound``.
+    restitution : float
+        For ``rebound``.
     strict : bool
         Whether bodies that separate are refused.
     """
@@ -92,7 +117,7 @@ def moved(encounter: Encounter, answers: Array | None = None, *, strict: bool = 
         if strict and not np.all(meets):
             raise encounter.separate()
         if answers is None:
-            after, change, work = elastic(part, contact, pair)
+            after, change, work = rebounding(part, contact, pair, restitution)
             _check(part, np.where(meets, pair.normal_mass * contact.approach, 1.0), change)
         else:
             after, change, work = answers[:, where]

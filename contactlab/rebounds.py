@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
-from typing import Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.checks import POSITIVE, Real, Rule, paired, real, refuse
 from contactlab.signatures import named_arguments
+
+if TYPE_CHECKING:
+    from contactlab.simulation import Simulation
 
 Array = NDArray[np.float64]
 
@@ -168,9 +171,7 @@ def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
 
 def _damped(psi1: Array, chi: Array, restitution: float) -> Array:
     """Return psi2, shape (impacts,), under Tsuji's law: from the table, elsewhere by springs."""
-    from contactlab.registry import REGISTRY
     from contactlab.scene import Scene
-    from contactlab.simulation import Simulation
 
     psi2, left = np.empty_like(psi1), np.ones(psi1.shape, dtype=bool)
     table = _table(DAMPED)
@@ -178,15 +179,22 @@ def _damped(psi1: Array, chi: Array, restitution: float) -> Array:
         known = (chi >= DAMPED_CHI[0]) & (chi <= DAMPED_CHI[1])
         psi2[known], left = table(psi1[known], chi[known], restitution), ~known
     if left.any():
-        simulation = Simulation(
-            normal=REGISTRY.create("normal.tsuji", restitution=restitution),
-            tangential=REGISTRY.create("tangential.springs", springs=SPRINGS),
-            integrator=REGISTRY.create("integrator.symplectic", steps=4 * SPRINGS),
-        )
         speed = np.minimum(np.abs(psi1[left]), LARGEST)  # as for the exact solution, below
-        result = simulation.sweep(Scene.nondimensional(psi1=speed, chi=chi[left])).check()
+        result = damped(restitution).sweep(Scene.nondimensional(psi1=speed, chi=chi[left])).check()
         psi2[left] = np.copysign(1.0, psi1[left]) * (np.abs(psi1[left]) + result.psi_change)
     return psi2
+
+
+def damped(restitution: float) -> Simulation:
+    """Return the laws of a restitution below 1: Tsuji's, and partial slip by springs."""
+    from contactlab.registry import REGISTRY  # no law before it is needed
+    from contactlab.simulation import Simulation
+
+    return Simulation(
+        normal=REGISTRY.create("normal.tsuji", restitution=restitution),
+        tangential=REGISTRY.create("tangential.springs", springs=SPRINGS),
+        integrator=REGISTRY.create("integrator.symplectic", steps=4 * SPRINGS),
+    )
 
 
 def _table(name: str = TABLE) -> Callable[..., Any] | None:

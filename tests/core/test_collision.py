@@ -335,3 +335,45 @@ def test_what_a_file_of_vectors_refuses(old, new, words, tmp_path):
     path.write_text(VECTORS.replace(old, new))
     with pytest.raises(ValueError, match=words):
         contactlab.read_scene(path)
+
+
+def test_a_restitution_is_that_of_tsujis_law_and_of_its_springs():
+    """The table against springs, which it was not made from at these resolutions."""
+    rng = np.random.default_rng(11)
+    met = meeting(
+        target=BALL,
+        velocity=rng.normal((0, 0, -5), size=(12, 3)),
+        spin=40 * rng.normal(size=(12, 3)),
+    )
+    made = collide(met, restitution=0.8)
+    laws = Simulation(
+        normal=contactlab.create("normal.tsuji", restitution=0.8),
+        tangential="springs",
+        integrator=contactlab.create("integrator.symplectic", steps=400),
+    )
+    other = collide(met, laws)
+    np.testing.assert_allclose(made.normal_velocity, other.normal_velocity, rtol=1e-9)
+    scale = np.abs(other.slip_velocity_change).max()
+    apart = np.abs(made.slip_velocity_change - other.slip_velocity_change).max()
+    assert 0.0 < apart < 2e-3 * scale
+    np.testing.assert_allclose(made.energy.imbalance, 0.0, atol=1e-12)
+    assert made.result.laws["normal"].startswith("tsuji")
+    elastic = collide(met)
+    assert (np.abs(made.velocity - elastic.velocity).max(axis=1) > 1e-3).all()
+
+
+def test_gross_slip_with_a_restitution():
+    """Impulse mu (1 + e) M_n v1 in the limit of a long slide, theory §11."""
+    met = meeting(friction_coefficient=0.01, velocity=(50.0, 0.0, -1.0))
+    for e in (1.0, 0.9, 0.6):
+        drag = -collide(met, restitution=e).slip_velocity_change
+        pair = met.pair
+        full = 0.01 * (1.0 + e) * pair.normal_mass * 1.0 / pair.tangential_mass
+        assert drag == pytest.approx(full, rel=1e-3)
+
+
+def test_a_restitution_stands_in_place_of_laws():
+    with pytest.raises(ValueError, match="restitution"):
+        collide(meeting(), Simulation(), restitution=0.9)
+    with pytest.raises(ValueError, match="restitution"):
+        collide(meeting(), restitution=1.2)
