@@ -7,7 +7,7 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab.cli.report import describe
+from contactlab.cli.describe import describe
 from tests.normal_laws import Damped, LinearSpring
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
-from contactlab.simulation import CLOSED_FORM_CHUNK
+from contactlab.sweeping import WHOLE_IMPACTS
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 GLASS = Material(young_modulus=70e9, poisson_ratio=0.2, density=2500.0)
@@ -71,9 +71,9 @@ def test_it_needs_the_elastic_impact():
 
 
 def test_a_sweep_takes_many_together():
-    scene = Scene.nondimensional(psi1=np.linspace(0.0, 4.0, CLOSED_FORM_CHUNK + 7), chi=1.3)
+    scene = Scene.nondimensional(psi1=np.linspace(0.0, 4.0, WHOLE_IMPACTS + 7), chi=1.3)
     calls = []
     result = tabulated().sweep(scene, progress=lambda done, _: calls.append(done))
-    assert calls == [CLOSED_FORM_CHUNK, CLOSED_FORM_CHUNK + 7]
+    assert calls == [WHOLE_IMPACTS, WHOLE_IMPACTS + 7]
     assert set(result.status.tolist()) == {Status.SUCCESS}
     assert np.allclose(result.psi2, tabulated().run(scene).psi2, rtol=0.0, atol=1e-11)
