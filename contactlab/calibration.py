@@ -37,6 +37,15 @@ def one_of_two(law: Any, one: str, other: str, *, default: float) -> None:
 
     To be called when a law is made, of options whose default is None.
 
+    Parameters
+    ----------
+    law : object
+        The attrs instance that is being made.
+    one, other : str
+        Names of the two options.
+    default : float
+        Of ``one``, in its unit.
+
     Raises
     ------
     ValueError

@@ -54,7 +54,18 @@ def block_of(simulation: Simulation) -> int:
 
 
 def solved(simulation: Simulation, scene: Scene, chunk: Chunk, block: int) -> Piece:
-    """Return the piece of a chunk, ``scene`` being that chunk alone, solved block by block."""
+    """Return the piece of a chunk, ``scene`` being that chunk alone, solved block by block.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    scene : Scene
+        A batch of one axis, of the chunk's length.
+    chunk : Chunk
+        Where it lies in the whole sweep.
+    block : int
+        Most impacts that are advanced together.
+    """
     size = chunk.stop - chunk.first
     plans, motions = zip(
         *(

@@ -73,6 +73,19 @@ def _of_angle(scene: Scene) -> list[str]:
 
 
 def _told(name: str, value: float, unit: str, meant: str) -> str:
+    """Return the remark on a number that looks as if in another unit.
+
+    Parameters
+    ----------
+    name : str
+        Of the quantity.
+    value : float
+        The most suspect one, in ``unit``.
+    unit : str
+        What the number was taken for.
+    meant : str
+        What it looks like.
+    """
     return f"unit: {name} = {value:.4g} {unit}: is it in {meant}?"
 
 

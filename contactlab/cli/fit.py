@@ -129,7 +129,17 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _report(found: Fit, ranked: list[Ranked], *, complete: bool, as_json: bool) -> None:
-    """Print the fit and the ranking."""
+    """Print the fit and the ranking.
+
+    Parameters
+    ----------
+    found : Fit
+    ranked : list of Ranked
+        The same data under other laws, the best first; empty if not asked for.
+    complete : bool
+        False after an interruption.
+    as_json : bool
+    """
     if as_json:
         rows = [
             {"law": one.name, "refusal": one.refusal, "fit": one.fit and one.fit.to_dict()}

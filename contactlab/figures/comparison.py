@@ -44,6 +44,14 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
 
     Laws that agree with the first are named with it; those that make no force are left out.
     Forms of one law share its colour. Bands are numerical errors.
+
+    Parameters
+    ----------
+    upper, lower : Axes
+        Of the curves and of the differences.
+    comparison : Comparison
+    quantity : str
+        Name of what is compared, such as ``"psi2"``.
     """
     varied, x = _abscissa(comparison, None)
     first, *others = comparison.names
@@ -86,7 +94,17 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
 
 
 def _codes(axes: Axes, comparison: Comparison, quantity: str, varied: str) -> None:
-    """Draw the series that the scene file carries, as points."""
+    """Draw the series that the scene file carries, as points.
+
+    Parameters
+    ----------
+    axes : Axes
+    comparison : Comparison
+    quantity : str
+        What is drawn, up.
+    varied : str
+        What it is drawn against.
+    """
     found = [item.measured for item in comparison.agreements]
     for number, item in enumerate(one for one in found if (one.quantity, one.against) == (
         quantity, varied
@@ -96,7 +114,19 @@ def _codes(axes: Axes, comparison: Comparison, quantity: str, varied: str) -> No
 
 
 def band(axes: Axes, x: Any, middle: Any, half: Any, size: float, colour: Any) -> None:
-    """Shade the numerical error around a curve, where it is known and wide enough to be seen."""
+    """Shade the numerical error around a curve, where it is known and wide enough to be seen.
+
+    Parameters
+    ----------
+    axes : Axes
+    x, middle : array, shape (points,)
+        The curve, in the units of the axes.
+    half : array, shape (points,)
+        Numerical error in the unit of ``middle``; NaN where unknown.
+    size : float
+        Range of the curves drawn, in the same unit.
+    colour : colour of matplotlib
+    """
     half = np.nan_to_num(half)
     if float(np.max(half)) >= VISIBLE * size:
         axes.fill_between(x, middle - half, middle + half, color=colour, alpha=0.22, linewidth=0.0)

@@ -78,7 +78,18 @@ def _drawn(
     heights: tuple[float, ...],
     wide: bool,
 ) -> Figure:
-    """Return a figure that is drawn; arguments are those of ``save``."""
+    """Return a figure that is drawn; arguments are those of ``save``.
+
+    Parameters
+    ----------
+    draw : callable
+        Takes the axes: one, or an array of them, shape (rows, columns).
+    rows, columns : int
+    heights : tuple of float
+        Relative heights of the rows.
+    wide : bool
+        Whether one pair of axes takes the width of a page.
+    """
     scale = sum(heights) / max(heights)
     width = WIDTH * (0.85 * columns if columns > 1 else 1.6 if wide else 1.0)
     figure = Figure(figsize=(width, HEIGHT * scale * (1.25 if wide else 1.0)))

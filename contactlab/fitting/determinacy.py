@@ -134,6 +134,18 @@ def check_single(problem: Problem, minima: list[Array]) -> None:
 
 
 def _undetermined(model: Model, values: Array, places: list[int], told: str) -> ValueError:
+    """Return the refusal of parameters that the data do not determine.
+
+    Parameters
+    ----------
+    model : Model
+    values : array, shape (parameters,)
+        Each in its parameter's unit.
+    places : list of int
+        Which parameters are not determined.
+    told : str
+        Why not.
+    """
     names = " and ".join(model.parameters[place].name for place in places)
     remedy = " ".join(dict.fromkeys(advice.advised(model, values, place) for place in places))
     return ValueError(f"the data do not determine {names}: {told}; {remedy}")

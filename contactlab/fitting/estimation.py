@@ -124,7 +124,18 @@ def fit(
 def _model(
     table: Measurements, scene: object, parameters: Sequence[str], simulation: Simulation | None
 ) -> Model:
-    """Return the model of the measured impacts with the parameters asked for."""
+    """Return the model of the measured impacts with the parameters asked for.
+
+    Parameters
+    ----------
+    table : Measurements
+    scene : Scene, SceneFile or path
+        What the columns of the table leave open.
+    parameters : list of str
+        Names, each once.
+    simulation : Simulation or None
+        None: the laws of the scene file, or the default ones.
+    """
     if isinstance(parameters, str) or not parameters:
         raise refuse(
             "parameters", parameters, "must be a list of names", "['friction_coefficient']"
@@ -190,6 +201,18 @@ def _outcome(problem: Problem, table: Measurements, values: Array) -> tuple[Fit,
 
 
 def _notes(problem: Problem, values: Array, chi_square: float | None, freedom: int) -> list[str]:
+    """Return what a reader of the estimates should be wary of, a sentence each.
+
+    Parameters
+    ----------
+    problem : Problem
+    values : array, shape (parameters,)
+        Estimates, each in its parameter's unit.
+    chi_square : float or None
+        Over the degrees of freedom; None if no errors were given.
+    freedom : int
+        Numbers measured less parameters.
+    """
     found = []
     for parameter, value in zip(problem.model.parameters, values.tolist(), strict=True):
         near = AT_END * parameter.width

@@ -78,7 +78,19 @@ def read_heading(text: str) -> Heading:
 
 
 def _factor(text: str, name: str, unit: str, own: str) -> float:
-    """Return by what to multiply numbers in ``unit`` to have them in the name's own."""
+    """Return by what to multiply numbers in ``unit`` to have them in the name's own.
+
+    Parameters
+    ----------
+    text : str
+        The whole heading, for the refusal.
+    name : str
+        Of the quantity.
+    unit : str
+        As the heading gives it; empty if it gives none.
+    own : str
+        The unit in which the quantity is kept.
+    """
     if unit == own or (not unit and (own == "1" or name.endswith("_deg"))):
         return 1.0
     if (unit, own) in CONVERSIONS:

@@ -128,6 +128,19 @@ def _of_csv(path: Path) -> Measurements:
 
 
 def _number(cell: str, heading: str, role: Heading, line: int) -> float:
+    """Return the number in a cell; NaN where it is missing and may be.
+
+    Parameters
+    ----------
+    cell : str
+        As it stands in the file.
+    heading : str
+        Of its column, for the refusal.
+    role : Heading
+        What the column is for.
+    line : int
+        Of the file, the first being 1.
+    """
     if role.role == "unused" or (not cell.strip() and role.role != "given"):
         return float("nan")
     try:

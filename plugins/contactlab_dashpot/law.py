@@ -30,7 +30,19 @@ class Parts(NamedTuple):
 
 
 def pressed(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float]) -> NormalContact:
-    """Return the contact of P = k z^n + c z^m z', ended where P returns to zero; b² = R z."""
+    """Return the contact of P = k z^n + c z^m z', ended where P returns to zero; b² = R z.
+
+    Parameters
+    ----------
+    parts : Parts
+        Stiffness k in N/m^n, damping c in N s/m^(m + 1), radius R in m.
+    approach : float or array, shape (...,)
+        z in m, positive in contact.
+    rate : float or array, shape (...,)
+        z' in m/s, positive inward.
+    powers : (float, float)
+        n and m.
+    """
     touching: Any = approach >= 0.0
     inside: Any = approach * touching  # NaN stays NaN
     damping = parts.damping * inside ** powers[1] * touching

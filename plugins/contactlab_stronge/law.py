@@ -81,7 +81,19 @@ class Stronge(WholeImpactTangentialLaw):
 
 
 def _of_each(incidence: Any, frequency: Any, bounce: Any, shape: tuple[int, ...]) -> Rebound:
-    """Return the rebounds of all impacts, arrays of ``shape``; 0 where there is no friction."""
+    """Return the rebounds of all impacts, arrays of ``shape``; 0 where there is no friction.
+
+    Parameters
+    ----------
+    incidence : float or array
+        psi before the impact, abs(v_x) k_t/(k_n mu v1); no unit.
+    frequency : float or array
+        omega, the tangential over the normal natural frequency; no unit.
+    bounce : float or array
+        e of the normal motion, at least 0.
+    shape : tuple of int
+        Which all three broadcast to.
+    """
     columns = (np.broadcast_to(column, shape).ravel().tolist() for column in (
         incidence, frequency, bounce
     ))  # fmt: skip

@@ -87,7 +87,26 @@ def rebound(incidence: float, frequency: float, restitution: float) -> Rebound:
 
 
 def _slip(contact: Contact, half: Half, frequency: float, x: float) -> tuple[Contact, float]:
-    """Follow slip of one sign until it ends, psi = dp/d theta, or to the end of the half."""
+    """Follow slip of one sign until it ends, psi = dp/d theta, or to the end of the half.
+
+    Parameters
+    ----------
+    contact : Contact
+        At ``x``, slipping.
+    half : Half
+        Closing or opening half of the normal motion.
+    frequency : float
+        Ratio of the tangential to the normal frequency.
+    x : float
+        Phase in [0, pi/2] within the half.
+
+    Returns
+    -------
+    Contact
+        Where slip ends.
+    float
+        The phase there.
+    """
     sense, square = contact.sense, frequency**2
     end = _slip_ends(sense * contact.velocity, half, square, x)
     change = -sense * square * half.impulse(x, end)
@@ -105,7 +124,19 @@ def _slip(contact: Contact, half: Half, frequency: float, x: float) -> tuple[Con
 
 
 def _slip_ends(speed: float, half: Half, square: float, x: float) -> float:
-    """Return where s psi falls to dp/d theta: a sine or cosine of it is known; else pi/2."""
+    """Return where s psi falls to dp/d theta: a sine or cosine of it is known; else pi/2.
+
+    Parameters
+    ----------
+    speed : float
+        s psi at ``x``, scaled.
+    half : Half
+        Closing or opening half of the normal motion.
+    square : float
+        Of the ratio of the tangential to the normal frequency.
+    x : float
+        Phase in [0, pi/2] within the half.
+    """
     whole = 0.5 * math.pi
     if half.closing:
         # speed - square (cos x0 - cos x) = cos x
@@ -122,7 +153,26 @@ def _slip_ends(speed: float, half: Half, square: float, x: float) -> float:
 
 
 def _stick(contact: Contact, half: Half, frequency: float, x: float) -> tuple[Contact, float]:
-    """Follow the free oscillation until its force meets the limit, or to the end of the half."""
+    """Follow the free oscillation until its force meets the limit, or to the end of the half.
+
+    Parameters
+    ----------
+    contact : Contact
+        At ``x``, sticking.
+    half : Half
+        Closing or opening half of the normal motion.
+    frequency : float
+        Ratio of the tangential to the normal frequency.
+    x : float
+        Phase in [0, pi/2] within the half.
+
+    Returns
+    -------
+    Contact
+        Where sticking ends.
+    float
+        The phase there.
+    """
     turn = frequency * half.scale
     start, speed = contact.force, contact.velocity / frequency
     swing = math.hypot(start, speed)

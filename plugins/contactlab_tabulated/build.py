@@ -136,7 +136,22 @@ def _batch(progress: Progress, tolerance: float, solve: Solve) -> None:
 
 
 def _shared(share: Callable[..., Iterable[Array]], workers: int, psi1: Array, chi: Array) -> Array:
-    """Return exact answers, computed by several processes."""
+    """Return exact answers, computed by several processes.
+
+    Parameters
+    ----------
+    share : callable
+        Maps a function over sequences of arrays, as ``Executor.map`` does.
+    workers : int
+        Processes behind it.
+    psi1, chi : array, shape (impacts,)
+        No units.
+
+    Returns
+    -------
+    array
+        Of ``exact``, parts joined along the first axis.
+    """
     parts = 8 * workers
     return np.concatenate(
         list(share(exact, np.array_split(psi1, parts), np.array_split(chi, parts)))

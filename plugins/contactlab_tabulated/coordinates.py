@@ -75,7 +75,21 @@ def slope(terms: Array) -> Array:
 
 
 def impact(region: int, a: Array, b: Array, cuts: Cuts) -> tuple[Array, Array]:
-    """Return (psi1, chi) >= 0 of the place (a, b) in the unit square of ``region``."""
+    """Return (psi1, chi) >= 0 of the place (a, b) in the unit square of ``region``.
+
+    Parameters
+    ----------
+    region : int
+        One of the constants above.
+    a, b : array, shape (places,)
+        Coordinates in [0, 1].
+    cuts : Cuts
+        Polynomials of the boundaries between regions.
+
+    Returns
+    -------
+    psi1, chi : array, shape (places,)
+    """
     if region == SMALL_NEAR:
         return 1.0 - a**5 * b, 0.5 - 0.5 * b
     if region == SMALL_FAR:
@@ -166,14 +180,34 @@ def _small(who: Rows, speed: Array, chi: Array) -> tuple[Part, Part]:
 
 
 def _stuck_first(who: Rows, speed: Array, chi: Array, cuts: Cuts) -> tuple[Part, Part]:
-    """Return the places of impacts with psi1 <= 1, chi >= 1/2."""
+    """Return the places of impacts with psi1 <= 1, chi >= 1/2.
+
+    Parameters
+    ----------
+    who : array of int, shape (some,)
+        Which impacts these are.
+    speed, chi : array, shape (impacts,)
+        abs(psi1) and chi of all; no units.
+    cuts : Cuts
+        Polynomials of the boundaries between regions.
+    """
     p, x = speed[who], chi[who]
     cut = polynomial(cuts.stuck, p)
     return _divided((STUCK_BACK, STUCK_ON), (who, p, p), x, cut, LARGEST_CHI)
 
 
 def _slip_first(who: Rows, speed: Array, chi: Array, cuts: Cuts) -> tuple[Part, ...]:
-    """Return the places of impacts with 1 < psi1 < 4 chi - 1."""
+    """Return the places of impacts with 1 < psi1 < 4 chi - 1.
+
+    Parameters
+    ----------
+    who : array of int, shape (some,)
+        Which impacts these are.
+    speed, chi : array, shape (impacts,)
+        abs(psi1) and chi of all; no units.
+    cuts : Cuts
+        Polynomials of the boundaries between regions.
+    """
     p, x = speed[who], chi[who]
     epsilon = 2.0 * x - 1.0
     ratio = (p - 1.0) / epsilon

@@ -56,7 +56,16 @@ def slope(cell: Cell, cuts: Cuts, solve: Callable[[Array, Array], Array]) -> Arr
 
 
 def _along_cut(cell: Cell, cuts: Cuts, b: Array, chi: Array, psi2: Array) -> Array:
-    """Return what g gains with t^5 at psi1 = 1 because chi follows the cut while b is kept."""
+    """Return what g gains with t^5 at psi1 = 1 because chi follows the cut while b is kept.
+
+    Parameters
+    ----------
+    cell : Cell
+    cuts : Cuts
+        Polynomials of both cuts in t.
+    b, chi, psi2 : array, shape (nodes,)
+        At psi1 = 1: coordinate in the cell's region, inertia ratio, exact answer; no units.
+    """
     g = (psi2 + 1.0) / (2.0 * chi - 1.0)
     domain = [cell.j * 0.5**cell.level_b, (cell.j + 1) * 0.5**cell.level_b]
     by_b = Chebyshev.fit(b, g, NODES - 1, domain=domain).deriv()(b)

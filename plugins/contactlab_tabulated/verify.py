@@ -150,6 +150,19 @@ def judge(table: Table, draws: Draws, truth: Array) -> list[Errors]:
 
 
 def _errors(name: str, error: Array, draws: Draws, chosen: NDArray[np.bool_]) -> Errors:
+    """Return the largest and the rms error of the draws chosen, and where the largest is.
+
+    Parameters
+    ----------
+    name : str
+        Of the region, of the curve, or "all".
+    error : array, shape (draws,)
+        Of psi2, over the greater of 1 and psi1.
+    draws : Draws
+        psi1 and chi of each.
+    chosen : array of bool, shape (draws,)
+        Which draws count.
+    """
     worst = int(np.flatnonzero(chosen)[error[chosen].argmax()])
     return Errors(
         name,
