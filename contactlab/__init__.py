@@ -62,6 +62,7 @@ The modules, each of which imports from those above it only:
 ``quantities``        quantities of a result by name
 ``reading``           a result as titled tables
 ``citations``         sources of laws, BibTeX
+``options``           options of laws in words
 *around it*
 ``scene_file``        scenes in TOML
 ``analysis``          comparison, validation, stability, cost

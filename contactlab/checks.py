@@ -219,38 +219,39 @@ def quantity(
         **keywords,
         converter=attrs.Converter(_checked, takes_field=True),
         eq=key,
-        metadata={"unit": unit, "rule": rule},
+        metadata={"unit": unit, "rule": rule, "range": rule.sentence},
     )
 
 
 def choice(*words: str, default: str) -> Any:
     """Return an attrs field for one of a few words."""
-    known = ", ".join(map(repr, words))
+    rule = f"must be one of {', '.join(map(repr, words))}"
 
     def checked(value: object, field: attrs.Attribute[Any]) -> str:
         if not isinstance(value, str) or value not in words:
-            raise refuse(field.name, value, f"must be one of {known}")
+            raise refuse(field.name, value, rule)
         return value
 
     return attrs.field(
         default=default,
         converter=attrs.Converter(checked, takes_field=True),
-        metadata={"unit": "", "words": words},
+        metadata={"unit": "", "words": words, "range": rule},
     )
 
 
 def flag(*, default: bool) -> Any:
     """Return an attrs field for True or False."""
+    rule = "must be True or False"
 
     def checked(value: object, field: attrs.Attribute[Any]) -> bool:
         if not isinstance(value, bool):
-            raise refuse(field.name, value, "must be True or False")
+            raise refuse(field.name, value, rule)
         return value
 
     return attrs.field(
         default=default,
         converter=attrs.Converter(checked, takes_field=True),
-        metadata={"unit": ""},
+        metadata={"unit": "", "range": rule},
     )
 
 
@@ -263,5 +264,5 @@ def count(*, default: Any = attrs.NOTHING, least: int = 1, most: int = 10_000_00
     return attrs.field(
         default=default,
         converter=attrs.Converter(checked, takes_field=True),
-        metadata={"unit": "1"},
+        metadata={"unit": "1", "range": f"must be a whole number from {least} to {most}"},
     )

@@ -14,8 +14,11 @@ DOI = re.compile(r"10\.\d{4,9}/[^\s,;]+[^\s,;.]")
 
 
 def references(law: Any) -> list[str]:
-    """Return what the section References of a law's docstring says, an entry a source."""
-    found = SECTION.search(inspect.getdoc(type(law)) or "")
+    """Return what the section References of a law's docstring says, an entry a source.
+
+    The law may be given as its class.
+    """
+    found = SECTION.search(inspect.getdoc(law if isinstance(law, type) else type(law)) or "")
     if found is None:
         return []
     entries = re.split(r"\n\n+", found[1].strip())

@@ -12,13 +12,16 @@ from __future__ import annotations
 import argparse
 import inspect
 import json
+import textwrap
 from collections import Counter
 from typing import Any
 
+from contactlab.citations import references
 from contactlab.cli.arguments import FAILED, OK, add_progress, progress
-from contactlab.cli.table import table
+from contactlab.cli.table import WIDTH, table
 from contactlab.composition import WAYS
 from contactlab.contracts import Integrator, TangentialLaw
+from contactlab.options import Option, options
 from contactlab.registry import REGISTRY, PluginInfo
 
 
@@ -59,23 +62,44 @@ def _show(arguments: argparse.Namespace) -> int:
     entry: dict[str, Any] = _entry(REGISTRY.info(arguments.name))
     law = REGISTRY.law_class(arguments.name)
     entry["summary"] = (inspect.getdoc(law) or "").partition("\n")[0]
-    entry["options"] = [
-        str(option.replace(annotation=option.empty)).replace("=", " = ")
-        for option in inspect.signature(law).parameters.values()
-    ]
     if issubclass(law, Integrator):
         entry["runs"] = law.tangential_contract.__name__
     if issubclass(law, TangentialLaw):
         entry["is a"] = [way.__name__ for way in WAYS if issubclass(law, way)]
     entry["needs"], entry["offers"] = sorted(law.needs), sorted(law.offers)
+    taken, sources = options(law), references(law)
     if arguments.json:
-        print(json.dumps(entry, indent=2))
+        more = {"options": [option.to_dict() for option in taken], "references": sources}
+        print(json.dumps(entry | more, indent=2))
         return 0
     width = max(map(len, entry))
     for key, value in entry.items():
         text = (", ".join(value) or "none") if isinstance(value, list) else value
         print(f"{key.ljust(width)}  {text}")
+    print("\noptions" if taken else "\noptions: none")
+    for option in taken:
+        print(f"  {_headed(option)}")
+        for words in (option.meaning, option.rule):
+            print(_indented(words, "      "), end="")
+    if sources:
+        print("\nsource")
+    for source in sources:
+        print(_indented(source, "  "), end="")
     return 0
+
+
+def _headed(option: Option) -> str:
+    """Return an option with its default and unit."""
+    return f"{option} ({option.unit})" if option.unit not in ("", "1") else str(option)
+
+
+def _indented(words: str, margin: str) -> str:
+    """Return lines of a terminal's width, each with its end; nothing of no words."""
+    lines = textwrap.wrap(
+        words.replace("``", ""), WIDTH, initial_indent=margin, subsequent_indent=margin,
+        break_long_words=False, break_on_hyphens=False,
+    )  # fmt: skip
+    return "".join(f"{line}\n" for line in lines)
 
 
 def _check(arguments: argparse.Namespace) -> int:

@@ -96,8 +96,25 @@ def test_show_says_what_a_law_does_and_takes(run):
     assert "partial slip" in out
     assert "partial_slip" in out
     entry = json.loads(run("plugins", "show", "integrator.symplectic", "--json").out)
-    assert entry["options"] == ["steps = 200", "refine = True"]
+    assert [(option["name"], option["default"]) for option in entry["options"]] == [
+        ("steps", 200),
+        ("refine", True),
+    ]
     assert entry["runs"] == "SteppedTangentialLaw"
+
+
+def test_show_tells_options_with_unit_range_meaning_and_the_paper(run):
+    out = run("plugins", "show", "normal.thornton").out
+    assert "yield_pressure = None (Pa)\n" in out
+    assert "must be positive and finite, if given\n" in out
+    assert "the contact pressure at which the material yields" in out
+    assert "doi:10.1115/1.2787319" in out
+    assert max(len(line) for line in out.splitlines() if line.startswith(" ")) <= 100
+    assert "``" not in run("plugins", "show", "tangential.mindlin_cap").out
+    assert "options: none\n" in run("plugins", "show", "tangential.coulomb").out
+    entry = json.loads(run("plugins", "show", "normal.thornton", "--json").out)
+    assert entry["options"][1]["unit"] == "Pa"
+    assert len(entry["references"]) == 1
 
 
 def test_unknown_name(run):

@@ -1,0 +1,83 @@
+"""Options of laws in words: nothing built in goes without, and what is told is what holds."""
+
+import json
+import re
+
+import attrs
+import pytest
+
+import contactlab
+from contactlab.checks import choice, count, flag, quantity
+from contactlab.options import meanings, options
+from contactlab.registry import REGISTRY
+
+LAWS = [info.name for info in REGISTRY.installed() if info.distribution == "contactlab"]
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_every_option_of_a_built_in_law_has_a_meaning_and_a_range(name):
+    law = REGISTRY.law_class(name)
+    found = options(law)
+    assert [option.name for option in found if not (option.meaning and option.rule)] == []
+    assert set(meanings(law)) == {option.name for option in found}
+    made = contactlab.create(name)
+    for option in found:
+        if option.default is not None:  # of None a law may fill in another
+            assert getattr(made, option.name) == option.default
+    json.dumps([option.to_dict() for option in found], allow_nan=False)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_refusal_says_the_rule_that_is_told(name):
+    for option in options(REGISTRY.law_class(name)):
+        with pytest.raises(ValueError, match=re.escape(option.rule.removesuffix(", if given"))):
+            contactlab.create(name, **{option.name: -7.5})
+
+
+@attrs.frozen(kw_only=True)
+class Made:
+    """A law.
+
+    Parameters
+    ----------
+    parts : int
+        How many,
+
+        in two paragraphs.
+    first, second : float
+        Both.
+
+    References
+    ----------
+    sure : nothing of this.
+    """
+
+    parts: int = count(least=2, most=9)
+    first: float = quantity("m", default=1.0)
+    second: float = quantity("m", default=2.0)
+    kind: str = choice("one", "other", default="one")
+    sure: bool = flag(default=True)
+
+
+class Plain:
+    """A stranger's class, without fields or sections."""
+
+    def __init__(self, size, shape=object):
+        self.size, self.shape = size, shape
+
+
+def test_options_of_any_class():
+    parts, first, second, kind, sure = options(Made)
+    assert (str(parts), parts.meaning) == ("parts, to be given", "How many, in two paragraphs.")
+    assert parts.rule == "must be a whole number from 2 to 9"
+    assert (first.unit, first.meaning, second.meaning) == ("m", "Both.", "Both.")
+    assert (kind.rule, kind.meaning) == ("must be one of 'one', 'other'", "")
+    assert (sure.rule, sure.meaning, str(sure)) == ("must be True or False", "", "sure = True")
+
+
+def test_options_of_a_class_without_fields():
+    size, shape = options(Plain)
+    assert (size.unit, size.rule, size.meaning) == ("", "", "")
+    assert size.to_dict()["needed"]
+    assert size.to_dict()["default"] is None
+    assert shape.to_dict()["default"] == "<class 'object'>"
