@@ -127,6 +127,13 @@ __all__ = [
 def create(name: str, **options: Any) -> Any:
     """Return a new law by name: ``create("tangential.annulus", annuli=50)``.
 
+    Parameters
+    ----------
+    name : str
+        Kind and name, such as ``"tangential.annulus"``.
+    **options
+        Of the law: ``contactlab plugins show NAME`` tells them with units.
+
     Raises
     ------
     ValueError
@@ -140,6 +147,11 @@ def create(name: str, **options: Any) -> Any:
 @named_arguments("read_scene('scene.toml')")
 def read_scene(path: str | Path) -> SceneFile:
     """Read a scene or a sweep, its laws and its measured values from a TOML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        Of a TOML file.
 
     Raises
     ------

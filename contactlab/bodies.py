@@ -80,6 +80,11 @@ class Material:
     def named(cls, name: str) -> Material:
         """Return a material of the collection by name: see ``contactlab.materials``.
 
+        Parameters
+        ----------
+        name : str
+            Such as ``"steel"``; ``contactlab materials`` lists them.
+
         Raises
         ------
         ValueError
@@ -150,7 +155,13 @@ class Sphere:
 @named_arguments("HalfSpace(steel)")
 @attrs.frozen
 class HalfSpace:
-    """An elastic body with a plane surface, so large that it does not move."""
+    """An elastic body with a plane surface, so large that it does not move.
+
+    Parameters
+    ----------
+    material : Material
+        Its density does not count.
+    """
 
     material: Material = _material()
 
@@ -162,6 +173,21 @@ class Pair:
 
     For like bodies ``stiffness_ratio`` and ``inertia_ratio`` are the paper's
     2(1-nu)/(2-nu) of eq. (29) and chi of eq. (38).
+
+    Parameters
+    ----------
+    radius : float or array
+        R in m, 1/R = 1/R1 + 1/R2.
+    effective_modulus : float or array
+        E* in Pa.
+    effective_shear_modulus : float or array
+        G* in Pa.
+    normal_mass : float or array
+        M_n in kg, of the approach of the centres.
+    tangential_mass : float or array
+        M_t in kg, of the slip of the contact point.
+    dundurs_beta : float or array
+        Dundurs' beta, by which pressure and shear are coupled; 0 for like bodies.
     """
 
     radius: Real = quantity("m", rule=POSITIVE)
@@ -169,7 +195,6 @@ class Pair:
     effective_shear_modulus: Real = quantity("Pa", rule=POSITIVE)
     normal_mass: Real = quantity("kg", rule=POSITIVE)
     tangential_mass: Real = quantity("kg", rule=POSITIVE)
-    #: Dundurs' beta, by which pressure and shear are coupled; 0 for like bodies.
     dundurs_beta: Real = quantity("1", default=0.0)
 
     @property
@@ -184,7 +209,13 @@ class Pair:
 
     @classmethod
     def of(cls, sphere: Sphere, target: Sphere | HalfSpace) -> Pair:
-        """Reduce a sphere and its target, elastic coupling neglected: theory §1."""
+        """Reduce a sphere and its target, elastic coupling neglected: theory §1.
+
+        Parameters
+        ----------
+        sphere : Sphere
+        target : Sphere or HalfSpace
+        """
         compliance_n = _normal_compliance(sphere.material) + _normal_compliance(target.material)
         compliance_t = _shear_compliance(sphere.material) + _shear_compliance(target.material)
         curvature = 1.0 / sphere.radius

@@ -78,6 +78,12 @@ class Collision:
     def of(cls, encounter: Encounter, result: ImpactResult) -> Collision:
         """Return the collision of ``encounter`` by a result of its scene.
 
+        Parameters
+        ----------
+        encounter : Encounter
+        result : ImpactResult
+            Of ``encounter.scene``.
+
         Raises
         ------
         ValueError

@@ -165,7 +165,13 @@ class Encounter:
         return found
 
     def take(self, part: Any) -> Encounter:
-        """Return some of a batch: a slice, mask or indices, or the index of one."""
+        """Return some of a batch: a slice, mask or indices, or the index of one.
+
+        Parameters
+        ----------
+        part : slice, array of bool or int, int or tuple of int
+            As numpy indexes an array of the batch shape.
+        """
         found: Encounter = object.__new__(Encounter)  # every number was checked before
         for name in ("sphere", "target", "friction_coefficient"):
             value = batch.taken(getattr(self, name), self.shape, part)

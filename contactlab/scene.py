@@ -203,6 +203,13 @@ class Scene:
         the paper's V and psi. It has no sphere, so spin and the centre's velocity
         are not defined.
 
+        Parameters
+        ----------
+        psi1 : float or array
+            Angle of incidence (29); no unit.
+        chi : float or array
+            Inertia ratio (38), positive; no unit. 1.4412 for a solid sphere of nu = 0.3.
+
         Raises
         ------
         ValueError
@@ -230,6 +237,13 @@ class Scene:
         entries of ``Scene`` by name: lists for those that vary, numbers for the others. A sweep
         of it gives tables and arrays with named dimensions: ``ImpactResult.to_xarray``.
 
+        Parameters
+        ----------
+        *bodies : Sphere, HalfSpace, optional
+            Sphere and target; none with psi1 and chi.
+        **entries : float or list
+            Of ``Scene``, in its units, or psi1 and chi.
+
         Raises
         ------
         ValueError
@@ -241,7 +255,13 @@ class Scene:
 
     @classmethod
     def stack(cls, scenes: Sequence[Scene]) -> Scene:
-        """Return one batch scene of shape (len(scenes),) from scalar scenes."""
+        """Return one batch scene of shape (len(scenes),) from scalar scenes.
+
+        Parameters
+        ----------
+        scenes : sequence of Scene
+            Single impacts, all with bodies or all without.
+        """
         if not isinstance(scenes, Iterable):
             raise refuse("scenes", scenes, "must be a sequence of Scene")
         scenes = list(scenes)
@@ -269,6 +289,11 @@ class Scene:
         """Return the scene of some of the impacts: a slice, mask or indices, or the index of one.
 
         What all impacts share stays a plain number: laws are faster then.
+
+        Parameters
+        ----------
+        part : slice, array of bool or int, int or tuple of int
+            As numpy indexes an array of the batch shape.
         """
         taken: Scene = batch.taken(self, self.shape, part)
         numbers = taken.numbers().values()
@@ -303,7 +328,13 @@ class Scene:
         return float(scale) if np.ndim(scale) == 0 else scale
 
     def psi(self, velocity: Real) -> Real:
-        """Return the non-dimensional local tangential velocity of ``velocity`` (m/s), eq. (29)."""
+        """Return the non-dimensional local tangential velocity of ``velocity`` (m/s), eq. (29).
+
+        Parameters
+        ----------
+        velocity : float or array
+            In m/s, positive as ``slip_velocity``.
+        """
         if isinstance(velocity, float) and not self.shape:
             return 0.0 if velocity == 0.0 else float(velocity) * self.psi_scale
         with np.errstate(invalid="ignore", over="ignore"):

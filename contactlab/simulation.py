@@ -66,7 +66,15 @@ class Simulation:
         self.__attrs_init__(**laws._asdict())
 
     def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
-        """Return what ``run`` would compute for ``scene``, what it would leave out and why."""
+        """Return what ``run`` would compute for ``scene``, what it would leave out and why.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        history : bool or "fields"
+            As of ``run``.
+        """
         return _complete(prepare(self._laws, _scene(scene), _history(history)).plan, scene)
 
     def run(
@@ -179,7 +187,13 @@ class Simulation:
         )
 
     def normal_motion(self, scene: Scene) -> NormalMotion:
-        """Return the normal motion of ``scene``; of a law that fails, NaN throughout."""
+        """Return the normal motion of ``scene``; of a law that fails, NaN throughout.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        """
         return normal_or_failed(self._laws, scene)
 
     @property

@@ -26,7 +26,22 @@ CHUNK = 1000
 
 
 class Sample(NamedTuple):
-    """One instant of an impact, as handed to an observer."""
+    """One instant of an impact, as handed to an observer.
+
+    Attributes
+    ----------
+    time : float or array, shape (...,)
+        In s, 0 at first touch.
+    approach, normal_velocity : float or array
+        In m and m/s, positive in compression.
+    contact : NormalContact
+    slip_velocity : float or array
+        In m/s.
+    tangential_force : float or array
+        In N, positive where it opposes a positive slip velocity.
+    fields : callable
+        Returns the law's arrays over the radius; asked only if wanted.
+    """
 
     time: Real
     approach: Real
@@ -80,7 +95,15 @@ class TangentialMotion:
 
     @classmethod
     def joined(cls, motions: Sequence[Self], shape: tuple[int, ...]) -> Self:
-        """Return one motion of ``shape`` from those of its impacts, or of parts of them."""
+        """Return one motion of ``shape`` from those of its impacts, or of parts of them.
+
+        Parameters
+        ----------
+        motions : sequence of TangentialMotion
+            In the order of the impacts.
+        shape : tuple of int
+            Of the whole.
+        """
         counters: Counter[str] = Counter()
         for motion in motions:
             counters.update(motion.counters)
@@ -96,6 +119,13 @@ class TangentialMotion:
         """Return one motion of ``shape`` from pairs of a mask and the motion of its impacts.
 
         An impact in several parts has the motion of the last.
+
+        Parameters
+        ----------
+        parts : sequence of (array of bool, TangentialMotion)
+            Masks of shape ``shape``, and motions of as many impacts.
+        shape : tuple of int
+            Of the whole.
         """
         counters: Counter[str] = Counter()
         for _, motion in parts:
@@ -110,7 +140,15 @@ class TangentialMotion:
     def nothing(
         cls, shape: tuple[int, ...], status: Status, detail: str | Sequence[str] = ""
     ) -> Self:
-        """Return the motion of impacts of which nothing is known: NaN throughout."""
+        """Return the motion of impacts of which nothing is known: NaN throughout.
+
+        Parameters
+        ----------
+        shape : tuple of int
+        status : Status
+        detail : str or sequence of str
+            A sentence, or one for each impact.
+        """
         entries: dict[str, Any] = dict.fromkeys(cls.numbers(), spread(math.nan, shape))
         return cls(
             **entries,
@@ -122,6 +160,13 @@ class TangentialMotion:
         """Return this motion with ``status`` and ``detail`` on the successes that ``where`` marks.
 
         ``detail`` is a sentence, or an array of one for each impact.
+
+        Parameters
+        ----------
+        where : bool or array of bool
+        status : Status
+        detail : str or array of str
+            A sentence, or one for each impact.
         """
         statuses: Any = np.array(self.status, dtype=object)
         fallen = np.asarray(where) & (statuses == Status.SUCCESS)
@@ -178,6 +223,11 @@ class Integrator(Law):
         """Return how many impacts a sweep should hand over at a time.
 
         Enough to hide the cost of a call, few enough that an interruption loses little.
+
+        Parameters
+        ----------
+        tangential : TangentialLaw
+            The law that is run.
         """
         return CHUNK
 
@@ -187,7 +237,16 @@ class Integrator(Law):
         tangential: TangentialLaw,
         scene: Scene,
     ) -> tuple[str, ...]:
-        """Return what a plan should say of these impacts: sentences, none by default."""
+        """Return what a plan should say of these impacts: sentences, none by default.
+
+        Parameters
+        ----------
+        normal : NormalMotion
+            Of all impacts of ``scene``.
+        tangential : TangentialLaw
+        scene : Scene
+            One impact or a batch.
+        """
         return ()
 
     def psi2_error(
@@ -196,7 +255,17 @@ class Integrator(Law):
         tangential: TangentialLaw,
         scene: Scene,
     ) -> Real:
-        """Return the declared numerical error of psi2."""
+        """Return the declared numerical error of psi2.
+
+        Parameters
+        ----------
+        normal : NormalMotion
+            Of all impacts of ``scene``.
+        tangential : TangentialLaw
+            The law that is run.
+        scene : Scene
+            One impact or a batch.
+        """
         return math.nan
 
     @abstractmethod

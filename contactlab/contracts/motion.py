@@ -86,6 +86,11 @@ class NormalMotion(ABC):
 
         ``phase`` broadcasts against the batch shape: a column of K phases, shape (K, 1, ..., 1),
         gives K rows of the batch.
+
+        Parameters
+        ----------
+        phase : float or array
+            From 0 at first touch to pi at separation.
         """
 
     @abstractmethod
@@ -93,11 +98,22 @@ class NormalMotion(ABC):
         """Return the phase at which ``fraction`` of the duration has passed, to about 1e-8.
 
         For steps that are even in time; what they start from is taken exactly from ``at``.
+
+        Parameters
+        ----------
+        fraction : float or array
+            Of the duration, from 0 to 1; broadcasts against the batch shape.
         """
 
     @abstractmethod
     def take(self, part: Any) -> NormalMotion:
-        """Return the motion of some impacts of a batch, as ``contactlab.batch.taken``."""
+        """Return the motion of some impacts of a batch, as ``contactlab.batch.taken``.
+
+        Parameters
+        ----------
+        part : slice, array of bool or int, int or tuple of int
+            As numpy indexes an array of the batch shape.
+        """
 
 
 class ScaledContact(NamedTuple):
@@ -137,12 +153,30 @@ class ClosedFormMotion(NormalMotion):
 
     @abstractmethod
     def scaled(self, phase: NDArray[np.float64]) -> ScaledContact:
-        """Return the scaled motion of one impact at many phases, as arrays."""
+        """Return the scaled motion of one impact at many phases, as arrays.
+
+        Parameters
+        ----------
+        phase : array, shape (K,)
+            From 0 at first touch to pi at separation.
+        """
 
     @abstractmethod
     def scaled_at(self, phase: float) -> ScaledContact:
-        """Return the scaled motion of one impact at one phase, as floats."""
+        """Return the scaled motion of one impact at one phase, as floats.
+
+        Parameters
+        ----------
+        phase : float
+            From 0 at first touch to pi at separation.
+        """
 
     @abstractmethod
     def phase_at_rate(self, rate: Real) -> Real:
-        """Return the phase at which V = ``rate``, a float or an array; V falls throughout."""
+        """Return the phase at which V = ``rate``, a float or an array; V falls throughout.
+
+        Parameters
+        ----------
+        rate : float or array
+            V, the scaled normal velocity: 1 at first touch.
+        """

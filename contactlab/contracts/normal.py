@@ -56,6 +56,15 @@ def without_tension(force: Real, radius: Real, approach: Real) -> NormalContact:
     """Return the contact of a law that does not pull: it has ended where ``force`` is not positive.
 
     Force and radius are 0 there, and the overlap is negative. NaN stays NaN.
+
+    Parameters
+    ----------
+    force : float or array, shape (...,)
+        In N, positive in compression.
+    radius : float or array, shape (...,)
+        Of the contact, in m.
+    approach : float or array, shape (...,)
+        In m, positive in compression.
     """
     pushing = np.logical_not(force <= 0.0)
     return NormalContact(
@@ -88,14 +97,38 @@ class NormalLaw(Law):
 
     @abstractmethod
     def start(self, scene: Scene) -> Any:
-        """Return the state before first touch."""
+        """Return the state before first touch.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        """
 
     @abstractmethod
     def respond(self, state: Any, approach: Real, rate: Real) -> tuple[NormalContact, Any]:
-        """Return the contact at ``approach`` (m) and ``rate`` (m/s), and the new state."""
+        """Return the contact at ``approach`` (m) and ``rate`` (m/s), and the new state.
+
+        Parameters
+        ----------
+        state : object
+            What ``start`` or the last call returned.
+        approach : float or array, shape (...,)
+            In m, positive in compression.
+        rate : float or array, shape (...,)
+            Its time derivative in m/s, positive inward.
+        """
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return what to be wary of in the model, a sentence each."""
+        """Return what to be wary of in the model, a sentence each.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        motion : NormalMotion
+            Of all its impacts.
+        """
         if scene.sphere is None:
             return ()
         largest = float(np.max(motion.maximum_radius / scene.pair.radius))
@@ -112,4 +145,10 @@ class ClosedFormNormalLaw(NormalLaw):
 
     @abstractmethod
     def motion(self, scene: Scene) -> ClosedFormMotion:
-        """Return the motion from first touch to separation."""
+        """Return the motion from first touch to separation.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        """

@@ -35,7 +35,17 @@ class PhaseState(NamedTuple):
     """The state of the tangential motion at one x.
 
     ``change`` is the velocity gained since first touch, apart from the velocity, which may be
-    so large that it would swallow it; ``force_rate`` is d(force)/dT and serves guesses only.
+    so large that it would swallow it. All are scaled as in the module's table.
+
+    Attributes
+    ----------
+    x : float
+        Phase of the normal motion, from 0 at first touch to pi at separation.
+    slip, change, velocity, force : float
+    force_rate : float
+        d(force)/dT, which serves guesses only.
+    work : float
+        Friction work since first touch.
     """
 
     x: float
@@ -72,7 +82,13 @@ class Path(Protocol):
     """The motion in a stretch just finished, which a law may ask for and may keep."""
 
     def fields(self, x: Array) -> Array:
-        """Return rows slip, force, approach, radius, d(slip)/dx, d(approach)/dx at each x."""
+        """Return rows slip, force, approach, radius, d(slip)/dx, d(approach)/dx at each x.
+
+        Parameters
+        ----------
+        x : array, shape (K,)
+            Phases of the normal motion within the stretch.
+        """
         ...
 
 
@@ -91,7 +107,13 @@ class ClosedPhase(ABC):
 
     @abstractmethod
     def states(self, contact: ScaledContact) -> tuple[Array, Array]:
-        """Return (change of velocity since first touch, force) at the contact's x."""
+        """Return (change of velocity since first touch, force) at the contact's x.
+
+        Parameters
+        ----------
+        contact : ScaledContact
+            At phases within this one, shape (K,).
+        """
 
 
 class Phase(ABC):
@@ -125,7 +147,17 @@ class Phase(ABC):
     def respond(
         self, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]
     ) -> PhaseResponse:
-        """Return the force at these contacts and slips (clause 1)."""
+        """Return the force at these contacts and slips (clause 1).
+
+        Parameters
+        ----------
+        contact : ScaledContact
+            Scaled as in theory §1, shape (K,).
+        slip : array, shape (K,)
+            Scaled slip displacement.
+        memo : tuple of array
+            What the law's last call returned with its force; a starting guess.
+        """
 
     def margin(
         self,
@@ -171,7 +203,17 @@ class Phase(ABC):
         raise IndexError(event)
 
     def carry_on(self, state: PhaseState, contact: ScaledContact, path: Path) -> Phase:
-        """Return the phase that goes on after a finished panel (clause 5)."""
+        """Return the phase that goes on after a finished panel (clause 5).
+
+        Parameters
+        ----------
+        state : PhaseState
+            At the end of the panel.
+        contact : ScaledContact
+            There.
+        path : Path
+            The motion in the panel.
+        """
         return self
 
     def friction_power(
@@ -200,7 +242,17 @@ class Phase(ABC):
         motion: ClosedFormMotion,
         inertia: float,
     ) -> ClosedPhase | None:
-        """Return the motion in closed form, if it has one (clause 7)."""
+        """Return the motion in closed form, if it has one (clause 7).
+
+        Parameters
+        ----------
+        state : PhaseState
+            Where the phase begins.
+        motion : ClosedFormMotion
+            The normal motion, of one impact.
+        inertia : float
+            Of the module's table.
+        """
         return None
 
 
@@ -241,7 +293,17 @@ class PhasedTangentialLaw(TangentialLaw):
 
     @abstractmethod
     def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
-        """Return the phase at first touch."""
+        """Return the phase at first touch.
+
+        Parameters
+        ----------
+        velocity : float
+            Scaled slip velocity at first touch, not negative.
+        inertia : float
+            Of the module's table.
+        motion : ClosedFormMotion
+            The normal motion, of one impact.
+        """
 
     def phase_fields(
         self,

@@ -98,7 +98,15 @@ class TangentialLaw(Law):
         return math.inf
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return what is known of whole impacts: by contract, those of no slip or no friction."""
+        """Return what is known of whole impacts: by contract, those of no slip or no friction.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        normal : NormalMotion
+            Of all impacts of ``scene``.
+        """
         central = np.asarray(scene.slip_velocity) == 0.0
         smooth = np.asarray(scene.friction_coefficient) == 0.0
         return (
@@ -107,11 +115,29 @@ class TangentialLaw(Law):
         )
 
     def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
-        """Return the declared numerical error of psi2 at so many steps of an impact."""
+        """Return the declared numerical error of psi2 at so many steps of an impact.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        normal : NormalMotion
+            Of all impacts of ``scene``.
+        steps : int or array of int
+            Of each impact, from first touch to separation.
+        """
         return math.nan
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return what to be wary of in the model, a sentence each: coupling of unlike bodies."""
+        """Return what to be wary of in the model, a sentence each: coupling of unlike bodies.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        normal : NormalMotion
+            Of all impacts of ``scene``.
+        """
         return coupling(scene)
 
 
@@ -125,7 +151,15 @@ class WholeImpactTangentialLaw(TangentialLaw):
 
     @abstractmethod
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return what is known of whole impacts: everything."""
+        """Return what is known of whole impacts: everything.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        normal : NormalMotion
+            Of all impacts of ``scene``.
+        """
         return super().whole_impacts(scene, normal)
 
 
@@ -158,7 +192,17 @@ class Steps(NamedTuple):
 
 
 class AllStepsResponse(NamedTuple):
-    """Forces in N at the K samples (fewer where it stopped), and the friction work in J."""
+    """The forces of a whole impact.
+
+    Attributes
+    ----------
+    force : ndarray, shape (K,)
+        In N at the samples; fewer where it stopped.
+    friction_work : float
+        In J.
+    settled : bool
+        False if the last step found no answer.
+    """
 
     force: Array
     friction_work: float
@@ -189,7 +233,15 @@ class SteppedTangentialLaw(TangentialLaw):
 
     @abstractmethod
     def start(self, scene: Scene, normal: NormalMotion) -> Any:
-        """Return the state at first touch."""
+        """Return the state at first touch.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        normal : NormalMotion
+            Of all impacts of ``scene``.
+        """
 
     @abstractmethod
     def advance(
@@ -208,11 +260,25 @@ class SteppedTangentialLaw(TangentialLaw):
         """
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return the largest tangential stiffness, in N/m."""
+        """Return the largest tangential stiffness, in N/m.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        normal : NormalMotion
+            Of all impacts of ``scene``.
+        """
         return 0.0
 
     def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:
-        """Return named arrays of ``state`` for the history (traction, stuck, ...)."""
+        """Return named arrays of ``state`` for the history (traction, stuck, ...).
+
+        Parameters
+        ----------
+        state : object
+            What ``start`` or ``advance`` returned.
+        """
         return {}
 
 
@@ -230,4 +296,14 @@ class AllStepsTangentialLaw(SteppedTangentialLaw):
     def advance_all(
         self, scene: Scene, normal: NormalMotion, steps: Steps
     ) -> AllStepsResponse | None:
-        """Return the forces of a whole impact."""
+        """Return the forces of a whole impact.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        normal : NormalMotion
+            Of all impacts of ``scene``.
+        steps : Steps
+            The contact at every step.
+        """

@@ -92,7 +92,17 @@ def sliding(
 
 
 def no_force(scene: Scene, *, where: Mask, reason: str) -> WholeImpact:
-    """Return impacts without any tangential force."""
+    """Return impacts without any tangential force.
+
+    Parameters
+    ----------
+    scene : Scene
+        One impact or a batch.
+    where : bool or array of bool
+        Impacts of which this is known.
+    reason : str
+        For the plan.
+    """
 
     def course(load_impulse: Any, load: Any) -> tuple[Any, Any]:
         nothing = 0.0 * (scene.slip_velocity + load_impulse + load)
