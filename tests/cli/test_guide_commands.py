@@ -1,0 +1,53 @@
+"""The commands that the guide shows run as they stand."""
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from contactlab.cli.guide import text
+from contactlab.cli.main import COMMANDS
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+PAGE = text("command-line")
+SECTIONS = dict(re.findall(r"^## `(\w+)`\n(.*?)(?=^## )", PAGE, re.MULTILINE | re.DOTALL))
+#: Those that take longer than the others together.
+SLOW = ("animate", "bench", "figures", "stability", "validate")
+
+
+def lines(markdown):
+    return re.findall(r"^    contactlab (.*)$", markdown, re.MULTILINE)
+
+
+def test_every_command_has_a_section_and_a_row_in_the_table():
+    assert sorted(SECTIONS) == sorted(COMMANDS)
+    rows = re.findall(r"^\| [^|`]+ \| `(\w+)` \|$", PAGE, re.MULTILINE)
+    assert sorted(rows) == sorted(COMMANDS)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [pytest.param(name, marks=[pytest.mark.slow] * (name in SLOW)) for name in COMMANDS],
+)
+def test_the_examples_of_a_command_run(run, command, tmp_path, monkeypatch):
+    shutil.copytree(EXAMPLES, tmp_path / "examples", ignore=shutil.ignore_patterns("*_plugin"))
+    monkeypatch.chdir(tmp_path)
+    assert lines(SECTIONS[command])
+    for line in lines(SECTIONS[command]):
+        words = line.split()
+        assert words[0] == command
+        ran = run(*words)
+        assert ran.status == 0, f"{line}: {ran.err}"
+        for option in ("--out", "--figure", "--history"):
+            if option in words:
+                assert (tmp_path / words[words.index(option) + 1]).exists(), line
+
+
+def test_the_first_commands_of_a_newcomer_run(run, tmp_path, monkeypatch):
+    shutil.copytree(EXAMPLES, tmp_path / "examples", ignore=shutil.ignore_patterns("*_plugin"))
+    monkeypatch.chdir(tmp_path)
+    section = text("getting-started").partition("## On the command line")[2]
+    assert len(lines(section)) >= 4
+    for line in lines(section):
+        assert run(*line.split()).status == 0, line
