@@ -1,10 +1,33 @@
-"""Swap one law for another: the same impact under three laws of friction."""
+"""Swap one law for another: the same impact under three laws of friction.
+
+Writes ``law_swap.png`` in the current folder: what the three say of all angles.
+"""
+
+from pathlib import Path
+
+import numpy as np
 
 from contactlab import Scene, Simulation
+from contactlab.figures.files import save
 
 scene = Scene.nondimensional(psi1=1.2, chi=1.4412)
+all_angles = Scene.nondimensional(psi1=np.linspace(0.0, 7.0, 141), chi=1.4412)
+curves = {}
 print("law            psi2     friction work  energy out of balance")
 for law in ("annulus", "coulomb", "frictionless"):
-    result = Simulation(tangential=law, integrator="symplectic").run(scene).check()
+    simulation = Simulation(tangential=law, integrator="symplectic")
+    result = simulation.run(scene).check()
     energy = result.energy
     print(f"{law:12s} {result.psi2:8.5f}  {energy.friction_work:12.5f}  {energy.imbalance:12.1e}")
+    curves[law] = simulation.sweep(all_angles).check().psi2
+
+
+def draw(axes):
+    """Draw the rebound under each law."""
+    for law, psi2 in curves.items():
+        axes.plot(all_angles.psi1, psi2, label=law)
+    axes.set(xlabel="psi1", ylabel="psi2")
+    axes.legend()
+
+
+save(Path("law_swap.png"), draw)

@@ -1,8 +1,14 @@
-"""A sweep: a thousand angles of incidence at once, and where the ball comes back fastest."""
+"""A sweep: a thousand angles of incidence at once, and where the ball comes back fastest.
+
+Writes ``sweep.png`` in the current folder.
+"""
+
+from pathlib import Path
 
 import numpy as np
 
 import contactlab
+from contactlab.figures.files import save
 
 simulation = contactlab.Simulation(
     tangential=contactlab.create("tangential.annulus", annuli=20),
@@ -16,3 +22,4 @@ print(f"least psi2 = {result.psi2[steepest]:.3f} at psi1 = {psi1[steepest]:.2f}"
 print(
     f"largest energy imbalance: {np.max(np.abs(result.energy.relative_imbalance)):.1e} of the start"
 )
+save(Path("sweep.png"), lambda axes: result.plot("psi1", "psi2", axes=axes))

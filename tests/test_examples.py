@@ -14,14 +14,17 @@ import pytest
 EXAMPLES = Path(__file__).parents[1] / "examples"
 PLUGIN = EXAMPLES / "third_party_plugin"
 
-#: Script, a word it prints, and the picture it writes.
+FIGURES = tuple(f"figure-{number}.png" for number in range(1, 5))
+#: Script, a word it prints, and the picture or pictures it writes.
 SCRIPTS = {
     "one_impact": ("psi2 = -0.4", None),
-    "law_swap": ("coulomb", None),
-    "sweep": ("1000 impacts", None),
+    "law_swap": ("coulomb", "law_swap.png"),
+    "sweep": ("1000 impacts", "sweep.png"),
     "experiment": ("coulomb  rms 0.046", "kharaz2001.png"),
     "stick_slip_map": ("100% of the annuli", "stick_slip_map.png"),
     "custom_law": ("mindlin cap", None),
+    "reproduce_the_paper": ("least psi2 = -1.48 at psi1 = 3.61", FIGURES),
+    "fit_your_experiment": ("exact          friction 0.0933, rms residual 0.012", "fit.png"),
     "sweep_on_a_cluster": ("the same to the last bit as here: True", None),
     "billiards": ("does not add up: ", "billiards.gif"),
 }
@@ -55,7 +58,8 @@ def test_script(name, tmp_path):
     done = python(EXAMPLES / f"{name}.py", *OPTIONS.get(name, ()), folder=tmp_path)
     assert done.returncode == 0, done.stderr
     assert words in done.stdout
-    assert [path.name for path in tmp_path.iterdir()] == ([picture] if picture else [])
+    expected = [picture] if isinstance(picture, str) else picture or []
+    assert sorted(path.name for path in tmp_path.iterdir()) == list(expected)
 
 
 def test_one_impact_is_six_lines():

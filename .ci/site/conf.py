@@ -7,7 +7,7 @@ from pathlib import Path
 import contactlab
 
 sys.path.insert(0, str(Path(__file__).parent))
-from examples import Pictures
+from examples import Pictures, arguments
 
 project = "contactlab"
 author = "The contactlab developers"
@@ -36,7 +36,9 @@ suppress_warnings = ["config.cache"]  # the gallery's order is an object, not a 
 sphinx_gallery_conf = {
     "examples_dirs": os.environ["CONTACTLAB_EXAMPLES"],
     "gallery_dirs": "gallery",
-    "filename_pattern": r"\.py$",
+    # all are run but the one that starts processes
+    "filename_pattern": r"/(?!sweep_on_a_cluster)\w+\.py$",
+    "reset_argv": arguments,
     "image_scrapers": (Pictures(),),
     "reset_modules": (),
     "matplotlib_animations": False,

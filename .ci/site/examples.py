@@ -14,6 +14,9 @@ __file__ = {path!r}
 # sphinx_gallery_end_ignore
 """
 
+#: Arguments that make a script short.
+SHORT = {"billiards": ["--collisions", "60", "--frames", "40"]}
+
 
 def lay_out(examples: Path, to: Path) -> None:
     """Copy the examples, the first sentence of each as its title."""
@@ -24,13 +27,18 @@ def lay_out(examples: Path, to: Path) -> None:
         head, _, rest = doc.partition("\n\n")
         title, _, more = " ".join(head.split()).partition(": ")
         title = title.rstrip(".")
-        words = [title, "=" * len(title), "", more.capitalize(), "", rest]
+        words = [title, "=" * len(title), "", more[:1].upper() + more[1:], "", rest]
         code = text.split('"""', 2)[2]
         hidden = HIDDEN.format(path=str(to / script.name))
         page = '"""\n' + "\n".join(words) + '\n"""\n' + hidden + code
         (to / script.name).write_text(page, "utf-8")
     for scene in examples.glob("*.toml"):
         shutil.copy(scene, to)
+
+
+def arguments(_: Any, variables: dict[str, Any]) -> list[str]:
+    """Return the arguments with which a page's script is run: short ones, where it takes any."""
+    return SHORT.get(Path(variables["src_file"]).stem, [])
 
 
 class Pictures:
