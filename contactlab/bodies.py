@@ -77,6 +77,7 @@ class Material:
         self.__attrs_init__(shear_modulus=shear, poisson_ratio=ratio, density=density)
 
     @classmethod
+    @named_arguments("Material.named('steel')")
     def named(cls, name: str) -> Material:
         """Return a material of the collection by name: see ``contactlab.materials``.
 
@@ -102,7 +103,10 @@ class Material:
 
 def _is_material(_: object, attribute: attrs.Attribute[Material], value: object) -> None:
     if not isinstance(value, Material):
-        raise refuse(attribute.name, value, "must be a Material", "make one: Material(...)")
+        remedy = "make one: Material(...)"
+        if isinstance(value, str):
+            remedy = f"by its name: Material.named({value!r})"
+        raise refuse(attribute.name, value, "must be a Material", remedy)
 
 
 def _material() -> Any:

@@ -22,9 +22,11 @@ Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
 
 #: Words for symbols and other names that people try; more than one where it depends.
 SYMBOLS: dict[str, tuple[str, ...]] = {
-    "mu": ("friction_coefficient",), "friction": ("friction_coefficient",),
+    "mu": ("friction_coefficient",), "friction": ("friction_coefficient", "tangential"),
     "nu": ("poisson_ratio",), "E": ("young_modulus",), "G": ("shear_modulus",),
     "rho": ("density",), "R": ("radius",), "r": ("radius",), "diameter": ("radius",),
+    "d": ("radius",),
+    "law": ("tangential",), "theta": ("angle_deg",), "alpha": ("angle_deg",),
     "m": ("mass",), "M": ("mass",), "K": ("gyration_ratio",),
     "v": ("tangential_velocity", "speed"), "vx": ("tangential_velocity",),
     "speed": ("normal_speed",), "v1": ("normal_speed",), "vn": ("normal_speed",),

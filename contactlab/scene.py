@@ -254,6 +254,7 @@ class Scene:
         return grid(*bodies, **entries)
 
     @classmethod
+    @named_arguments("Scene.stack([one, other])")
     def stack(cls, scenes: Sequence[Scene]) -> Scene:
         """Return one batch scene of shape (len(scenes),) from scalar scenes.
 

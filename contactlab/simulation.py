@@ -65,6 +65,7 @@ class Simulation:
         laws = composition.compose(normal, tangential, integrator)
         self.__attrs_init__(**laws._asdict())
 
+    @named_arguments("Simulation().plan(scene)")
     def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
         """Return what ``run`` would compute for ``scene``, what it would leave out and why.
 
@@ -77,6 +78,7 @@ class Simulation:
         """
         return _complete(prepare(self._laws, _scene(scene), _history(history)).plan, scene)
 
+    @named_arguments("Simulation().run(scene, history=True)")
     def run(
         self, scene: Scene, *, history: bool | str = False, estimate_error: bool = False
     ) -> ImpactResult:
@@ -118,6 +120,7 @@ class Simulation:
             return result
         return attrs.evolve(result, psi2_error_estimate=estimated(self, result))
 
+    @named_arguments("Simulation().sweep(scenes)")
     def sweep(
         self,
         scenes: Scene | Sequence[Scene],
@@ -220,7 +223,10 @@ def _complete(plan: Plan, scene: Scene) -> Plan:
 def _scene(scene: object) -> Scene:
     """Return ``scene``, or refuse what is none."""
     if not isinstance(scene, Scene):
-        raise refuse("scene", scene, "must be a Scene", "make one: Scene(...)")
+        remedy = "make one: Scene(...)"
+        if isinstance(scene, str | Path):
+            remedy = "of a file: read_scene(path) has the scene, and run() runs it"
+        raise refuse("scene", scene, "must be a Scene", remedy)
     return scene
 
 

@@ -2,9 +2,10 @@
 
 The spring of discrete-element codes: Mindlin's stiffness of a contact that sticks all over,
 cut off at Coulomb's limit. It is compared with the paper's contact, which slips from its
-edge inwards.
+edge inwards. Writes ``custom_law.png`` in the current folder.
 """
 
+from pathlib import Path
 from typing import ClassVar, NamedTuple
 
 import attrs
@@ -12,6 +13,7 @@ import numpy as np
 
 from contactlab import Scene, Simulation
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
+from contactlab.figures.files import save
 
 
 class Spring(NamedTuple):
@@ -73,3 +75,12 @@ if __name__ == "__main__":
     for name, result in (("mindlin cap", mine), ("annulus", paper)):
         share = np.max(np.abs(result.energy.relative_imbalance))
         print(f"energy unaccounted for, {name}: {share:.2%}")
+
+    def draw(axes):
+        """Draw the rebounds under both laws."""
+        for name, result in (("mindlin cap", mine), ("annulus", paper)):
+            axes.plot(psi1, result.psi2, "o-", label=name)
+        axes.set(xlabel="psi1", ylabel="psi2")
+        axes.legend()
+
+    save(Path("custom_law.png"), draw)

@@ -37,9 +37,7 @@ forces = drawn(1)
 for curve in forces.curves:
     if curve.parameter == curve.parameter:  # the limit mu P belongs to no angle
         turn = curve.x[np.argmax(curve.y < 0.0)]
-        print(
-            f"psi1 = {curve.parameter:3.1f}: the force changes its sign at {turn:.2f} of the contact"
-        )
+        print(f"psi1 = {curve.parameter:3.1f}: the force turns at {turn:.2f} of the contact")
 
 # %%
 # **Fig. 2: the rebound over the angle of incidence.** A negative psi2 means that the contact

@@ -22,7 +22,7 @@ SCRIPTS = {
     "sweep": ("1000 impacts", "sweep.png"),
     "experiment": ("coulomb  rms 0.046", "kharaz2001.png"),
     "stick_slip_map": ("100% of the annuli", "stick_slip_map.png"),
-    "custom_law": ("mindlin cap", None),
+    "custom_law": ("mindlin cap", "custom_law.png"),
     "reproduce_the_paper": ("least psi2 = -1.48 at psi1 = 3.61", FIGURES),
     "fit_your_experiment": ("exact          friction 0.0933, rms residual 0.012", "fit.png"),
     "sweep_on_a_cluster": ("the same to the last bit as here: True", None),

@@ -31,7 +31,10 @@ html_theme = "furo"
 html_title = f"contactlab {version}"
 html_theme_options = {"navigation_with_keys": True}
 exclude_patterns = ["gallery-source"]
-suppress_warnings = ["config.cache"]  # the gallery's order is an object, not a word
+suppress_warnings = [
+    "config.cache",  # the gallery's order is an object, not a word
+    "ref.python",  # words of types, such as "shape", are taken for names that several classes have
+]
 
 sphinx_gallery_conf = {
     "examples_dirs": os.environ["CONTACTLAB_EXAMPLES"],

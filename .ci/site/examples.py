@@ -10,7 +10,7 @@ from typing import Any
 #: What a script may rely on and the gallery does not give it; not shown in its page.
 HIDDEN = """
 # sphinx_gallery_start_ignore
-__file__ = {path!r}
+__file__, __doc__ = {path!r}, {doc!r}
 # sphinx_gallery_end_ignore
 """
 
@@ -29,7 +29,9 @@ def lay_out(examples: Path, to: Path) -> None:
         title = title.rstrip(".")
         words = [title, "=" * len(title), "", more[:1].upper() + more[1:], "", rest]
         code = text.split('"""', 2)[2]
-        hidden = HIDDEN.format(path=str(to / script.name))
+        # a script in cells is a notebook, which has no file, and begins with words
+        cells = code.lstrip().startswith("# %%")
+        hidden = "" if cells else HIDDEN.format(path=str(to / script.name), doc=doc)
         page = '"""\n' + "\n".join(words) + '\n"""\n' + hidden + code
         (to / script.name).write_text(page, "utf-8")
     for scene in examples.glob("*.toml"):

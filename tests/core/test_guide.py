@@ -31,6 +31,7 @@ from contactlab.testing import Verdict, check_law
 
 ROOT = Path(__file__).parents[2]
 GUIDE = ROOT / "contactlab" / "guide"
+INDEX = ROOT / ".ci" / "site" / "index.md"
 #: Code with the output that is shown below it, if any.
 BLOCKS = re.compile(r"```python\n(.*?)```\n(?:```text\n(.*?)```\n)?", re.DOTALL)
 #: "theory §5", "theory §§1 and 4", also where a line ends between the two.
@@ -94,6 +95,17 @@ def test_lines_fit_a_terminal_but_for_tables_and_code(topic):
 def test_code_prints_what_is_shown(topic):
     expected = [shown for _, shown in BLOCKS.findall(text(topic))]
     assert run(topic)[1] == expected
+
+
+def test_the_code_of_the_site_prints_numbers_and_draws(capsys):
+    (code,) = re.findall(r"```python\n(.*?)```", INDEX.read_text("utf-8"), re.DOTALL)
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    try:
+        exec(compile(code, "index.md", "exec"), {})
+        assert pyplot.get_fignums()
+    finally:
+        pyplot.close("all")
+    assert len([float(word) for word in capsys.readouterr().out.split()]) == 3
 
 
 def test_there_is_code():

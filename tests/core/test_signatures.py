@@ -9,10 +9,11 @@ import attrs
 import pytest
 
 import contactlab
-from contactlab import HalfSpace, Material, Pair, Sphere
+from contactlab import HalfSpace, Material, Pair, Scene, Simulation, Sphere
 from contactlab.signatures import ArgumentError, named_arguments
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+SCENE = Scene.nondimensional(psi1=1.2, chi=1.4412)
 
 
 @named_arguments("Scene(ball, plate, friction_coefficient=0.2, normal_speed=1.0)")
@@ -51,6 +52,18 @@ class Likeness:
         (lambda: contactlab.read_scene(), "path is missing"),
         (lambda: contactlab.rebound(1.2), "chi is missing"),
         (lambda: contactlab.rebound(psi=1.2, chi=1.0), "did you mean 'psi1'?"),
+        (lambda: Sphere(d=0.02, material=STEEL), "did you mean 'radius'?"),
+        (lambda: Material.named(), "name is missing; write it as Material.named('steel')"),
+        (lambda: Simulation(friction="springs"), "did you mean 'tangential'?"),
+        (lambda: Simulation("springs"), "takes every one by name; write it as Simulation(tang"),
+        (lambda: Simulation().run(), "scene is missing; write it as Simulation().run(scene"),
+        (lambda: Simulation.run(SCENE), "scene is missing; write it as Simulation().run(scene"),
+        (lambda: Simulation().run(SCENE, True), "True is one too many"),
+        (lambda: Simulation().run(SCENE, hist=True), "did you mean 'history'?"),
+        (lambda: Simulation().plan(), "plan: scene is missing"),
+        (lambda: Simulation().sweep(), "sweep: scenes is missing"),
+        (lambda: Scene.stack(), "scenes is missing; write it as Scene.stack("),
+        (lambda: Scene.nondimensional(1.2, 1.4), "write it as Scene.nondimensional(psi1=1.2, chi"),
         (lambda: Likeness(1, 2, mu=0.2, normal_speed=1.0), "'friction_coefficient'?"),
         (lambda: Likeness(1, 2, 0.2, v1=1.0), "did you mean 'normal_speed'?"),
         (lambda: Likeness(1, 2, 0.2, 1.0, v=1.0), "did you mean 'tangential_velocity'?"),
@@ -103,3 +116,16 @@ def test_what_is_decorated_is_what_it_was():
 def test_a_call_that_fits_costs_no_look_at_the_signature(monkeypatch):
     monkeypatch.setattr(inspect, "signature", None)
     assert Sphere(0.0127, STEEL).radius == 0.0127
+
+
+def test_values_of_the_wrong_kind_are_refused_with_what_was_meant():
+    with pytest.raises(ValueError, match=r"by its name: Material\.named\('steel'\)"):
+        Sphere(0.01, "steel")
+    with pytest.raises(ValueError, match=r"of a file: read_scene\(path\)"):
+        Simulation().run("scene.toml")
+
+
+def test_a_sweep_takes_its_documented_arguments_through_the_check():
+    found = [Simulation().run(SCENE), Simulation().run(scene=SCENE)]
+    assert found[0].psi2 == found[1].psi2
+    assert list(inspect.signature(Simulation.run).parameters)[1:3] == ["scene", "history"]
