@@ -52,8 +52,10 @@ def taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
         Which impacts. Of a single one the numbers come out plain.
     """
     if isinstance(tree, np.ndarray):
-        found = np.broadcast_to(tree, shape)[part]
+        found = (tree if tree.shape == shape else np.broadcast_to(tree, shape))[part]
         return found.item() if isinstance(found, np.generic) else found
+    if isinstance(tree, float):
+        return tree
     if attrs.has(type(tree)):
         found = object.__new__(type(tree))  # every number was checked when the tree was made
         for field in attrs.fields(type(tree)):

@@ -41,7 +41,7 @@ def march(
     if shape and size == 1 and observer is None:  # one impact is faster as plain numbers
         return TangentialMotion.joined([part((0,) * len(shape))], shape)
     motion, raised = _attempt(laws, normal, scene, observer)
-    if not shape or observer or np.all(motion.status):
+    if not shape or observer or np.all(motion.status == Status.SUCCESS):
         return motion
     if laws.integrator.own_statuses and not raised:
         return motion

@@ -93,6 +93,8 @@ class Plan:
     def joined(cls, plans: Sequence[Plan], shape: tuple[int, ...] = (-1,)) -> Plan:
         """Return the plan of a batch of ``shape`` from those of its parts, in order."""
         sizes = [plan.marched.size for plan in plans]
+        if len(plans) == 1 and shape == (-1,) and np.shape(plans[0].psi2_error) == (*sizes,):
+            return plans[0]
         errors = [
             np.broadcast_to(plan.psi2_error, size) for plan, size in zip(plans, sizes, strict=True)
         ]

@@ -296,6 +296,8 @@ class Scene:
         part : slice, array of bool or int, int or tuple of int
             As numpy indexes an array of the batch shape.
         """
+        if isinstance(part, slice) and self.shape and part == slice(0, self.shape[0]):
+            return self
         taken: Scene = batch.taken(self, self.shape, part)
         numbers = taken.numbers().values()
         object.__setattr__(taken, "shape", np.broadcast_shapes(*map(np.shape, numbers)))

@@ -83,8 +83,10 @@ class TangentialMotion:
 
     def __attrs_post_init__(self) -> None:
         if isinstance(self.detail, str) and np.ndim(self.status):
-            spread = np.where(self.status == Status.SUCCESS, "", self.detail).astype(object)
-            object.__setattr__(self, "detail", spread)
+            details = filled("", np.shape(self.status))
+            if self.detail:
+                details[self.status != Status.SUCCESS] = self.detail
+            object.__setattr__(self, "detail", details)
 
     @classmethod
     def numbers(cls) -> tuple[str, ...]:
@@ -104,6 +106,8 @@ class TangentialMotion:
         shape : tuple of int
             Of the whole.
         """
+        if len(motions) == 1 and shape and np.shape(motions[0].status) == shape:
+            return motions[0]
         counters: Counter[str] = Counter()
         for motion in motions:
             counters.update(motion.counters)

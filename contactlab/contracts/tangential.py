@@ -164,7 +164,9 @@ class WholeImpactTangentialLaw(TangentialLaw):
 
 
 class Steps(NamedTuple):
-    """All even steps of an impact, arrays of shape (K,); of a batch ``(K, ...)``.
+    """All even steps of an impact, arrays of shape (K,).
+
+    Of a batch they are (K, *shape), with axes of length 1 where all impacts agree.
 
     The march drifts to a sample of the normal contact, asks the law, and kicks.
 
@@ -192,21 +194,21 @@ class Steps(NamedTuple):
 
 
 class AllStepsResponse(NamedTuple):
-    """The forces of a whole impact.
+    """What a law answers to all steps.
 
     Attributes
     ----------
-    force : ndarray, shape (K,)
-        In N at the samples; fewer where it stopped.
-    friction_work : float
-        In J.
-    settled : bool
-        False if the last step found no answer.
+    force : array, shape (K,) or (K, *shape)
+        In N, at the samples; fewer than K where it stopped.
+    friction_work : float or array of the batch shape
+        In J, added up over the steps.
+    settled : bool or array of bool
+        False where no answer was found to the step after the last force.
     """
 
     force: Array
-    friction_work: float
-    settled: bool
+    friction_work: Real
+    settled: Mask
 
 
 class SteppedTangentialLaw(TangentialLaw):
@@ -283,20 +285,22 @@ class SteppedTangentialLaw(TangentialLaw):
 
 
 class AllStepsTangentialLaw(SteppedTangentialLaw):
-    """A stepped law that can also take all steps of one impact in one call, which is faster.
+    """A stepped law that can also take all steps in one call, which is faster.
 
     Contract
     --------
     1. ``advance_all(scene, normal, steps)`` gives, to rounding, the forces that ``advance`` gives
        step by step when the slip velocity falls by force times kick over mass after each step.
-    2. It may return None: this impact is better done step by step.
+    2. ``scene`` is one impact or a batch, whose forces have shape (K, *shape).
+    3. It may return None: these impacts are better done step by step. A law that takes single
+       impacts only returns it where ``scene.shape`` is not empty.
     """
 
     @abstractmethod
     def advance_all(
         self, scene: Scene, normal: NormalMotion, steps: Steps
     ) -> AllStepsResponse | None:
-        """Return the forces of a whole impact.
+        """Return the forces of a whole impact, or of each of a batch.
 
         Parameters
         ----------

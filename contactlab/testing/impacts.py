@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import AllStepsTangentialLaw, TangentialLaw
+from contactlab.history import Recorder
 from contactlab.testing.bench import FRICTION, bodies, scene
 from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.compare import same
@@ -164,7 +165,7 @@ def impact_reference(law: Any) -> None:
 
 @check(AllStepsTangentialLaw)
 def all_steps(law: Any) -> None:
-    """All steps at once give the forces of step by step (AllStepsTangentialLaw, 1)."""
+    """All steps at once give the forces of step by step, of a batch too (AllStepsTangentialLaw)."""
     way = next(iter(ways(law)))
     for chi, psi1 in itertools.product(CHI, PSI1):
         _, motion, _ = meet(way, psi1, chi)
@@ -172,3 +173,10 @@ def all_steps(law: Any) -> None:
         # An integrator that is watched goes step by step.
         gap = abs(float(watched.slip_velocity_change / motion.slip_velocity_change) - 1.0)
         hold(gap <= 1e-8, f"psi1 = {psi1}, chi = {chi}: differs by {gap:.1e}.")
+    for chi in (CHI[1], np.linspace(CHI[0], CHI[-1], len(PSI1))):
+        given = scene(np.array(PSI1), chi)
+        at_once = way.run(given)
+        watched = way.run(given, Recorder(given.shape, with_fields=False))
+        for one, other in ((at_once.change, watched.change), (at_once.work, watched.work)):
+            gap = float(np.max(np.abs(one - other) / np.maximum(1.0, PSI1)))
+            hold(gap <= 1e-8, f"A batch of shape {given.shape}: differs by {gap:.1e}.")

@@ -123,8 +123,12 @@ class Annulus(AllStepsTangentialLaw):
         response = TangentialResponse(force * scales.force, work * scales.work, settled)
         return response, State(scales, memory)
 
-    def advance_all(self, scene: Scene, normal: NormalMotion, steps: Steps) -> AllStepsResponse:
-        """Return the forces (22) of a whole impact, found in blocks of steps."""
+    def advance_all(
+        self, scene: Scene, normal: NormalMotion, steps: Steps
+    ) -> AllStepsResponse | None:
+        """Return the forces (22) of a whole impact, found in blocks of steps; of one only."""
+        if scene.shape:
+            return None
         scales = Scales.of(scene, normal)
         radius = steps.contact.radius / scales.radius
         scaled = ScaledSteps(

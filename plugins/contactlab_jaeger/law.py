@@ -139,8 +139,13 @@ class ProfileLaw(AllStepsTangentialLaw):
     def advance_all(
         self, scene: Scene, normal: NormalMotion, steps: Steps
     ) -> AllStepsResponse | None:
-        """Return the forces of a whole impact."""
-        if len(steps.drift) * len(self.bundle().squares) > LARGEST_RUN:
+        """Return the forces of a whole impact, or of a batch whose contacts differ in scale only.
+
+        Batches of several axes are better done step by step, as are runs of large tables.
+        """
+        shape, bundle = scene.shape, self.bundle()
+        columns = max(len(bundle.squares), math.prod(shape))
+        if len(shape) > 1 or len(steps.drift) * columns > LARGEST_RUN:
             return None
         scales = Scales.of(scene, normal)
         radius = steps.contact.radius / scales.radius
@@ -150,8 +155,15 @@ class ProfileLaw(AllStepsTangentialLaw):
             drift=steps.drift * scales.displacement,
             kick=steps.kick * (scales.force / scene.pair.tangential_mass),
         )
-        force, work = all_steps.advance_all(self.bundle(), scaled, float(scene.slip_velocity))
-        return AllStepsResponse(force * scales.force, float(work * scales.work), True)
+        if not shape:
+            force, work = all_steps.advance_all(bundle, scaled, float(scene.slip_velocity))
+            return AllStepsResponse(force * scales.force, float(work * scales.work), True)
+        if not (_alike(scaled.radius) and _alike(scaled.pressure)):
+            return None
+        scaled = scaled._replace(radius=scaled.radius[:, 0], pressure=scaled.pressure[:, 0])
+        forces, works = all_steps.advance_batch(bundle, scaled, scene.slip_velocity, *shape)
+        forces *= scales.force
+        return AllStepsResponse(forces, works * scales.work, True)
 
     def fields(self, state: State) -> Mapping[str, NDArray[Any]]:
         """Return radius (m), displacement and limit (m), stuck and slipping of every spring.
@@ -182,3 +194,9 @@ class ProfileLaw(AllStepsTangentialLaw):
             "stuck": (limit > 0.0) & ~slips,
             "slipping": (slips * np.sign(deflection)).astype(np.int8),
         }
+
+
+def _alike(rows: Array) -> bool:
+    """Return whether all impacts agree, to rounding, in each row."""
+    first = rows[:, :1]
+    return rows.shape[1] == 1 or bool((np.abs(rows - first) <= step.ROUNDING * first).all())

@@ -110,8 +110,8 @@ class Adaptive(Integrator):
         count : int
         """
         first = _march(normal, law, scene, count)
-        second = _march(normal, law, scene, 2 * count) if np.all(first.status) else first
-        if not np.all(second.status):
+        second = _march(normal, law, scene, 2 * count) if _succeeded(first) else first
+        if not _succeeded(second):
             return second
         tried = 3 * count
         return self._doubled(normal, law, scene, 4 * count, (first, second), tried)
@@ -141,7 +141,7 @@ class Adaptive(Integrator):
         last = _march(normal, law, scene, count)
         counters = {"steps": count, "evaluations": tried + count}
         last = attrs.evolve(last, counters=counters)
-        if not np.all(last.status):
+        if not _succeeded(last):
             return last
         left, allowed = self._error(*before, last), self._allowed(scene)
         open_: Any = np.asarray(~(left <= allowed))
@@ -185,6 +185,11 @@ class Adaptive(Integrator):
             ratio = np.where(two > 0.0, one / two, np.inf)
             smooth = np.maximum(two / (np.minimum(ratio, 4.0) - 1.0), BELIEVED * one)
         return np.where(ratio >= SMOOTH, smooth, WANDERS * np.maximum(two, 0.5 * one))
+
+
+def _succeeded(motion: TangentialMotion) -> bool:
+    """Return whether every impact was followed to its end."""
+    return bool(np.all(motion.status == Status.SUCCESS))
 
 
 def _march(

@@ -11,6 +11,7 @@ from contactlab import faults
 from contactlab.batch import filled, locked, spread
 from contactlab.checks import Real
 from contactlab.contracts import (
+    AllStepsResponse,
     AllStepsTangentialLaw,
     Increment,
     Law,
@@ -46,7 +47,7 @@ def march(
     """
     if (complaint := _unsound(normal, steps)) is not None:
         return _ended(scene, law, math.nan, math.nan, Status.NON_FINITE, complaint, 0)
-    if observer is None and not scene.shape and isinstance(law, AllStepsTangentialLaw):
+    if observer is None and isinstance(law, AllStepsTangentialLaw):
         motion = _all_at_once(normal, law, scene, steps)
         if motion is not None:
             return motion
@@ -70,18 +71,34 @@ def _all_at_once(
             response = law.advance_all(scene, normal, steps)
             if response is None:
                 return None
-            count = len(response.force)
-            change = -np.sum(response.force * (steps.kick[:count] / scene.pair.tangential_mass))
+            if (complaint := _malformed(response, scene, len(steps.kick))) is not None:
+                raise faults.LawFaultError(Status.MALFORMED, faults.sentence(law, complaint, 1))
+            force, count = response.force, len(response.force)
+            kick = steps.kick[:count] / scene.pair.tangential_mass
+            change = -np.einsum("k...,k...->...", force, kick)  # makes no table of products
     except faults.LawFaultError as fault:
         return _ended(scene, law, math.nan, math.nan, fault.status, fault.detail, 0)
     status, detail = Status.SUCCESS, ""
-    if not response.settled:
+    if not np.all(response.settled):
         status, detail = Status.UNSETTLED, faults.sentence(law, "no division found", count + 1)
-    elif not np.isfinite(change):
-        step = int((~np.isfinite(response.force)).argmax())
-        detail = faults.sentence(law, f"force {faults.shown(response.force[step])}", step + 1)
+    elif not np.isfinite(change).all():
+        step = int((~np.isfinite(force)).reshape(count, -1).any(axis=1).argmax())
+        detail = faults.sentence(law, f"force {faults.shown(force[step])}", step + 1)
         status = Status.NON_FINITE
     return _ended(scene, law, change, response.friction_work, status, detail, count)
+
+
+def _malformed(response: AllStepsResponse, scene: Scene, steps: int) -> str | None:
+    """Return what is wrong with an answer to all steps: its kind, or its shape."""
+    force, work, settled = response
+    if not isinstance(force, np.ndarray) or not force.ndim or faults.malformed(force, force.shape):
+        return f"the forces {faults.shown(force)}"
+    count = len(force)
+    missing = count > steps or (count < steps and np.all(settled))
+    if missing or force.shape[1:] != scene.shape:
+        given = f"for {steps} steps of a scene of shape {scene.shape}"
+        return f"forces of shape {force.shape} {given}"
+    return f"friction work {faults.shown(work)}" if faults.malformed(work, scene.shape) else None
 
 
 def _one_by_one(

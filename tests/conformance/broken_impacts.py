@@ -55,7 +55,7 @@ class AllAtOnce(AllStepsTangentialLaw):
             velocity = velocity - response.force * kick / mass
             forces.append(response.force)
             work = work + response.friction_work
-        return self.told(AllStepsResponse(np.array(forces), float(work), True))
+        return self.told(AllStepsResponse(np.array(forces), work, True))
 
     def told(self, response):
         return response
