@@ -173,10 +173,10 @@ def all_steps(law: Any) -> None:
         # An integrator that is watched goes step by step.
         gap = abs(float(watched.slip_velocity_change / motion.slip_velocity_change) - 1.0)
         hold(gap <= 1e-8, f"psi1 = {psi1}, chi = {chi}: differs by {gap:.1e}.")
-    for chi in (CHI[1], np.linspace(CHI[0], CHI[-1], len(PSI1))):
-        given = scene(np.array(PSI1), chi)
+    for various in (CHI[1], np.linspace(CHI[0], CHI[-1], len(PSI1))):
+        given = scene(np.array(PSI1), various)
         at_once = way.run(given)
-        watched = way.run(given, Recorder(given.shape, with_fields=False))
-        for one, other in ((at_once.change, watched.change), (at_once.work, watched.work)):
+        stepped = way.run(given, Recorder(given.shape, with_fields=False))
+        for one, other in ((at_once.change, stepped.change), (at_once.work, stepped.work)):
             gap = float(np.max(np.abs(one - other) / np.maximum(1.0, PSI1)))
             hold(gap <= 1e-8, f"A batch of shape {given.shape}: differs by {gap:.1e}.")

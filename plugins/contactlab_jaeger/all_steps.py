@@ -86,29 +86,48 @@ def advance_batch(
     part = np.concatenate((np.ones((throughout, len(square))), part))
     touching = bundle.squares.searchsorted(square)
     whole = np.where(square > before, bundle.squares.searchsorted(before), touching)
-    springs = len(limit)
-    old, new, trial = np.zeros((3, springs, items))
+    limits = _columns(limit)
+    old, new, trial = np.zeros((3, len(limit), items))
     forces, works = np.empty((2, len(square), items))
     change, displacement = np.zeros((2, items))
-    least, last = -limit, 0  # springs that touched at the end of the step before
-    for k, (first, now) in enumerate(zip(whole.tolist(), touching.tolist(), strict=True)):
+    last = 0  # springs that touched at the end of the step before
+    for first, now, parts, most, least, weight, drift, kick, force, work in zip(
+        whole.tolist(),
+        touching.tolist(),
+        _columns(part),
+        limits,
+        -limits,
+        np.ascontiguousarray(weights.T),
+        steps.drift,
+        steps.kick,
+        forces,
+        works,
+        strict=True,
+    ):
         rows = max(now, last)
-        first = rows if first == now else first
-        held, moved, kept = old[:rows], trial[:rows], new[:rows]
+        same = first if first < now else rows  # springs with the whole displacement
+        held, moved, kept, weight = old[:rows], trial[:rows], new[:rows], weight[:rows]
         np.add(velocity, change, out=displacement)
-        displacement *= steps.drift[k]
-        np.add(held[:first], displacement, out=moved[:first])
-        if first < rows:
-            np.multiply(part[first:rows, k, None], displacement, out=moved[first:])
-            moved[first:] += held[first:]
-        moved.clip(least[:rows, k, None], limit[:rows, k, None], out=kept)
-        weights[:rows, k].dot(kept, out=forces[k])
-        change -= steps.kick[k] * forces[k]
+        displacement *= drift
+        np.add(held[:same], displacement, out=moved[:same])
+        if same < rows:
+            np.multiply(parts[same:rows], displacement, out=moved[same:])
+            moved[same:] += held[same:]
+        np.minimum(moved, most[:rows], out=kept)  # faster than clip
+        np.maximum(kept, least[:rows], out=kept)
+        weight.dot(kept, out=force)
+        np.multiply(force, kick, out=displacement)
+        change -= displacement
         moved -= kept  # the slip
         held += kept
         moved *= held
-        weights[:rows, k].dot(moved, out=works[k])
+        weight.dot(moved, out=work)
         if now < rows:
             old[now:rows] = 0.0
         old, new, last = new, old, now
     return forces, 0.5 * np.maximum(works, 0.0, out=works).sum(axis=0)
+
+
+def _columns(table: Array) -> Array:
+    """Return a table (springs, K) as K columns, shape (K, springs, 1)."""
+    return np.ascontiguousarray(table.T)[:, :, None]
