@@ -64,6 +64,8 @@ def refined(steps: int, needed: Any) -> Any:
 
     Taken from a sequence, the impacts of a batch fall into a few groups of equal steps.
     """
+    if isinstance(needed, float) and needed <= steps:
+        return float(steps)
     sequence = [float(steps)]
     while sequence[-1] < min(float(np.nanmax(needed)), MOST_STEPS):
         sequence.append(min(math.ceil(sequence[-1] * RAISE), MOST_STEPS))

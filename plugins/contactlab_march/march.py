@@ -79,7 +79,7 @@ def _all_at_once(
     except faults.LawFaultError as fault:
         return _ended(scene, law, math.nan, math.nan, fault.status, fault.detail, 0)
     status, detail = Status.SUCCESS, ""
-    if not np.all(response.settled):
+    if response.settled is not True and not np.all(response.settled):
         status, detail = Status.UNSETTLED, faults.sentence(law, "no division found", count + 1)
     elif not np.isfinite(change).all():
         step = int((~np.isfinite(force)).reshape(count, -1).any(axis=1).argmax())
