@@ -5,7 +5,7 @@ current folder. ``contactlab fit impacts.csv bodies.toml`` does the same without
 """
 
 # %%
-# The data: a row an impact, units in the headings. Instead of these arrays the path of a CSV will do.
+# The data: a row an impact, units in the headings. The path of a CSV file will do instead.
 # The restitution of the tangential velocity of the centre is that of alumina spheres on glass,
 # read off the figures of Kharaz, Gorham & Salman (2001); a heading that begins with # would not
 # be read.

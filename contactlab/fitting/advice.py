@@ -76,7 +76,18 @@ def _thought_of(scene: Scene) -> tuple[Scene, Array, str]:
 
 
 def _effect(model: Model, values: Array, place: int, quantity: str) -> Array:
-    """Return how far a quantity moves if the parameter changes by its size."""
+    """Return how far a quantity moves if the parameter changes by its size, shape (impacts,).
+
+    Parameters
+    ----------
+    model : Model
+    values : array, shape (parameters,)
+        Each in its parameter's unit.
+    place : int
+        Which parameter changes.
+    quantity : str
+        A measured quantity, by name.
+    """
     parameter = model.parameters[place]
     size = sizes((parameter,), values[place : place + 1])[0]
     ends = np.array([values, values])

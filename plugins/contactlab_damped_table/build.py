@@ -47,7 +47,17 @@ def simulation(e: float, springs: int) -> Simulation:
 
 
 def solve(psi1: Array, chi: Array, e: float, *, springs: int = SPRINGS) -> Array:
-    """Return psi2 of impacts of one restitution, by springs."""
+    """Return psi2 of impacts of one restitution, by springs.
+
+    Parameters
+    ----------
+    psi1, chi : array
+        Broadcast against each other.
+    e : float
+        Restitution.
+    springs : int
+        Four steps are taken to each.
+    """
     shape = np.broadcast_shapes(psi1.shape, chi.shape)
     psi1, chi = (np.broadcast_to(each, shape).ravel() for each in (psi1, chi))
     result = simulation(e, springs).sweep(Scene.nondimensional(psi1=psi1, chi=chi)).check()

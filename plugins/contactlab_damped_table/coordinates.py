@@ -71,14 +71,32 @@ def incidence(piece: int, at: Any, cuts: tuple[Any, Any]) -> Any:
 
 
 def smooth(piece: int, psi1: Any, psi2: Any, chi: Any, e: Any) -> Any:
-    """Return what is tabulated: psi2/psi1, psi2, or what gross slip lacks."""
+    """Return what is tabulated: psi2/psi1, psi2, or what gross slip lacks.
+
+    Parameters
+    ----------
+    piece : int
+        ``STICKS``, ``TURNS`` or ``SLIPS``.
+    psi1, psi2, chi, e : float or array
+        Impacts of that piece; e is the restitution.
+    """
     if piece == STICKS:
         return psi2 / psi1
     return psi2 if piece == TURNS else psi2 - (psi1 - 2.0 * chi * (1.0 + e))
 
 
 def rough(piece: int, psi1: Any, value: Any, chi: Any, e: Any) -> Any:
-    """Return psi2 of what is tabulated: the inverse of ``smooth``."""
+    """Return psi2 of what is tabulated: the inverse of ``smooth``.
+
+    Parameters
+    ----------
+    piece : int
+        ``STICKS``, ``TURNS`` or ``SLIPS``.
+    psi1, chi, e : float or array
+        Impacts of that piece; e is the restitution.
+    value : float or array
+        What ``smooth`` returned.
+    """
     if piece == STICKS:
         return value * psi1
     return value if piece == TURNS else value + (psi1 - 2.0 * chi * (1.0 + e))

@@ -80,6 +80,18 @@ def _kept(terms: Array) -> Array:
 
 
 def _chunk(psi1: Array, chi: Array, e: float, cuts: Array, terms: list[Array]) -> Array:
+    """Return psi2 of impacts of one restitution, shape (impacts,).
+
+    Parameters
+    ----------
+    psi1, chi : array, shape (impacts,)
+    e : float
+        Restitution.
+    cuts : array, shape (2, terms)
+        Polynomials in chi of the two cuts.
+    terms : list of array
+        Of each piece: polynomials in psi1 and chi.
+    """
     along = _polynomials(inner(chi, *CHI), cuts.shape[-1])
     low, high = cuts @ along
     piece = (psi1 > low).astype(np.int8) + (psi1 > high)
