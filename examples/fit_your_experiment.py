@@ -5,51 +5,23 @@ current folder. ``contactlab fit impacts.csv bodies.toml`` does the same without
 """
 
 # %%
-# The data: a row an impact, units in the headings. The path of a CSV file will do instead.
-# The restitution of the tangential velocity of the centre is that of alumina spheres on glass,
-# read off the figures of Kharaz, Gorham & Salman (2001); a heading that begins with # would not
-# be read.
+# The data: a row an impact, units in the headings. Instead of these lists the path of a CSV
+# will do. The restitution of the tangential velocity of the centre is that of alumina spheres on
+# glass, read off the figures of Kharaz, Gorham & Salman (2001); a heading that begins with #
+# would not be read.
 from pathlib import Path
-
-import numpy as np
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, fit
 from contactlab.figures.fitting import draw_fits
 from contactlab.fitting import rank
 
 impacts = {
-    "angle_deg": np.array(
-        [
-            2.0350333333333332,
-            3.949666666666667,
-            9.656,
-            20.104766666666666,
-            30.235066666666665,
-            39.4099,
-            49.61463333333334,
-            59.930800000000005,
-            71.0693,
-            79.2277,
-            85.1683,
-        ]
-    ),
-    "speed (m/s)": np.full(11, 3.9),
-    "tangential_restitution": np.array(
-        [
-            0.7945933333333333,
-            0.7455400000000001,
-            0.6736066666666667,
-            0.5973866666666666,
-            0.6887133333333333,
-            0.77256,
-            0.8473733333333332,
-            0.90166,
-            0.93657,
-            0.96952,
-            0.97941,
-        ]
-    ),
-}
+    "angle_deg": [2.04, 3.95, 9.66, 20.1, 30.2, 39.4, 49.6, 59.9, 71.1, 79.2, 85.2],
+    "speed (m/s)": [3.9] * 11,
+    "tangential_restitution": [
+        0.795, 0.746, 0.674, 0.597, 0.689, 0.773, 0.847, 0.902, 0.937, 0.970, 0.979,
+    ],
+}  # fmt: skip
 
 # %%
 # The bodies. The friction given here is where the search begins; what the table says of speed
