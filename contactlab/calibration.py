@@ -52,8 +52,9 @@ def one_of_two(law: Any, one: str, other: str, *, default: float) -> None:
         If neither is None.
     """
     values = getattr(law, one), getattr(law, other)
-    if None not in values:
+    given = [value is not None for value in values]  # a value may be an array, to be refused
+    if all(given):
         rule = "only one of the two may be given"
         raise refuse(f"{one}, {other}", values, rule, "each follows from the other: leave one out")
-    if values == (None, None):
+    if not any(given):
         object.__setattr__(law, one, default)  # the object is frozen, and not made yet

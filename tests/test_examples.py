@@ -83,6 +83,7 @@ def plugin_path(tmp_path):
     return f"{tmp_path / 'site'}{os.pathsep}{PLUGIN}"
 
 
+@pytest.mark.slow
 def test_third_party_plugin_keeps_its_own_tests(plugin_path, tmp_path):
     done = python(
         *("-m", "pytest", "-q", "-p", "no:cacheprovider", "-c", PLUGIN / "pyproject.toml"),
@@ -107,6 +108,7 @@ def test_third_party_plugin_on_the_command_line(plugin_path, tmp_path):
     assert "cundall (contactlab-cundall 1.0.0)" in ran.stdout
 
 
+@pytest.mark.slow
 def test_third_party_plugin_is_put_through_the_stability_report(plugin_path, tmp_path):
     command = ("-m", "contactlab", "stability", "--quick", "--law", "tangential.cundall", "--json")
     ran = python(*command, folder=tmp_path, path=plugin_path)

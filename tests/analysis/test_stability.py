@@ -162,6 +162,7 @@ def test_every_normal_law_is_tried_that_fits():
     assert {case.normal for case in listed} == {"hertz"}
 
 
+@pytest.mark.slow
 def test_the_report_counts_what_is_wrong():
     method = Method(tangential="springs", integrator="symplectic")
 
@@ -194,6 +195,7 @@ def test_a_rigid_body_is_judged_by_its_own_theory():
         assert rigid(scene, None) == pytest.approx(change, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("psi1", "chi"), [(0.3, 3.0), (0.98, 1e3), (1.2, 1e3)])
 def test_a_law_that_is_judged_by_itself_is_judged_by_its_limit(psi1, chi):
     """Far finer steps agree; and so does the adaptive scheme, which takes other steps.

@@ -12,6 +12,8 @@ from contactlab.analysis.bench_methods import Method
 from contactlab.cli import bench, stability
 from contactlab.simulation import Simulation
 
+pytestmark = pytest.mark.slow
+
 STEPPED = [Method(tangential="springs", integrator="symplectic")]
 
 

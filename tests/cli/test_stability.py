@@ -28,6 +28,8 @@ from contactlab.cli import stability
 from contactlab.figures import stability as drawing
 from contactlab.registry import REGISTRY
 
+pytestmark = pytest.mark.slow
+
 COMMAND = ("stability", "--quick", "--law", "springs")
 
 

@@ -233,7 +233,7 @@ class Slippery(Phase):
     """Slip that raises from some phase of the normal motion on."""
 
     def respond(self, contact, slip, memo):
-        if contact.phase[-1] > 1.5:
+        if contact.phase[-1] > 2.9:
             raise KeyError("stiffness")
         return PhaseResponse(contact.force, None, None, ())
 

@@ -8,6 +8,8 @@ import pytest
 
 from contactlab.testing import CHECKS, ConformanceError, Verdict, check_law, checks_for, outcome
 
+pytestmark = pytest.mark.slow
+
 README = Path(__file__).parents[2] / "README.md"
 
 

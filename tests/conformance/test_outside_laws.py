@@ -16,6 +16,8 @@ from tests.outside_laws import (
     Walton,
 )
 
+pytestmark = pytest.mark.slow
+
 NORMAL = [Tsuji(), Tsuji(damping=0.5), Plastic(), Adhesive(), LinearDashpot()]
 NORMAL += [Adhesive(pull=100.0, reach=1e-6)]
 LAWS = [*NORMAL, RescaledSpring(), Walton(), Heun()]

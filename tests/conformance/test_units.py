@@ -11,6 +11,8 @@ from contactlab.testing import CheckFailedError, Verdict, check_law, checks_for,
 from contactlab.testing.units import ODD_UNITS, Units, factor, in_units
 from tests.normal_laws import Damped
 
+pytestmark = pytest.mark.slow
+
 
 @attrs.frozen(kw_only=True)
 class Viscous(SteppedTangentialLaw):

@@ -18,6 +18,8 @@ from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from tests.normal_laws import LinearSpring
 from tests.outside_laws import RescaledSpring
 
+pytestmark = pytest.mark.slow
+
 CHI = 49.0 / 34.0
 ROOT = Path(__file__).parents[2]
 PSI1, CHIS = (0.5, 0.9, 2.0, 3.0), (CHI, 3.0)

@@ -10,6 +10,8 @@ import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from tests.normal_laws import Damped
 
+pytestmark = pytest.mark.slow
+
 METHODS = [
     ("springs", "symplectic", {"springs": 12}, {"steps": 50}),
     ("springs", "paper", {}, {}),

@@ -1,10 +1,13 @@
 """``run(estimate_error=True)``: an estimate of the error, for laws that declare none too."""
 
 import numpy as np
+import pytest
 
 import contactlab
 from contactlab import Scene, Simulation
 from tests.outside_laws import RescaledSpring
+
+pytestmark = pytest.mark.slow
 
 CHI = 49.0 / 34.0
 #: A dozen impacts.

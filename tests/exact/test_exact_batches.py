@@ -11,6 +11,8 @@ import contactlab_events.law as events
 from contactlab import Scene, Simulation, Status, rebound
 from contactlab_events.scaled import Impact
 
+pytestmark = pytest.mark.slow
+
 #: Where rounding, events that crowd, or the limits of what is done together could show.
 CORNERS = ("one", "full", "half", "zero", "rim", "balanced")
 HALF_AND_ONE = 0.9999999193997331, 0.49999995258443836

@@ -10,6 +10,8 @@ from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
 from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.motion import Motion, sound
 
+pytestmark = pytest.mark.slow
+
 CHI = 49 / 34
 FRICTION = (0.0, 1e-308, 1e-300, 1e-12, 1e3, 1e12, 1e300)
 PSI1 = (0.0, 1e-308, 1e-300, 1e-12, 1.0, 1e15, 1e16, 1e300)

@@ -13,6 +13,8 @@ from contactlab.scene_file import read_scene
 from contactlab_march.fixed import needed_steps
 from tests.exact.laws import CHI, order, rms, simulation
 
+pytestmark = pytest.mark.slow
+
 #: psi2 that compiled codes give, steps converged, chi = 49/34, to three decimals.
 CODES = read_scene(DEFAULT_SCENE).measured
 FORMS = ("displacement", "increment", "increment_rescaled")

@@ -75,6 +75,7 @@ def test_large_chi(chi, psi1):
     assert rebound(psi1, chi) == pytest.approx(float(exact(psi1, chi)), abs=TOLERANCE)
 
 
+@pytest.mark.slow
 def test_odd_to_the_last_bit():
     psi1, chi = sample(0.2, 10.0, 500, seed=13)
     assert np.array_equal(rebound(-psi1, chi), -rebound(psi1, chi))
@@ -89,6 +90,7 @@ def test_limits():
     assert rebound(0.6, 0.5) == -0.6  # balanced: nothing slips
 
 
+@pytest.mark.slow
 def test_invariants():
     psi1, chi = sample(0.05, 20.0, 2000, seed=14)
     psi2 = rebound(psi1, chi)
@@ -96,6 +98,7 @@ def test_invariants():
     assert np.all(np.abs(psi2 - psi1) <= 4.0 * chi * (1.0 + 1e-15))
 
 
+@pytest.mark.slow
 def test_answers_hardly_depend_on_the_batch(monkeypatch):
     psi1, chi = sample(0.35, 8.0, 400, seed=15)
     whole = rebound(psi1, chi)

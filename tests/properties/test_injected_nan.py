@@ -24,6 +24,8 @@ from tests.properties.spoiled import (
     spoiled_tangential,
 )
 
+pytestmark = pytest.mark.slow
+
 STEPS = 9
 #: No call beyond this one is spoiled.
 MOST = 400
