@@ -28,8 +28,8 @@ SCRIPTS = {
     "sweep_on_a_cluster": ("the same to the last bit as here: True", None),
     "billiards": ("does not add up: ", "billiards.gif"),
 }
-#: Those that wait for processes to start.
-SLOW = ("sweep_on_a_cluster",)
+#: Those that wait for processes to start, or draw many pictures.
+SLOW = ("sweep_on_a_cluster", "reproduce_the_paper", "fit_your_experiment", "billiards")
 #: Options that make a script short.
 OPTIONS = {"billiards": ("--collisions", 40, "--frames", 3)}
 

@@ -16,6 +16,8 @@ from contactlab.registry import REGISTRY
 from contactlab.scene_file import LawChoice
 from tests.normal_laws import Damped
 
+pytestmark = pytest.mark.slow
+
 CHI = 49.0 / 34.0
 
 

@@ -8,6 +8,8 @@ import pytest
 from contactlab.fitting import bootstrap
 from tests.cli.conftest import EXAMPLES
 
+pytestmark = pytest.mark.slow
+
 KHARAZ = EXAMPLES / "kharaz2001.toml"
 E_T = ("--quantity", "tangential_restitution")
 

@@ -9,6 +9,8 @@ import pytest
 from contactlab.cli.guide import text
 from contactlab.cli.main import COMMANDS
 
+pytestmark = pytest.mark.slow
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PAGE = text("command-line")
 SECTIONS = dict(re.findall(r"^## `(\w+)`\n(.*?)(?=^## )", PAGE, re.MULTILINE | re.DOTALL))

@@ -41,6 +41,7 @@ def few_frames(monkeypatch):
     monkeypatch.setattr(animation, "LEAVING", 2)
 
 
+@pytest.mark.slow
 def test_the_animation_shows_the_sphere_where_it_is(run, ball, tmp_path, few_frames):
     out = tmp_path / "impact.gif"
     assert run("animate", ball, "--out", out).status == 0

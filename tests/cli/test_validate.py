@@ -9,6 +9,8 @@ from contactlab.analysis import evidence, validation
 from contactlab.scene_file import read_scene
 from tests.cli.conftest import EXAMPLES
 
+pytestmark = pytest.mark.slow
+
 SOURCES = {source.name: source for source in evidence.SOURCES}
 
 
