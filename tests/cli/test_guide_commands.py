@@ -9,13 +9,9 @@ import pytest
 from contactlab.cli.guide import text
 from contactlab.cli.main import COMMANDS
 
-pytestmark = pytest.mark.slow
-
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PAGE = text("command-line")
 SECTIONS = dict(re.findall(r"^## `(\w+)`\n(.*?)(?=^## )", PAGE, re.MULTILINE | re.DOTALL))
-#: Those that take longer than the others together.
-SLOW = ("animate", "bench", "figures", "stability", "validate")
 
 
 def lines(markdown):
@@ -28,10 +24,8 @@ def test_every_command_has_a_section_and_a_row_in_the_table():
     assert sorted(rows) == sorted(COMMANDS)
 
 
-@pytest.mark.parametrize(
-    "command",
-    [pytest.param(name, marks=[pytest.mark.slow] * (name in SLOW)) for name in COMMANDS],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("command", COMMANDS)
 def test_the_examples_of_a_command_run(run, command, tmp_path, monkeypatch):
     shutil.copytree(EXAMPLES, tmp_path / "examples", ignore=shutil.ignore_patterns("*_plugin"))
     monkeypatch.chdir(tmp_path)
@@ -46,6 +40,7 @@ def test_the_examples_of_a_command_run(run, command, tmp_path, monkeypatch):
                 assert (tmp_path / words[words.index(option) + 1]).exists(), line
 
 
+@pytest.mark.slow
 def test_the_first_commands_of_a_newcomer_run(run, tmp_path, monkeypatch):
     shutil.copytree(EXAMPLES, tmp_path / "examples", ignore=shutil.ignore_patterns("*_plugin"))
     monkeypatch.chdir(tmp_path)
