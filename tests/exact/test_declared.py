@@ -51,6 +51,17 @@ def test_no_answer_is_further_off_than_declared(method):
     assert (result.plan.psi2_error <= rounding)[closed].all()
 
 
+@pytest.mark.parametrize("tangential", ["springs", "sharp_annulus"])
+def test_the_declared_error_holds_beyond_the_chi_it_was_measured_at(tangential):
+    """At chi from 1500 to 3000 springs were off by 1.4 times what they declared."""
+    method = (tangential, "adaptive", {}, {"tolerance": 1e-4})
+    psi1, chi = np.meshgrid([0.3, 0.95, 1.2], [1500.0, 3000.0])
+    result = simulation(*method).run(Scene.nondimensional(psi1=psi1.ravel(), chi=chi.ravel()))
+    off = np.abs(result.check().psi2 - contactlab.rebound(psi1.ravel(), chi.ravel()))
+    assert (off <= result.plan.psi2_error).all()
+    assert (off > 1e-3).any()
+
+
 def test_the_error_is_declared_in_psi_whatever_the_units():
     scene = Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.2, 1.0, 0.5, 20.0)
     same = Scene.nondimensional(psi1=scene.psi1, chi=scene.chi)
