@@ -166,7 +166,7 @@ class WholeImpactTangentialLaw(TangentialLaw):
 class Steps(NamedTuple):
     """All even steps of an impact, arrays of shape (K,).
 
-    Of a batch they are (K, *shape), with axes of length 1 where all impacts agree.
+    Of a batch they are (K, ...), with axes of length 1 where all impacts agree.
 
     The march drifts to a sample of the normal contact, asks the law, and kicks.
 
@@ -198,7 +198,7 @@ class AllStepsResponse(NamedTuple):
 
     Attributes
     ----------
-    force : array, shape (K,) or (K, *shape)
+    force : array, shape (K,), or (K, ...) of a batch
         In N, at the samples; fewer than K where it stopped.
     friction_work : float or array of the batch shape
         In J, added up over the steps.
@@ -291,7 +291,7 @@ class AllStepsTangentialLaw(SteppedTangentialLaw):
     --------
     1. ``advance_all(scene, normal, steps)`` gives, to rounding, the forces that ``advance`` gives
        step by step when the slip velocity falls by force times kick over mass after each step.
-    2. ``scene`` is one impact or a batch, whose forces have shape (K, *shape).
+    2. ``scene`` is one impact or a batch, whose forces have shape (K, ...).
     3. It may return None: these impacts are better done step by step. A law that takes single
        impacts only returns it where ``scene.shape`` is not empty.
     """
