@@ -8,7 +8,7 @@ an array that broadcasts to ``shape``.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import attrs
@@ -20,6 +20,22 @@ def locked(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
     return value
+
+
+def common_shape(shapes: Mapping[str, tuple[int, ...]], *, what: str, remedy: str) -> Any:
+    """Return the shape that named shapes broadcast to; () are those of plain numbers.
+
+    Raises
+    ------
+    ValueError
+        With ``what``, the names of those that are no plain numbers, and the remedy.
+    """
+    shapes = {name: shape for name, shape in shapes.items() if shape}
+    try:
+        return np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        named = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+        raise ValueError(f"{what} of {named} must broadcast to one; {remedy}") from None
 
 
 def stacked(items: Sequence[Any]) -> Any:

@@ -129,15 +129,12 @@ class Encounter:
                 raise refuse(name, body, "must be given")
         shapes = {name: value.shape[:-1] for name, value in self._vectors().items()}
         shapes |= {name: np.shape(value) for name, value in self._numbers().items()}
-        shapes = {name: shape for name, shape in shapes.items() if shape}
-        try:
-            object.__setattr__(self, "shape", np.broadcast_shapes(*shapes.values()))
-        except ValueError:
-            told = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
-            raise ValueError(
-                f"Encounter: the batch shapes of {told} must broadcast to one; "
-                "give one vector, or as many as there are encounters"
-            ) from None
+        shape = batch.common_shape(
+            shapes,
+            what="Encounter: the batch shapes",
+            remedy="give one vector, or as many as there are encounters",
+        )
+        object.__setattr__(self, "shape", shape)
         if isinstance(self.target, HalfSpace) and np.any(self.target_spin):
             raise refuse(
                 "target_spin",

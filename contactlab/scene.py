@@ -97,16 +97,12 @@ class Scene:
                 "both bodies must be given",
                 "or use Scene.nondimensional(psi1=, chi=)",
             )
-        numbers = self.numbers()
-        shapes = {name: np.shape(number) for name, number in numbers.items() if np.shape(number)}
-        try:
-            object.__setattr__(self, "shape", np.broadcast_shapes(*shapes.values()))
-        except ValueError:
-            told = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
-            raise ValueError(
-                f"Scene: the shapes of {told} must broadcast to one; "
-                "give numbers, or arrays of equal length"
-            ) from None
+        shape = batch.common_shape(
+            {name: np.shape(number) for name, number in self.numbers().items()},
+            what="Scene: the shapes",
+            remedy="give numbers, or arrays of equal length",
+        )
+        object.__setattr__(self, "shape", shape)
         real("tangential_velocity + spin * radius", self.slip_velocity)
         self._check_scales()
 

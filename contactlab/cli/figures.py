@@ -14,6 +14,7 @@ from pathlib import Path
 
 from contactlab.analysis.paper_figures import FigureData, figures
 from contactlab.cli import arguments as shared
+from contactlab.cli.scene import composed
 from contactlab.files import unwritable, write_table
 from contactlab.scene_file import LawChoice
 
@@ -36,10 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the figures and print their paths."""
-    choice = LawChoice(tangential="annulus", integrator="paper").choose(
-        normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
-    )
-    simulation = choice.set(dict(arguments.settings)).simulation()
+    simulation = composed(arguments, LawChoice(tangential="annulus", integrator="paper"))
     try:
         arguments.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -45,11 +45,16 @@ def given(arguments: argparse.Namespace) -> Given:
         If neither a file nor both numbers are given, or a file and a number.
     """
     file = read_scene(arguments.scene) if arguments.scene else None
-    choice = file.laws if file else LawChoice()
+    scene = _scene(arguments, file)
+    return Given(file, scene, composed(arguments, file.laws if file else LawChoice()))
+
+
+def composed(arguments: argparse.Namespace, choice: LawChoice) -> Simulation:
+    """Return the laws of ``choice``, but for those that the arguments name, with their options."""
     choice = choice.choose(
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )
-    return Given(file, _scene(arguments, file), choice.set(dict(arguments.settings)).simulation())
+    return choice.set(dict(arguments.settings)).simulation()
 
 
 def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Scene:

@@ -22,6 +22,7 @@ import numpy as np
 from contactlab.checks import refuse
 from contactlab.cli import arguments as shared
 from contactlab.cli.run import draw, report
+from contactlab.cli.scene import composed
 from contactlab.cli.table import table
 from contactlab.export import COLUMNS, WRITERS, heading
 from contactlab.result import ImpactResult
@@ -67,10 +68,7 @@ def execute(arguments: argparse.Namespace) -> int:
     scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
     if not scene.shape:
         raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
-    choice = (file.laws if file else LawChoice()).choose(
-        normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
-    )
-    simulation = choice.set(dict(arguments.settings)).simulation()
+    simulation = composed(arguments, file.laws if file else LawChoice())
     keep = _folder(arguments.out) if arguments.resume else None
     progress = shared.progress(arguments.progress, "impacts")
     # What a plug-in prints is not our output.
