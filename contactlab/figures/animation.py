@@ -17,7 +17,14 @@ from numpy.typing import NDArray
 from contactlab.analysis.paper_figures import scaled_forces
 from contactlab.checks import refuse
 from contactlab.figures.stick_slip import NO_CONTACT, STATES
-from contactlab.figures.style import LAW_COLOURS, QUIET, friction_limit, styled, zero_line
+from contactlab.figures.style import (
+    LAW_COLOURS,
+    QUIET,
+    TIME_LABEL,
+    friction_limit,
+    styled,
+    zero_line,
+)
 from contactlab.files import written
 from contactlab.result import ImpactResult
 
@@ -220,7 +227,7 @@ class Forces:
         (self.point,) = axes.plot([], [], "o", color=LAW_COLOURS[0], markersize=6)
         axes.set_xlim(0.0, 1.0)
         axes.set_ylim(-1.08, 1.08)
-        axes.set_xlabel(r"time over duration of contact $t/t_{\mathrm{c}}$")
+        axes.set_xlabel(TIME_LABEL)
         axes.set_ylabel(r"$F/(\mu P_{\max})$")
 
     def show(self, frame: Frame) -> None:

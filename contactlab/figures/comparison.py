@@ -12,6 +12,7 @@ from contactlab.analysis.paper_figures import scaled_forces
 from contactlab.figures.style import (
     LAW_COLOURS,
     MEASURED_COLOUR,
+    force_axes,
     friction_limit,
     label,
     law_style,
@@ -219,9 +220,7 @@ def forces_over_contact(axes: Axes, comparison: Comparison) -> Axes:
             friction_limit(axes, time, normal)
             drawn = True
         axes.plot(time, tangential, label=verbatim(run.name), **law_style(number))
-    axes.set_xlabel(r"time over duration of contact $t/t_{\mathrm{c}}$")
-    axes.set_ylabel(r"tangential force $F/(\mu P_{\max})$")
-    axes.set_xlim(0.0, 1.0)
+    force_axes(axes)
     axes.set_ylim(-1.05, 1.05)
     axes.legend(loc="lower left")
     return axes

@@ -12,6 +12,7 @@ from contactlab.analysis.paper_figures import FIXED_PSI1, SOLID_CHI, FigureData,
 from contactlab.figures.style import (
     LAW_COLOURS,
     QUIET,
+    force_axes,
     friction_limit,
     label,
     law_style,
@@ -106,9 +107,7 @@ def _forces(
     friction_limit(axes, normal.x, normal.y)
     for curve, colour in zip(tangential, ordered_colours(len(tangential)), strict=True):
         axes.plot(curve.x, curve.y, color=colour, label=name(curve.parameter))
-    axes.set_xlabel(r"time over duration of contact $t/t_{\mathrm{c}}$")
-    axes.set_ylabel(r"tangential force $F/(\mu P_{\max})$")
-    axes.set_xlim(0.0, 1.0)
+    force_axes(axes)
     axes.set_ylim(-1.05, 1.05)
 
 

@@ -10,7 +10,14 @@ from matplotlib.axes import Axes
 from contactlab.analysis.paper_figures import scaled_forces
 from contactlab.checks import refuse
 from contactlab.export import unit_in
-from contactlab.figures.style import LAW_COLOURS, friction_limit, label, styled, zero_line
+from contactlab.figures.style import (
+    LAW_COLOURS,
+    force_axes,
+    friction_limit,
+    label,
+    styled,
+    zero_line,
+)
 from contactlab.history import History
 from contactlab.quantities import quantity_named
 from contactlab.result import ImpactResult
@@ -80,9 +87,7 @@ def _forces(axes: Axes, result: ImpactResult) -> Axes:
     zero_line(axes)
     friction_limit(axes, time, normal)
     axes.plot(time, tangential, color=LAW_COLOURS[0])
-    axes.set_xlim(0.0, 1.0)
-    axes.set_xlabel(r"time over duration of contact $t/t_{\mathrm{c}}$")
-    axes.set_ylabel(r"tangential force $F/(\mu P_{\max})$")
+    force_axes(axes)
     return axes
 
 

@@ -8,7 +8,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from contactlab.figures.style import LAW_COLOURS
+from contactlab.figures.style import LAW_COLOURS, TIME_LABEL
 
 #: What an annulus may do, its colour and its number in the map.
 STATES = {"slip, backward": LAW_COLOURS[1], "stick": "#C4C4C4", "slip, forward": LAW_COLOURS[0]}
@@ -40,7 +40,7 @@ def stick_slip_map(
     colours = ListedColormap([*STATES.values(), NO_CONTACT])
     norm = BoundaryNorm(np.arange(-0.5, 4.0), 4)
     axes.pcolormesh(time, radius, state.T, cmap=colours, norm=norm, shading="nearest")
-    axes.set_xlabel(r"time over duration of contact $t/t_{\mathrm{c}}$")
+    axes.set_xlabel(TIME_LABEL)
     axes.set_ylabel(r"radius over largest contact radius $r/a$")
     axes.set_xlim(0.0, 1.0)
     axes.set_ylim(0.0, 1.0)

@@ -41,6 +41,7 @@ SETTINGS: Any = {  # matplotlib types the keys of this one by one
     "savefig.dpi": RESOLUTION,
 }
 
+TIME_LABEL = r"time over duration of contact $t/t_{\mathrm{c}}$"
 #: Quantities as the paper writes them; units are added from their own metadata.
 SYMBOLS = {
     "psi1": r"local angle of incidence $\psi_1$",
@@ -106,6 +107,13 @@ def law_style(number: int) -> dict[str, Any]:
 def zero_line(axes: Axes) -> None:
     """Draw y = 0 quietly, behind everything."""
     axes.axhline(0.0, color=QUIET, linewidth=0.8, zorder=0)
+
+
+def force_axes(axes: Axes) -> None:
+    """Label the axes of a tangential force over the contact, from first touch to separation."""
+    axes.set_xlabel(TIME_LABEL)
+    axes.set_ylabel(r"tangential force $F/(\mu P_{\max})$")
+    axes.set_xlim(0.0, 1.0)
 
 
 def friction_limit(axes: Axes, time: Any, normal_force: Any) -> None:

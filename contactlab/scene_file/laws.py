@@ -9,7 +9,7 @@ import attrs
 
 from contactlab import composition
 from contactlab.registry import KINDS, REGISTRY
-from contactlab.scene_file.table import Table, nearest_of
+from contactlab.scene_file.table import Table, flattened, nearest_of
 from contactlab.simulation import Simulation
 
 OPTION_REMEDY = "write tangential.annuli = 50, or tangential.annulus.annuli = 50 for one law only"
@@ -113,14 +113,6 @@ def read_laws(content: object) -> LawChoice:
     if not isinstance(raw, Mapping):
         raise ValueError(f"simulation.options: must be a table; {OPTION_REMEDY}")
     try:
-        return choice.set(_flat(raw))
+        return choice.set(flattened(raw))
     except ValueError as error:
         raise ValueError(f"simulation.options.{error}") from error
-
-
-def _flat(content: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    flat: dict[str, Any] = {}
-    for key, value in content.items():
-        inner = isinstance(value, Mapping)
-        flat |= _flat(value, f"{prefix}{key}.") if inner else {prefix + key: value}
-    return flat

@@ -14,7 +14,7 @@ import numpy as np
 from contactlab.checks import Real, refuse, whole
 from contactlab.grid import product
 from contactlab.scene_file.entries import entry_path
-from contactlab.scene_file.table import Table, number_list
+from contactlab.scene_file.table import Table, flattened, number_list
 
 RANGE_KEYS = ("start", "stop", "count")
 #: The entry that asks for every combination.
@@ -54,7 +54,8 @@ def read_sweep(content: object) -> Sweep:
         raise refuse(f"sweep.{PRODUCT}", combined, "must be true or false")
     varied: dict[str, Real] = {}
     paths: dict[str, str] = {}
-    for name, value in _flat({key: content[key] for key in content if key != PRODUCT}).items():
+    entries = {key: content[key] for key in content if key != PRODUCT}
+    for name, value in flattened(entries, leaf=_is_range).items():
         path = entry_path(name, where="sweep.")
         if path in paths:
             raise ValueError(f"sweep: {paths[path]} and {name} are the same entry; leave out one")
@@ -74,15 +75,9 @@ def read_sweep(content: object) -> Sweep:
     return Sweep(varied, {})
 
 
-def _flat(content: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Return ``sphere.radius = [...]`` under its dotted name, however the file nests it."""
-    flat: dict[str, Any] = {}
-    for key, value in content.items():
-        if isinstance(value, Mapping) and not set(value) & set(RANGE_KEYS):
-            flat |= _flat(value, f"{prefix}{key}.")
-        else:
-            flat[prefix + key] = value
-    return flat
+def _is_range(value: Mapping[str, Any]) -> bool:
+    """Return whether a table is a range, not a part of a dotted name."""
+    return bool(set(value) & set(RANGE_KEYS))
 
 
 def _values(path: str, value: object) -> Real:

@@ -110,3 +110,22 @@ def number_list(path: str, value: object, *, remedy: str) -> Real:
     if np.ndim(array) != 1:
         raise refuse(path, value, "must be a plain list of numbers", "not a list of lists")
     return array
+
+
+def flattened(
+    content: Mapping[str, Any],
+    prefix: str = "",
+    *,
+    leaf: Callable[[Mapping[str, Any]], bool] = lambda _: False,
+) -> dict[str, Any]:
+    """Return ``sphere.radius = ...`` under its dotted name, however the file nests it.
+
+    ``leaf`` tells which tables are values, and no part of a name.
+    """
+    found: dict[str, Any] = {}
+    for key, value in content.items():
+        if isinstance(value, Mapping) and not leaf(value):
+            found |= flattened(value, f"{prefix}{key}.", leaf=leaf)
+        else:
+            found[prefix + key] = value
+    return found
