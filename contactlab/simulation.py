@@ -136,7 +136,8 @@ class Simulation:
         impact: 4000 of the exact solution, 20 where they are followed one by one, 1000 of most;
         16384 where nothing is marched. What is solved together depends on neither ``chunk`` nor
         ``executor``, and so does no bit of an answer, of one installation on one kind of
-        processor; of laws that multiply large matrices, with one number of BLAS threads too.
+        processor and one number of BLAS threads (which with NumPy 2 matters to laws that multiply
+        large matrices only).
 
         Parameters
         ----------

@@ -5,7 +5,8 @@
 
 import os
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: a small matrix, one thread
+if __name__ == "__main__":  # and not where a test imports it: processes of later tests inherit it
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: a small matrix, one thread
 
 import contextlib
 import time

@@ -3,6 +3,9 @@
 import itertools
 import pickle
 import re
+import subprocess
+import sys
+from pathlib import Path
 from typing import ClassVar
 
 import attrs
@@ -250,3 +253,9 @@ def test_bad_refine():
 def test_bad_tolerance(integrator, bad):
     with pytest.raises(ValueError, match="tolerance = "):
         contactlab.create(f"integrator.{integrator}", tolerance=bad)
+
+
+def test_the_benchmark_of_the_guards_leaves_the_environment_alone():
+    """Else processes of later tests would count with one BLAS thread, and this one with more."""
+    code = "import os; os.environ.clear(); import tests.guards; assert not os.environ"
+    subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[2], check=True)
