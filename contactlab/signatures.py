@@ -31,14 +31,14 @@ def named_arguments(example: str) -> Callable[[Named], Named]:
     def decorate(named: Named) -> Named:
         if isinstance(named, type):
             made: Any = named
-            made.__init__ = _kind(made.__init__, named.__name__, example)
+            made.__init__ = _refusing(made.__init__, named.__name__, example)
             return cast(Named, named)
-        return cast(Named, _kind(named, named.__name__, example))
+        return cast(Named, _refusing(named, named.__name__, example))
 
     return decorate
 
 
-def _kind(function: Callable[..., Any], name: str, example: str) -> Callable[..., Any]:
+def _refusing(function: Callable[..., Any], name: str, example: str) -> Callable[..., Any]:
     @functools.wraps(function)
     def called(*values: Any, **named: Any) -> Any:
         try:

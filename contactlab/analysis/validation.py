@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import attrs
@@ -84,16 +85,14 @@ def _checks() -> Iterator[Callable[[], Finding]]:
     yield _rigid
     for composition in COMPOSITIONS:
         if {f"tangential.{composition[0]}", f"integrator.{composition[2]}"} <= set(installed):
-            yield lambda composition=composition: _reference(*composition)  # type: ignore[misc]
+            yield partial(_reference, *composition)
     for case in hertz_scalars():
-        yield lambda case=case: _scalars(case, ("force",), FORCE_READING)  # type: ignore[misc]
+        yield partial(_scalars, case, ("force",), FORCE_READING)
         if case.approach is not None:
-            yield lambda case=case: _scalars(  # type: ignore[misc]
-                case, ("approach", "duration"), OTHER_READING
-            )
+            yield partial(_scalars, case, ("approach", "duration"), OTHER_READING)
     if "tangential.mindlin_cap" in installed:
         for number, form in enumerate(CODE_FORMS):
-            yield lambda number=number, form=form: _codes(number, form)  # type: ignore[misc]
+            yield partial(_codes, number, form)
 
 
 def _hertz() -> Finding:

@@ -47,14 +47,14 @@ def execute(arguments: argparse.Namespace) -> int:
     entries = [_entry(info) for info in REGISTRY.installed()]
     if arguments.json:
         print(json.dumps(entries, indent=2))
-        return 0
+        return OK
     keys = ("name", "kind", "distribution", "version")
     rows = [[str(entry[key]) for key in keys] for entry in entries]
     for row, entry in zip(rows, entries, strict=True):
         for word in ("blocked", "malformed"):
             row[0] += f" ({word})" if entry[word] else ""
     print(table(keys, rows))
-    return 0
+    return OK
 
 
 def _show(arguments: argparse.Namespace) -> int:
@@ -71,7 +71,7 @@ def _show(arguments: argparse.Namespace) -> int:
     if arguments.json:
         more = {"options": [option.to_dict() for option in taken], "references": sources}
         print(json.dumps(entry | more, indent=2))
-        return 0
+        return OK
     width = max(map(len, entry))
     for key, value in entry.items():
         text = (", ".join(value) or "none") if isinstance(value, list) else value
@@ -85,7 +85,7 @@ def _show(arguments: argparse.Namespace) -> int:
         print("\nsource")
     for source in sources:
         print(_indented(source, "  "), end="")
-    return 0
+    return OK
 
 
 def _headed(option: Option) -> str:
