@@ -69,7 +69,7 @@ def taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
     """
     if isinstance(tree, np.ndarray):
         found = (tree if tree.shape == shape else np.broadcast_to(tree, shape))[part]
-        return found.item() if isinstance(found, np.generic) else found
+        return found.item() if isinstance(found, np.generic) else locked(found)
     if isinstance(tree, float):
         return tree
     if attrs.has(type(tree)):

@@ -68,6 +68,8 @@ def outcome(
     try:
         prepared = prepare(laws, scene, history)
     except faults.LawFaultError as fault:
+        if recorder is None and math.prod(shape) > 1:
+            return _by_halves(laws, scene)
         return Plan.nothing(shape), Motion.nothing(shape, fault.status, fault.detail)
     if isinstance(prepared.normal, FailedMotion) and math.prod(shape) > 1:
         return _by_halves(laws, scene)

@@ -7,6 +7,7 @@ import contactlab
 from contactlab import Scene, Simulation, Status
 from contactlab.closed_forms import rigid_body_rebound
 from contactlab_annulus import many
+from tests.ending_laws import Raising
 from tests.outside_laws import Plastic, Tsuji, Walton
 
 CHI = 49.0 / 34.0
@@ -70,3 +71,14 @@ def test_no_friction_and_no_slip_are_known_of_any_law():
         assert result.psi2[0] == 0.0
         assert result.psi2[1] == pytest.approx(9.0 - 4.0 * CHI, rel=1e-14)
         assert result.status.tolist() == [Status.SUCCESS] * 2
+
+
+@pytest.mark.parametrize("shape", [(9,), (3, 3)])
+def test_a_whole_law_that_raises_loses_the_impacts_that_it_raises_for_and_no_other(shape):
+    psi1 = np.linspace(0.0, 8.0, 9).reshape(shape)
+    result = Simulation(tangential=Raising()).run(Scene.nondimensional(psi1=psi1, chi=CHI))
+    failed = result.status != Status.SUCCESS
+    assert failed.tolist() == (psi1 > 5.0).tolist()
+    assert set(result.status[failed]) == {Status.LAW_RAISED}
+    assert result.psi2[~failed].tolist() == psi1[~failed].tolist()
+    assert np.isnan(result.psi2[failed]).all()
