@@ -16,12 +16,13 @@ from contactlab.contracts.normal import (
 )
 from contactlab.contracts.phases import (
     ClosedPhase,
+    DenseOutput,
     ManyImpacts,
     ManyPhasedTangentialLaw,
-    Path,
     Phase,
     PhasedTangentialLaw,
     PhaseResponse,
+    PhaseSample,
     PhaseState,
 )
 from contactlab.contracts.tangential import (
@@ -43,6 +44,7 @@ __all__ = [
     "ClosedFormMotion",
     "ClosedFormNormalLaw",
     "ClosedPhase",
+    "DenseOutput",
     "Increment",
     "Integrator",
     "Law",
@@ -53,9 +55,9 @@ __all__ = [
     "NormalMotion",
     "NormalSample",
     "Observer",
-    "Path",
     "Phase",
     "PhaseResponse",
+    "PhaseSample",
     "PhaseState",
     "PhasedTangentialLaw",
     "Sample",

@@ -78,8 +78,27 @@ class PhaseResponse(NamedTuple):
     memo: tuple[Array, ...]
 
 
-class Path(Protocol):
-    """The motion in a stretch just finished, which a law may ask for and may keep."""
+class PhaseSample(NamedTuple):
+    """The motion in a phase at several x.
+
+    Attributes
+    ----------
+    contact : ScaledContact
+        Shape (K,).
+    slip, velocity : array, shape (K,)
+        D and psi.
+    response : PhaseResponse
+        What ``Phase.respond`` gave at this contact and slip.
+    """
+
+    contact: ScaledContact
+    slip: Array
+    velocity: Array
+    response: PhaseResponse
+
+
+class DenseOutput(Protocol):
+    """The motion between the nodes of a finished panel, which a law may ask for and may keep."""
 
     def fields(self, x: Array) -> Array:
         """Return rows slip, force, approach, radius, d(slip)/dx, d(approach)/dx at each x.
@@ -87,7 +106,7 @@ class Path(Protocol):
         Parameters
         ----------
         x : array, shape (K,)
-            Phases of the normal motion within the stretch.
+            Phases of the normal motion within the panel.
         """
         ...
 
@@ -116,34 +135,35 @@ class ClosedPhase(ABC):
         """
 
 
-class Phase(ABC):
+class Phase:
     """A stretch of motion in which the law's response is smooth; a value, never changed.
 
     Contract
     --------
     1. ``respond`` is a pure function of contact, slip and the phase; ``memo`` only saves time.
-       It stays finite, and smooth if it can, somewhat beyond the end of the phase.
+       It stays finite, and smooth if it can, somewhat beyond the end of the phase. It is not
+       asked of a phase that has a closed form.
     2. ``margin`` is positive inside the phase, smooth, and zero where the event happens. It
-       may be zero at the start. Events are numbered as in ``rough``.
-    3. ``rough[i]`` says that the force behaves as (x_event - x)^1.5 when event i comes near;
-       the integrator then ends a panel at the event and crowds its nodes there.
-    4. ``follow`` gives the phase after event i. It may end at once (zero length). Its ``path``
-       is None if the phase had no length.
-    5. ``carry_on`` gives the phase that continues after a panel which no event ended.
+       may be zero at the start. Events are numbered as in ``singular_events``.
+    3. ``singular_events[i]`` says that the force behaves as (x_event - x)^1.5 when event i comes
+       near; the integrator then ends a panel at the event and crowds its nodes there.
+    4. ``after_event`` gives the phase after event i. It may end at once (zero length). Its
+       ``output`` is None if the phase had no length.
+    5. ``after_panel`` gives the phase that continues after a panel which no event ended.
     6. ``friction_power`` is the rate of loss per unit of T, from tractions and slip and not
        from the force balance. It is asked only where ``dissipates``.
     7. ``closed_form`` may give the motion to the phase's end. The origin of ``slip`` may move
        there: nobody compares slips across it.
     """
 
-    rough: tuple[bool, ...] = ()
+    #: An entry for each event: whether the force is singular there (clause 3).
+    singular_events: tuple[bool, ...] = ()
     #: A guess of the phase's length in x; saves time only.
-    span: float | None = None
+    length_guess: float | None = None
     #: The force is linear in slip: one step of Newton's method is exact.
     linear: bool = False
     dissipates: bool = True
 
-    @abstractmethod
     def respond(
         self, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]
     ) -> PhaseResponse:
@@ -158,35 +178,21 @@ class Phase(ABC):
         memo : tuple of array
             What the law's last call returned with its force; a starting guess.
         """
+        raise NotImplementedError(f"{type(self).__name__} has neither respond nor closed_form")
 
-    def margin(
-        self,
-        event: int,
-        contact: ScaledContact,
-        slip: Array,
-        velocity: Array,
-        response: PhaseResponse,
-    ) -> Array:
+    def margin(self, event: int, sample: PhaseSample) -> Array:
         """Return the margin of one event (clause 2).
 
         Parameters
         ----------
         event : int
-        contact : ScaledContact
-            At the x asked for.
-        slip, velocity : array
-            There.
-        response : PhaseResponse
-            What ``respond`` gave there.
+        sample : PhaseSample
+            The motion at the x asked for.
         """
         raise IndexError(event)
 
-    def follow(
-        self,
-        event: int,
-        state: PhaseState,
-        contact: ScaledContact,
-        path: Path | None,
+    def after_event(
+        self, event: int, state: PhaseState, contact: ScaledContact, output: DenseOutput | None
     ) -> Phase:
         """Return the next phase (clause 4).
 
@@ -197,13 +203,13 @@ class Phase(ABC):
             At the event.
         contact : ScaledContact
             There, of floats.
-        path : Path or None
-            The stretch just finished; None if the phase had no length.
+        output : DenseOutput or None
+            Of the panel that the event ended; None if the phase had no length.
         """
         raise IndexError(event)
 
-    def carry_on(self, state: PhaseState, contact: ScaledContact, path: Path) -> Phase:
-        """Return the phase that goes on after a finished panel (clause 5).
+    def after_panel(self, state: PhaseState, contact: ScaledContact, output: DenseOutput) -> Phase:
+        """Return the phase that continues after a finished panel (clause 5).
 
         Parameters
         ----------
@@ -211,30 +217,20 @@ class Phase(ABC):
             At the end of the panel.
         contact : ScaledContact
             There.
-        path : Path
-            The motion in the panel.
+        output : DenseOutput
+            Of the panel.
         """
         return self
 
-    def friction_power(
-        self,
-        contact: ScaledContact,
-        slip: Array,
-        velocity: Array,
-        response: PhaseResponse,
-    ) -> Array:
+    def friction_power(self, sample: PhaseSample) -> Array:
         """Return the rate of friction work (clause 6).
 
         Parameters
         ----------
-        contact : ScaledContact
-            At the x asked for.
-        slip, velocity : array
-            There.
-        response : PhaseResponse
-            What ``respond`` gave there.
+        sample : PhaseSample
+            The motion at the x asked for.
         """
-        return np.zeros_like(slip)
+        return np.zeros_like(sample.slip)
 
     def closed_form(
         self,
@@ -336,7 +332,7 @@ class PhasedTangentialLaw(TangentialLaw):
 
 
 class ManyPhasedTangentialLaw(PhasedTangentialLaw):
-    """A phased law that can also follow many impacts in one call, which is faster.
+    """A phased law that can also integrate many impacts in one call, which is faster.
 
     Contract
     --------
@@ -344,7 +340,7 @@ class ManyPhasedTangentialLaw(PhasedTangentialLaw):
        one by one, or says that it gave up; it does not raise for a numerical failure.
     2. An answer depends on the other impacts of the call by less than 1e-10.
     3. It holds down to the tolerance ``finest_together``; an integrator that is to be better
-       follows impacts one by one.
+       takes impacts one by one.
     """
 
     finest_together: ClassVar[float]

@@ -21,6 +21,7 @@ from contactlab.contracts import (
     Phase,
     PhasedTangentialLaw,
     PhaseResponse,
+    PhaseSample,
     ScaledContact,
     SteppedTangentialLaw,
     TangentialResponse,
@@ -110,18 +111,18 @@ class Recurring(Phase):
 
     calls: Counter[str] = attrs.field(factory=Counter, eq=False, repr=False)
     begun: float = 0.0
-    rough: tuple[bool, ...] = (False,)
+    singular_events: tuple[bool, ...] = (False,)
 
     def respond(self, contact: ScaledContact, slip: Any, memo: Any) -> PhaseResponse:
         """Return no force."""
         _count(self.calls)
         return PhaseResponse(0.0 * contact.force, None, None, ())
 
-    def margin(self, event: int, contact: Any, slip: Any, velocity: Any, response: Any) -> Any:
+    def margin(self, event: int, sample: PhaseSample) -> Any:
         """Return zero where the phase began, and less from there on."""
-        return self.begun - contact.phase + 0.0 * slip
+        return self.begun - sample.contact.phase + 0.0 * sample.slip
 
-    def follow(self, event: int, state: Any, contact: Any, path: Any) -> Phase:
+    def after_event(self, event: int, state: Any, contact: Any, output: Any) -> Phase:
         """Return the same phase, from here on."""
         _count(self.calls)
         return attrs.evolve(self, begun=state.x)

@@ -18,6 +18,7 @@ from contactlab.contracts import (
     Phase,
     PhasedTangentialLaw,
     PhaseResponse,
+    PhaseSample,
     ScaledContact,
     SteppedTangentialLaw,
     TangentialResponse,
@@ -171,15 +172,9 @@ class Sliding(Phase):
         force = np.where(contact.phase < self.fails_at, contact.force, math.nan)
         return PhaseResponse(force, None, None, ())
 
-    def friction_power(
-        self,
-        contact: ScaledContact,
-        slip: Any,
-        velocity: Any,
-        response: Any,
-    ) -> Any:
+    def friction_power(self, sample: PhaseSample) -> Any:
         """Return force times velocity."""
-        return contact.force * velocity
+        return sample.contact.force * sample.velocity
 
 
 @attrs.frozen(kw_only=True)

@@ -22,9 +22,8 @@ from contactlab.contracts import (
 )
 from contactlab.declared import psi_magnitude
 from contactlab.scene import Scene
-from contactlab_events.dense import show
-from contactlab_events.scaled import Run, scaled
-from contactlab_events.together import FEWEST, together
+from contactlab_events.history import show
+from contactlab_events.scaled import FEWEST, scaled, together
 
 #: Rounding allows no more than the first; with the second the answer still has three digits.
 TOLERANCES = Rule(
@@ -68,11 +67,11 @@ class Events(Integrator):
         return self.tolerance
 
     def chunk(self, tangential: TangentialLaw) -> int:
-        """Return many impacts if they are followed together."""
+        """Return many impacts if they are solved together."""
         return TOGETHER if self._together(tangential) else ONE_BY_ONE
 
     def _together(self, law: TangentialLaw) -> TypeGuard[ManyPhasedTangentialLaw]:
-        """Return whether the law follows many impacts in one call, as accurately as is asked."""
+        """Return whether the law solves many impacts in one call, as accurately as is asked."""
         return isinstance(law, ManyPhasedTangentialLaw) and law.finest_together <= self.tolerance
 
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
@@ -96,28 +95,18 @@ class Events(Integrator):
         if left.size >= FEWEST and observer is None and self._together(law):
             known, motion = together(law, normal, self.tolerance)
             left, parts = ~known, [(known, motion)]
-        runs = []
+        solved = []
         for place in map(tuple, np.argwhere(left).tolist()):
             one = normal.take(place) if shape else normal
             assert isinstance(one, ClosedFormMotion)
             with faults.blaming(one.law):
                 impact = scaled(one)
-            runs.append(impact.run(law, self.tolerance))
+            solved.append(impact.solve(law, self.tolerance))
         if observer is not None:
-            show(shape, law, runs, observer)
-        motions = [_motion(run) for run in runs]
+            show(shape, solved, observer)
+        motions = [one.motion for one in solved]
         if not shape:
             return motions[0]
-        if runs:
-            parts.append((left, TangentialMotion.joined(motions, (len(runs),))))
+        if solved:
+            parts.append((left, TangentialMotion.joined(motions, (len(motions),))))
         return TangentialMotion.merged(parts, shape)
-
-
-def _motion(run: Run) -> TangentialMotion:
-    return TangentialMotion(
-        slip_velocity_change=run.slip_velocity_change,
-        friction_work=run.friction_work,
-        status=run.status,
-        detail=run.failure,
-        counters={"panels": len(run.followed.pieces), "solves": run.followed.solves},
-    )

@@ -1,4 +1,4 @@
-"""Between SI units and the scaled ones in which phases are written (theory §1)."""
+"""Impacts in the scaled units of theory §1, and their answers in SI."""
 
 from __future__ import annotations
 
@@ -6,29 +6,43 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.checks import Real
-from contactlab.contracts import ClosedFormMotion, PhasedTangentialLaw, PhaseState
+from contactlab.contracts import (
+    ClosedFormMotion,
+    ManyPhasedTangentialLaw,
+    PhasedTangentialLaw,
+    PhaseState,
+    TangentialMotion,
+)
 from contactlab.status import Status
-from contactlab_events.follow import Followed, follow
+from contactlab_events.trajectory import Trajectory, books_miss, trajectory
 
 #: Below this friction may stop no slip at all, however slow, and nothing is scaled.
 LEAST_INERTIA = 1e-99
+#: Fewer impacts take longer together than one by one: a call of some hundred panels costs what it
+#: costs, however many impacts are in it.
+FEWEST = 64
+#: Books that miss by more, over the tangential energy, are not taken: an event was misplaced, or
+#: the law is not as exact here as it is one by one.
+BOOKS = 3e-7
 
 
-class Run(NamedTuple):
-    """One impact followed, with its outcome in SI."""
+class SolvedImpact(NamedTuple):
+    """One impact, its scaled trajectory, and its motion in SI.
 
-    impact: Impact
-    followed: Followed
+    ``factor`` is what the trajectory is multiplied with, see ``ScaledImpact.posed``.
+    """
+
+    impact: ScaledImpact
+    law: PhasedTangentialLaw
+    trajectory: Trajectory
     factor: float
-    slip_velocity_change: Real
-    friction_work: Real
-    status: Status
-    failure: str
+    motion: TangentialMotion
 
 
-class Impact(NamedTuple):
+class ScaledImpact(NamedTuple):
     """One impact in scaled units, or a batch, and what leads back to SI.
 
     ``velocity_unit`` is mu v1/kappa (29), ``force_unit`` mu P_max; both 0 without friction.
@@ -61,24 +75,29 @@ class Impact(NamedTuple):
         # Without work there is none, however large its unit.
         return velocity_unit * change, np.where(np.equal(work, 0.0), 0.0, done)
 
-    def run(self, law: PhasedTangentialLaw, tolerance: float) -> Run:
-        """Follow one impact."""
+    def solve(self, law: PhasedTangentialLaw, tolerance: float) -> SolvedImpact:
+        """Return one impact solved; its motion is NaN where that failed."""
         speed, factor = map(float, self.posed(law))
-        status, failure = Status.SUCCESS, ""
-        followed = Followed("", PhaseState(math.pi, 0.0, 0.0, speed, 0.0, 0.0, 0.0), (), 0)
+        found = Trajectory(PhaseState(math.pi, 0.0, 0.0, speed, 0.0, 0.0, 0.0))
         if not (math.isfinite(speed) and math.isfinite(self.inertia) and self.inertia > 0.0):
-            ended = PhaseState(0.0, 0.0, math.nan, math.nan, math.nan, math.nan, math.nan)
-            followed = Followed("", ended, (), 0)
-            status, failure = Status.NON_FINITE, "psi1 or chi is not finite and positive."
+            nowhere = found.state._replace(x=0.0, change=math.nan)
+            failure = "psi1 or chi is not finite and positive."
+            found = Trajectory(nowhere, failure, status=Status.NON_FINITE)
         elif speed != 0.0 and self.force_unit != 0.0:  # something moves, and something resists
-            followed = follow(law, self.motion, self.inertia, speed, tolerance)
-            status, failure = followed.status, followed.failure
-        usable = 1.0 if status is Status.SUCCESS else math.nan
-        change, work = self.answer(factor, followed.state.change, followed.state.work)
-        return Run(self, followed, factor, usable * change, usable * work, status, failure)
+            found = trajectory(law, self.motion, self.inertia, speed, tolerance)
+        usable = 1.0 if found.status is Status.SUCCESS else math.nan
+        change, work = self.answer(factor, found.state.change, found.state.work)
+        motion = TangentialMotion(
+            slip_velocity_change=usable * change,
+            friction_work=usable * work,
+            status=found.status,
+            detail=found.failure,
+            counters={"panels": len(found.segments), "solves": found.solves},
+        )
+        return SolvedImpact(self, law, found, factor, motion)
 
 
-def scaled(motion: ClosedFormMotion) -> Impact:
+def scaled(motion: ClosedFormMotion) -> ScaledImpact:
     """Return one impact in scaled units, or a batch of them."""
     scene = motion.scene
     speed, kappa = scene.normal_speed, scene.pair.stiffness_ratio
@@ -86,7 +105,7 @@ def scaled(motion: ClosedFormMotion) -> Impact:
     force, approach = motion.maximum_force, motion.maximum_approach
     unit = friction * speed / kappa
     none = unit == 0.0
-    return Impact(
+    return ScaledImpact(
         motion=motion,
         velocity=slip_velocity / (unit + none) * (1.0 - none),
         inertia=kappa * (force / speed) * (approach / speed) / scene.pair.tangential_mass,
@@ -94,4 +113,29 @@ def scaled(motion: ClosedFormMotion) -> Impact:
         velocity_unit=unit,
         force_unit=friction * force,
         time_unit=approach / speed,
+    )
+
+
+def together(
+    law: ManyPhasedTangentialLaw, normal: ClosedFormMotion, tolerance: float
+) -> tuple[NDArray[np.bool_], TangentialMotion]:
+    """Return which impacts of a batch were solved in one call, and the motion of those."""
+    shape = normal.scene.shape
+    with np.errstate(all="ignore"):
+        impact = scaled(normal)
+        speed, factor = (np.broadcast_to(part, shape) for part in impact.posed(law))
+        inertia = np.broadcast_to(impact.inertia, shape)
+        known = (speed > 0.0) & np.isfinite(speed) & (inertia > 0.0) & np.isfinite(inertia)
+        known &= np.greater(impact.force_unit, 0.0)
+        change, work = np.zeros(shape), np.zeros(shape)
+        found = law.impacts_together(speed[known], inertia[known], normal, tolerance)
+        change[known], work[known] = found.change, found.work
+        known[known] = found.solved
+        known &= books_miss(speed, inertia, change, work) < BOOKS
+        gained, lost = np.broadcast_arrays(*impact.answer(factor, change, work))
+    return known, TangentialMotion(
+        slip_velocity_change=gained[known],
+        friction_work=lost[known],
+        status=np.full(np.count_nonzero(known), Status.SUCCESS, dtype=object),
+        counters={"panels": found.panels, "solves": found.panels},
     )

@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlab.collocation import Array
 from contactlab.contracts import ClosedFormMotion, ClosedPhase, PhaseState, ScaledContact
-
-Array = NDArray[np.float64]
 
 #: Step in x from which the rate of force at the end is guessed.
 RATE_STEP = 1e-5
@@ -32,7 +30,17 @@ class Slide(NamedTuple):
     def along(
         cls, motion: ClosedFormMotion, inertia: Any, share: Any, first: ScaledContact, velocity: Any
     ) -> Slide:
-        """Return slip with the force ``share`` · P from the contact ``first`` on."""
+        """Return slip with the force ``share`` · P.
+
+        Parameters
+        ----------
+        motion : ClosedFormMotion
+        inertia, share : float or ndarray
+        first : ScaledContact
+            Where slip begins.
+        velocity : float or ndarray
+            psi there.
+        """
         last = motion.scaled_at(np.pi).rate
         ratio = inertia * motion.scaled_mass
         # below 1 the margin only grows
@@ -50,7 +58,16 @@ class Slide(NamedTuple):
 
 
 class GrossMotion(ClosedPhase):
-    """Force = share · P, to the end of slip or of contact: psi falls in proportion to V."""
+    """Force = share · P, to the end of slip or of contact: psi falls in proportion to V.
+
+    Parameters
+    ----------
+    share : float
+    state : PhaseState
+        Where it begins.
+    motion : ClosedFormMotion
+    inertia : float
+    """
 
     def __init__(
         self, share: float, state: PhaseState, motion: ClosedFormMotion, inertia: float

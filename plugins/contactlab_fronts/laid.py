@@ -6,13 +6,11 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.checks import Real
-from contactlab.contracts import Path, ScaledContact
-from contactlab_fronts.profile import Front, Memo, Piece
-
-Array = NDArray[np.float64]
+from contactlab.collocation import Array
+from contactlab.contracts import DenseOutput, ScaledContact
+from contactlab_fronts.profile import Front, Memo, ProfilePiece
 
 #: Moves of Newton's method: from the first guess of a front, and of many impacts later on, when
 #: their panels iterate by themselves. The front of one impact is found within its panel's move.
@@ -32,14 +30,14 @@ TINY = 1e-300
 
 
 @attrs.frozen(eq=False)
-class Laid(Piece):
+class Laid(ProfilePiece):
     """Laid down while x went from start to stop: f(q) = -D at the moment when zeta was q.
 
     ``began`` is the sign of slip that had stopped at ``start``, ``ended`` that of the slip
     which began at ``stop``; 0 for none.
     """
 
-    path: Path
+    output: DenseOutput
     start: Real
     stop: Real
     began: Real
@@ -52,12 +50,22 @@ class Laid(Piece):
     sign = 0.0
 
     @classmethod
-    def along(cls, path: Path, start: float, stop: float, began: int, ended: int) -> Laid:
-        """Return the piece laid down along ``path``."""
-        slip, _, q = path.fields(np.array([start, stop]))[:3].tolist()
+    def along(cls, output: DenseOutput, start: float, stop: float, began: int, ended: int) -> Laid:
+        """Return the piece laid down along a panel of sticking.
+
+        Parameters
+        ----------
+        output : DenseOutput
+            Of the panel.
+        start, stop : float
+            In x.
+        began, ended : int
+            As in the class.
+        """
+        slip, _, q = output.fields(np.array([start, stop]))[:3].tolist()
         centre = start == 0.0  # where rounding leaves a little of q
         inner_q = 0.0 if centre else q[0]
-        return cls(path, start, stop, began, ended, inner_q, -slip[0], q[1], -slip[1])
+        return cls(output, start, stop, began, ended, inner_q, -slip[0], q[1], -slip[1])
 
     def front(self, sign: Any, contact: ScaledContact, slip: Array, memo: Memo) -> Front:
         """Return the front, by Newton's method for the phase y at which the edge was there.
@@ -74,25 +82,25 @@ class Laid(Piece):
         high = -(sign * self.inner_f + self.inner_q)
         low = -(sign * self.outer_f + self.outer_q)
         drop = abs(high - low) + TINY
-        turning, flat = sign == self.ended, self.flat(sign)
-        mean = 0.5 * (high + low + drop * (1.0 * turning - flat))
-        parts = 3.0 - turning - flat
+        outer, inner = sign == self.ended, self.singular_inner_end(sign)  # stationary or not
+        mean = 0.5 * (high + low + drop * (1.0 * outer - inner))
+        parts = 3.0 - outer - inner
         half = 0.5 * drop * parts
-        lowest = start + (LEAST_PART * flat - LEEWAY * (1.0 - flat)) * length
+        lowest = start + (LEAST_PART * inner - LEEWAY * (1.0 - inner)) * length
         level -= mean
         level /= half
         target = np.arccos(_within(level, -1.0, 1.0))
         if memo:
             y = memo[1]
         else:
-            first = np.arccos(1.0 - 2.0 * (1.0 - flat) / parts)
-            last = np.arccos(2.0 * (1.0 - turning) / parts - 1.0)
+            first = np.arccos(1.0 - 2.0 * (1.0 - inner) / parts)
+            last = np.arccos(2.0 * (1.0 - outer) / parts - 1.0)
             y = _within(start + (target - first) * (length / (last - first)), lowest, stop)
         many = slip.ndim > 1
         moves = (LATER_MOVES if memo else FIRST_MOVES) if many else MOST_MOVES
-        inner, outer = lowest, stop
+        least, most = lowest, stop
         for count in range(moves):
-            old_slip, old_force, q, c, slip_rate, q_rate = self.path.fields(y)
+            old_slip, old_force, q, c, slip_rate, q_rate = self.output.fields(y)
             here = sign * old_slip
             here -= q
             here -= mean
@@ -108,9 +116,9 @@ class Laid(Piece):
             new = _within(move, lowest, stop)
             if count >= FREE_MOVES:
                 ahead = here > level
-                inner, outer = np.where(ahead, y, inner), np.where(ahead, outer, y)
-                outside = ((new <= inner) | (new >= outer)) & (new != y)
-                new = np.where(outside, 0.5 * (inner + outer), new)
+                least, most = np.where(ahead, y, least), np.where(ahead, most, y)
+                outside = ((new <= least) | (new >= most)) & (new != y)
+                new = np.where(outside, 0.5 * (least + most), new)
             move, y = new - y, new
             if not many and move.dot(move) < SMALL_MOVE * length * length:
                 break
@@ -123,12 +131,12 @@ class Laid(Piece):
         depth = sign * (slip - (old_slip + slip_rate * move))
         return Front(c, force, (depth, y))
 
-    def flat(self, sign: Any) -> Any:
-        """Name the centre, and a piece that began when slip of this sign stopped."""
+    def singular_inner_end(self, sign: Any) -> Any:
+        """Return whether it is the centre, or the piece began when slip of this sign stopped."""
         return (self.inner_q == 0.0) | (sign == self.began)
 
-    def span(self, sign: int) -> float | None:
-        """Take a front from the outer end to go in about as fast as the edge came out."""
+    def length_guess(self, sign: int) -> float | None:
+        """Return the length of the piece: a front goes in about as fast as the edge came out."""
         return float(self.stop - self.start) if sign == self.ended else None
 
 

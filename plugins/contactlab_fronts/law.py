@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.checks import Real
+from contactlab.collocation import Array
 from contactlab.contracts import (
     ClosedFormMotion,
     ManyImpacts,
@@ -22,8 +23,6 @@ from contactlab.contracts import (
 from contactlab.scene import Scene
 from contactlab_fronts.phases import Balanced, FrontPhase, GrossSlip, Stuck
 from contactlab_jaeger.gross_slip import gross_slip
-
-Array = NDArray[np.float64]
 
 #: Rings in which stick and slip are shown; the solution itself knows no rings.
 RINGS = 200
@@ -73,7 +72,7 @@ class Fronts(ManyPhasedTangentialLaw):
         return 0.0
 
     def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
-        """Stick below psi1 = 1 (44), else slip; at exactly 1 the inertia decides."""
+        """Return stick below psi1 = 1 (44), else slip; at exactly 1 the inertia decides."""
         ratio = inertia * motion.scaled_mass
         excess, range_of_slip = velocity - 1.0, 2.0 * (ratio - 1.0)
         if 0.0 < excess < range_of_slip <= 2.0 * NARROW:
@@ -88,7 +87,7 @@ class Fronts(ManyPhasedTangentialLaw):
     def impacts_together(
         self, velocity: Array, inertia: Array, motion: ClosedFormMotion, tolerance: float
     ) -> ManyImpacts:
-        """Return the answers to many impacts, followed from event to event in step."""
+        """Return the answers to many impacts, integrated from event to event in one call."""
         from contactlab_fronts.many.march import march  # not for one impact
 
         return march(velocity, inertia, motion, tolerance)
@@ -109,11 +108,11 @@ class Fronts(ManyPhasedTangentialLaw):
         front, sign = phase.division(contact, slip)
         ring = (np.arange(RINGS) + 0.5) / RINGS
         touching, inside = ring < contact.radius, ring < front
-        sense = sign if factor > 0.0 else -sign
+        shown = sign if factor > 0.0 else -sign
         largest = float(normal.maximum_radius)
         return {
             "radius": largest * ring,
             "front": np.array(largest * front),
             "stuck": touching & inside,
-            "slipping": np.where(touching & ~inside, sense, 0).astype(np.int8),
+            "slipping": np.where(touching & ~inside, shown, 0).astype(np.int8),
         }

@@ -19,13 +19,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any, NamedTuple
 
+import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.checks import Real
+from contactlab.collocation import Array
 from contactlab.contracts import ScaledContact
 
-Array = NDArray[np.float64]
 Memo = tuple[Array, ...]
 
 
@@ -41,7 +41,7 @@ class Front(NamedTuple):
     memo: Memo
 
 
-class Piece(ABC):
+class ProfilePiece(ABC):
     """A piece of the locked profile, or one of each of many impacts.
 
     Attributes
@@ -59,16 +59,70 @@ class Piece(ABC):
 
     @abstractmethod
     def front(self, sign: Any, contact: ScaledContact, slip: Array, memo: Memo) -> Front:
-        """Return the front of slip with this sign, where s (f(q) + D) = zeta - q."""
+        """Return the front of slip, where s (f(q) + D) = zeta - q.
+
+        Parameters
+        ----------
+        sign : int or ndarray
+            s, the sign of the slip outside the front.
+        contact : ScaledContact
+        slip : ndarray
+            D.
+        memo : tuple of ndarray
+            Of the last front found, or empty.
+        """
 
     @abstractmethod
-    def flat(self, sign: Any) -> Any:
-        """Say whether a front of this sign rushes to the inner end like a square root."""
+    def singular_inner_end(self, sign: Any) -> Any:
+        """Return whether a front of this sign reaches the inner end like a square root of x."""
 
-    def left(self, sign: Any, contact: ScaledContact, slip: Any) -> Any:
-        """Return how far the front is from the inner end; it leaves the piece at zero."""
+    def inner_margin(self, sign: Any, contact: ScaledContact, slip: Any) -> Any:
+        """Return zeta - s D less its value at the inner end: the front leaves the piece at zero."""
         return contact.approach - sign * slip - (self.inner_q + sign * self.inner_f)
 
-    def span(self, sign: int) -> float | None:
-        """Guess how long (in x) a front of this sign needs to cross the piece."""
+    def length_guess(self, sign: int) -> float | None:
+        """Return a guess of how long (in x) a front of this sign needs to cross the piece."""
         return None
+
+
+@attrs.frozen(eq=False)
+class Locked(ProfilePiece):
+    """Locked out of slip of one sign: f = inner_f - sign (q - inner_q), I(c) = base + sign c³."""
+
+    sign: Real
+    inner_q: Real
+    inner_f: Real
+    base: Real
+
+    @classmethod
+    def between(
+        cls, front: Any, sign: Any, contact: ScaledContact, slip: Any, force: Any
+    ) -> Locked:
+        """Return what locks between a front and the edge of contact.
+
+        Parameters
+        ----------
+        front, sign : float or ndarray
+            q at the front, and the sign of the slip outside it.
+        contact : ScaledContact
+        slip, force : float or ndarray
+            D and F/(mu P_max).
+        """
+        inner_f = sign * (contact.approach - front) - slip
+        return cls(sign, front, inner_f, force - sign * contact.force)
+
+    def front(self, sign: Any, contact: ScaledContact, slip: Array, memo: Memo) -> Front:
+        """Return the front in closed form: slip has the other sign, and s w - l falls as 2 q."""
+        q = contact.approach - sign * slip
+        q += self.inner_q - sign * self.inner_f
+        q *= 0.5
+        np.maximum(q, 0.0, out=q)
+        c = np.sqrt(q)
+        force = contact.force - 2.0 * (q * c)  # F = I(c) + s (P - c³), and I(c) = base - s c³
+        force *= sign
+        force += self.base
+        return Front(c, force, (contact.approach - q,))
+
+    def singular_inner_end(self, sign: Any) -> Any:
+        """Return whether the inner end is the centre."""
+        return self.inner_q == 0.0

@@ -241,8 +241,8 @@ class Slide(Phase):
     def respond(self, contact, slip, memo):
         return PhaseResponse(self.force * contact.force, None, None, ())
 
-    def friction_power(self, contact, slip, velocity, response):
-        return self.power * self.force * contact.force * velocity
+    def friction_power(self, sample):
+        return self.power * self.force * sample.contact.force * sample.velocity
 
 
 @attrs.frozen(kw_only=True)

@@ -76,15 +76,16 @@ class Turning(Phase):
     left: int
     closed: bool
 
-    rough = (False,)
+    singular_events = (False,)
 
     def respond(self, contact, slip, memo):
         return PhaseResponse(0.0 * slip, None, None, ())
 
-    def margin(self, event, contact, slip, velocity, response):
-        return contact.phase[0] - contact.phase if self.left else np.ones_like(slip)
+    def margin(self, event, sample):
+        phase = sample.contact.phase
+        return phase[0] - phase if self.left else np.ones_like(phase)
 
-    def follow(self, event, state, contact, path):
+    def after_event(self, event, state, contact, output):
         return Turning(self.left - 1, self.closed)
 
     def closed_form(self, state, motion, inertia):

@@ -9,7 +9,7 @@ import pytest
 import contactlab
 import contactlab_events.law as events
 from contactlab import Scene, Simulation, Status, rebound
-from contactlab_events.scaled import Impact
+from contactlab_events.scaled import ScaledImpact
 
 pytestmark = pytest.mark.slow
 
@@ -71,10 +71,10 @@ def compared(monkeypatch, psi1, chi):
 
 
 def test_mixed_impacts_are_what_they_are_one_by_one(monkeypatch):
-    ran, run = [], Impact.run
+    ran, solve = [], ScaledImpact.solve
     psi1, chi = mixed(150, 1)
     compared(monkeypatch, psi1, chi)
-    monkeypatch.setattr(Impact, "run", lambda *given: ran.append(1) or run(*given))
+    monkeypatch.setattr(ScaledImpact, "solve", lambda *given: ran.append(1) or solve(*given))
     batch = together(psi1, chi)
     assert len(ran) <= 3
     assert np.abs(batch.energy.relative_imbalance).max() < 1e-7

@@ -66,11 +66,11 @@ def spoiled_phases(law, spoil, entry):
             response = kind.respond(self, contact, slip, memo)
             return response._replace(**{entry: spoil(getattr(response, entry))})
 
-        def follow(self, *arguments):
-            return wrap(kind.follow(self, *arguments))
+        def after_event(self, *arguments):
+            return wrap(kind.after_event(self, *arguments))
 
-        def carry_on(self, *arguments):
-            return wrap(kind.carry_on(self, *arguments))
+        def after_panel(self, *arguments):
+            return wrap(kind.after_panel(self, *arguments))
 
         def closed_form(self, *arguments):
             closed = kind.closed_form(self, *arguments)
@@ -80,8 +80,8 @@ def spoiled_phases(law, spoil, entry):
 
         body = {
             "respond": respond,
-            "follow": follow,
-            "carry_on": carry_on,
+            "after_event": after_event,
+            "after_panel": after_panel,
             "closed_form": closed_form,
             "__slots__": (),
         }

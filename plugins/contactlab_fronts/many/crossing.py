@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contactlab.collocation import Nodes, rows
-
-Array = NDArray[np.float64]
+from contactlab.collocation import Array, Nodes, rows
 
 #: Stands for "not in this panel" where a panel coordinate in [0, 1] is asked for.
 NEVER = 2.0

@@ -9,15 +9,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.collocation import lobatto, rows
+from contactlab.collocation import Array, lobatto, rows
 from contactlab_fronts.many.crossing import NEVER, first_crossing, value
 from contactlab_fronts.many.impacts import DONE, UNSOLVED, Impacts
 from contactlab_fronts.many.panel import NODES, Panel, solve
+from contactlab_fronts.many.pieces import Rows
 from contactlab_fronts.phases import EdgeSlip
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-Rows = NDArray[np.intp]
 
 NO_EVENT, STOPS, LEAVES, CAUGHT = range(4)
 #: Radians of the fastest oscillation that one panel may hold: its square in x is 6 chi u at most.
@@ -48,14 +47,24 @@ def advance(impacts: Impacts, who: Rows, tolerance: float, *, laid: bool, fitted
 
     Panels are refused, and come again shorter or fitted to an event, if they did not converge
     or are not resolved.
+
+    Parameters
+    ----------
+    impacts : Impacts
+    who : ndarray of int
+        All of which slip through a piece of one kind.
+    tolerance : float
+        Error of psi2 over max(1, psi1).
+    laid, fitted : bool
+        Whether the piece was laid down, and whether the panel is to end where it is left.
     """
     piece, sign = impacts.pieces.piece(impacts.outermost[who], laid=laid), impacts.sign[who]
-    slipping = EdgeSlip(sign, (piece,), (), None)
-    flat = piece.flat(sign)
+    slipping = EdgeSlip(sign, (piece,))
+    singular = piece.singular_inner_end(sign)
     if not laid:
-        flat |= piece.inner_q < NEAR_CENTRE * np.sin(impacts.phase[who]) ** 2
+        singular |= piece.inner_q < NEAR_CENTRE * np.sin(impacts.phase[who]) ** 2
     free = _length(impacts, who)
-    reach = impacts.most[who] if fitted else _reach(impacts, who, slipping)
+    reach = impacts.limit[who] if fitted else _reach(impacts, who, slipping)
     held = reach < free
     length = reach if fitted else np.minimum(free, reach)
     limit = SAFETY * tolerance * np.clip(impacts.first[who], LEAST_SCALE, 1.0)
@@ -72,13 +81,13 @@ def advance(impacts: Impacts, who: Rows, tolerance: float, *, laid: bool, fitted
         event = np.where(tau > 1.0, LEAVES, event)
         again = np.zeros_like(good)
     else:
-        # flat ends are fitted; far beyond a kink a panel is not to be trusted
+        # singular ends are fitted; far beyond a kink a panel is not to be trusted
         near = leaves * panel.length
-        to_fit = (leaves <= 1.0) & flat & (impacts.attempts[who] < MOST_FITS) & (near > 1e-9)
+        to_fit = (leaves <= 1.0) & singular & (impacts.attempts[who] < MOST_FITS) & (near > 1e-9)
         cut = (leaves <= 1.0) & ~to_fit & (near > PROGRESS)
         cut &= ~good | (laid & (leaves < PART_INSIDE))
         impacts.fitted[who[to_fit]] = True
-        impacts.most[who[to_fit]] = near[to_fit]
+        impacts.limit[who[to_fit]] = near[to_fit]
         part = np.minimum(1.02 * leaves, np.where(good, 1.0, shorter))
         _refuse(impacts, who[cut], (part * panel.length)[cut])
         again = to_fit | cut
@@ -88,7 +97,7 @@ def advance(impacts: Impacts, who: Rows, tolerance: float, *, laid: bool, fitted
     if done.size:
         wanted = panel.length * np.clip(growth, 0.5, 3.0)
         # a panel kept short by its piece says nothing against longer ones
-        wanted = np.where(held, np.maximum(wanted, impacts.usual[who]), wanted)
+        wanted = np.where(held, np.maximum(wanted, impacts.estimate[who]), wanted)
         _accept(impacts, who[done], panel, done, tau[done], event[done], wanted[done])
 
 
@@ -98,13 +107,13 @@ def _length(impacts: Impacts, who: Rows) -> Array:
     # the square of the fastest oscillation in x is 2.4 inertia u at most
     swing = LONGEST_SWING / np.sqrt(2.4 * impacts.inertia[who] * np.sin(phase) + 0.5)
     length = np.minimum(np.minimum(np.pi - phase, LONGEST), swing)
-    return np.asarray(np.minimum(length, np.minimum(impacts.most[who], impacts.usual[who])))
+    return np.asarray(np.minimum(length, np.minimum(impacts.limit[who], impacts.estimate[who])))
 
 
 def _reach(impacts: Impacts, who: Rows, slipping: EdgeSlip) -> Array:
-    """Guess when the piece is left: zeta - s D falls to its goal after M = r t + a t²/2."""
+    """Return a guess of the length after which zeta - s D has fallen by M = r t + a t²/2."""
     sign, now = impacts.sign[who], impacts.motion.scaled(impacts.phase[who])
-    margin = slipping.profile[-1].left(sign, now, impacts.slip[who])
+    margin = slipping.profile[-1].inner_margin(sign, now, impacts.slip[who])
     fall = now.time_rate * (sign * impacts.velocity(who) - now.rate)
     pull = impacts.inertia[who] * sign * impacts.force[who]
     gain = (now.force / impacts.motion.scaled_mass - pull) * now.time_rate**2
@@ -130,15 +139,28 @@ def _events(panel: Panel, idle: Flags) -> tuple[Array, Rows, Array]:
 
 def _refuse(impacts: Impacts, who: Rows, length: Array) -> None:
     impacts.fitted[who] = False
-    impacts.most[who] = length
+    impacts.limit[who] = length
     impacts.attempts[who] += 1
-    impacts.doing[who[impacts.attempts[who] > MOST_ATTEMPTS]] = UNSOLVED
+    impacts.regime[who[impacts.attempts[who] > MOST_ATTEMPTS]] = UNSOLVED
 
 
 def _accept(
     impacts: Impacts, who: Rows, panel: Panel, columns: Rows, tau: Array, event: Rows, wanted: Array
 ) -> None:
-    """Go to the event, or to the end of the panel, and on to the next phase."""
+    """Go to the event, or to the end of the panel, and on to the next phase.
+
+    Parameters
+    ----------
+    impacts : Impacts
+    who, columns : ndarray of int
+        Impacts, and which of the panels are theirs.
+    panel : Panel
+    tau : ndarray
+        Panel coordinate of the event; above 1 if there is none.
+    event : ndarray of int
+    wanted : ndarray
+        Length that the error estimate asks for, in x.
+    """
     tau = np.minimum(tau, 1.0)
     weights = rows(lobatto(NODES), tau)
     phase = panel.phase(columns, tau)
@@ -146,15 +168,15 @@ def _accept(
     impacts.phase[who] = phase
     impacts.change[who] += value(weights, panel.change[:, columns])
     impacts.work[who] += value(weights, panel.work[:, columns])
-    impacts.slip[who] = value(weights, panel.slip[:, columns])
-    impacts.force[who] = value(weights, panel.force[:, columns])
-    impacts.usual[who] = wanted
-    impacts.most[who] = np.inf
+    impacts.slip[who] = value(weights, panel.sample.slip[:, columns])
+    impacts.force[who] = value(weights, panel.sample.response.force[:, columns])
+    impacts.estimate[who] = wanted
+    impacts.limit[who] = np.inf
     impacts.fitted[who] = False
     impacts.attempts[who] = 0
     impacts.idle[who] = np.where(progress < PROGRESS, impacts.idle[who] + 1, 0)
 
-    impacts.doing[who[(event == NO_EVENT) & (phase >= np.pi - 1e-12)]] = DONE
+    impacts.regime[who[(event == NO_EVENT) & (phase >= np.pi - 1e-12)]] = DONE
     stops = event == STOPS
     if stops.any():
         edge = np.sin(phase[stops]) ** 2

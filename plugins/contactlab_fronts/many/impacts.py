@@ -6,16 +6,12 @@ The phases and their formulas are those of one impact: ``contactlab_fronts.phase
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contactlab.collocation import Nodes
+from contactlab.collocation import Array, Nodes
 from contactlab.contracts import ClosedFormMotion
 from contactlab_fronts.gross import Slide
-from contactlab_fronts.locked import Locked
-from contactlab_fronts.many.pieces import LOCKED, NO_PIECE, Pieces
-
-Array = NDArray[np.float64]
-Rows = NDArray[np.intp]
+from contactlab_fronts.many.pieces import LOCKED, NO_PIECE, PieceTable, Rows
+from contactlab_fronts.profile import Locked
 
 STUCK, EDGE_SLIP, GROSS_SLIP, DONE, UNSOLVED = range(5)
 
@@ -46,15 +42,15 @@ class Impacts:
         self.force = np.zeros(count)
         self.work = np.zeros(count)
         self.panels = np.zeros(count, dtype=np.intp)
-        self.doing = np.where(velocity > 1.0, GROSS_SLIP, STUCK)
+        self.regime = np.where(velocity > 1.0, GROSS_SLIP, STUCK)
         self.sign = np.ones(count)  # of the slip, if any
         self.began = np.zeros(count)  # sign of the slip that stopped as sticking began, or 0
         self.outermost = np.full(count, NO_PIECE, dtype=np.intp)
-        self.pieces = Pieces(nodes, 2 * count + 64)
+        self.pieces = PieceTable(nodes, 2 * count + 64)
         # how the next panel is to be taken
         self.fitted = np.zeros(count, dtype=bool)  # up to the event at the end of the piece
-        self.most = np.full(count, np.inf)  # no longer than this
-        self.usual = np.full(count, np.inf)  # the length that the last error estimate asks for
+        self.limit = np.full(count, np.inf)  # no longer than this
+        self.estimate = np.full(count, np.inf)  # the length that the last error estimate asks for
         self.attempts = np.zeros(count, dtype=np.intp)  # refused in a row
         self.idle = np.zeros(count, dtype=np.intp)  # events in a row without progress
 
@@ -63,12 +59,12 @@ class Impacts:
         return self.first[who] + self.change[who]
 
     def slide_through(self, who: Rows) -> None:
-        """Follow gross slip, in closed form, until it sticks again or the impact ends."""
+        """Take gross slip, in closed form, until it sticks again or the impact ends."""
         sign, first = self.sign[who], self.motion.scaled(self.phase[who])
         slide = Slide.along(self.motion, self.inertia[who], sign, first, self.velocity(who))
         self.change[who] += slide.gained
         self.work[who] += slide.work
-        self.doing[who] = DONE
+        self.regime[who] = DONE
         again = who[slide.stops]
         phase = np.asarray(self.motion.phase_at_rate(slide.rate[slide.stops]))
         self.phase[again] = np.maximum(phase, self.phase[again])
@@ -85,22 +81,22 @@ class Impacts:
         self.outermost[who] = self.pieces.add(self.outermost[who], **columns)
         loading = now.rate > LEAST_RATE
         grows, shrinks = who[loading], who[~loading]
-        self.doing[grows] = STUCK
+        self.regime[grows] = STUCK
         self.began[grows] = self.sign[grows]
         self.sign[shrinks] *= -1.0  # the shrinking edge slips back at once
-        self.doing[shrinks] = EDGE_SLIP
+        self.regime[shrinks] = EDGE_SLIP
 
     def slip_on(self, who: Rows) -> None:
         """Slip through the outermost piece: pieces locked by slip of this sign go at once."""
-        self.doing[who] = EDGE_SLIP
+        self.regime[who] = EDGE_SLIP
         while who.size:
             outermost = self.outermost[who]
             bare = outermost == NO_PIECE
-            self.doing[who[bare]] = GROSS_SLIP
+            self.regime[who[bare]] = GROSS_SLIP
             who, outermost = who[~bare], outermost[~bare]
-            swept = self.pieces["sign"][outermost] == self.sign[who]
-            who = who[swept]
-            self.outermost[who] = self.pieces.inside[outermost[swept]]
+            slips = self.pieces["sign"][outermost] == self.sign[who]
+            who = who[slips]
+            self.outermost[who] = self.pieces.inside[outermost[slips]]
 
     def leave_piece(self, who: Rows) -> None:
         """Take the front into the next piece."""

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contactlab.collocation import lobatto
+from contactlab.collocation import Array, lobatto
 from contactlab.contracts import ClosedFormMotion, ManyImpacts
 from contactlab_fronts.many import edge_slip, stuck
 from contactlab_fronts.many.impacts import DONE, EDGE_SLIP, GROSS_SLIP, STUCK, Impacts
-
-Array = NDArray[np.float64]
 
 #: Impacts in one call while edges slip: an array of 8 nodes of them fits in the cache next to the
 #: processor, and the largest matrix product, with 25 finer points, has less than 2**18 terms:
@@ -31,7 +28,16 @@ ROUNDS, ROUNDS_PER_SWING = 200, 40
 def march(
     velocity: Array, inertia: Array, motion: ClosedFormMotion, tolerance: float
 ) -> ManyImpacts:
-    """Return the answers to impacts of scaled velocity > 0 that do not slip throughout."""
+    """Return the answers to impacts of scaled velocity > 0 that do not slip throughout.
+
+    Parameters
+    ----------
+    velocity, inertia : ndarray, shape (impacts,)
+    motion : ClosedFormMotion
+        Of a batch; only what is scaled is asked of it.
+    tolerance : float
+        Error of psi2 over max(1, psi1).
+    """
     change, work = np.zeros_like(velocity), np.zeros_like(velocity)
     solved = np.zeros(velocity.shape, dtype=bool)
     panels = 0
@@ -49,22 +55,22 @@ def march(
             while rounds and _round(impacts, tolerance):
                 rounds -= 1
             change[part], work[part] = impacts.change, impacts.work
-            solved[part] = (impacts.doing == DONE) & np.isfinite(impacts.change + impacts.work)
+            solved[part] = (impacts.regime == DONE) & np.isfinite(impacts.change + impacts.work)
             panels += int(impacts.panels.sum())
     return ManyImpacts(change, work, solved, panels)
 
 
 def _round(impacts: Impacts, tolerance: float) -> bool:
     """Take every impact one panel further; return whether any was left."""
-    sliding = np.flatnonzero(impacts.doing == GROSS_SLIP)
+    sliding = np.flatnonzero(impacts.regime == GROSS_SLIP)
     if sliding.size:
         impacts.slide_through(sliding)
-    sticking = np.flatnonzero(impacts.doing == STUCK)
+    sticking = np.flatnonzero(impacts.regime == STUCK)
     for first in range(0, sticking.size, stuck.BLOCK):
         stuck.advance(impacts, sticking[first : first + stuck.BLOCK])
-    slipping = np.flatnonzero(impacts.doing == EDGE_SLIP)
+    slipping = np.flatnonzero(impacts.regime == EDGE_SLIP)
     if not slipping.size:
-        return bool(np.any(impacts.doing < DONE))
+        return bool(np.any(impacts.regime < DONE))
     laid = impacts.pieces["sign"][impacts.outermost[slipping]] == 0.0
     fitted = impacts.fitted[slipping]
     for is_laid in (False, True):

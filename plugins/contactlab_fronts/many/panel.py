@@ -10,15 +10,12 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contactlab.collocation import lobatto
-from contactlab.contracts import ScaledContact
+from contactlab.collocation import Array, lobatto
+from contactlab.contracts import PhaseSample, ScaledContact
 from contactlab_fronts.many.impacts import Impacts
+from contactlab_fronts.many.pieces import Rows
 from contactlab_fronts.phases import EdgeSlip
-
-Array = NDArray[np.float64]
-Rows = NDArray[np.intp]
 
 NODES = 8
 ITERATIONS = 12
@@ -33,11 +30,8 @@ class Panel(NamedTuple):
 
     start: Array
     length: Array
-    contact: ScaledContact
-    velocity: Array
+    sample: PhaseSample
     change: Array  # of velocity in this panel
-    slip: Array
-    force: Array
     work: Array  # in this panel
     margins: tuple[Array, Array, Array]  # of the events of ``EdgeSlip``
     update: Array  # last move of the velocity, (impacts,)
@@ -92,7 +86,7 @@ def solve(
         change = new
         last = iteration == ITERATIONS - 1
         if fitted and iteration and not last and not _settled(iteration, update, settled):
-            move = _move(slipping, contact, slip, first + change, length)
+            move = _move(slipping, PhaseSample(contact, slip, first + change, response), length)
             lost = ~np.isfinite(move)
             length = np.where(lost, length, np.clip(length + move, SHORTEST, np.pi - start))
             contact = motion.scaled(start + length * spot)
@@ -103,25 +97,20 @@ def solve(
             break
     tail = np.abs(nodes.tail @ rate).sum(axis=0)
     tail *= inertia
-    known = contact, slip, first + change, response
-    work = nodes.integral @ (time * slipping.friction_power(*known))
-    margins: Any = tuple(slipping.margin(event, *known) for event in range(3))
-    return Panel(
-        start, length, contact, first + change, change, slip, response.force, work, margins,
-        update, tail, fitted,
-    )  # fmt: skip
+    sample = PhaseSample(contact, slip, first + change, response)
+    work = nodes.integral @ (time * slipping.friction_power(sample))
+    margins: Any = tuple(slipping.margin(event, sample) for event in range(3))
+    return Panel(start, length, sample, change, work, margins, update, tail, fitted)
 
 
 def _settled(iteration: int, update: Array, settled: Array) -> bool:
     return iteration + 1 >= FEWEST_ITERATIONS and bool(np.all(update < settled))
 
 
-def _move(
-    slipping: EdgeSlip, contact: ScaledContact, slip: Array, velocity: Array, length: Array
-) -> Array:
+def _move(slipping: EdgeSlip, sample: PhaseSample, length: Array) -> Array:
     """Return Newton's move of the end of each panel towards where the piece is left."""
-    end = ScaledContact(*(column[-1] for column in contact))
-    excess = slipping.profile[-1].left(slipping.sign, end, slip[-1])
-    slope = (end.rate - slipping.sign * velocity[-1]) * end.time_rate
+    end = ScaledContact(*(column[-1] for column in sample.contact))
+    excess = slipping.profile[-1].inner_margin(slipping.sign, end, sample.slip[-1])
+    slope = (end.rate - slipping.sign * sample.velocity[-1]) * end.time_rate
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(np.clip(-excess / slope, -LARGEST_MOVE * length, LARGEST_MOVE * length))

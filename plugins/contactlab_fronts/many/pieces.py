@@ -1,7 +1,7 @@
-"""The memory of many impacts: locked pieces of profile in one growing table.
+"""The memory of many impacts: pieces of locked profiles in one growing table.
 
 A piece is a row, and knows the row of the next piece inside it, so that a profile is the
-number of its outermost piece. Rows are never changed: pieces swept away are just left behind.
+number of its outermost piece. Rows are never changed: pieces that slip are just left behind.
 """
 
 from __future__ import annotations
@@ -12,21 +12,19 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.collocation import Nodes
+from contactlab.collocation import Array, Nodes
 from contactlab_fronts.laid import Laid
-from contactlab_fronts.locked import Locked
-from contactlab_fronts.profile import Piece
+from contactlab_fronts.profile import Locked, ProfilePiece
 
-Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 NO_PIECE = -1
-LAID = tuple(field.name for field in attrs.fields(Laid) if field.name != "path")
+LAID = tuple(field.name for field in attrs.fields(Laid) if field.name != "output")
 LOCKED = tuple(field.name for field in attrs.fields(Locked))
 
 
 class Polynomials(NamedTuple):
-    """Panels in which pieces were laid down, as polynomials: the ``Path`` of each piece.
+    """Panels in which pieces were laid down, as polynomials: the ``DenseOutput`` of each piece.
 
     ``terms``, shape (3, terms, impacts), are coefficients of slip, force and d(slip)/dx by powers
     of a coordinate that goes from -1 at ``origin`` to 1.
@@ -50,8 +48,8 @@ class Polynomials(NamedTuple):
         return total[0], total[1], c * c, c, total[2] * self.scale, 2.0 * c * np.cos(x)
 
 
-class Pieces:
-    """Pieces by row: w(q) = f(q) + D in each, q = s² the place of a spring (theory §5).
+class PieceTable:
+    """Pieces by row: w(q) = f(q) + D in each, q = s² of a spring (theory §5).
 
     Parameters
     ----------
@@ -98,13 +96,13 @@ class Pieces:
         found[:, 2, :-1] = found[:, 0, 1:] * np.arange(1, len(nodes.points))
         return found
 
-    def piece(self, rows: Rows, *, laid: bool) -> Piece:
+    def piece(self, rows: Rows, *, laid: bool) -> ProfilePiece:
         """Return the pieces of some rows, all laid down or all locked, as one."""
         if not laid:
             return Locked(*(self[name][rows] for name in LOCKED))
         terms = np.ascontiguousarray(self["terms"][rows].transpose(1, 2, 0))
-        path = Polynomials(self["origin"][rows], self["scale"][rows], terms)
-        return Laid(path, *(self[name][rows] for name in LAID))
+        output = Polynomials(self["origin"][rows], self["scale"][rows], terms)
+        return Laid(output, *(self[name][rows] for name in LAID))
 
 
 def _doubled(old: NDArray[Any]) -> NDArray[Any]:

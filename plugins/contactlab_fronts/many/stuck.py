@@ -7,14 +7,11 @@ system.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contactlab.collocation import lobatto, rows
+from contactlab.collocation import Array, lobatto, rows
 from contactlab_fronts.many.crossing import first_crossing, value
 from contactlab_fronts.many.impacts import Impacts
-
-Array = NDArray[np.float64]
-Rows = NDArray[np.intp]
+from contactlab_fronts.many.pieces import Rows
 
 #: With 20 nodes a panel holds 4 radians of the fastest oscillation to 1e-12.
 NODES = 20
@@ -82,7 +79,15 @@ def advance(impacts: Impacts, who: Rows) -> None:
 
 
 def _solve(impacts: Impacts, who: Rows, time: Array, radius: Array) -> tuple[Array, Array, Array]:
-    """Return (psi, D, F) at the nodes; ``time`` is dT/dtau there."""
+    """Return psi, D and F at the nodes.
+
+    Parameters
+    ----------
+    impacts : Impacts
+    who : ndarray of int
+    time, radius : ndarray, shape (nodes, impacts)
+        dT/dtau and u, the contact radius, at the nodes.
+    """
     integral = lobatto(NODES).integral
     first, force = impacts.velocity(who), impacts.force[who]
     growth = 1.5 * radius * time
