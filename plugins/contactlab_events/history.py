@@ -23,16 +23,11 @@ def show(batch: tuple[int, ...], solved: Sequence[SolvedImpact], observer: Obser
     if not batch:
         x = np.union1d(x, [segment.stop for segment in solved[0].trajectory.segments])
     x = x[x <= min(one.trajectory.state.x for one in solved)]
-    tables = [_history(one, x) for one in solved]
-
-    def column(name: str) -> list[Any]:
-        values = np.array([table[name] for table in tables]).T
-        return list(values.reshape(len(x), *batch)) if batch else values[:, 0].tolist()
-
-    names = ("time", "approach", "rate", "force", "radius", "velocity", "friction")
-    for k, row in enumerate(zip(*(column(name) for name in names), strict=True)):
-        time, approach, rate, force, radius, velocity, friction = row
-        slips = [float(table["slip"][k]) for table in tables]
+    table = np.stack([_history(one, x) for one in solved], axis=-1)
+    columns = table.reshape(len(table), len(x), *batch) if batch else table[..., 0].tolist()
+    for k, row in enumerate(zip(*columns, strict=True)):
+        time, approach, rate, force, radius, velocity, friction, _ = row
+        impacts = list(zip(solved, table[-1, k].tolist(), strict=True))
         observer(
             Sample(
                 time=time,
@@ -41,13 +36,16 @@ def show(batch: tuple[int, ...], solved: Sequence[SolvedImpact], observer: Obser
                 contact=NormalContact(force, radius, approach, force),
                 slip_velocity=velocity,
                 tangential_force=friction,
-                fields=partial(_fields, batch, float(x[k]), list(zip(solved, slips, strict=True))),
+                fields=partial(_fields, batch, float(x[k]), impacts),
             )
         )
 
 
-def _history(solved: SolvedImpact, x: Array) -> dict[str, Array]:
-    """Return one impact's history at ascending x, in SI; slip stays scaled, for the fields."""
+def _history(solved: SolvedImpact, x: Array) -> Array:
+    """Return one impact's history at ascending x: rows of what a ``Sample`` holds, in SI.
+
+    The last row is the slip, which stays scaled, for the fields.
+    """
     impact, found = solved.impact, solved.trajectory
     time, approach, rate, contact, _ = impact.motion.at(x)
     change, friction, slip = np.full_like(x, found.state.change), np.zeros_like(x), np.zeros_like(x)
@@ -64,17 +62,9 @@ def _history(solved: SolvedImpact, x: Array) -> dict[str, Array]:
         else:
             gained, friction[inside], slip[inside] = output.motion(x[inside])
             change[inside] = start.change + gained
-    gained = solved.factor * impact.velocity_unit * change
-    return {
-        "time": np.asarray(time),
-        "approach": np.asarray(approach),
-        "rate": np.asarray(rate),
-        "force": np.asarray(contact.force),
-        "radius": np.asarray(contact.radius),
-        "velocity": impact.slip_velocity + gained,
-        "friction": solved.factor * impact.force_unit * friction,
-        "slip": slip,
-    }
+    velocity = impact.slip_velocity + solved.factor * impact.velocity_unit * change
+    friction *= solved.factor * impact.force_unit
+    return np.array([time, approach, rate, contact.force, contact.radius, velocity, friction, slip])
 
 
 def _fields(

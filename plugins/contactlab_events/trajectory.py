@@ -178,7 +178,17 @@ class _Integration:
         self._begin(law.begin(self.state.velocity, inertia, motion))
         while self.state.x < math.pi:
             closed = self.phase.closed_form(self.state, motion, inertia)
-            failure = self._try_panel() if closed is None else self._take(closed)
+            failure = ""
+            if closed is None:
+                failure = self._try_panel()
+            else:
+                self._arrive(closed, closed.end)
+                if closed.event is None:
+                    self.state = closed.end._replace(x=math.pi)
+                else:
+                    self._begin_after(closed.event, None)
+            if self.zero_lengths > ZERO_LENGTH_CAP:
+                failure = "Events follow one another without end."
             if failure:
                 return f"{failure} In phase {type(self.phase).__name__} at x = {self.state.x:.9g}."
         return ""
@@ -196,27 +206,12 @@ class _Integration:
         contact = self.collocation.motion.scaled_at(self.state.x)
         self._begin(self.phase.after_event(event, self.state, contact, output))
 
-    def _count_zero_length(self) -> str:
-        """Count a phase of no length; return a complaint if there were too many in a row."""
-        self.zero_lengths += 1
-        too_long = self.zero_lengths > ZERO_LENGTH_CAP
-        return "Events follow one another without end." if too_long else ""
-
-    def _take(self, closed: ClosedPhase) -> str:
-        """Take a phase in closed form."""
-        start, end = self.state, closed.end
-        self.segments.append(Segment(self.phase, start, closed, end.x))
-        failure = ""
-        if end.x > start.x:
-            self.zero_lengths = 0
-        else:
-            failure = self._count_zero_length()
+    def _arrive(self, output: SolvedPanel | ClosedPhase, end: PhaseState) -> None:
+        """Add a segment to the trajectory."""
+        start = self.state
+        self.segments.append(Segment(self.phase, start, output, end.x))
+        self.zero_lengths = 0 if end.x > start.x else self.zero_lengths + 1
         self.state = end
-        if closed.event is None:
-            self.state = end._replace(x=math.pi)
-        else:
-            self._begin_after(closed.event, None)
-        return failure
 
     def _try_panel(self) -> str:
         """Try one panel; accept it, or set out what to try next."""
@@ -242,8 +237,9 @@ class _Integration:
         found = first_event(self.phase, panel)
         if found is not None and found[1] == 0.0:
             if tail <= 1.0 or panel.length < SURELY_RESOLVED:
+                self.zero_lengths += 1
                 self._begin_after(found[0], None)
-                return self._count_zero_length()
+                return ""
             found = None
         if tail <= 1.0:
             self._accept(panel, found, tail)
@@ -278,12 +274,9 @@ class _Integration:
         """Move to the event found in a solved panel, or to its end."""
         self.rejects = 0
         event, stop = (panel.fitted, 1.0) if found is None else found
-        start = self.state
         part = stop if panel.fitted is None else stop * (2.0 - stop)
-        x = min(start.x + panel.length * part, math.pi)
-        self.zero_lengths = self.zero_lengths + 1 if x == start.x else 0
-        self.segments.append(Segment(self.phase, start, panel, x))
-        self.state = self._state_at(panel, stop, x)
+        x = min(panel.origin + panel.length * part, math.pi)
+        self._arrive(panel, self._state_at(panel, stop, x))
         if event is None:
             contact = self.collocation.motion.scaled_at(x)
             self.phase = self.phase.after_panel(self.state, contact, panel)

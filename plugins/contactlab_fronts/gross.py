@@ -14,7 +14,7 @@ RATE_STEP = 1e-5
 
 
 class Slide(NamedTuple):
-    """Gross slip of one or many impacts: whether it stops, V there, and what it changed.
+    """Gross slip of one or many impacts: whether it stops, x there, and what it changed.
 
     Change of velocity = share · inertia · mass · (V - V_0), theory §1; slip of sign s ends
     where s psi falls to V, both linear in V, so that the end is known too. Work is the integral
@@ -22,7 +22,7 @@ class Slide(NamedTuple):
     """
 
     stops: Any
-    rate: Any
+    end: Any
     gained: Any
     work: Any
 
@@ -54,7 +54,8 @@ class Slide(NamedTuple):
         fall = np.where(late, rest, first.rate - rate)
         gained = -share * ratio * fall
         mean = share * (velocity + 0.5 * gained) - 0.5 * (first.rate + rate)
-        return cls(stops, rate, gained, motion.scaled_mass * fall * mean)
+        end = np.where(stops, np.maximum(motion.phase_at_rate(rate), first.phase), np.pi)
+        return cls(stops, end, gained, motion.scaled_mass * fall * mean)
 
 
 class GrossMotion(ClosedPhase):
@@ -77,7 +78,7 @@ class GrossMotion(ClosedPhase):
         self.share, self.first, self.start = share, first.rate, state
         self.ratio = inertia * motion.scaled_mass
         self.event = 0 if slide.stops else None
-        x = max(float(motion.phase_at_rate(slide.rate)), state.x) if slide.stops else np.pi
+        x = float(slide.end)
         normal, before = motion.scaled_at(x), motion.scaled_at(x - RATE_STEP)
         rate = (normal.force - before.force) / (RATE_STEP * before.time_rate)
         gained = float(slide.gained)

@@ -24,7 +24,7 @@ LONGEST_SWING = 2.0
 LONGEST = 0.8
 #: A piece is left this much beyond the guess of when, so that one panel sees it left.
 BEYOND, LEAST_REACH = 1.1, 1e-4
-#: A locked piece that ends this near the centre (in parts of zeta) is left like a square root.
+#: A locked piece that ends this near the centre (in parts of zeta) is left like a square root of x.
 NEAR_CENTRE = 0.1
 #: An unfitted panel may hold this part of its length beyond the piece it was solved in.
 PART_INSIDE = 0.6
@@ -32,7 +32,7 @@ PART_INSIDE = 0.6
 MOST_ATTEMPTS, MOST_FITS = 40, 6
 #: Events this often in a row with no more progress than this are looked for later in the panel.
 MOST_IDLE, PROGRESS = 4, 1e-7
-#: psi1 below this is followed to the same absolute error.
+#: psi1 below this is solved to the same absolute error.
 LEAST_SCALE = 1e-6
 #: Moves of psi, in parts of the tolerance, at which iteration stops and a panel is good.
 SETTLED, CONVERGED = 1e-3, 1e-2

@@ -1,4 +1,4 @@
-"""The state of many impacts, and what follows each event: theory §5.
+"""The state of many impacts, and the phase after each event: theory §5.
 
 The phases and their formulas are those of one impact: ``contactlab_fronts.phases``.
 """
@@ -66,8 +66,7 @@ class Impacts:
         self.work[who] += slide.work
         self.regime[who] = DONE
         again = who[slide.stops]
-        phase = np.asarray(self.motion.phase_at_rate(slide.rate[slide.stops]))
-        self.phase[again] = np.maximum(phase, self.phase[again])
+        self.phase[again] = slide.end[slide.stops]
         self.force[again] = sign[slide.stops] * self.motion.scaled(self.phase[again]).force
         self.outermost[again] = NO_PIECE
         self.lock(again, np.zeros(again.size))

@@ -60,9 +60,9 @@ def solve(
     settled : ndarray
         Move of the velocity at which iteration stops.
     fitted : bool
-        End panels where the front leaves its piece, to which it rushes like a square root: nodes
-        are crowded as (1 - tau)² there, in which all is smooth, and the length is found along with
-        the velocity.
+        End panels where the front leaves its piece, which it reaches like a square root of x:
+        nodes are crowded as (1 - tau)² there, in which all is smooth, and the length is found
+        along with the velocity.
     """
     nodes, motion = lobatto(NODES), impacts.motion
     spot, spread = (part[:, None] for part in (nodes.rooted if fitted else nodes.plain))

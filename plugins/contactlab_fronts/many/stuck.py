@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from contactlab.collocation import Array, lobatto, rows
+from contactlab.contracts import ScaledContact
 from contactlab_fronts.many.crossing import first_crossing, value
 from contactlab_fronts.many.impacts import Impacts
 from contactlab_fronts.many.pieces import Rows
@@ -33,9 +34,7 @@ def advance(impacts: Impacts, who: Rows) -> None:
     start, inertia = impacts.phase[who], impacts.inertia[who]
     left = 0.5 * np.pi - start
     length = np.minimum(np.minimum(left, LONGEST), LONGEST_SWING / np.sqrt(FASTEST * inertia))
-    now = impacts.motion.scaled(start + length * nodes.points[:, None])
-    time = now.time_rate * length
-    velocity, slip, force = _solve(impacts, who, time, now.radius)
+    now, velocity, slip, force = _solve(impacts, who, length)
 
     forward = first_crossing(nodes, now.rate - velocity)
     backward = first_crossing(nodes, now.rate + velocity)
@@ -78,18 +77,13 @@ def advance(impacts: Impacts, who: Rows) -> None:
     impacts.slip_on(who[slips])
 
 
-def _solve(impacts: Impacts, who: Rows, time: Array, radius: Array) -> tuple[Array, Array, Array]:
-    """Return psi, D and F at the nodes.
-
-    Parameters
-    ----------
-    impacts : Impacts
-    who : ndarray of int
-    time, radius : ndarray, shape (nodes, impacts)
-        dT/dtau and u, the contact radius, at the nodes.
-    """
-    integral = lobatto(NODES).integral
+def _solve(impacts: Impacts, who: Rows, length: Array) -> tuple[ScaledContact, Array, Array, Array]:
+    """Return contact, psi, D and F at the nodes of panels of some length in x."""
+    nodes = lobatto(NODES)
+    integral = nodes.integral
     first, force = impacts.velocity(who), impacts.force[who]
+    now = impacts.motion.scaled(impacts.phase[who] + length * nodes.points[:, None])
+    time, radius = now.time_rate * length, now.radius
     growth = 1.5 * radius * time
     slowing = np.ascontiguousarray((impacts.inertia[who] * time).T)[:, None, :] * integral
     matrix = (slowing @ integral) * np.ascontiguousarray(growth.T)[:, None, :]
@@ -97,4 +91,4 @@ def _solve(impacts: Impacts, who: Rows, time: Array, radius: Array) -> tuple[Arr
     matrix += np.eye(NODES)
     velocity = first + np.linalg.solve(matrix, known[:, :, None])[:, :, 0].T
     slip = impacts.slip[who] + integral @ (time * velocity)
-    return velocity, slip, force + integral @ (growth * velocity)
+    return now, velocity, slip, force + integral @ (growth * velocity)
