@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Rows = NDArray[np.intp]
 
 #: Largest chi of the table: beyond 2.7 there are curves that these regions do not know.
 LARGEST_CHI = 2.5
@@ -69,6 +68,17 @@ def polynomial(terms: Array, argument: Array) -> Array:
     return total
 
 
+def slip_cut(terms: Array, t: Array) -> Array:
+    """Return chi of the cut of the slip regions, of which some powers are missing."""
+    cut = polynomial(terms[FIRST_POWER:], t)
+    square = t * t
+    square *= square
+    square *= t
+    cut *= square
+    cut += terms[0]
+    return cut
+
+
 def slope(terms: Array) -> Array:
     """Return the terms of a polynomial's derivative."""
     return np.asarray(terms[1:] * np.arange(1, terms.size))
@@ -113,155 +123,3 @@ def impact(region: int, a: Array, b: Array, cuts: Cuts) -> tuple[Array, Array]:
 def measure(region: int, speed: Array, chi: Array) -> Array:
     """Return what g is multiplied with: psi2 = psi1 (-1 + measure g)."""
     return 1.0 - speed if region == SMALL_FAR else np.abs(2.0 * chi - 1.0)
-
-
-class Part(NamedTuple):
-    """Some impacts of one region."""
-
-    region: int
-    who: Rows
-    a: Array
-    b: Array
-    speed: Array
-    measure: Array
-
-
-class Places(NamedTuple):
-    """Impacts by region: ``sizes`` of each of ``regions``, one region after another."""
-
-    regions: tuple[int, ...]
-    sizes: tuple[int, ...]
-    who: Rows
-    a: Array
-    b: Array
-    speed: Array
-    measure: Array
-
-    def parts(self) -> list[tuple[int, slice]]:
-        """Return regions, and where they are in the arrays."""
-        stops = np.cumsum(self.sizes).tolist()
-        slices = [slice(stop - size, stop) for size, stop in zip(self.sizes, stops, strict=True)]
-        return list(zip(self.regions, slices, strict=True))
-
-
-def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
-    """Return the places of impacts with chi <= LARGEST_CHI, but for those slipping throughout."""
-    found = [part for part in _parts(speed, chi, cuts) if part.who.size]
-    if not found:
-        none = np.empty(0)
-        return Places((), (), np.empty(0, dtype=np.intp), none, none, none, none)
-    regions, who, *columns = zip(*found, strict=True)
-    sizes = tuple(part.who.size for part in found)
-    return Places(regions, sizes, np.concatenate(who), *map(np.concatenate, columns))
-
-
-def _parts(speed: Array, chi: Array, cuts: Cuts) -> tuple[Part, ...]:
-    """Return the places of some impacts, each region apart."""
-    below, light = speed <= 1.0, chi < 0.5
-    slips = (speed < 4.0 * chi - 1.0) & ~below
-    return (
-        *_small((below & light).nonzero()[0], speed, chi),
-        *_stuck_first((below & ~light).nonzero()[0], speed, chi, cuts),
-        *_slip_first(slips.nonzero()[0], speed, chi, cuts),
-    )
-
-
-def _small(who: Rows, speed: Array, chi: Array) -> tuple[Part, Part]:
-    """Return the places of impacts with chi < 1/2."""
-    p = speed[who]
-    delta, epsilon = 1.0 - p, 1.0 - 2.0 * chi[who]
-    near = delta < epsilon
-    low, high = near.nonzero()[0], (~near).nonzero()[0]
-    b, d = epsilon[low], delta[high]
-    return (
-        Part(SMALL_NEAR, who[low], (delta[low] / b) ** 0.2, b, p[low], b),
-        Part(SMALL_FAR, who[high], epsilon[high] / d, d, p[high], d),
-    )
-
-
-def _stuck_first(who: Rows, speed: Array, chi: Array, cuts: Cuts) -> tuple[Part, Part]:
-    """Return the places of impacts with psi1 <= 1, chi >= 1/2.
-
-    Parameters
-    ----------
-    who : array of int, shape (some,)
-        Which impacts these are.
-    speed, chi : array, shape (impacts,)
-        abs(psi1) and chi of all; no units.
-    cuts : Cuts
-        Polynomials of the boundaries between regions.
-    """
-    p, x = speed[who], chi[who]
-    cut = polynomial(cuts.stuck, p)
-    return _divided((STUCK_BACK, STUCK_ON), (who, p, p), x, cut, LARGEST_CHI)
-
-
-def _slip_first(who: Rows, speed: Array, chi: Array, cuts: Cuts) -> tuple[Part, ...]:
-    """Return the places of impacts with 1 < psi1 < 4 chi - 1.
-
-    Parameters
-    ----------
-    who : array of int, shape (some,)
-        Which impacts these are.
-    speed, chi : array, shape (impacts,)
-        abs(psi1) and chi of all; no units.
-    cuts : Cuts
-        Polynomials of the boundaries between regions.
-    """
-    p, x = speed[who], chi[who]
-    epsilon = 2.0 * x - 1.0
-    ratio = (p - 1.0) / epsilon
-    height = epsilon * (0.5 / (LARGEST_CHI - 0.5))
-    late = ratio > 1.0
-    k = late.nonzero()[0]
-    last = Part(SLIP_LATE, who[k], ratio[k] - 1.0, height[k], p[k], epsilon[k])
-    k = (~late).nonzero()[0]
-    t = ratio[k] ** 0.2
-    longer = t > CUT_END
-    j = longer.nonzero()[0]
-    a, i = (t[j] - CUT_END) * (1.0 / (1.0 - CUT_END)), k[j]
-    longest = Part(SLIP_LONG, who[i], a, height[i], p[i], epsilon[i])
-    j = (~longer).nonzero()[0]
-    t, k = t[j], k[j]
-    cut = slip_cut(cuts.slip, t)
-    t *= 1.0 / CUT_END
-    first = _divided((SLIP_BACK, SLIP_ON), (who[k], p[k], t), x[k], cut, CUT_TOP)
-    return (*first, longest, last)
-
-
-def slip_cut(terms: Array, t: Array) -> Array:
-    """Return chi of the cut of the slip regions, of which some powers are missing."""
-    cut = polynomial(terms[FIRST_POWER:], t)
-    square = t * t
-    square *= square
-    square *= t
-    cut *= square
-    cut += terms[0]
-    return cut
-
-
-def _divided(
-    regions: tuple[int, int], impacts: tuple[Rows, Array, Array], chi: Array, cut: Array, top: float
-) -> tuple[Part, Part]:
-    """Return the places on both sides of a cut.
-
-    Parameters
-    ----------
-    regions : tuple of int
-        Below and above the cut.
-    impacts : tuple of ndarray
-        Their rows, psi1, and first coordinate.
-    chi, cut : ndarray
-        chi of the impacts, and of the cut.
-    top : float
-        chi at the upper end.
-    """
-    who, p, a = impacts
-    on = chi >= cut
-    parts = []
-    for region, k in zip(regions, ((~on).nonzero()[0], on.nonzero()[0]), strict=True):
-        x, edge = chi[k], cut[k]
-        below = region == regions[0]
-        b = (x - 0.5) / (edge - 0.5) if below else np.sqrt((x - edge) / (top - edge))
-        parts.append(Part(region, who[k], a[k], b, p[k], 2.0 * x - 1.0))
-    return parts[0], parts[1]

@@ -23,13 +23,11 @@ from contactlab_tabulated.coordinates import (
     STUCK_BACK,
     STUCK_ON,
     Cuts,
-    Part,
-    Places,
-    places,
     polynomial,
     slope,
 )
 from contactlab_tabulated.evaluate import BLOCK, patches, powers, stretches
+from contactlab_tabulated.places import Places, places
 from contactlab_tabulated.table import NODES, Table
 
 Array = NDArray[np.float64]
@@ -58,21 +56,14 @@ def gradient(table: Table, speed: Array, chi: Array) -> tuple[Array, Array]:
         slopes = _slopes(table, here)
         for region, part in here.parts():
             who = first + here.who[part]
-            place = Part(
-                region,
-                here.who[part],
-                here.a[part],
-                here.b[part],
-                here.speed[part],
-                here.measure[part],
-            )
+            place = Places(*(column[part] for column in here))
             local = Slopes(*(column[part] for column in slopes))
-            by_psi1[who], by_chi[who] = _of_psi2(place, local, table.cuts)
+            by_psi1[who], by_chi[who] = _of_psi2(region, place, local, table.cuts)
     return by_psi1, by_chi
 
 
 def _slopes(table: Table, here: Places) -> Slopes:
-    patch = patches(table, here, here.parts())
+    patch = patches(table.grid.ravel(), here)
     order = np.argsort(patch, kind="stable")
     result = Slopes(np.empty_like(here.a), np.empty_like(here.a), np.empty_like(here.a))
     factor = np.arange(1, NODES)[:, None]
@@ -90,9 +81,20 @@ def _slopes(table: Table, here: Places) -> Slopes:
     return result
 
 
-def _of_psi2(place: Part, slopes: Slopes, cuts: Cuts) -> tuple[Array, Array]:
-    """Return both derivatives of psi2 = psi1 (-1 + measure g) in one region."""
-    region, _, a, b, speed, measure = place
+def _of_psi2(
+    region: int, place: Places, slopes: Slopes, cuts: Cuts
+) -> tuple[Array, Array]:
+    """Return both derivatives of psi2 = psi1 (-1 + measure g) in one region.
+
+    Parameters
+    ----------
+    region : int
+    place : Places
+        In that region, all of them.
+    slopes : Slopes
+    cuts : Cuts
+    """
+    a, b, speed, measure = place.a, place.b, place.speed, place.measure
     g, by_a, by_b = slopes
     value = measure * g - 1.0
     if region == SMALL_FAR:  # measure delta; a = epsilon/delta, b = delta

@@ -81,7 +81,7 @@ def chebyshev_nodes() -> Array:
 
 
 @cache
-def _chebyshev() -> Array:
+def to_chebyshev() -> Array:
     """Return the matrix from values at the nodes to Chebyshev coefficients."""
     k = np.arange(NODES)
     matrix = np.cos(np.pi * np.outer(k, k + 0.5) / NODES) * (2.0 / NODES)
@@ -119,7 +119,7 @@ def fit(cell: Cell, psi1: Array, chi: Array, psi2: Array, slope: Array | None = 
     bounce = psi2 / psi1 + 1.0
     scale = measure(cell.region, psi1, chi)
     g = bounce / scale
-    coefficients = _chebyshev() @ bounce @ _chebyshev().T
+    coefficients = to_chebyshev() @ bounce @ to_chebyshev().T
     error_a = np.abs(coefficients[-2:]).sum()
     error_b = np.abs(coefficients[:, -2:]).sum()
     missing_a, missing_b = missing_powers(cell)

@@ -36,14 +36,13 @@ class ScalarTable:
     def __init__(self, table: Table) -> None:
         self.stuck: list[float] = table.cuts.stuck[::-1].tolist()
         self.slip: list[float] = table.cuts.slip[::-1].tolist()
-        self.grid: list[list[int]] = [grid.ravel().tolist() for grid in table.grid]
-        self.cells: list[tuple[float, float, int, int]] = [
-            (float(1 << level_a), float(1 << level_b), i, j)
-            for _, level_a, level_b, i, j in table.cells.tolist()
-        ]
+        polynomials = table.polynomials
+        self.grid: list[int] = polynomials.grid.tolist()
+        self.corners: list[list[float]] = polynomials.corners.T.tolist()
         # rows from the highest power of x down, terms from the lowest power of y up
         self.rows: list[tuple[Row, ...]] = [
-            tuple(tuple(row) for row in terms[::-1].tolist()) for terms in table.terms
+            tuple(map(tuple, terms[count - 1 :: -1].tolist()))
+            for terms, count in zip(polynomials.terms, polynomials.needed[0], strict=True)
         ]
 
     def rebound(self, speed: float, chi: float) -> float:
@@ -89,9 +88,9 @@ class ScalarTable:
     def _patch(self, region: int, a: float, b: float) -> float:
         """Return g at a place."""
         i, j = min(int(a * SIZE), SIZE - 1), min(int(b * SIZE), SIZE - 1)
-        patch = self.grid[region][i * SIZE + j]
-        wide, high, left, low = self.cells[patch]
-        x, y = wide * a - left, high * b - low
+        patch = self.grid[(region * SIZE + i) * SIZE + j]
+        left, low = self.corners[patch]
+        x, y = a - left, b - low
         total = 0.0
         for c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11 in self.rows[patch]:
             upper = ((((c11 * y + c10) * y + c9) * y + c8) * y + c7) * y + c6

@@ -16,11 +16,11 @@ from contactlab_tabulated.coordinates import (
     LARGEST_CHI,
     NAMES,
     Cuts,
-    places,
     polynomial,
 )
 from contactlab_tabulated.evaluate import rebound
 from contactlab_tabulated.exact import exact, together
+from contactlab_tabulated.places import places
 from contactlab_tabulated.table import Table
 
 Array = NDArray[np.float64]

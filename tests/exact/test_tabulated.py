@@ -15,13 +15,13 @@ from contactlab_tabulated.coordinates import (
     LARGEST_CHI,
     NAMES,
     impact,
-    places,
     polynomial,
 )
 from contactlab_tabulated.cuts import _bisect
 from contactlab_tabulated.exact import exact
 from contactlab_tabulated.fit import missing_powers
 from contactlab_tabulated.function import shipped
+from contactlab_tabulated.places import places
 from contactlab_tabulated.verify import draw, verify
 from tests.reference import TABLE
 
