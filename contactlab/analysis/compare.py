@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from contactlab.analysis.interrupts import uninterrupted
 from contactlab.checks import refuse
 from contactlab.error_estimate import estimated
+from contactlab.grid import Grid, product
 from contactlab.quantities import quantity_named
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
@@ -204,10 +205,33 @@ def compare(
     )
     return Comparison(
         scene=single,
-        varied=file.varied if file else {},
+        varied=file.varied if file else _varied(single),
         runs=tuple(runs),
         agreements=agreements,
     )
+
+
+def _varied(scene: Scene) -> dict[str, Array]:
+    """Return what varies over a batch, by the names of a scene file: one entry, or a grid's axes.
+
+    Of several that vary together it is the angle, or else the first in the order below; of a
+    single impact nothing.
+    """
+    if not scene.shape:
+        return {}
+    if isinstance(scene, Grid):
+        return product(scene.axes)
+    found: dict[str, Any] = {"psi1": scene.psi1, "chi": scene.chi}
+    if scene.sphere is not None:
+        angle = np.degrees(np.arctan2(scene.tangential_velocity, scene.normal_speed))
+        found = {
+            "angle_deg": angle, "normal_speed": scene.normal_speed, "spin": scene.spin,
+            "friction_coefficient": scene.friction_coefficient, **found,
+        }  # fmt: skip
+    for name, values in found.items():
+        if np.unique(values).size > 1:
+            return {name: np.array(values)}
+    return {"psi1": np.array(np.broadcast_to(scene.psi1, scene.shape))}
 
 
 def _values(quantity: str, result: ImpactResult) -> Array:

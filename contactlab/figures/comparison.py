@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from contactlab.figures.style import (
     verbatim,
     zero_line,
 )
+from contactlab.grid import Grid
 from contactlab.quantities import QUANTITIES
 from contactlab.scene_file.entries import entry_unit
 
@@ -54,7 +56,7 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
     quantity : str
         Name of what is compared, such as ``"psi2"``.
     """
-    varied, x = _abscissa(comparison, None)
+    varied, x, ordered = _abscissa(comparison, None)
     first, *others = comparison.names
     exact = comparison.values(quantity, first)
     size = float(np.nanmax(exact) - np.nanmin(exact)) or 1.0
@@ -70,7 +72,7 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
     known = f"{first}, the reference"
     if close:
         known += "; on its line:\n" + ",\n".join(close)
-    upper.plot(x, exact, color="black", linewidth=3.2, label=verbatim(known), zorder=4)
+    upper.plot(x, ordered(exact), color="black", linewidth=3.2, label=verbatim(known), zorder=4)
     for axes in (upper, lower):
         zero_line(axes)
     forms: dict[str, int] = {}
@@ -82,11 +84,13 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
             "linestyle": FORM_DASHES[number % len(FORM_DASHES)],
             "linewidth": 1.6,
         }
-        values, apart = comparison.values(quantity, name), comparison.difference(quantity, name)
+        values = ordered(comparison.values(quantity, name))
+        apart = ordered(comparison.difference(quantity, name))
+        half = ordered(comparison.band(quantity, name))
         upper.plot(x, values, label=verbatim(name), zorder=3, **look)
         lower.plot(x, apart, **look)
-        band(upper, x, values, comparison.band(quantity, name), size, look["color"])
-        band(lower, x, apart, comparison.band(quantity, name), size, look["color"])
+        band(upper, x, values, half, size, look["color"])
+        band(lower, x, apart, half, size, look["color"])
     _codes(upper, comparison, quantity, varied)
     upper.set_ylabel(label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
     lower.set_ylabel(rf"law $-$ {verbatim(first)}")
@@ -138,6 +142,9 @@ def laws_over_sweep(
 ) -> Axes:
     """Draw a quantity over the sweep, one curve a law, with measured points if there are any.
 
+    A sweep of every combination of several entries is drawn over the one of most values, with a
+    curve for each combination of the others, which the title names.
+
     Parameters
     ----------
     axes : Axes
@@ -148,12 +155,13 @@ def laws_over_sweep(
     agreement : Agreement, optional
         With measured values, drawn too.
     """
-    varied, x = _abscissa(comparison, agreement)
+    varied, x, ordered = _abscissa(comparison, agreement)
     for number, name in enumerate(comparison.names):
-        values, style = comparison.values(quantity, name), law_style(number)
+        values, style = ordered(comparison.values(quantity, name)), law_style(number)
         axes.plot(x, values, label=verbatim(name), **style)
         size = float(np.nanmax(values) - np.nanmin(values)) if np.isfinite(values).any() else 1.0
-        band(axes, x, values, comparison.band(quantity, name), size or 1.0, style["color"])
+        half = ordered(comparison.band(quantity, name))
+        band(axes, x, values, half, size or 1.0, style["color"])
     if agreement is not None:
         measured = agreement.measured
         axes.errorbar(
@@ -166,6 +174,9 @@ def laws_over_sweep(
         )
     axes.set_xlabel(label(varied, entry_unit(varied)))
     axes.set_ylabel(label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
+    others = [name for name in _axes(comparison) if name != varied]
+    if others and varied in _axes(comparison):
+        axes.set_title(f"a curve for each {' and '.join(map(verbatim, others))}")
     axes.legend()
     return axes
 
@@ -185,7 +196,7 @@ def differences(
     agreement : Agreement, optional
         With measured values, drawn too.
     """
-    varied, x = _abscissa(comparison, agreement)
+    varied, x, ordered = _abscissa(comparison, agreement)
     zero_line(axes)
     names = comparison.names
     for number, name in enumerate(names):
@@ -201,7 +212,7 @@ def differences(
                 linestyle=style["linestyle"],
             )
         elif number:
-            axes.plot(x, comparison.difference(quantity, name), **style)
+            axes.plot(x, ordered(comparison.difference(quantity, name)), **style)
     axes.set_xlabel(label(varied, entry_unit(varied)))
     other = "measured" if agreement is not None else names[0]
     axes.set_ylabel(label(f"law $-$ {other}", QUANTITIES[quantity].unit_in(comparison.scene)))
@@ -226,9 +237,36 @@ def forces_over_contact(axes: Axes, comparison: Comparison) -> Axes:
     return axes
 
 
-def _abscissa(comparison: Comparison, agreement: Agreement | None) -> tuple[str, Any]:
-    """Return what to draw against: what the measurement varied, or the sweep's first entry."""
-    name = agreement.measured.against if agreement else next(iter(comparison.varied))
-    if name in comparison.varied:
-        return name, np.asarray(comparison.varied[name])
-    return name, np.full(comparison.scene.shape, np.nan)
+def _axes(comparison: Comparison) -> Mapping[str, Any]:
+    """Return the entries that vary independently, where there are several."""
+    scene = comparison.scene
+    return scene.axes if isinstance(scene, Grid) and len(scene.axes) > 1 else {}
+
+
+def _abscissa(
+    comparison: Comparison, agreement: Agreement | None
+) -> tuple[str, Any, Callable[[Any], Any]]:
+    """Return the name and the values to draw against, and what brings a quantity in their order.
+
+    That is what the measurement varied; or else the sweep's first entry, or of several that vary
+    independently the one of most values. Over these, NaN parts one curve from the next.
+    """
+    several = _axes(comparison)
+    if agreement is not None:
+        name = agreement.measured.against
+    elif several:
+        name = max(several, key=lambda one: len(several[one]))
+    else:
+        name = next(iter(comparison.varied))
+    if name not in comparison.varied:
+        return name, np.full(comparison.scene.shape, np.nan), np.asarray
+    x = np.asarray(comparison.varied[name])
+    if not several:
+        return name, x, np.asarray
+    sizes, along = [len(values) for values in several.values()], list(several).index(name)
+
+    def ordered(values: Any) -> Any:
+        curves = np.moveaxis(np.reshape(values, sizes), along, -1).reshape(-1, sizes[along])
+        return np.pad(curves, ((0, 0), (0, 1)), constant_values=np.nan).ravel()
+
+    return name, ordered(x), ordered

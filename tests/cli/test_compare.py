@@ -9,10 +9,12 @@ import math
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
-from contactlab import Simulation, read_scene
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scene
 from contactlab.analysis.compare import compare
 from contactlab.cli import progress
+from contactlab.figures.comparison import differences, laws_over_sweep
 from tests.tangential_laws import Creator
 
 BOTH = ("--tangential", "coulomb,frictionless")
@@ -106,6 +108,61 @@ def test_a_dollar_in_a_label_begins_no_formula(run, measured, tmp_path):
     measured.write_text(text, encoding="utf-8")
     ran = run("compare", measured, *BOTH, "--figure", tmp_path / "figure.png")
     assert (ran.status, ran.err) == (0, "")
+
+
+def curves(axes):
+    """Return the curves on some axes, parted at NaN, as arrays of shape (points, 2)."""
+    found = []
+    for line in axes.lines:
+        points = np.transpose(line.get_data())
+        gaps = np.flatnonzero(np.isnan(points[:, 0]))
+        found += [part[~np.isnan(part[:, 0])] for part in np.split(points, gaps)]
+    return [part for part in found if len(part) > 1]
+
+
+@pytest.mark.parametrize("speeds_first", [True, False])
+def test_of_two_entries_that_vary_the_longer_is_the_abscissa(tmp_path, speeds_first):
+    """A line from the end of one curve to the start of the next would say nothing."""
+    entries = ["friction_coefficient = [0.05, 0.2]\n", "angle_deg = [10.0, 40.0, 70.0]\n"]
+    path = tmp_path / "product.toml"
+    path.write_text(
+        "[sphere]\nradius = 0.01\nmaterial = 'steel'\n[target]\nkind = 'half-space'\n"
+        "material = 'steel'\n[impact]\nspeed = 1.0\n[sweep]\nproduct = true\n"
+        + "".join(entries if speeds_first else entries[::-1])
+    )
+    comparison = compare(read_scene(path), {"rigid": Simulation(tangential="coulomb")})
+    axes = laws_over_sweep(Figure().subplots(), comparison, "tangential_restitution")
+    assert "angle" in axes.get_xlabel()
+    assert "friction_coefficient" in axes.get_title()
+    drawn = curves(axes)
+    assert len(drawn) == 2
+    for points, friction in zip(drawn, (0.05, 0.2), strict=True):
+        rigid = 1.0 - 2.0 * friction / np.tan(np.radians(points[:, 0]))
+        np.testing.assert_allclose(points[:, 1], np.maximum(rigid, 5.0 / 7.0), atol=1e-9)
+    differences(Figure().subplots(), comparison, "tangential_restitution")
+
+
+def test_a_batch_without_a_file_is_drawn_over_what_varies():
+    steel = Material.named("steel")
+    angles = np.array([10.0, 40.0, 70.0])
+    impacts = Scene.at_angle(
+        Sphere(0.01, steel), HalfSpace(steel), 0.2, speed=1.0, angle_deg=angles
+    )
+    laws = {"rigid": Simulation(tangential="coulomb")}
+    for scene, word, x in (
+        (impacts, "normal (°)", angles),
+        (Scene.nondimensional(psi1=angles, chi=1.0), "psi_1", angles),
+        (Scene.nondimensional(psi1=2.0, chi=angles), "chi", angles),
+    ):
+        axes = laws_over_sweep(Figure().subplots(), compare(scene, laws), "psi2")
+        assert word in axes.get_xlabel()
+        np.testing.assert_allclose(axes.lines[0].get_xdata(), x)
+
+
+def test_a_pdf_has_fonts_that_journals_take(run, short_sweep, tmp_path):
+    path = tmp_path / "figure.pdf"
+    assert run("compare", short_sweep, *BOTH, "--figure", path).status == 0
+    assert b"/Type3" not in path.read_bytes()
 
 
 @pytest.mark.parametrize(
