@@ -5,12 +5,14 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Iterable
-from importlib import resources
+from importlib import metadata, resources
 from typing import Any
 
 #: The section of a NumPy docstring, to the next heading or the end.
 SECTION = re.compile(r"^References\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", re.MULTILINE | re.DOTALL)
-DOI = re.compile(r"10\.\d{4,9}/[^\s,;]+[^\s,;.]")
+DOI = re.compile(r"10\.\d{4,9}/[^\s,;}]+[^\s,;.}]")
+#: The year of a work, as sources in words have it.
+YEAR = re.compile(r"\b(?:19|20)\d\d(?=\))")
 
 
 def references(law: Any) -> list[str]:
@@ -25,11 +27,21 @@ def references(law: Any) -> list[str]:
     return [" ".join(entry.split()) for entry in entries]
 
 
+def software() -> str:
+    """Return the BibTeX entry of contactlab itself, with its version."""
+    version = metadata.version("contactlab")
+    return (
+        "@misc{contactlab,\n  author = {{The contactlab developers}},\n"
+        f"  title = {{contactlab}},\n  note = {{Version {version}, software}}\n}}"
+    )
+
+
 def bibtex(texts: Iterable[str]) -> str:
     """Return BibTeX entries for sources in words.
 
-    A source with a DOI or a name and a year that ``contactlab/references.bib`` knows has its
-    entry from there; any other is an entry of its own with the words as a note.
+    A work with a DOI or a name and a year that ``contactlab/references.bib`` knows has its entry
+    from there. A source that names a work which is not there has an entry of its own besides, with
+    the words as a note: no work is lost.
     """
     known = _known()
     found: dict[str, str] = {}
@@ -37,18 +49,23 @@ def bibtex(texts: Iterable[str]) -> str:
         keys = [key for key, (entry, names) in known.items() if _names(text, entry, names)]
         for key in keys:
             found[key] = known[key][0]
-        if not keys:
+        entries = "".join(known[key][0] for key in keys)
+        if not keys or any(mark not in entries for mark in DOI.findall(text) + YEAR.findall(text)):
             found[f"source{number}"] = f"@misc{{source{number},\n  note = {{{text}}}\n}}"
     return "\n\n".join(found.values())
 
 
 def _names(text: str, entry: str, names: tuple[str, str]) -> bool:
-    """Return whether a source in words is an entry: by its DOI, or by first author and year."""
+    """Return whether a source in words names an entry: by its DOI, or by first author and year.
+
+    A name and a year with another DOI behind them are another work of that year.
+    """
     doi = DOI.search(entry)
     if doi is not None and doi[0] in text:
         return True
     author, year = names
-    return re.search(rf"\b{re.escape(author)}\b[^;]*\b{year}\b", text) is not None
+    named = re.search(rf"\b{re.escape(author)}\b[^;]*?\b{year}\)(?P<rest>[^;]*)", text)
+    return named is not None and (doi is None or DOI.search(named["rest"]) is None)
 
 
 def _known() -> dict[str, tuple[str, tuple[str, str]]]:

@@ -1,33 +1,39 @@
-"""Print the sources of a scene's data and of its laws as BibTeX.
+"""Print the sources of a scene's data, of its laws and of contactlab as BibTeX.
 
 Examples
 --------
   contactlab cite examples/kharaz2001.toml
-  contactlab cite --psi1 1.2 --chi 1.4412 --tangential springs
+  contactlab cite --tangential fronts,coulomb,mindlin_cap > used.bib
 """
 
 from __future__ import annotations
 
 import argparse
 
-from contactlab.citations import bibtex, references
+from contactlab.citations import bibtex, references, software
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import add_scene, given
+from contactlab.cli.compare import simulations
+from contactlab.scene_file import LawChoice, read_scene
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the scene and the laws."""
-    add_scene(parser)
+    """Add the scene, without which there are no data to cite, and the laws."""
+    parser.add_argument("scene", nargs="?", metavar="SCENE.toml", help="a scene or a sweep")
+    shared.add_laws(parser, many=True)
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Print the entries, the data's first."""
-    file, _, simulation = given(arguments)
+    """Print the entries, the data's first and contactlab's last."""
+    file = read_scene(arguments.scene) if arguments.scene else None
+    laws = file.laws if file else LawChoice()
+    arguments.tangential = arguments.tangential or [laws.resolved().tangential]
     texts = []
     if file is not None:
         texts += [file.citation] if file.citation else []
         texts += [measured.source for measured in file.measured]
-    for law in (simulation.normal, simulation.tangential, simulation.integrator):
-        texts += references(law)
-    print(bibtex(dict.fromkeys(" ".join(text.split()) for text in texts)))
+    for simulation in simulations(arguments, laws).values():
+        for law in (simulation.normal, simulation.tangential, simulation.integrator):
+            texts += references(law)
+    print(bibtex(dict.fromkeys(" ".join(text.split()) for text in texts)), end="\n\n")
+    print(software())
     return shared.OK

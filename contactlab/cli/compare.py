@@ -79,10 +79,15 @@ def execute(arguments: argparse.Namespace) -> int:
     for quantity in arguments.quantity or ():
         quantity_named(quantity, where="--quantity")
     file = read_scene(arguments.scene or DEFAULT_SCENE)
-    simulations = _all(arguments, file) if arguments.all else _simulations(arguments, file)
+    if arguments.all:
+        compared = _all(arguments, file)
+    else:
+        own = file.laws.resolved().tangential
+        arguments.tangential = arguments.tangential or list(dict.fromkeys([own, *DEFAULT_LAWS]))
+        compared = simulations(arguments, file.laws)
     comparison = compare(
         file,
-        simulations,
+        compared,
         history=bool(arguments.figure) and not arguments.all,
         estimate_error=arguments.estimate_error or arguments.all,
         progress=shared.progress(arguments.progress, "runs"),
@@ -93,13 +98,13 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.json:
         content = to_dict(comparison, quantities) | {"title": file.title}
         if arguments.all:
-            found = scores(comparison, simulations)
+            found = scores(comparison, compared)
             content["scores"] = [plain_score(score) for score in found]
         print(json.dumps(content, indent=2, allow_nan=False))
     elif arguments.csv:
         write_csv(comparison, quantities, sys.stdout)
     elif arguments.all:
-        found = scores(comparison, simulations)
+        found = scores(comparison, compared)
         print(side_by_side.describe_scores(found, comparison, file))
     else:
         print(side_by_side.describe(comparison, quantities, file))
@@ -147,33 +152,31 @@ def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation
     return found.simulations
 
 
-def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation]:
+def simulations(arguments: argparse.Namespace, laws: LawChoice) -> dict[str, Simulation]:
     """Return every combination of the laws asked for, named by what differs between them.
 
-    A file's integrator is taken for the laws that it runs, another that suits for the others.
+    ``laws`` says which where the arguments do not. Its integrator is taken for the laws that it
+    runs, another that suits for the others.
     """
-    asked = {kind: getattr(arguments, kind) or [getattr(file.laws, kind)] for kind in KINDS}
-    if arguments.tangential is None:
-        own = file.laws.resolved().tangential
-        asked["tangential"] = list(dict.fromkeys([own, *DEFAULT_LAWS]))
+    asked = {kind: getattr(arguments, kind) or [getattr(laws, kind)] for kind in KINDS}
     asked = {
         kind: [name and name.removeprefix(f"{kind}.") for name in names]
         for kind, names in asked.items()
     }
     several = [kind for kind in KINDS if len(asked[kind]) > 1] or ["tangential"]
-    simulations = {}
+    found = {}
     used: set[str] = set()
     for combination in itertools.product(*asked.values()):
         chosen = dict(zip(KINDS, combination, strict=True))
-        choice = file.laws.choose(**chosen)
+        choice = laws.choose(**chosen)
         choice = (choice if arguments.integrator else choice.suited()).resolved()
         settings = {path: value for path, value in arguments.settings if _knows(choice, path, used)}
         name = " + ".join(getattr(choice, kind) for kind in several)
-        simulations[name] = choice.set(settings).simulation()
+        found[name] = choice.set(settings).simulation()
     for path, _ in arguments.settings:
         if path not in used:
-            raise ValueError(f"--set {path}: none of the laws compared has this option")
-    return simulations
+            raise ValueError(f"--set {path}: none of the laws asked for has this option")
+    return found
 
 
 def _knows(choice: LawChoice, path: str, used: set[str]) -> bool:

@@ -7,7 +7,8 @@ import re
 import pytest
 
 from contactlab import create
-from contactlab.citations import bibtex, references
+from contactlab.citations import DOI, YEAR, bibtex, references
+from contactlab.registry import REGISTRY
 from tests.cli.conftest import EXAMPLES
 from tests.core.test_notebook import Balanced
 
@@ -66,7 +67,39 @@ def test_cite_prints_data_and_laws(run):
         "maw1976",
         "jaeger1995",
         "popov2015",
+        "contactlab",
     ]
+
+
+def test_cite_takes_all_laws_that_were_compared(run):
+    ran = run("cite", "--tangential", "fronts,coulomb,mindlin_cap")
+    assert ran.status == 0
+    keys = re.findall(r"^@\w+\{(\w+),", ran.out, re.MULTILINE)
+    assert keys == [
+        "maw1976", "ciavarella1998", "jaeger1998", "hairer1996", "mindlin1949", "thornton2011",
+        "direnzo2005", "contactlab",
+    ]  # fmt: skip
+    assert "did you mean" in run("cite", "--tangential", "coulomb,columb").err
+
+
+@pytest.mark.parametrize("name", REGISTRY.names())
+def test_every_work_that_a_law_names_has_an_entry(name):
+    """Neither lost beside another of the same source, nor left in words."""
+    texts = references(REGISTRY.law_class(name))
+    entries = bibtex(texts)
+    for mark in [mark for text in texts for mark in DOI.findall(text) + YEAR.findall(text)]:
+        assert mark in entries
+    assert "@misc" not in entries
+
+
+def test_a_work_beside_a_known_one_is_kept_in_words():
+    known = "Maw, Barber & Fawcett, Wear 38 (1976) 101-114"
+    assert "@misc" not in bibtex([known])
+    both = bibtex([f"{known}; Somebody, J. Odd Res. 1 (1900)"])
+    assert "maw1976" in both
+    assert "Odd Res" in both
+    other = bibtex(["Thornton, J. Odd Res. 1 (1991), doi:10.9999/odd"])
+    assert "thornton1991" not in other
 
 
 def test_a_source_that_is_not_known_is_kept_in_words():
