@@ -11,8 +11,10 @@ import numpy as np
 
 from contactlab.analysis.compare import Comparison
 from contactlab.analysis.scores import Score
+from contactlab.export import heading
 from contactlab.json_values import json_value
 from contactlab.quantities import QUANTITIES
+from contactlab.scene_file.entries import entry_unit
 
 CSV_HEADINGS = (
     "table", "quantity", "unit", "against", "x", "law", "value", "reference", "difference",
@@ -29,6 +31,7 @@ def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]
                 "status": json_value(np.array(run.result.status, dtype=object))
                 if comparison.scene.shape
                 else json_value(run.result.status),
+                "cautions": [str(sentence) for sentence in run.result.plan.cautions],
                 "psi2_numerical_error": _list(comparison.numerical_error(run.name)),
                 "values": {name: _list(comparison.values(name, run.name)) for name in quantities},
                 "differences": {
@@ -67,15 +70,20 @@ def plain_score(score: Score) -> dict[str, Any]:
 
 
 def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO) -> None:
-    """Write one row a value; the reference is the first law, or the measured value."""
+    """Write one row a value; the reference is the first law, or the measured value.
+
+    What varies besides the first entry has columns of its own at the end.
+    """
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(CSV_HEADINGS)
+    others = dict(list(comparison.varied.items())[1:])
+    headings = [heading(name, entry_unit(name), comparison.scene) for name in others]
+    writer.writerow([*CSV_HEADINGS, *headings])
     for name in quantities:
         unit = QUANTITIES[name].unit_in(comparison.scene)
         against, x = next(iter(comparison.varied.items()), ("", np.nan))
         for law in comparison.names:
             values, apart = comparison.values(name, law), comparison.difference(name, law)
-            for row in _rows(x, values, values - apart, apart):
+            for row in _rows(x, values, values - apart, apart, *others.values()):
                 writer.writerow(["scene", name, unit, against, row[0], law, *row[1:]])
     for agreement in comparison.agreements:
         measured = agreement.measured
@@ -84,7 +92,7 @@ def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO)
             columns = (measured.x, values, measured.values, agreement.difference(law))
             for row in _rows(*columns):
                 start = ["measured", measured.quantity, unit, measured.against]
-                writer.writerow([*start, row[0], law, *row[1:]])
+                writer.writerow([*start, row[0], law, *row[1:], *("" for _ in others)])
 
 
 def _rows(*columns: Any) -> Iterator[list[Any]]:

@@ -19,7 +19,6 @@ import inspect
 import itertools
 import json
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -57,12 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="A,B,...",
         help="what to compare (default: what was measured, or psi2)",
     )
-    parser.add_argument(
-        "--figure",
-        type=shared.file_of(*shared.PICTURES),
-        metavar="FILE",
-        help="also draw the comparison",
-    )
+    shared.add_figure(parser, "also draw the comparison")
     parser.add_argument(
         "--estimate-error",
         action="store_true",
@@ -93,8 +87,7 @@ def execute(arguments: argparse.Namespace) -> int:
         progress=shared.progress(arguments.progress, "runs"),
     )
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
-    draw = _draw_all if arguments.all else _draw
-    saved = shared.save((arguments.figure, lambda path: draw(path, comparison, quantities)))
+    saved = shared.save((arguments.figure, lambda path: _draw(path, arguments, comparison)))
     if arguments.json:
         content = to_dict(comparison, quantities) | {"title": file.title}
         if arguments.all:
@@ -114,16 +107,14 @@ def execute(arguments: argparse.Namespace) -> int:
     return shared.FAILED if failures else saved
 
 
-def _draw(path: Path, comparison: Comparison, quantities: Sequence[str]) -> None:
-    from contactlab.cli.drawing import draw_comparison  # matplotlib only when drawing
+def _draw(path: Path, arguments: argparse.Namespace, comparison: Comparison) -> None:
+    from contactlab.cli.drawing import draw_all, draw_comparison  # matplotlib only when drawing
 
-    draw_comparison(path, comparison, quantities)
-
-
-def _draw_all(path: Path, comparison: Comparison, quantities: Sequence[str]) -> None:
-    from contactlab.cli.drawing import draw_all  # matplotlib only when drawing
-
-    draw_all(path, comparison, quantities[0])
+    quantities = arguments.quantity or side_by_side.default_quantities(comparison)
+    if arguments.all:
+        draw_all(path, comparison, quantities[0], look=arguments.style)
+    else:
+        draw_comparison(path, comparison, quantities, look=arguments.style)
 
 
 def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation]:

@@ -14,12 +14,24 @@ from contactlab.figures.comparison import (
     laws_over_sweep,
 )
 from contactlab.figures.files import save
+from contactlab.figures.style import Look
 
 
-def draw_comparison(path: Path, comparison: Comparison, quantities: Sequence[str]) -> None:
-    """Draw the laws over the sweep, or over one contact, and their differences."""
+def draw_comparison(
+    path: Path, comparison: Comparison, quantities: Sequence[str], *, look: Look = "print"
+) -> None:
+    """Draw the laws over the sweep, or over one contact, and their differences.
+
+    Parameters
+    ----------
+    path : Path
+    comparison : Comparison
+    quantities : sequence of str
+        A column of the picture each.
+    look : {"print", "slides"}
+    """
     if not comparison.scene.shape:
-        save(path, lambda axes: forces_over_contact(axes, comparison))
+        save(path, lambda axes: forces_over_contact(axes, comparison), look=look)
         return
     panels: list[tuple[str, Any]] = []
     for name in quantities:
@@ -36,16 +48,24 @@ def draw_comparison(path: Path, comparison: Comparison, quantities: Sequence[str
                 upper.get_legend().remove()  # the same laws in the same colours
         axes[0, 0].figure.align_ylabels()
 
-    save(path, draw, rows=2, columns=len(panels), heights=(2.4, 1.0))
+    save(path, draw, rows=2, columns=len(panels), heights=(2.4, 1.0), look=look)
 
 
-def draw_all(path: Path, comparison: Comparison, quantity: str) -> None:
-    """Draw every law over the sweep, and below what parts it from the first."""
+def draw_all(path: Path, comparison: Comparison, quantity: str, *, look: Look = "print") -> None:
+    """Draw every law over the sweep, and below what parts it from the first.
+
+    Parameters
+    ----------
+    path : Path
+    comparison : Comparison
+    quantity : str
+    look : {"print", "slides"}
+    """
 
     def draw(axes: Any) -> None:
         all_laws(axes[0, 0], axes[1, 0], comparison, quantity)
 
-    save(path, draw, rows=2, heights=(1.9, 1.0), wide=True)
+    save(path, draw, rows=2, heights=(1.9, 1.0), wide=True, look=look)
 
 
 def _labels(axes: Any) -> list[str]:

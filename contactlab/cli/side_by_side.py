@@ -36,7 +36,7 @@ def default_quantities(comparison: Comparison) -> list[str]:
 
 
 def describe(comparison: Comparison, quantities: Sequence[str], file: SceneFile) -> str:
-    """Return title, tables, agreement with measured values, and cost."""
+    """Return title, tables, agreement with measured values, cautions and cost."""
     parts = [part for part in (file.title, _wrapped(file.citation)) if part]
     of: dict[str, list[Agreement]] = {name: [] for name in quantities}
     for agreement in comparison.agreements:
@@ -50,8 +50,8 @@ def describe(comparison: Comparison, quantities: Sequence[str], file: SceneFile)
         parts += [_one_impact(comparison, quantities), *map(_points, comparison.agreements)]
     if comparison.agreements:
         parts.append(_agreement(comparison))
-    parts.append(_cost(comparison))
-    return "\n\n".join(parts)
+    parts += [_cautions(comparison), _cost(comparison)]
+    return "\n\n".join(part for part in parts if part)
 
 
 def describe_scores(scores: Sequence[Score], comparison: Comparison, file: SceneFile) -> str:
@@ -137,6 +137,19 @@ def _agreement(comparison: Comparison) -> str:
             rows.append(row)
     headings = ["law - measured", "law", "rms", "largest", "unit", "where largest"]
     return table(headings, rows, digits=3)
+
+
+def _cautions(comparison: Comparison) -> str:
+    """Return what the plans are wary of, each sentence once with the laws that it is about."""
+    about: dict[str, list[str]] = {}
+    for run in comparison.runs:
+        for sentence in run.result.plan.cautions:
+            about.setdefault(str(sentence), []).append(run.name)
+    told = []
+    for text, laws in about.items():
+        everybody = len(laws) == len(comparison.runs) > 1
+        told.append(f"caution, {'all laws' if everybody else ', '.join(laws)}: {text}")
+    return "\n".join(textwrap.fill(line, width=96, subsequent_indent="  ") for line in told)
 
 
 def _cost(comparison: Comparison) -> str:

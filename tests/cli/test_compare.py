@@ -142,6 +142,41 @@ def test_of_two_entries_that_vary_the_longer_is_the_abscissa(tmp_path, speeds_fi
     differences(Figure().subplots(), comparison, "tangential_restitution")
 
 
+def test_csv_tells_every_entry_that_varies(run, tmp_path):
+    path = tmp_path / "product.toml"
+    path.write_text(
+        "[nondimensional]\npsi1 = 6.0\n[sweep]\nproduct = true\nchi = [1.0, 1.2]\n"
+        "psi1 = [0.0, 7.0]\n"
+    )
+    rows = list(csv.DictReader(io.StringIO(run("compare", path, *BOTH, "--csv").out)))
+    told = [(float(row["x"]), float(row["psi1 (1)"])) for row in rows if row["law"] == "coulomb"]
+    assert told == [(1.0, 0.0), (1.0, 7.0), (1.2, 0.0), (1.2, 7.0)]
+
+
+def test_cautions_of_the_plans_are_told_with_their_laws(run, tmp_path):
+    path = tmp_path / "unlike.toml"
+    path.write_text(
+        "[sphere]\nradius = 0.01\nmaterial = 'steel'\n[target]\nkind = 'half-space'\n"
+        "material = 'soda-lime glass'\n[impact]\nspeed = 1.0\nangle_deg = 10.0\n"
+        "friction_coefficient = 0.1\n"
+    )
+    laws = ("--tangential", "fronts,mindlin_cap")
+    out = " ".join(run("compare", path, *laws).out.split())
+    assert out.count("caution, all laws: unlike bodies") == 1
+    assert "caution, mindlin_cap: one spring" in out
+    told = json.loads(run("compare", path, *laws, "--json").out)["laws"]["fronts"]["cautions"]
+    assert len(told) == 1
+
+
+def test_the_look_of_a_figure(run, short_sweep, tmp_path):
+    sizes = []
+    for style in ("print", "slides"):
+        path = tmp_path / f"{style}.svg"
+        assert run("compare", short_sweep, *BOTH, "--figure", path, "--style", style).status == 0
+        sizes.append(path.read_text("utf-8").count("DejaVuSans"))
+    assert sizes[0] == 0 < sizes[1]
+
+
 def test_a_batch_without_a_file_is_drawn_over_what_varies():
     steel = Material.named("steel")
     angles = np.array([10.0, 40.0, 70.0])
