@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, TypeVar
 
@@ -62,7 +62,7 @@ def grid(*bodies: Any, **entries: Any) -> Grid:
     *bodies
         As ``Scene`` takes them; none for ``psi1`` and ``chi``.
     **entries
-        As ``Scene``, or ``Scene.nondimensional``, takes them.
+        As ``Scene``, ``Scene.at_angle`` or ``Scene.nondimensional`` takes them.
 
     Raises
     ------
@@ -77,8 +77,12 @@ def grid(*bodies: Any, **entries: Any) -> Grid:
                 raise refuse(name, values, "must be a number or a plain list of numbers")
     if not axes:
         raise refuse("entries", tuple(entries), "none of them varies", "give a list of one or more")
-    spaceless = not bodies and {"psi1", "chi"} & set(entries)
-    made = (Scene.nondimensional if spaceless else Scene)(*bodies, **(entries | product(axes)))
+    make: Callable[..., Scene] = Scene
+    if not bodies and {"psi1", "chi"} & set(entries):
+        make = Scene.nondimensional
+    elif {"speed", "angle_deg"} & set(entries):
+        make = Scene.at_angle
+    made = make(*bodies, **(entries | product(axes)))
     return over(made, axes)
 
 

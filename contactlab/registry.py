@@ -177,7 +177,12 @@ class Registry:
         if kind in KINDS and others:
             hint = f"{short!r} is a law of another kind, {others[0]!r}; "
         else:
-            hint = nearest(name, others or names, cutoff=0.0 if others else 0.5)
+            # The kind, which all of them begin with, would make any two names alike.
+            import difflib  # only for those who misspell
+
+            known = {full.rpartition(".")[2]: full for full in others or names}
+            found = difflib.get_close_matches(short, known, n=1, cutoff=0.0 if others else 0.5)
+            hint = f"did you mean {known[found[0]]!r}? " if found else ""
         return refuse(
             "name", name, "no such law is installed", f"{hint}installed: {', '.join(names)}"
         )

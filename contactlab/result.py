@@ -248,7 +248,7 @@ class ImpactResult:
         Parameters
         ----------
         x, y : str, optional
-            Columns of the exports, such as ``"psi1"``, ``"psi2"``, ``"rebound_angle_deg"``.
+            Columns of the exports, angles also in degrees: ``"psi1"``, ``"rebound_angle_deg"``.
         axes : Axes, optional
             Where to draw; a new figure of ``matplotlib.pyplot`` by default.
 

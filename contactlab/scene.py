@@ -187,6 +187,12 @@ class Scene:
         remedy = "give speed in m/s and angle_deg in degrees from the normal"
         fast = real("speed", speed, rule=POSITIVE, remedy=remedy)
         angle = np.radians(real("angle_deg", angle_deg, rule=OBLIQUE, remedy=remedy))
+        batch.common_shape(
+            {"speed": np.shape(fast), "angle_deg": np.shape(angle)},
+            what="Scene.at_angle: the shapes",
+            remedy="give arrays of equal length, or every combination by "
+            "Scene.grid(ball, plate, friction_coefficient=0.2, speed=[1, 2], angle_deg=[10, 20])",
+        )
         ahead, aside = np.cos(angle), np.sin(angle)
         return cls(sphere, target, friction_coefficient, fast * ahead, fast * aside, spin)
 
@@ -230,15 +236,17 @@ class Scene:
         """Return the batch of every combination of some entries, the last varying fastest.
 
         ``Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25))``, or bodies first and the
-        entries of ``Scene`` by name: lists for those that vary, numbers for the others. A sweep
-        of it gives tables and arrays with named dimensions: ``ImpactResult.to_xarray``.
+        entries of ``Scene`` or of ``Scene.at_angle`` by name: lists for those that vary, numbers
+        for the others. A sweep of it gives tables and arrays with named dimensions:
+        ``ImpactResult.to_xarray``.
 
         Parameters
         ----------
         *bodies : Sphere, HalfSpace, optional
             Sphere and target; none with psi1 and chi.
         **entries : float or list
-            Of ``Scene``, in its units, or psi1 and chi.
+            Of ``Scene`` or, with speed and angle_deg, of ``Scene.at_angle``, in their units; or
+            psi1 and chi.
 
         Raises
         ------

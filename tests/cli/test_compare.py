@@ -206,6 +206,7 @@ def test_a_pdf_has_fonts_that_journals_take(run, short_sweep, tmp_path):
         (("--tangential", "coulomb,columb"), "did you mean"),
         (("--tangential", ","), "at least one"),
         (("--tangential", "coulomb,coulomb"), "twice"),
+        (("--quantity", "e_t", *BOTH), "did you mean 'tangential_restitution'"),
         (("--quantity", "psi3", *BOTH), "did you mean 'psi2'"),
         (("--figure", "figure.bmp"), ".png"),
         (("--json", "--csv"), "not allowed"),

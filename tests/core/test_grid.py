@@ -187,3 +187,20 @@ def test_a_file_that_does_not_is_refused(tmp_path, product, words):
     path.write_text(SCENE.format(product=product), encoding="utf-8")
     with pytest.raises(ValueError, match=words):
         read_scene(path)
+
+
+def test_speeds_and_angles_make_a_grid_too():
+    ball, plate = Sphere(0.01, STEEL), HalfSpace(STEEL)
+    speeds, angles = [0.5, 5.0], [10.0, 45.0, 80.0]
+    grid = Scene.grid(ball, plate, friction_coefficient=0.1, speed=speeds, angle_deg=angles)
+    assert grid.dimensions == (2, 3)
+    one = Scene.at_angle(ball, plate, 0.1, speed=5.0, angle_deg=45.0)
+    assert grid.take(4) == one
+    frame = RIGID.sweep(grid).check().to_dataframe()
+    assert frame.index.names == ["speed", "angle_deg"]
+    slips = 1.0 - 2.0 * 0.1 / np.tan(np.radians(80.0))
+    assert frame.tangential_restitution[0.5, 80.0] == pytest.approx(slips, rel=1e-12)
+    with pytest.raises(ValueError, match="angle_deg"):
+        Scene.grid(ball, plate, friction_coefficient=0.1, speed=speeds)
+    with pytest.raises(ValueError, match=r"speed \(2,\), angle_deg \(3,\).*Scene.grid"):
+        Scene.at_angle(ball, plate, 0.1, speed=speeds, angle_deg=angles)

@@ -47,6 +47,10 @@ def test_unknown_name_gives_the_nearest_and_the_list():
         ValueError, match=r"did you mean 'tangential.coulomb'.*installed: .*tangential.springs"
     ):
         contactlab.create("tangential.columb")
+    with pytest.raises(
+        ValueError, match=r"'tangential.exact': no such law is installed; installed"
+    ):
+        contactlab.create("tangential.exact")  # like none but for the kind
     with pytest.raises(ValueError, match=r"did you mean 'normal.hertz'"):
         contactlab.create("hertz")
 
