@@ -52,7 +52,10 @@ print(f"gross slip from psi1 = 4 chi - 1 = {4.0 * SOLID_CHI - 1.0:.2f} on")
 # %%
 # **Fig. 3: where the mass is.** At the same psi1 = 1.2 a hollow sphere and one with a dense core
 # differ: the less the moment of inertia, the greater chi, and the more often the force swings.
-drawn(3)
+for curve in drawn(3).curves:
+    if curve.parameter == curve.parameter:
+        turns = np.count_nonzero(np.diff(np.sign(curve.y[1:-1])))
+        print(f"radius of gyration {curve.parameter:4.2f} R: turns of the force: {turns}")
 
 # %%
 # **Fig. 4: the rebound over chi.** The annuli of the paper lie within their numerical error of
