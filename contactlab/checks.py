@@ -148,6 +148,8 @@ def paired(first: str, second: str, values: tuple[Real, Real]) -> tuple[Any, Any
     """Return two quantities as arrays of one shape, or refuse shapes that do not fit."""
     if np.ndim(values[0]) and np.shape(values[0]) == np.shape(values[1]):
         return values  # broadcasting takes longer than this
+    if isinstance(values[0], float) and isinstance(values[1], float):
+        return np.asarray(values[0]), np.asarray(values[1])
     try:
         one, other = np.broadcast_arrays(*values)
     except ValueError:

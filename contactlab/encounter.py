@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any, NamedTuple
 
 import attrs
@@ -31,6 +32,9 @@ def _vector(value: object, field: attrs.Attribute[Any]) -> Array:
     remedy = f"give three numbers in {field.metadata['unit']}, or an array of shape (..., 3)"
     if field.metadata["unit"] == "1":
         remedy = "give three numbers, or an array of shape (..., 3)"
+    alone = _alone(value)
+    if alone is not None:
+        return alone
     if type(value) is np.ndarray and value.dtype == np.float64 and value.size:
         # no temporary arrays: a million vectors are common; NaN fails both comparisons
         found = value if value.min() >= -LARGEST and value.max() <= LARGEST else None
@@ -44,6 +48,20 @@ def _vector(value: object, field: attrs.Attribute[Any]) -> Array:
         raise refuse(field.name, told, "must be a vector of three numbers", remedy)
     vectors.flags.writeable = False
     return vectors
+
+
+def _alone(value: Any) -> Array | None:
+    """Return one vector of three plain numbers without a detour, as loops give it; else None."""
+    numbers = value.tolist() if type(value) is np.ndarray and value.shape == (3,) else value
+    if type(numbers) not in (list, tuple) or len(numbers) != 3:
+        return None
+    for each in numbers:
+        plain = isinstance(each, float) or type(each) is int
+        if not (plain and -LARGEST <= each <= LARGEST):
+            return None
+    found = np.array(numbers, dtype=np.float64)
+    found.flags.writeable = False
+    return found
 
 
 def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
@@ -128,7 +146,7 @@ class Encounter:
             if body is None:
                 raise refuse(name, body, "must be given")
         shapes = {name: value.shape[:-1] for name, value in self._vectors().items()}
-        shapes |= {name: np.shape(value) for name, value in self._numbers().items()}
+        shapes |= {name: getattr(value, "shape", ()) for name, value in self._numbers().items()}
         shape = batch.common_shape(
             shapes,
             what="Encounter: the batch shapes",
@@ -146,8 +164,7 @@ class Encounter:
             raise refuse("normal", self.normal, f"must be at least {LEAST:g} long", "not zero")
 
     def _vectors(self) -> dict[str, Array]:
-        names = [field.name for field in attrs.fields(Encounter) if "vector" in field.metadata]
-        return {name: getattr(self, name) for name in names}
+        return {name: getattr(self, name) for name in _fields(Encounter, "vector")}
 
     def _numbers(self) -> dict[str, Real]:
         """Return every number, by name."""
@@ -156,9 +173,10 @@ class Encounter:
             material = body.material
             parts: list[Any] = [body, material] if isinstance(body, Sphere) else [material]
             for part in parts:
-                for field in attrs.fields(type(part)):
-                    if "unit" in field.metadata and getattr(part, field.name) is not None:
-                        found[f"{name}.{field.name}"] = getattr(part, field.name)
+                kind: Any = type(part)
+                for own in _fields(kind, "unit"):
+                    if getattr(part, own) is not None:
+                        found[f"{name}.{own}"] = getattr(part, own)
         return found
 
     def take(self, part: Any) -> Encounter:
@@ -207,7 +225,7 @@ class Encounter:
     def contact(self) -> Contact:
         """Return how the surfaces meet, before the impact; of one encounter or a batch."""
         n1, n2, n3 = components(self.normal)
-        length = np.sqrt(n1 * n1 + n2 * n2 + n3 * n3)
+        length = _root(n1 * n1 + n2 * n2 + n3 * n3)
         n1, n2, n3 = n1 / length, n2 / length, n3 / length
         u1, u2, u3 = _difference(self.velocity, self.target_velocity)
         approach = u1 * n1 + u2 * n2 + u3 * n3
@@ -215,7 +233,7 @@ class Encounter:
         u1 = u1 + (w2 * n3 - w3 * n2) - approach * n1
         u2 = u2 + (w3 * n1 - w1 * n3) - approach * n2
         u3 = u3 + (w1 * n2 - w2 * n1) - approach * n3
-        slip = np.sqrt(u1 * u1 + u2 * u2 + u3 * u3)
+        slip = _root(u1 * u1 + u2 * u2 + u3 * u3)
         one = 1.0 / (slip + (slip == 0.0))
         return Contact((n1, n2, n3), (u1 * one, u2 * one, u3 * one), approach, slip)
 
@@ -269,10 +287,24 @@ class Encounter:
         )
 
 
+@cache
+def _fields(kind: Any, word: str) -> tuple[str, ...]:
+    """Return names of the fields with this word in their metadata."""
+    return tuple(field.name for field in attrs.fields(kind) if word in field.metadata)
+
+
 def components(vectors: Array) -> tuple[Any, Any, Any]:
     """Return x, y and z of vectors, each contiguous, or a number of one vector."""
+    if vectors.ndim == 1:  # plain numbers, as one collision after another wants them
+        x, y, z = vectors.tolist()
+        return x, y, z
     x, y, z = np.ascontiguousarray(np.moveaxis(vectors, -1, 0))
     return x, y, z
+
+
+def _root(square: Any) -> Any:
+    """Return the square root of a plain number, as one, or of an array."""
+    return math.sqrt(square) if isinstance(square, float) else np.sqrt(square)
 
 
 def _difference(one: Array, other: Array) -> tuple[Any, Any, Any]:

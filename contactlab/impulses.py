@@ -165,8 +165,9 @@ def _push(moved: list[Array], part: Encounter, contact: Contact, push: Any, drag
         if not isinstance(body, Sphere):
             to[:], turned[:] = velocity, spin
             continue
-        inertia = body.mass * body.gyration_ratio * body.gyration_ratio * body.radius
-        ahead, aside, turn = sense * push / body.mass, sense * drag / body.mass, drag / inertia
+        ahead, aside = sense * push / body.mass, sense * drag / body.mass
+        # one after another: the moment of inertia of a tiny body is no float
+        turn = drag / body.mass / (body.gyration_ratio * body.gyration_ratio * body.radius)
         for k, (v, w) in enumerate(zip(components(velocity), components(spin), strict=True)):
             to[:, k] = v + (ahead * contact.normal[k] + aside * contact.along[k])
             turned[:, k] = w + turn * across[k]

@@ -118,6 +118,8 @@ def _polynomials(at: Array, count: int) -> Array:
 
 def _summed(at: Array, columns: Array) -> Array:
     """Return the sum of Chebyshev polynomials with coefficients of their own, by Clenshaw."""
+    if at.size == 1:  # plain numbers: a collision alone takes most of its time otherwise
+        return np.array([_sum(float(at[0]), columns[:, 0].tolist())])
     twice, one, two = 2.0 * at, columns[-1], np.zeros_like(at)
     for row in columns[-2:0:-1]:
         row -= two
@@ -125,3 +127,11 @@ def _summed(at: Array, columns: Array) -> Array:
         row += twice * one
         one = row
     return np.asarray(columns[0] + at * one - two)
+
+
+def _sum(at: float, column: list[float]) -> float:
+    """Return the same of one impact, to the last bit."""
+    twice, one, two = 2.0 * at, column[-1], 0.0
+    for each in column[-2:0:-1]:
+        one, two = (each - two) + twice * one, one
+    return (column[0] + at * one) - two

@@ -1,5 +1,7 @@
 """Encounters and collisions: what is refused, passed, told, and which scene they come to."""
 
+import math
+
 import attrs
 import numpy as np
 import pytest
@@ -187,11 +189,35 @@ def test_alone_and_together_are_the_same():
         *spheres, rng.uniform(0.0, 1.0, 30), normal=rng.normal(size=3),
         velocity=rng.normal(size=(30, 3)), spin=9.0 * rng.normal(size=(30, 3)),
     )  # fmt: skip
-    made = collide(met, separating="pass")
-    for k in range(30):
-        one = collide(met.take(k), separating="pass")
-        for name in ("velocity", "spin", "target_velocity", "target_spin", "impulse"):
-            assert getattr(one, name) == pytest.approx(getattr(made, name)[k], abs=1e-9), name
+    for e in (1.0, 0.9):
+        made = collide(met, restitution=e, separating="pass")
+        for k in range(30):
+            one = collide(met.take(k), restitution=e, separating="pass")
+            for name in ("velocity", "spin", "target_velocity", "target_spin", "impulse"):
+                assert getattr(one, name) == pytest.approx(getattr(made, name)[k], abs=1e-9), name
+
+
+def test_lists_tuples_and_arrays_are_the_same_vector():
+    wanted = meeting(velocity=np.array([[0.5, 0.0, -1.0]]))
+    for kind in (list, tuple, np.array, np.float32):
+        met = meeting(velocity=kind([0.5, 0.0, -1.0]), normal=kind([0, 0, -1]))
+        assert np.array_equal(met.velocity, wanted.velocity[0])
+        assert (met.velocity.dtype, met.shape, met.normal.dtype) == (np.float64, (), np.float64)
+        with pytest.raises(ValueError, match="read-only"):
+            met.velocity[0] = 1.0
+    for bad in ([math.nan, 0, 0], [1e101, 0, 0], [10**400, 0, 0], ["1", 0, 0]):
+        with pytest.raises(ValueError, match=r"^velocity = "):
+            meeting(velocity=bad)
+
+
+def test_the_spin_of_a_body_whose_moment_of_inertia_is_no_float():
+    """Friction gives it the spin, scaled, of a body 1e298 times as large."""
+    small = Sphere(1e-300, STEEL, mass=1e-30)
+    met = Encounter(small, small, 0.1, normal=(1, 0, 0), velocity=(1, 1, 0))
+    large = Encounter(
+        *[attrs.evolve(small, radius=0.01)] * 2, 0.1, normal=(1, 0, 0), velocity=(1, 1, 0)
+    )
+    assert collide(met).spin[2] == pytest.approx(1e298 * collide(large).spin[2], rel=1e-12)
 
 
 def test_parts_of_a_large_batch_are_the_whole(monkeypatch):
