@@ -98,6 +98,8 @@ class Collision:
         """Return how many collided, and how it went."""
         statuses = {status.name for status in np.ravel(np.array(self.status, dtype=object))}
         told = ", ".join(sorted(statuses))
+        if not self.encounter.shape and not self.collided:
+            told = "separate, passed through"
         if not self.encounter.shape:
             return f"Collision(velocity={self.velocity}, spin={self.spin}; {told})"
         count = int(np.sum(self.collided))
@@ -211,7 +213,9 @@ class Collision:
             return Simulation()
 
 
-@named_arguments("collide(encounter, Simulation(tangential='springs'))")
+@named_arguments(
+    "collide(Encounter(ball, plate, 0.2, normal=[0, 0, -1], velocity=v), restitution=0.9)"
+)
 def collide(
     encounter: Encounter,
     simulation: Simulation | None = None,
@@ -250,9 +254,15 @@ def collide(
     array([ 2.    , -0.1144,  0.    ])
     """
     if not isinstance(encounter, Encounter):
-        raise refuse("encounter", encounter, "must be an Encounter", "make one: Encounter(...)")
+        remedy = "make one: Encounter(...)"
+        if isinstance(encounter, list | tuple):
+            remedy = "make one of them all, with arrays of vectors, shape (..., 3)"
+        raise refuse("encounter", encounter, "must be an Encounter", remedy)
     if simulation is not None and not isinstance(simulation, Simulation):
-        raise refuse("simulation", simulation, "must be a Simulation", "or leave it out")
+        remedy = "or leave it out"
+        if isinstance(simulation, float):
+            remedy += f"; a restitution is given by name: restitution={simulation}"
+        raise refuse("simulation", simulation, "must be a Simulation", remedy)
     if separating not in SEPARATING:
         raise refuse("separating", separating, "must be 'refuse' or 'pass'")
     e = real("restitution", restitution, rule=RESTITUTION, remedy="leave it out for 1")

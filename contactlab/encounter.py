@@ -40,12 +40,20 @@ def _vector(value: object, field: attrs.Attribute[Any]) -> Array:
         found = value if value.min() >= -LARGEST and value.max() <= LARGEST else None
     else:
         found = None
+    if found is None and type(value) is np.ndarray and value.ndim > 1 and value.dtype.kind == "f":
+        where = np.argwhere(~(np.abs(value) <= LARGEST).all(axis=-1))
+        if where.size:
+            first = value[tuple(where[0])].tolist()
+            raise refuse(field.name, first, RANGE.sentence + _first(where), remedy)
     vectors = np.asarray(
         real(field.name, value, rule=RANGE, remedy=remedy) if found is None else found.copy()
     )
     if vectors.shape[-1:] != (3,):
-        told = value if vectors.ndim < 2 else vectors.shape
-        raise refuse(field.name, told, "must be a vector of three numbers", remedy)
+        if vectors.ndim < 2:
+            raise refuse(field.name, value, "must be a vector of three numbers", remedy)
+        if vectors.shape[0] == 3:
+            remedy = "x, y and z belong on the last axis: np.moveaxis(vectors, 0, -1)"
+        raise refuse(f"{field.name}.shape", vectors.shape, "must end with 3", remedy)
     vectors.flags.writeable = False
     return vectors
 
@@ -160,8 +168,12 @@ class Encounter:
                 "must be zero: a half-space does not spin",
                 "give target_velocity, that of its surface at the contact",
             )
-        if not math.sqrt(np.einsum("...i,...i->...", self.normal, self.normal).min()) >= LEAST:
-            raise refuse("normal", self.normal, f"must be at least {LEAST:g} long", "not zero")
+        length2 = np.einsum("...i,...i->...", self.normal, self.normal)
+        if not math.sqrt(length2.min()) >= LEAST:
+            where = np.argwhere(~(np.sqrt(length2) >= LEAST))
+            rule = f"must be at least {LEAST:g} long, not zero{_first(where)}"
+            first = self.normal[tuple(where[0])].tolist() if where.size else self.normal.tolist()
+            raise refuse("normal", first, rule, "two bodies at one place have no normal")
 
     def _vectors(self) -> dict[str, Array]:
         return {name: getattr(self, name) for name in _fields(Encounter, "vector")}
@@ -277,14 +289,19 @@ class Encounter:
         approach = np.broadcast_to(self.contact().approach, self.shape)
         where = np.argwhere(~(approach >= LEAST))
         first = tuple(where[0].tolist())
-        which = f" (the first of {len(where)} has index {list(first)})" if self.shape else ""
+        told = "bodies separate" if approach[first] < 0.0 else "bodies separate, or rest"
+        turned = "turn normal from the sphere to the target, or " if approach[first] < 0.0 else ""
         return refuse(
             "velocity, target_velocity",
             float(approach[first]),
-            f"bodies separate: the speed of approach, in m/s, must be positive{which}",
-            "turn normal from the sphere to the target, or let such pairs pass: "
-            "collide(encounter, separating='pass')",
+            f"{told}: the speed of approach, in m/s, must be positive{_first(where)}",
+            f"{turned}let such pairs pass: collide(encounter, separating='pass')",
         )
+
+
+def _first(where: Any) -> str:
+    """Return the index of the first of those at ``where``, in words; nothing of one encounter."""
+    return f" (the first of {len(where)} has index {where[0].tolist()})" if where.shape[1] else ""
 
 
 @cache

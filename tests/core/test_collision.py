@@ -113,10 +113,33 @@ def test_what_collide_refuses(bad):
             collide(meeting(), bad)
 
 
+def test_refusals_of_what_is_meant_otherwise():
+    with pytest.raises(ValueError, match=r"by name: restitution=0.95"):
+        collide(meeting(), 0.95)
+    with pytest.raises(ValueError, match="make one of them all"):
+        collide([meeting(), meeting()])
+    with pytest.raises(ValueError, match=r"collide\(encounter, simulation\)"):
+        Simulation().run(meeting())
+
+
+def test_refusals_of_a_batch_tell_the_first():
+    normals, velocities = np.ones((2, 3, 3)), -np.ones((2, 3, 3))
+    normals[1, 1:] = 0.0
+    velocities[0, 2, 1] = np.nan
+    with pytest.raises(ValueError, match=r"normal = \[0.0, 0.0, 0.0\].*of 2 has index \[1, 1\]"):
+        meeting(normal=normals)
+    with pytest.raises(ValueError, match=r"velocity = \[-1.0, nan, -1.0\].*1 has index \[0, 2\]"):
+        meeting(velocity=velocities)
+    with pytest.raises(ValueError, match=r"normal.shape = \(3, 5\).*np.moveaxis"):
+        meeting(normal=np.ones((3, 5)))
+
+
 def test_bodies_that_separate_are_refused_by_name():
     with pytest.raises(ValueError, match=r"velocity, target_velocity = -1.0: bodies separate"):
         collide(meeting(normal=(0, 0, 1)))
-    with pytest.raises(ValueError, match="bodies separate"):
+    with pytest.raises(
+        ValueError, match=r"= 0.0: bodies separate, or rest: .*; let such pairs pass"
+    ):
         collide(meeting(velocity=(1.0, 0.0, 0.0)))
     some = meeting(velocity=[(0.5, 0, -1), (0.5, 0, 1), (0.5, 0, 2)])
     for laws in (None, Simulation()):
@@ -272,6 +295,8 @@ def test_a_collision_is_read_only_and_says_what_it_is():
     with pytest.raises(ValueError, match="read-only"):
         made.velocity[0] = 1.0
     assert repr(made) == "Collision(3 of 3 encounters collided; SUCCESS)"
+    passed = collide(meeting(normal=(0, 0, 1)), separating="pass")
+    assert repr(passed).endswith("; separate, passed through)")
     with pytest.raises(attrs.exceptions.FrozenInstanceError):
         made.velocity = 1.0
 
