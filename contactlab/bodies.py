@@ -159,7 +159,7 @@ class Sphere:
 @named_arguments("HalfSpace(steel)")
 @attrs.frozen
 class HalfSpace:
-    """An elastic body with a plane surface, so large that it does not move.
+    """An elastic body with a plane surface, so large that no impact changes its motion.
 
     Parameters
     ----------

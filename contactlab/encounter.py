@@ -235,7 +235,11 @@ class Encounter:
             yield where, flat.take(where) if size > TOGETHER else flat
 
     def contact(self) -> Contact:
-        """Return how the surfaces meet, before the impact; of one encounter or a batch."""
+        """Return how the surfaces meet, before the impact; of one encounter or a batch.
+
+        A tuple: ``normal`` and ``along``, the unit vectors from the sphere to the target and of the
+        slip, each of three components; ``approach`` and ``slip``, speeds in m/s.
+        """
         n1, n2, n3 = components(self.normal)
         length = _root(n1 * n1 + n2 * n2 + n3 * n3)
         n1, n2, n3 = n1 / length, n2 / length, n3 / length

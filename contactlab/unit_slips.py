@@ -18,6 +18,9 @@ LEAST_DENSITY, MOST_DENSITY = 25.0, 22_700.0
 LEAST_MODULUS, MOST_MODULUS = 1e4, 6e11
 #: Coulomb's coefficient of dry bodies stays below; rubber on rubber comes to 3.
 MOST_FRICTION = 5.0
+#: A spin in turns a minute read as rad/s is 9.5 times too fast: from so many rad/s on, a surface
+#: that it moves at so many times the speed of the centres is suspect, since rolling is once.
+LEAST_SPIN, MOST_RIM = 50.0, 8.0
 #: An angle of so many radians or less, multiple of so many degrees to so many, is suspect.
 STEP_DEG, NEAR_DEG = 5.0, 0.003
 
@@ -40,7 +43,7 @@ def unit_slips(scene: Scene) -> list[str]:
     if friction > MOST_FRICTION:
         told = f"friction_coefficient = {friction:.4g}: no dry bodies have so much"
         found.append(f"unit: {told}; is it in per cent, or an angle of friction in degrees?")
-    return found + _of_angle(scene)
+    return found + _of_spin(scene, scene.sphere) + _of_angle(scene)
 
 
 def _of_sphere(name: str, body: Sphere) -> list[str]:
@@ -55,6 +58,17 @@ def _of_sphere(name: str, body: Sphere) -> list[str]:
         told = f"{name}: mass and radius give a mean density of {_most(mean):.3g} kg/m³"
         return [f"unit: {told}, more than any solid has; mass is in kg, radius in m"]
     return []
+
+
+def _of_spin(scene: Scene, sphere: Sphere) -> list[str]:
+    """Return a sentence if the fastest spin is far beyond rolling at the greatest speed."""
+    spin, radius = float(_most(np.abs(scene.spin))), _most(sphere.radius)
+    along = float(_most(np.abs(scene.tangential_velocity)))
+    speed = math.hypot(_most(scene.normal_speed), along)
+    if spin < LEAST_SPIN or not radius * spin > MOST_RIM * speed:
+        return []
+    told = f"spin = {spin:.4g} rad/s: the surface moves {radius * spin / speed:.3g} times as fast"
+    return [f"unit: {told} as the centre; is it in turns a minute?"]
 
 
 def _of_angle(scene: Scene) -> list[str]:

@@ -135,8 +135,8 @@ class NormalLaw(Law):
         if not largest > DOUBTFUL_SIZE_RATIO:
             return ()
         return (
-            f"C = {largest:.3g}, contact radius over R: the contact is not small against the radius, the theory of "
-            f"half-spaces is doubtful above {DOUBTFUL_SIZE_RATIO}",
+            f"C = {largest:.3g}, contact radius over R: the contact is not small against the "
+            f"radius, the theory of half-spaces is doubtful above {DOUBTFUL_SIZE_RATIO}",
         )
 
 

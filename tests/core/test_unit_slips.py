@@ -6,7 +6,16 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, materials
+from contactlab import (
+    Encounter,
+    HalfSpace,
+    Material,
+    Scene,
+    Simulation,
+    Sphere,
+    collide,
+    materials,
+)
 from contactlab.unit_slips import unit_slips
 
 STEEL = Material.named("steel")
@@ -30,6 +39,7 @@ def steel(**changes):
         (attrs.evolve(BALL, sphere=Sphere(6.35e-3, STEEL, mass=8.4)), "mean density"),
         (attrs.evolve(BALL, target=Sphere(40.0, STEEL)), "target.radius = 40 m"),
         (attrs.evolve(BALL, friction_coefficient=15.0), "friction_coefficient = 15"),
+        (attrs.evolve(BALL, spin=-9.5493 * 1.1 / 6.35e-3), "is it in turns a minute?"),
         (attrs.evolve(BALL, tangential_velocity=math.tan(math.radians(0.7854))),
          "45° are as many radians"),
         (attrs.evolve(BALL, tangential_velocity=-math.tan(math.radians(0.5236))), "30° are"),
@@ -55,6 +65,19 @@ def test_what_there_is_is_not_cautioned(name, radius):
     material = Material.named(name)
     scene = Scene(Sphere(radius, material), HalfSpace(material), 1.2, 1.0, 0.3)
     assert unit_slips(scene) == []
+
+
+def test_spin_is_judged_against_the_greatest_speed_of_a_batch():
+    spins = attrs.evolve(BALL, spin=np.array([0.0, 1.1 / 6.35e-3, 1000.0]))
+    assert unit_slips(spins) == []
+    slow = attrs.evolve(BALL, normal_speed=np.array([1e-9, 1.0]), spin=500.0)
+    assert unit_slips(slow) == []
+    assert "turns a minute" in unit_slips(attrs.evolve(slow, spin=2000.0))[0]
+    met = Encounter(
+        Sphere(0.0286, STEEL), Sphere(0.0286, STEEL), 0.06,
+        normal=(1, 1, 0), velocity=(4, 0, 0), spin=(0, 0, 4 / 0.0286 * 9.5493),
+    )  # fmt: skip
+    assert "turns a minute" in str(collide(met, restitution=0.95).plan)
 
 
 def test_round_angles_and_scenes_without_bodies_are_not_cautioned():
