@@ -1,8 +1,10 @@
 """Settings of the site; ``.ci/site/build`` lays the sources out."""
 
 import os
+import re
 import sys
 from pathlib import Path
+from typing import Any
 
 import contactlab
 
@@ -50,3 +52,22 @@ sphinx_gallery_conf = {
     "show_memory": False,
     "download_all_examples": False,
 }
+
+
+def attributes_apart(*given: Any) -> None:
+    """Give each of several attributes that are documented together a line of its own.
+
+    Sphinx reads the first of ``:ivar start, end:`` as the type of the last.
+    """
+    lines: list[str] = given[-1]
+    apart: list[str] = []
+    for line in lines:
+        field = re.match(r":(ivar|vartype) (\w+(?:, \w+)+):(.*)", line)
+        names = field[2].split(", ") if field else []
+        apart += [f":{field[1]} {name}:{field[3]}" for name in names] if field else [line]
+    lines[:] = apart
+
+
+def setup(app: Any) -> None:
+    """Have the attributes taken apart after napoleon has read the docstrings."""
+    app.connect("autodoc-process-docstring", attributes_apart, priority=900)

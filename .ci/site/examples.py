@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,7 @@ def lay_out(examples: Path, to: Path) -> None:
         head, _, rest = doc.partition("\n\n")
         title, _, more = " ".join(head.split()).partition(": ")
         title = title.rstrip(".")
+        rest = re.sub(r"\n\n(?=    \S)", "\n\n::\n\n", "\n\n" + rest).strip()  # commands
         words = [title, "=" * len(title), "", more[:1].upper() + more[1:], "", rest]
         code = text.split('"""', 2)[2]
         # a script in cells is a notebook, which has no file, and begins with words
