@@ -41,7 +41,10 @@ def _in_degrees(read: Callable[[ImpactResult], Any]) -> Callable[[ImpactResult],
 
 
 def numeric_columns() -> dict[str, Quantity]:
-    """Return the columns of the exports that are numbers, by name; angles in degrees too."""
+    """Return the columns of the exports that are numbers, by name.
+
+    Angles are there in degrees too, and so is the rebound speed.
+    """
     found = {}
     for name, unit, read in COLUMNS:
         if name == "status":
@@ -49,7 +52,14 @@ def numeric_columns() -> dict[str, Quantity]:
         found[name] = Quantity(name, unit, read)
         if unit == "rad":
             found[f"{name}_deg"] = Quantity(f"{name}_deg", "deg", _in_degrees(read))
+    found["rebound_speed"] = Quantity("rebound_speed", "m/s", _rebound_speed)
     return found
+
+
+def _rebound_speed(result: ImpactResult) -> Any:
+    """Return the speed of the centre after the impact, which is what many rigs measure."""
+    tangential = result.rebound_tangential_velocity
+    return None if tangential is None else np.hypot(result.rebound_normal_velocity, tangential)
 
 
 QUANTITIES = numeric_columns()

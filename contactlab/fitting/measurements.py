@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.checks import real, refuse
+from contactlab.fitting.csv_rows import read_rows
 from contactlab.fitting.headings import ERROR, Heading, read_heading
 from contactlab.scene_file import SceneFile
 
@@ -97,26 +97,13 @@ def read_measurements(content: object) -> Measurements:
 
 
 def _of_csv(path: Path) -> Measurements:
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise ValueError(f"{path}: no such file; give the path of a CSV of impacts") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path}: cannot be read as text: {error}") from None
-    lines = [(n, line) for n, line in enumerate(text.splitlines(), start=1) if line.strip()]
-    lines = [(n, line) for n, line in lines if not line.lstrip().startswith("#")]
-    if len(lines) < 2:
-        raise ValueError(f"{path}: needs a line of headings and a line for each impact")
-    rows = list(csv.reader(line for _, line in lines))
-    if len(rows[0]) == 1 and ";" in rows[0][0]:
-        raise ValueError(f"{path}: columns must be separated by commas, and decimals by points")
-    headings = rows[0]
+    headings, rows = read_rows(path)
     columns: dict[str, list[float]] = {heading: [] for heading in headings}
     if len(columns) < len(headings):
         raise ValueError(f"{path}: two columns have the same heading")
     try:
         roles = {heading: read_heading(heading) for heading in headings}
-        for (line, _), row in zip(lines[1:], rows[1:], strict=True):
+        for line, row in rows:
             if len(row) != len(headings):
                 told = f"has {len(row)} columns, the headings are {len(headings)}"
                 raise ValueError(f"line {line}: {told}")

@@ -185,7 +185,9 @@ def test_bad_columns(columns, words):
     [
         ("", "needs a line of headings"),
         ("psi2\n", "needs a line of headings"),
-        ("psi2;angle_deg\n1;2\n", "separated by commas"),
+        ("psi2;angle_deg\n1;1.002,5\n", "line 2: '1.002,5': write numbers without marks"),
+        ("# made up, by hand\n1,2\n", "heading ' by hand'"),
+        ("# angle_deg,psi2\n1,2\n", "line 1: begins with #, so that 'angle_deg' would not"),
         ("# made up\npsi2,angle_deg\n1,2\n1\n", "line 4: has 1 columns, the headings are 2"),
         ("psi2,angle_deg\n1,2\n\n1,x\n", "line 4, 'angle_deg': 'x' is not a number"),
         ("psi2,angle_deg\n1,\n", "line 2, 'angle_deg': is empty"),
