@@ -18,6 +18,7 @@ from contactlab.fitting.model import Model, scene_of, simulation_of
 from contactlab.fitting.outcome import Estimate, Fit
 from contactlab.fitting.parameters import Setup, parameter_named
 from contactlab.fitting.problem import Problem, solved, starting
+from contactlab.fitting.suspects import suspects
 from contactlab.scene import Scene
 from contactlab.scene_file import SceneFile
 from contactlab.signatures import named_arguments
@@ -195,7 +196,10 @@ def _outcome(problem: Problem, table: Measurements, values: Array) -> tuple[Fit,
         predicted={name: rows[0] for name, rows in predicted.items()},
         aic=problem.criterion(values),
         reduced_chi_square=mean_square if known else None,
-        notes=tuple(_notes(problem, values, mean_square if known else None, freedom)),
+        notes=(
+            *suspects(table.measured, {name: rows[0] for name, rows in predicted.items()}),
+            *_notes(problem, values, mean_square if known else None, freedom),
+        ),
     )
     return found, reaches
 
