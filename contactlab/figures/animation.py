@@ -35,6 +35,8 @@ FRAME_TIME = 60
 FLIGHT = 2.2
 #: Inches, dots an inch: 960 by 480 dots.
 SIZE, DOTS = (9.6, 4.8), 100
+#: A legend beside axes of a fixed shape finds its place within the picture in so many passes.
+LAYOUT_PASSES = 3
 #: Dots along the side of the picture of the contact.
 DISC = 160
 SPOKES = 4
@@ -115,7 +117,8 @@ def _frames(
         figure = Figure(figsize=SIZE, dpi=DOTS)
         canvas: Any = FigureCanvasAgg(figure)  # matplotlib leaves its drawing untyped
         panels = _panels(figure, result)
-        canvas.draw()
+        for _ in range(LAYOUT_PASSES):
+            canvas.draw()
         figure.set_layout_engine("none")  # laid out once, not in every frame
         sequence = _sequence(result)
         for done, frame in enumerate(sequence, start=1):
@@ -134,12 +137,18 @@ def _sequence(result: ImpactResult) -> list[Frame]:
         before: list[Frame] = []
         after: list[Frame] = []
     else:
-        before = [Frame("arrives", -t, 0) for t in np.linspace(FLIGHT, 0.0, ARRIVING).tolist()]
-        after = [Frame("leaves", t, last) for t in np.linspace(0.0, FLIGHT, LEAVING).tolist()]
+        arrives = f"arrives, spin {_spin(result.scene.spin)}"
+        leaves = f"leaves, spin {_spin(result.rebound_spin)}"
+        before = [Frame(arrives, -t, 0) for t in np.linspace(FLIGHT, 0.0, ARRIVING).tolist()]
+        after = [Frame(leaves, t, last) for t in np.linspace(0.0, FLIGHT, LEAVING).tolist()]
     fractions = np.linspace(0.0, 1.0, IN_CONTACT)
     rows = np.searchsorted(result.history.time, fractions * float(result.motion.duration))
     slowed = f"in contact, {_seconds(float(result.motion.duration), result)}"
     return [*before, *(Frame(slowed, 0.0, min(int(k), last)) for k in rows), *after]
+
+
+def _spin(spin: Any) -> str:
+    return f"{float(spin) + 0.0:.3g} rad/s".replace("-", "\N{MINUS SIGN}")
 
 
 def _seconds(duration: float, result: ImpactResult) -> str:
@@ -169,8 +178,8 @@ def _panels(figure: Figure, result: ImpactResult) -> list[Any]:
 class Ball:
     """The sphere: its path before and after, and how it spins.
 
-    Lengths are radii. In flight the scales of path and spin are those of the impact; the
-    displacements during contact are too small to be seen.
+    Lengths are radii, in flight and in contact: a soft ball is seen to roll on, to give way and to
+    turn back while it touches, and a hard one is not.
     """
 
     def __init__(self, axes: Axes, result: ImpactResult) -> None:
@@ -186,15 +195,18 @@ class Ball:
         self.velocity = before / fastest, leaving / fastest
         size = float(scene.sphere.radius) / fastest
         self.spin = float(scene.spin) * size, float(result.rebound_spin) * size
+        self.place, self.turned = in_contact(result)
         reach = FLIGHT * float(np.max(np.abs([before[0], leaving[0]]))) / fastest + 1.4
         axes.set_aspect("equal")
         axes.set_xlim(-reach, reach)
         axes.set_ylim(-0.5, FLIGHT + 2.6)
         axes.set_axis_off()
-        axes.axhspan(-0.5, 0.0, color="#E4E4E4", linewidth=0.0)
-        axes.axhline(0.0, color="black", linewidth=1.0)
-        for x, y in (-self.velocity[0], self.velocity[1]):
-            axes.plot([0.0, FLIGHT * x], [1.0, 1.0 + FLIGHT * y], color=QUIET, linestyle=":")
+        axes.axhspan(-0.5, 0.0, color="#E4E4E4", linewidth=0.0, zorder=3)
+        axes.axhline(0.0, color="black", linewidth=1.0, zorder=3)
+        for start, (x, y) in ((0, -self.velocity[0]), (-1, self.velocity[1])):
+            left = self.place[start, 0]
+            path = [left, left + FLIGHT * x], [1.0, 1.0 + FLIGHT * y]
+            axes.plot(*path, color=QUIET, linestyle=":")
         self.circle = Circle((0.0, 1.0), 1.0, facecolor="#CFE3F1", edgecolor="black")
         axes.add_patch(self.circle)
         self.marks = [axes.plot([], [], color="black", linewidth=1.0)[0] for _ in range(SPOKES)]
@@ -203,10 +215,10 @@ class Ball:
     def show(self, frame: Frame) -> None:
         """Show one frame."""
         leaving = int(frame.flight > 0.0)
-        x, y = self.velocity[leaving] * frame.flight
+        x, y = self.place[frame.instant] + self.velocity[leaving] * frame.flight
         # positive spin adds to the tangential velocity at the contact, below the centre:
         # seen from here, with the tangential velocity to the right, it turns anticlockwise
-        angle = self.spin[leaving] * frame.flight
+        angle = self.turned[frame.instant] + self.spin[leaving] * frame.flight
         self.circle.center = (float(x), 1.0 + float(y))
         for number, mark in enumerate(self.marks):
             at = angle + 2.0 * math.pi * number / SPOKES
@@ -214,6 +226,35 @@ class Ball:
             mark.set_data(x + reach * math.cos(at), 1.0 + y + reach * math.sin(at))
             mark.set_linewidth(2.2 if number == 0 else 1.0)
         self.words.set_text(frame.words)
+
+
+def in_contact(
+    result: ImpactResult,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return where the centre of the sphere is during contact, and how far the sphere has turned.
+
+    Velocity and spin change in proportion to the slip velocity, both by the impulse of friction.
+
+    Returns
+    -------
+    place : array, shape (K, 2)
+        From the centre at first touch, in radii: along the surface, and away from it.
+    turned : array, shape (K,)
+        Angle since first touch, in rad; sign of the spin.
+    """
+    history, scene = result.history, result.scene
+    assert history is not None
+    assert scene.sphere is not None
+    assert result.rebound_tangential_velocity is not None
+    assert result.rebound_spin is not None
+    change = history.slip_velocity - history.slip_velocity[0]
+    share = change / change[-1] if change[-1] else change
+    before = np.array([float(scene.tangential_velocity), float(scene.spin)])
+    after = np.array([float(result.rebound_tangential_velocity), float(result.rebound_spin)])
+    rates = before + share[:, np.newaxis] * (after - before)
+    steps = 0.5 * (rates[1:] + rates[:-1]) * np.diff(history.time)[:, np.newaxis]
+    along, turned = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)]).T
+    return np.column_stack([along, -history.approach]) / float(scene.sphere.radius), turned
 
 
 class Forces:

@@ -59,6 +59,42 @@ def test_the_animation_shows_the_sphere_where_it_is(run, ball, tmp_path, few_fra
     assert blue[0][:, 1].mean() < blue[-1][:, 1].mean()  # from the left to the right
 
 
+@pytest.fixture
+def superball():
+    rubber, stone = (contactlab.Material.named(name) for name in ("rubber", "granite"))
+    bodies = contactlab.Sphere(0.025, rubber), contactlab.HalfSpace(stone)
+    scene = contactlab.Scene(*bodies, 0.9, 2.6, tangential_velocity=1.5, spin=100.0)
+    return contactlab.Simulation().run(scene, history="fields").check()
+
+
+def test_a_soft_ball_moves_and_turns_while_it_touches(superball):
+    place, turned = animation.in_contact(superball)
+    radius, time = 0.025, superball.history.time
+    assert place[:, 1].min() == pytest.approx(-superball.motion.maximum_approach / radius, rel=1e-3)
+    # the contact point moves by the integral of the slip velocity, counted from velocity and spin
+    slipped = np.trapezoid(superball.history.slip_velocity, time)
+    assert (place[-1, 0] + turned[-1]) * radius == pytest.approx(slipped, rel=1e-12)
+    # the spin is reversed within the contact
+    slope = np.diff(turned) / np.diff(time)
+    assert slope[0] == pytest.approx(100.0, rel=0.01)
+    assert slope[-1] == pytest.approx(superball.rebound_spin, rel=0.01)
+    assert superball.rebound_spin < 0.0
+
+
+def test_the_legend_lies_within_the_picture(superball, monkeypatch):
+    drawn = []
+    panels = animation._panels
+
+    def watched(figure, result):
+        drawn.append(figure)
+        return panels(figure, result)
+
+    monkeypatch.setattr(animation, "_panels", watched)
+    next(animation._frames(superball, None))
+    legend = next(axes.get_legend() for axes in drawn[0].axes if axes.get_legend())
+    assert legend.get_window_extent().x1 <= drawn[0].bbox.x1
+
+
 def test_without_bodies_forces_and_contact_are_drawn(run, tmp_path, few_frames):
     out = tmp_path / "contact.gif"
     assert run("animate", "--psi1", 1.2, "--chi", 1.4, "--out", out).status == 0
