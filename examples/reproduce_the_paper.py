@@ -22,46 +22,51 @@ paper = Simulation(
 )
 
 
-def drawn(number):
-    """Draw a figure of the paper and return its numbers."""
-    data = figures()[number](paper)
-    save(Path(f"figure-{number}.png"), functools.partial(draw, data=data))
-    return data
+def numbers(figure):
+    """Return the curves of a figure of the paper."""
+    return figures()[figure](paper)
+
+
+def drawn(data):
+    """Return the picture of a figure, which a notebook shows below its cell."""
+    return save(Path(f"figure-{data.number}.png"), functools.partial(draw, data=data))
 
 
 # %%
 # **Fig. 1: the tangential force over the contact.** Near the normal most of the contact sticks,
 # the force swings as that of a spring, and changes its sign before the bodies part. The nearer
 # to grazing the impact, the longer the contact slips, with mu times the normal force.
-forces = drawn(1)
+forces = numbers(1)
 for curve in forces.curves:
     if curve.parameter == curve.parameter:  # the limit mu P belongs to no angle
         turn = curve.x[np.argmax(curve.y < 0.0)]
         print(f"psi1 = {curve.parameter:3.1f}: the force turns at {turn:.2f} of the contact")
+drawn(forces)
 
 # %%
 # **Fig. 2: the rebound over the angle of incidence.** A negative psi2 means that the contact
 # point leaves against the direction in which it arrived; that of rigid bodies stops instead.
 # Beyond psi1 = 4 chi - 1 the contact slips to the end, and psi2 = psi1 - 4 chi.
-drawn(2)
 psi1 = np.linspace(0.05, 7.0, 300)
 psi2 = rebound(psi1, SOLID_CHI)
 print(f"least psi2 = {psi2.min():.2f} at psi1 = {psi1[psi2.argmin()]:.2f}")
 print(f"gross slip from psi1 = 4 chi - 1 = {4.0 * SOLID_CHI - 1.0:.2f} on")
+drawn(numbers(2))
 
 # %%
 # **Fig. 3: where the mass is.** At the same psi1 = 1.2 a hollow sphere and one with a dense core
 # differ: the less the moment of inertia, the greater chi, and the more often the force swings.
-for curve in drawn(3).curves:
+swings = numbers(3)
+for curve in swings.curves:
     if curve.parameter == curve.parameter:
         turns = np.count_nonzero(np.diff(np.sign(curve.y[1:-1])))
         print(f"radius of gyration {curve.parameter:4.2f} R: turns of the force: {turns}")
+drawn(swings)
 
 # %%
 # **Fig. 4: the rebound over chi.** The annuli of the paper lie within their numerical error of
 # the exact curve. That error is no error of the model: it falls as one over the number of
 # annuli.
-drawn(4)
 scene = Scene.nondimensional(psi1=1.2, chi=SOLID_CHI)
 exact = float(rebound(1.2, SOLID_CHI))
 for annuli in (10, 20, 40):
@@ -71,3 +76,4 @@ for annuli in (10, 20, 40):
     )
     off = abs(finer.run(scene).check().psi2 - exact)
     print(f"{annuli:3d} annuli: {off:.4f} from the exact psi2 = {exact:.4f}")
+drawn(numbers(4))

@@ -46,6 +46,7 @@ sphinx_gallery_conf = {
     "reset_argv": arguments,
     "image_scrapers": (Pictures(),),
     "reset_modules": (),
+    "capture_repr": (),  # what a script prints; the pictures are found as files
     "matplotlib_animations": False,
     "remove_config_comments": True,
     "min_reported_time": 1e9,

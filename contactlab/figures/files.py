@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import attrs
 import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -24,6 +25,24 @@ METADATA: dict[str, dict[str, Any]] = {
 }
 
 
+@attrs.frozen
+class Picture:
+    """A picture in a file, which a notebook shows where it is the value of a cell.
+
+    Attributes
+    ----------
+    path : Path
+    """
+
+    path: Path
+
+    def _repr_png_(self) -> bytes | None:
+        return self.path.read_bytes() if self.path.suffix.lower() == ".png" else None
+
+    def _repr_svg_(self) -> str | None:
+        return self.path.read_text("utf-8") if self.path.suffix.lower() == ".svg" else None
+
+
 def save(
     path: Path,
     draw: Callable[[Any], object],
@@ -33,8 +52,8 @@ def save(
     heights: tuple[float, ...] = (1.0,),
     wide: bool = False,
     look: Look = "print",
-) -> None:
-    """Draw on one Axes, or on an array of them, and write a picture.
+) -> Picture:
+    """Draw on one Axes, or on an array of them, write a picture and return it.
 
     The canvas is made here, without pyplot: no backend is chosen for the process, nothing
     stays open, and a display is not needed.
@@ -56,6 +75,7 @@ def save(
     with styled(look):
         figure = _drawn(draw, rows=rows, columns=columns, heights=heights, wide=wide)
         save_figure(figure, path)
+    return Picture(Path(path))
 
 
 def as_svg(
