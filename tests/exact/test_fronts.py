@@ -65,6 +65,35 @@ def test_chi_one_half_never_slips(psi1):
     )
 
 
+def test_no_homogeneous_sphere_reverses_completely():
+    """At nu = 1/2, chi = 7/6 the reversal is at most 0.597, at psi1 = 1.89 (theory §2)."""
+    rubber = Material(young_modulus=2.4e6, poisson_ratio=0.5, density=1100.0)
+    chi = Scene(Sphere(0.025, rubber), HalfSpace(rubber), 0.9, 3.0, 1.0).chi
+    assert chi == pytest.approx(7.0 / 6.0)
+    psi1 = np.linspace(1e-3, 4.0 * chi, 2001)
+    reversal = -contactlab.rebound(psi1, chi) / psi1
+    assert psi1[reversal.argmax()] == pytest.approx(1.89, abs=0.01)
+    assert reversal.max() == pytest.approx(0.597, abs=5e-4)
+    assert reversal[0] == pytest.approx(0.104, abs=1e-3)
+
+
+def test_a_superball_that_reverses_completely_is_a_law_of_whole_impacts():
+    """Garwin's ball: v' = (3/7) v - (4/7) omega R, from momentum and energy alone (theory §2)."""
+    rubber = Material.named("rubber")
+    bodies, radius = (Sphere(0.025, rubber), HalfSpace(rubber)), 0.025
+    law = contactlab.create("tangential.walton", slip_restitution=1.0)
+    thrown = Scene(*bodies, 5.0, 3.0, 1.5, spin=20.0)
+    result = Simulation(tangential=law).run(thrown).check()
+    v, turning = 1.5, 20.0 * radius
+    assert result.rebound_tangential_velocity == pytest.approx((3.0 * v - 4.0 * turning) / 7.0)
+    assert result.rebound_spin * radius == pytest.approx((-10.0 * v - 3.0 * turning) / 7.0)
+    elastic = Simulation().run(thrown).check()
+    change = elastic.rebound_slip_velocity - (v + turning)
+    assert elastic.rebound_tangential_velocity == pytest.approx(v + 2.0 / 7.0 * change)
+    assert elastic.rebound_spin * radius == pytest.approx(turning + 5.0 / 7.0 * change)
+    assert result.energy.friction_work == pytest.approx(0.0, abs=1e-12 * result.energy.start)
+
+
 def test_small_incidence_has_its_own_limit():
     """psi2/psi1 tends to 0.23167 at chi = 1.4411765, by springs too (theory §2)."""
     assert psi2(1e-6, CHI) / 1e-6 == pytest.approx(0.23167, abs=1e-6)
