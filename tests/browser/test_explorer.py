@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import contactlab
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab.pages.explore import CHI, PSI1, explore_page
 
 pytestmark = pytest.mark.browser
@@ -80,3 +81,37 @@ def test_the_words_tell_the_regime(page):
     assert "slips throughout" in page.find_element(ID, "words").text
     move(page, "psi1", [Keys.HOME])
     assert "central impact" in page.find_element(ID, "words").text
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.1])
+def test_the_spin_is_that_of_a_ball_thrown_without(page, nu):
+    """The page knows psi1, psi2 and chi; the simulation the whole ball."""
+    material = Material(young_modulus=1e9, poisson_ratio=nu, density=1e3)
+    ball = Scene(Sphere(0.01, material), HalfSpace(material), 0.3, 1.0, 1.0)
+    result = Simulation().run(ball).check()
+    spin = result.rebound_spin * 0.01 / ball.tangential_velocity
+    words = page.execute_script(
+        "return spin(arguments[0], arguments[1], arguments[2])", ball.psi1, result.psi2, ball.chi
+    )
+    assert f"{spin:.2f} <i>v</i>; rolling is -0.71 <i>v</i>" in words.replace("\u2212", "-")
+
+
+def test_of_other_bodies_no_spin_is_said(page):
+    assert "without spin" in page.find_element(ID, "spin").text
+    move(page, "chi", [Keys.HOME])
+    assert page.find_element(ID, "spin").text == ""
+
+
+@pytest.mark.parametrize(("width", "height"), [(1920, 1080), (1366, 768), (1024, 768)])
+def test_all_but_the_small_print_is_seen_at_once(page, width, height):
+    size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        bottom = page.execute_script(
+            "return document.querySelector('.panels').getBoundingClientRect().bottom"
+        )
+        across = page.execute_script("return document.documentElement.scrollWidth")
+    finally:
+        page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert bottom <= height
+    assert across <= width
