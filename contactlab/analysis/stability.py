@@ -12,8 +12,9 @@ import attrs
 import numpy as np
 
 from contactlab.analysis.bench_methods import Method
+from contactlab.analysis.model_error import ModelError, model_error
 from contactlab.analysis.stability_cases import Case, cases
-from contactlab.analysis.stability_map import Region, region, region_cells
+from contactlab.analysis.stability_map import INCIDENCES, Region, map_chis, region, region_cells
 from contactlab.analysis.stability_outcome import (
     ANSWERED,
     RAISED,
@@ -33,11 +34,16 @@ DEFAULT_STEPS, DEFAULT_TOLERANCE = 200, 1e-4
 
 @attrs.frozen(kw_only=True)
 class Stability:
-    """Every outcome, and the usable region of each method."""
+    """Every outcome, the usable region of each method, and the model error of each law.
+
+    Outcomes and regions tell of numerical error, from the law's own exact answer. ``models`` lists
+    the laws whose exact answer is not that of the elastic continuum.
+    """
 
     outcomes: tuple[Outcome, ...]
     regions: tuple[Region, ...]
     complete: bool
+    models: tuple[ModelError, ...] = ()
 
     def failures(self) -> list[Outcome]:
         """Return the cases that are silently wrong, or raised, those of the map included."""
@@ -101,9 +107,11 @@ def stability(
     started = time.perf_counter()
     listed = [list(cases(method, quick=quick)) for method in methods]
     cells = [region_cells(method, quick=quick) for method in methods]
-    total = sum(map(len, listed)) + sum(map(len, cells))
+    laws = list(dict.fromkeys(method.tangential for method in methods))
+    total = sum(map(len, listed)) + sum(map(len, cells)) + len(laws)
     outcomes: list[Outcome] = []
     regions: list[Region] = []
+    models: list[ModelError] = []
     largest = QUICK_LARGEST if quick else LARGEST
     done = 0
     # One family after another over all methods, so that a budget cuts all of them alike, and
@@ -123,7 +131,20 @@ def stability(
         done += len(mine) if regions[-1].complete else 0
         if progress is not None:
             progress(done, total)
-    return Stability(outcomes=tuple(outcomes), regions=tuple(regions), complete=done == total)
+    for law in laws:  # after the map, which has made the costly ones of their references
+        if time.perf_counter() - started > budget:
+            break
+        found = model_error(law, map_chis(quick=quick), INCIDENCES)
+        models += [] if found is None else [found]
+        done += 1
+        if progress is not None:
+            progress(done, total)
+    return Stability(
+        outcomes=tuple(outcomes),
+        regions=tuple(regions),
+        models=tuple(models),
+        complete=done == total,
+    )
 
 
 def work(case: Case) -> float:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from contactlab.analysis.bench_methods import Method
 from contactlab.analysis.stability_cases import Case
 from contactlab.analysis.stability_outcome import ANSWERED, RAISED, WRONG, Outcome, judge
+from contactlab.analysis.stability_references import CONTINUUM
 from contactlab.analysis.stability_scenes import Extreme
 from contactlab.registry import REGISTRY
 from contactlab.scene import Scene
@@ -37,10 +38,13 @@ QUICK_TOLERANCES = (0.1, 1e-3)
 
 @attrs.frozen(kw_only=True, eq=False)
 class Region:
-    """Worst error over the range at each resolution (rows) and chi (columns).
+    """Worst numerical error over the range at each resolution (rows) and chi (columns).
 
     Attributes
     ----------
+    converges : bool
+        Whether the law converges to the elastic continuum. The errors of one that does not are
+        from its own exact answer, which is off by the law's model error.
     word : str
         ``steps`` or ``tolerance``.
     error : array, shape (rows, columns)
@@ -62,6 +66,7 @@ class Region:
     error: Array
     state: NDArray[np.int8]
     tried: int
+    converges: bool = True
     failures: tuple[Outcome, ...] = ()
     complete: bool = True
 
@@ -79,7 +84,12 @@ def region_cells(method: Method, *, quick: bool = False) -> list[tuple[float, fl
         resolutions: tuple[float, ...] = QUICK_STEPS if quick else STEPS
     else:
         resolutions = QUICK_TOLERANCES if quick else TOLERANCES
-    return [(fine, chi) for fine in resolutions for chi in (QUICK_CHIS if quick else CHIS)]
+    return [(fine, chi) for fine in resolutions for chi in map_chis(quick=quick)]
+
+
+def map_chis(*, quick: bool = False) -> tuple[float, ...]:
+    """Return the values of chi of the map."""
+    return QUICK_CHIS if quick else CHIS
 
 
 def region(
@@ -131,6 +141,7 @@ def region(
         error=error,
         state=state,
         tried=tried,
+        converges=method.tangential in CONTINUUM,
         failures=tuple(failures),
         complete=complete,
     )

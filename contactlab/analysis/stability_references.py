@@ -22,7 +22,7 @@ from contactlab.scene import Scene
 from contactlab.simulation import Simulation
 
 #: Laws that converge to the axisymmetric continuum as their resolution grows.
-CONTINUUM = frozenset({"annulus", "fronts", "springs", "sharp_annulus"})
+CONTINUUM = frozenset({"annulus", "fronts", "springs", "sharp_annulus", "tabulated"})
 #: Laws whose model makes or loses energy by itself, and why; it is not called instability.
 ACTIVE = {
     "mindlin_cap": "its stiffness changes with the contact, and the energy is in no books",

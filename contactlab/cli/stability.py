@@ -15,8 +15,10 @@ import sys
 from pathlib import Path
 
 import attrs
+import numpy as np
 
 from contactlab.analysis.bench_methods import methods
+from contactlab.analysis.model_error import ModelError
 from contactlab.analysis.stability import Stability, stability
 from contactlab.analysis.stability_cases import Case
 from contactlab.analysis.stability_map import Region
@@ -70,12 +72,13 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _draw(path: Path, found: Stability, why_not: str) -> None:
-    if not found.regions:
-        print(f"no map drawn: {why_not} before it was done", file=sys.stderr)
+    if not found.regions and not found.models:
+        why = "there is nothing to map" if found.complete else f"{why_not} before it was done"
+        print(f"no map drawn: {why}", file=sys.stderr)
         return
-    from contactlab.figures.stability import draw_regions  # matplotlib only when drawing
+    from contactlab.figures.stability import draw_stability  # matplotlib only when drawing
 
-    draw_regions(path, found.regions)
+    draw_stability(path, found)
 
 
 def report(found: Stability, why_not: str = "the budget ran out") -> str:
@@ -91,19 +94,31 @@ def report(found: Stability, why_not: str = "the budget ran out") -> str:
             for item in found.regions
         ]
         parts.append(table(["map", "against chi", "tried", *WORDS[-2:]], rows))
+    if found.models:
+        rows = [[item.law, *_worst(item)] for item in found.models]
+        parts.append(table(["model error", "worst", "at chi"], rows, digits=1))
     failures = found.failures()
     if failures:
         rows = [[item.method, item.case, item.outcome, item.note] for item in failures[:LISTED]]
         parts.append(table(["method", "case", "", ""], rows))
     parts.append(
         f"{found.tried()} runs tried, {found.silently_wrong()} silently wrong; "
-        f"{found.skipped()} more were skipped as too much work.\nErrors are over the range that "
-        "physics leaves to psi2, of answers whose declared error is below a\nquarter of it: "
-        "the others are counted as coarse."
+        f"{found.skipped()} more were skipped as too much work.\nErrors are numerical, from the "
+        "law's own exact answer, over the range that physics leaves to psi2,\nof answers whose "
+        "declared error is below a quarter of it: the others are counted as coarse. A law\nwhose "
+        "exact answer is not that of the elastic continuum is listed with its model error."
     )
     if not found.complete:
         parts.append(f"not complete: {why_not}")
     return "\n\n".join(parts)
+
+
+def _worst(item: ModelError) -> tuple[float, float]:
+    """Return the largest model error of a law, and the chi that it is found at."""
+    if np.all(np.isnan(item.error)):
+        return np.nan, np.nan
+    place = int(np.nanargmax(item.error))
+    return float(item.error[place]), item.chis[place]
 
 
 def _content(found: Stability) -> dict[str, object]:
@@ -114,13 +129,14 @@ def _content(found: Stability) -> dict[str, object]:
     return {
         "outcomes": [_plain(item) for item in found.outcomes],
         "map": regions,
+        "model_errors": [_plain(item) for item in found.models],
         "tried": found.tried(),
         "silently_wrong": found.silently_wrong(),
         "complete": found.complete,
     }
 
 
-def _plain(item: Outcome | Region) -> dict[str, object]:
+def _plain(item: Outcome | Region | ModelError) -> dict[str, object]:
     return {key: json_value(value) for key, value in attrs.asdict(item, recurse=False).items()}
 
 

@@ -1,4 +1,9 @@
-"""The map of usable regions: resolution against chi, a panel a method."""
+"""The map of usable regions: resolution against chi, a panel a method; below it, model errors.
+
+Numerical error and model error are drawn apart. A panel shows how close a method comes to its
+law's own exact answer. Where that is not the answer of the elastic continuum, the colours are
+others, so that no fine step of a rough model looks like an accurate answer.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +16,14 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import BoundaryNorm
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm, Colormap, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from contactlab.analysis.model_error import ModelError
+from contactlab.analysis.stability import Stability
 from contactlab.analysis.stability_cases import LIMIT
 from contactlab.analysis.stability_map import (
     ALL_ANSWERED,
@@ -25,61 +33,109 @@ from contactlab.analysis.stability_map import (
     Region,
 )
 from contactlab.figures.files import save_figure
-from contactlab.figures.style import ORDERED_MAP, QUIET, styled
+from contactlab.figures.style import ORDERED_MAP, QUIET, label, law_style, styled
 
 #: Errors over the range at which the colour changes: whole decades.
 DECADES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+#: Colours of a model's numerical error, pale to dark as the others; its palest are the page's.
+MODEL_MAP, MODEL_BEGIN = "Purples", 0.3
 WRONG_COLOUR, RAISED_COLOUR = "#D00000", "#F08000"
 REFUSED_COLOUR, UNTRIED_COLOUR = "#E4E4E4", "#FBF3E4"
-PANEL_WIDTH, PANEL_HEIGHT = 2.4, 2.0
+PANEL_WIDTH, PANEL_HEIGHT, MODELS_HEIGHT = 2.4, 2.0, 2.6
+#: Of answers to which no exact one is known.
+UNKNOWN_LOOK: Any = {"edgecolor": QUIET, "hatch": "...."}
 LIMIT_LOOK: Any = {"color": "black", "linestyle": (0, (4, 2)), "linewidth": 1.1}
+#: From the left edge of a panel to the name of its law, in points: beyond ticks and label.
+NAME_PLACE = (-58.0, 0.0)
+#: Model errors below this are drawn at it: where bodies slip throughout it is rounding.
+LEAST_MODEL = 1e-6
 
 
-def draw_regions(path: Path, regions: Sequence[Region]) -> None:
-    """Draw a panel a method and write a PNG."""
-    found = {tuple(region.method.split(" / ")): region for region in regions}
-    laws = list(dict.fromkeys(law for law, _ in found))
-    integrators = sorted({name for _, name in found}, key=_rank)
-    lowest = {name: law for law in laws for name in integrators if (law, name) in found}
+def draw_stability(path: Path, found: Stability) -> None:
+    """Draw a panel a method and the model errors below, and write a picture."""
+    regions = {tuple(region.method.split(" / ")): region for region in found.regions}
+    laws = list(dict.fromkeys(law for law, _ in regions))
+    integrators = sorted({name for _, name in regions}, key=_rank)
+    rows, columns = len(laws), max(len(integrators), 2)
+    below = bool(found.models)
     with styled():
-        rows, columns = len(laws), len(integrators)
-        figure = Figure(figsize=(PANEL_WIDTH * columns + 1.3, PANEL_HEIGHT * rows + 1.0))
+        height = PANEL_HEIGHT * rows + MODELS_HEIGHT * below + 1.0
+        figure = Figure(figsize=(PANEL_WIDTH * columns + 1.3, height))
         FigureCanvasAgg(figure)
-        panels = figure.subplots(rows, columns, squeeze=False, sharex=True)
-        image = None
-        for row, law in enumerate(laws):
-            for column, integrator in enumerate(integrators):
-                axes, region = panels[row, column], found.get((law, integrator))
-                if region is None:
-                    _empty(axes)
-                else:
-                    image = usable_region(axes, region)
-                if row == 0:
-                    axes.set_title(integrator)
-                if law == lowest[integrator]:
-                    axes.set_xlabel(r"inertia ratio $\chi$")
-                    axes.tick_params(labelbottom=True)
-            panels[row, 0].annotate(
-                law.replace("_", " "), (-0.42, 0.5), xycoords="axes fraction", rotation=90,
-                ha="center", va="center", fontsize=12.0,
+        heights = [PANEL_HEIGHT] * rows + [MODELS_HEIGHT] * below
+        grid = figure.add_gridspec(rows + below, columns, height_ratios=heights)
+        if rows:
+            panels = np.array(
+                [[figure.add_subplot(grid[i, j]) for j in range(len(integrators))]
+                 for i in range(rows)]
             )  # fmt: skip
-        assert image is not None
-        bar = figure.colorbar(
-            image, ax=panels, extend="both", ticks=DECADES, shrink=0.6, aspect=30, pad=0.02
-        )
-        bar.set_ticklabels([f"$10^{{{round(math.log10(error))}}}$" for error in DECADES])
-        bar.set_label(r"worst error of $\psi_2$, over its possible range")
-        entries: list[Any] = [
-            Patch(facecolor=REFUSED_COLOUR, edgecolor=QUIET, hatch="////",
-                  label="refused (by default: refined)"),
-            Patch(color=WRONG_COLOUR, label="silently wrong"),
-            Patch(facecolor=UNTRIED_COLOUR, edgecolor=QUIET, label="not tried, takes too long"),
-            Line2D([], [], label="stability limit", **LIMIT_LOOK),
-        ]  # fmt: skip
-        if any(np.any(region.state == ONE_RAISED) for region in regions):
-            entries.insert(2, Patch(color=RAISED_COLOUR, label="raised"))
-        figure.legend(handles=entries, loc="outside upper center", ncols=2)
+            _fill(panels, regions, laws, integrators)
+            _bars(figure, panels, found.regions)
+            _legend(figure, found.regions)
+        if below:
+            model_errors(figure.add_subplot(grid[rows, :]), found.models)
         save_figure(figure, path)
+
+
+def _fill(panels: Any, regions: Any, laws: Sequence[str], integrators: Sequence[str]) -> None:
+    """Draw the panels.
+
+    Parameters
+    ----------
+    panels : array of Axes, shape (laws, integrators)
+    regions : mapping of (law, integrator) to Region
+    laws, integrators : sequence of str
+    """
+    lowest = {name: law for law in laws for name in integrators if (law, name) in regions}
+    for row, law in enumerate(laws):
+        for column, integrator in enumerate(integrators):
+            axes, region = panels[row, column], regions.get((law, integrator))
+            if region is None:
+                _empty(axes)
+            else:
+                usable_region(axes, region)
+                axes.tick_params(labelbottom=law == lowest[integrator])
+            if row == 0:
+                axes.set_title(integrator)
+            if law == lowest[integrator]:
+                axes.set_xlabel(label("chi"))
+        panels[row, 0].annotate(
+            law.replace("_", " "), (0.0, 0.5), xycoords="axes fraction", xytext=NAME_PLACE,
+            textcoords="offset points", rotation=90, ha="center", va="center", fontsize=12.0,
+        )  # fmt: skip
+
+
+def _bars(figure: Figure, panels: Any, regions: Sequence[Region]) -> None:
+    """Draw the bars of the colours that are there, one below the other."""
+    words = {
+        True: "numerical error of $\\psi_2$, from the exact\nsolution, over its possible range",
+        False: "numerical error of $\\psi_2$, from the law's\nown limit, which is another (below)",
+    }
+    shown = [known for known in words if any(item.converges is known for item in regions)]
+    parts = np.array_split(np.arange(len(panels)), len(shown))
+    for converges, rows in zip(shown, parts, strict=True):
+        colours, norm = error_colours(converges)
+        bar = figure.colorbar(
+            ScalarMappable(norm, colours), ax=list(panels[rows if len(rows) else slice(None)].flat),
+            extend="both", ticks=DECADES, shrink=0.9, aspect=25, pad=0.02,
+        )  # fmt: skip
+        bar.set_ticklabels([f"$10^{{{round(math.log10(error))}}}$" for error in DECADES])
+        bar.set_label(words[converges])
+
+
+def _legend(figure: Figure, regions: Sequence[Region]) -> None:
+    """Say what the other colours are."""
+    entries: list[Any] = [
+        Patch(facecolor=REFUSED_COLOUR, edgecolor=QUIET, hatch="////",
+              label="refused (by default: refined)"),
+        Patch(color=WRONG_COLOUR, label="silently wrong"),
+        Patch(facecolor=UNTRIED_COLOUR, edgecolor=QUIET, label="not tried, takes too long"),
+        Patch(facecolor="white", label="answered, its limit not known", **UNKNOWN_LOOK),
+        Line2D([], [], label="stability limit", **LIMIT_LOOK),
+    ]  # fmt: skip
+    if any(np.any(region.state == ONE_RAISED) for region in regions):
+        entries.insert(2, Patch(color=RAISED_COLOUR, label="raised"))
+    figure.legend(handles=entries, loc="outside upper center", ncols=3)
 
 
 def _rank(integrator: str) -> tuple[int, str]:
@@ -90,26 +146,36 @@ def _rank(integrator: str) -> tuple[int, str]:
 def _empty(axes: Axes) -> None:
     """Say that law and integrator do not fit."""
     axes.text(0.5, 0.5, "does not fit", transform=axes.transAxes, ha="center", color=QUIET)
+    axes.set_xticks([])
     axes.set_yticks([])
-    axes.tick_params(which="both", bottom=False, labelbottom=False)
     axes.spines[:].set_visible(False)
 
 
-def usable_region(axes: Axes, region: Region) -> Any:
+def error_colours(converges: bool) -> tuple[Colormap, BoundaryNorm]:
+    """Return the colours of numerical errors: of laws that converge to the continuum, or others."""
+    colours: Colormap = mpl.colormaps[ORDERED_MAP + "_r"]
+    if not converges:
+        shades = mpl.colormaps[MODEL_MAP](np.linspace(MODEL_BEGIN, 1.0, colours.N))
+        colours = ListedColormap(shades, name="model")
+    return colours, BoundaryNorm(DECADES, colours.N, extend="both")
+
+
+def usable_region(axes: Axes, region: Region) -> Axes:
     """Draw one method's region: error in colour, refusal hatched, silent wrong red, raise orange.
 
-    Returns
-    -------
-    The mesh, for a colour bar.
+    Parameters
+    ----------
+    axes : Axes
+    region : Region
+        Its errors are drawn in the colours of ``error_colours(region.converges)``.
     """
     tolerance = region.word == "tolerance"
     fineness = np.array(region.resolutions)
     chi, fine = _edges(np.array(region.chis)), _edges(fineness)
-    colours = mpl.colormaps[ORDERED_MAP + "_r"]
-    norm = BoundaryNorm(DECADES, colours.N, extend="both")
+    colours, norm = error_colours(region.converges)
     axes.set_facecolor(UNTRIED_COLOUR)
     answered = np.where(region.state == ALL_ANSWERED, region.error, np.nan)
-    mesh = axes.pcolormesh(chi, fine, answered, cmap=colours, norm=norm)
+    axes.pcolormesh(chi, fine, answered, cmap=colours, norm=norm)
     refused = np.ma.masked_where(region.state != ONE_REFUSED, np.ones(region.state.shape))
     axes.pcolor(
         chi,
@@ -119,21 +185,40 @@ def usable_region(axes: Axes, region: Region) -> Any:
         edgecolor=QUIET,
         hatch="////",
         linewidth=0.0,
-        cmap=mpl.colors.ListedColormap([REFUSED_COLOUR]),
+        cmap=ListedColormap([REFUSED_COLOUR]),
     )
+    unknown = np.ma.masked_where(
+        (region.state != ALL_ANSWERED) | np.isfinite(region.error), np.ones(region.state.shape)
+    )
+    axes.pcolor(chi, fine, unknown, cmap=ListedColormap(["white"]), linewidth=0.0, **UNKNOWN_LOOK)
     for state, colour in ((ONE_WRONG, WRONG_COLOUR), (ONE_RAISED, RAISED_COLOUR)):
         failed = np.ma.masked_where(region.state != state, np.ones(region.state.shape))
-        axes.pcolormesh(chi, fine, failed, cmap=mpl.colors.ListedColormap([colour]))
+        axes.pcolormesh(chi, fine, failed, cmap=ListedColormap([colour]))
     axes.set_xscale("log")
     axes.set_yscale("log")
     if tolerance:
         axes.invert_yaxis()
-    elif region.error.size and not region.method.startswith("coulomb"):
-        # omega dt = 2, theory §4; a rigid body has no stiffness.
+    else:
+        # omega dt = 2, theory §4
         axes.plot(chi, LIMIT * np.sqrt(chi), **LIMIT_LOOK)
         axes.set_ylim(fine[0], fine[-1])
     axes.set_ylabel(region.word)
-    return mesh
+    return axes
+
+
+def model_errors(axes: Axes, models: Sequence[ModelError]) -> Axes:
+    """Draw the model error of each law over chi, which no resolution makes smaller."""
+    for number, item in enumerate(models):
+        look = law_style(number) | {"marker": "os^Dv<"[number % 6], "markersize": 3.5}
+        error = np.maximum(item.error, LEAST_MODEL)  # keeps NaN
+        axes.plot(item.chis, error, label=item.law.replace("_", " "), **look)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_ylim(0.7 * LEAST_MODEL, 1.5)
+    axes.set_xlabel(label("chi"))
+    axes.set_ylabel("model error of $\\psi_2$\nover its possible range")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+    return axes
 
 
 def _edges(centres: Any) -> Any:

@@ -52,6 +52,15 @@ def area(state, *, word="steps", method="a / paper", failures=()):
     )
 
 
+def test_a_law_without_steps_has_a_model_error_and_a_picture(run, tmp_path):
+    ran = run("stability", "--quick", "--law", "coulomb", "--figure", tmp_path / "s.png")
+    assert ran.status == 0
+    assert float(re.search(r"^coulomb +(0\.\d+) +\S+$", ran.out, re.MULTILINE)[1]) > 0.3
+    assert (tmp_path / "s.png").stat().st_size > 10_000
+    ran = run("stability", "--quick", "--law", "tabulated", "--figure", tmp_path / "t.png")
+    assert "nothing to map" in ran.err
+
+
 def test_table_csv_and_figure_of_a_law(run, tmp_path):
     files = tmp_path / "s.csv", tmp_path / "s.png"
     ran = run(*COMMAND, "--csv", files[0], "--figure", files[1])
@@ -135,7 +144,7 @@ def test_each_state_has_its_colour_on_the_map(word):
     canvas = FigureCanvasAgg(figure)
     axes = figure.subplots()
     found = area([ALL_ANSWERED, ONE_REFUSED, ONE_RAISED, ONE_WRONG, NOT_TRIED], word=word)
-    mesh = drawing.usable_region(axes, found)
+    assert drawing.usable_region(axes, found) is axes
     canvas.draw()
     picture = np.asarray(canvas.buffer_rgba())[:, :, :3] / 255.0
 
@@ -148,7 +157,8 @@ def test_each_state_has_its_colour_on_the_map(word):
         cell = picture[int(low) + 4 : int(high) - 4, int(left) + 4 : int(right) - 4]
         return np.mean(np.all(np.abs(cell - to_rgb(colour)) < 0.02, axis=-1))
 
-    answered = mesh.cmap(mesh.norm(3e-3))
+    colours, norm = drawing.error_colours(found.converges)
+    answered = colours(norm(3e-3))
     assert share(0, answered) > 0.9
     assert share(1, drawing.REFUSED_COLOUR) > 0.3  # between the hatching
     assert share(2, drawing.RAISED_COLOUR) > 0.9
@@ -162,7 +172,8 @@ def test_the_map_has_a_panel_a_method_and_says_which_do_not_fit(tmp_path, monkey
     drawn = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
     regions = [area([ALL_ANSWERED] * 2), area([ONE_RAISED] * 2, method="b / symplectic")]
-    drawing.draw_regions(tmp_path / "m.png", regions)
+    found = Stability(outcomes=(), regions=tuple(regions), complete=True)
+    drawing.draw_stability(tmp_path / "m.png", found)
     texts = [[text.get_text() for text in axes.texts] for axes in drawn[0].axes[:4]]
     assert ["does not fit" in text for text in texts] == [False, True, True, False]
     assert "raised" in [text.get_text() for text in drawn[0].legends[0].get_texts()]
