@@ -88,12 +88,16 @@ class Agreement:
 
 @attrs.frozen(kw_only=True, eq=False)
 class Comparison:
-    """Laws side by side; the first is the one that the others are compared with."""
+    """Laws side by side; the first is the one that the others are compared with.
+
+    ``interrupted`` is True where Ctrl-C has left the laws out that were not done.
+    """
 
     scene: Scene
     varied: Mapping[str, Any]
     runs: tuple[LawRun, ...]
     agreements: tuple[Agreement, ...]
+    interrupted: bool = False
 
     @property
     def names(self) -> list[str]:
@@ -171,7 +175,8 @@ def compare(
     Returns
     -------
     Comparison
-        Failed impacts are NaN in its numbers; ``failures()`` says why.
+        Failed impacts are NaN in its numbers; ``failures()`` says why. Interrupting (Ctrl-C)
+        keeps the laws that are done, if there is one.
 
     Raises
     ------
@@ -186,19 +191,28 @@ def compare(
     total, done = len(simulations) * (1 + len(series)), 0
     runs: list[LawRun] = []
     predicted: list[dict[str, ImpactResult]] = [{} for _ in series]
-    for name, simulation in simulations.items():
-        jobs: list[Measured | None] = [None, *series]
-        for number, job in enumerate(jobs):
-            if job is None:
-                run = _timed(name, simulation, single, history=history and not single.shape)
-                runs.append(_estimated(run, simulation) if estimate_error else run)
-            else:
-                assert file is not None
-                there = file.scene_at(**{job.against: job.x})
-                predicted[number - 1][name] = _run(simulation, there)
-            done += 1
-            if progress is not None:
-                progress(done, total)
+    interrupted = False
+    try:
+        for name, simulation in simulations.items():
+            answers: list[ImpactResult] = []
+            for job in (None, *series):
+                if job is None:
+                    run = _timed(name, simulation, single, history=history and not single.shape)
+                    run = _estimated(run, simulation) if estimate_error else run
+                else:
+                    assert file is not None
+                    there = file.scene_at(**{job.against: job.x})
+                    answers.append(_run(simulation, there))
+                done += 1
+                if progress is not None:
+                    progress(done, total)
+            runs.append(run)
+            for results, answer in zip(predicted, answers, strict=True):
+                results[name] = answer
+    except KeyboardInterrupt:
+        if not runs:
+            raise
+        interrupted = True
     agreements = tuple(
         Agreement(measured=measured, results=results)
         for measured, results in zip(series, predicted, strict=True)
@@ -208,6 +222,7 @@ def compare(
         varied=file.varied if file else _varied(single),
         runs=tuple(runs),
         agreements=agreements,
+        interrupted=interrupted,
     )
 
 
@@ -260,7 +275,7 @@ def _failure(name: str, result: ImpactResult) -> str:
 
 
 def _run(simulation: Simulation, scene: Scene) -> ImpactResult:
-    # Half a comparison is of no use.
+    # Half a sweep cannot be compared.
     return uninterrupted(simulation.sweep(scene)) if scene.shape else simulation.run(scene)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from importlib import resources
 from typing import Any
 
@@ -104,8 +104,8 @@ class Evidence:
 
 def gather(
     *, curves: bool = False, progress: Callable[[int, int], object] | None = None
-) -> list[Evidence]:
-    """Return every source with every law that fits, each under the integrator that suits it.
+) -> Iterator[Evidence]:
+    """Iterate over the sources with every law that fits, each under the integrator that suits it.
 
     Parameters
     ----------
@@ -114,12 +114,10 @@ def gather(
     progress : callable, optional
         Called as ``progress(done, total)`` after each source.
     """
-    found = []
     for done, source in enumerate(SOURCES, start=1):
-        found.append(_evidence(source, curves=curves))
+        yield _evidence(source, curves=curves)
         if progress is not None:
             progress(done, len(SOURCES))
-    return found
 
 
 def _evidence(source: Source, *, curves: bool) -> Evidence:

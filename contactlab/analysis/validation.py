@@ -68,15 +68,13 @@ class Finding:
         return self.difference <= self.bound
 
 
-def validate(progress: Callable[[int, int], object] | None = None) -> list[Finding]:
-    """Return all comparisons, in a few seconds."""
-    findings = []
+def validate(progress: Callable[[int, int], object] | None = None) -> Iterator[Finding]:
+    """Iterate over all comparisons as they are done, in a few seconds."""
     checks = list(_checks())
     for done, check in enumerate(checks, start=1):
-        findings.append(check())
+        yield check()
         if progress is not None:
             progress(done, len(checks))
-    return findings
 
 
 def _checks() -> Iterator[Callable[[], Finding]]:

@@ -28,10 +28,11 @@ def execute(arguments: argparse.Namespace) -> int:
     scene, simulation = given(arguments)[1:]
     if scene.shape:
         raise ValueError("scene: must be a single impact, this one is a sweep; leave [sweep] out")
-    with contextlib.redirect_stdout(sys.stderr):  # what a plug-in prints is not our output
-        result = simulation.run(scene, history="fields").check()
-    from contactlab.figures.animation import animate  # matplotlib only when drawing
+    with shared.progress(arguments.progress, "frames") as progress:
+        with contextlib.redirect_stdout(sys.stderr):  # what a plug-in prints is not our output
+            result = simulation.run(scene, history="fields").check()
+        from contactlab.figures.animation import animate  # matplotlib only when drawing
 
-    animate(arguments.out, result, progress=shared.progress(arguments.progress, "frames"))
+        animate(arguments.out, result, progress=progress)
     print(arguments.out)
     return shared.OK

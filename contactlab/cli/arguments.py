@@ -88,20 +88,32 @@ def check_outputs(arguments: argparse.Namespace) -> None:
     distinct({"SCENE.toml": given.get("scene"), **outputs})
 
 
-def save(*writings: tuple[Path | None, Callable[[Path], object]]) -> int:
+def save(
+    *writings: tuple[Path | None, Callable[[Path], object]], progress_wanted: bool | None
+) -> int:
     """Write the files that are asked for, and return the status of the command.
 
     A file that cannot be written is said on stderr: after long work it must not take the other
     files, and what is printed, with it.
+
+    Parameters
+    ----------
+    *writings : tuple of path and callable
+        None for a path where no file is asked for.
+    progress_wanted : bool or None
+        As ``--progress`` has it.
     """
     status = OK
-    for path, write in writings:
-        try:
-            if path is not None:
+    wanted = [(path, write) for path, write in writings if path is not None]
+    with progress(progress_wanted, "files") as counted:
+        for done, (path, write) in enumerate(wanted, start=1):
+            try:
                 write(path)
-        except OSError as error:
-            print(f"contactlab: error: {error}", file=sys.stderr)
-            status = FAILED
+            except OSError as error:
+                print(f"contactlab: error: {error}", file=sys.stderr)
+                status = FAILED
+            if counted is not None:
+                counted(done, len(wanted))
     return status
 
 

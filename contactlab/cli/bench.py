@@ -37,15 +37,12 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the benchmark and report."""
     shared.check_budget(arguments.budget)
     chosen = methods(arguments.law)
-    benchmark = bench(
-        chosen,
-        quick=arguments.quick,
-        budget=arguments.budget,
-        progress=shared.progress(arguments.progress, "bench"),
-    )
+    with shared.progress(arguments.progress, "bench") as progress:
+        benchmark = bench(chosen, quick=arguments.quick, budget=arguments.budget, progress=progress)
     saved = shared.save(
         (arguments.csv, lambda path: _write_csv(path, benchmark)),
         (arguments.figure, lambda path: _draw(path, benchmark)),
+        progress_wanted=arguments.progress,
     )
     print(json.dumps(_content(benchmark), indent=2) if arguments.json else _report(benchmark))
     return shared.INTERRUPTED if benchmark.interrupted else saved

@@ -79,17 +79,22 @@ def execute(arguments: argparse.Namespace) -> int:
         own = file.laws.resolved().tangential
         arguments.tangential = arguments.tangential or list(dict.fromkeys([own, *DEFAULT_LAWS]))
         compared = simulations(arguments, file.laws)
-    comparison = compare(
-        file,
-        compared,
-        history=bool(arguments.figure) and not arguments.all,
-        estimate_error=arguments.estimate_error or arguments.all,
-        progress=shared.progress(arguments.progress, "runs"),
-    )
+    with shared.progress(arguments.progress, "runs") as progress:
+        comparison = compare(
+            file,
+            compared,
+            history=bool(arguments.figure) and not arguments.all,
+            estimate_error=arguments.estimate_error or arguments.all,
+            progress=progress,
+        )
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
-    saved = shared.save((arguments.figure, lambda path: _draw(path, arguments, comparison)))
+    saved = shared.save(
+        (arguments.figure, lambda path: _draw(path, arguments, comparison)),
+        progress_wanted=arguments.progress,
+    )
     if arguments.json:
         content = to_dict(comparison, quantities) | {"title": file.title}
+        content["complete"] = not comparison.interrupted
         if arguments.all:
             found = scores(comparison, compared)
             content["scores"] = [plain_score(score) for score in found]
@@ -104,6 +109,10 @@ def execute(arguments: argparse.Namespace) -> int:
     failures = comparison.failures()
     for sentence in failures:
         print(f"contactlab compare: failed: {sentence}", file=sys.stderr)
+    if comparison.interrupted:
+        left = ", ".join(name for name in compared if name not in comparison.names)
+        print(f"contactlab compare: interrupted: not compared: {left}", file=sys.stderr)
+        return shared.INTERRUPTED
     return shared.FAILED if failures else saved
 
 

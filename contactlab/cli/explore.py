@@ -16,13 +16,14 @@ from contactlab.files import written
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the file."""
     parser.add_argument("--out", type=shared.file_of(".html"), required=True, metavar="FILE.html")
+    shared.add_progress(parser)
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the page and print its path."""
     from contactlab.pages.explore import explore_page
 
-    with written(arguments.out) as stream:
+    with shared.progress(arguments.progress, "page"), written(arguments.out) as stream:
         stream.write(explore_page())
     print(arguments.out)
     return shared.OK

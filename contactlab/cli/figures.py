@@ -46,18 +46,18 @@ def execute(arguments: argparse.Namespace) -> int:
         ) from None
     if why_not := unwritable(arguments.out / "figure-1.csv"):
         raise ValueError(f"--out {arguments.out}: {why_not}")
-    from contactlab.figures.files import save  # matplotlib only when drawing
-    from contactlab.figures.paper import draw
+    with shared.progress(arguments.progress, "figures") as progress:
+        from contactlab.figures.files import save  # matplotlib only when drawing
+        from contactlab.figures.paper import draw
 
-    progress = shared.progress(arguments.progress, "figures")
-    for done, number in enumerate(arguments.only, start=1):
-        data = figures()[number](simulation)
-        numbers, picture = (arguments.out / f"figure-{number}{end}" for end in (".csv", ".png"))
-        _write_csv(numbers, data)
-        save(picture, functools.partial(draw, data=data))
-        print(picture, numbers, sep="\n")
-        if progress is not None:
-            progress(done, len(arguments.only))
+        for done, number in enumerate(arguments.only, start=1):
+            data = figures()[number](simulation)
+            numbers, picture = (arguments.out / f"figure-{number}{end}" for end in (".csv", ".png"))
+            _write_csv(numbers, data)
+            save(picture, functools.partial(draw, data=data))
+            print(picture, numbers, sep="\n")
+            if progress is not None:
+                progress(done, len(arguments.only))
     return 0
 
 

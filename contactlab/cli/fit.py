@@ -103,26 +103,32 @@ def execute(arguments: argparse.Namespace) -> int:
     simulations = _simulations(arguments, file)
     asked: dict[str, Any] = {"parameters": arguments.fit, "quantities": arguments.quantity}
     first, *others = simulations
-    found = fit(impacts, path, simulation=simulations[first], **asked)
     ranked: list[Ranked] = []
+    found: Fit | None = None
     interrupted = False
     try:
-        if others:
-            progress = shared.progress(arguments.progress, "laws")
-            rest = {name: simulations[name] for name in others}
-            ranked = rank(impacts, path, rest, progress=progress, **asked)
+        with shared.progress(arguments.progress, "laws") as progress:
+            found = fit(impacts, path, simulation=simulations[first], **asked)
+            for done, name in enumerate(others, start=1):
+                if progress is not None:
+                    progress(done, len(simulations))
+                ranked += rank(impacts, path, {name: simulations[name]}, **asked)
         if arguments.bootstrap:
-            progress = shared.progress(arguments.progress, "bootstrap")
-            options = {"bootstrap": arguments.bootstrap, "progress": progress}
-            found = fit(impacts, path, simulation=simulations[first], **asked, **options)
+            with shared.progress(arguments.progress, "bootstrap") as progress:
+                options = {"bootstrap": arguments.bootstrap, "progress": progress}
+                found = fit(impacts, path, simulation=simulations[first], **asked, **options)
     except KeyboardInterrupt:  # what is done is worth telling
+        if found is None:
+            raise
         interrupted = True
+    interrupted |= 0 < found.samples < arguments.bootstrap
     if ranked:
         ranked = in_order([*ranked, Ranked(name=first, fit=found)])
     shown = [one for one in ranked if one.fit] or [Ranked(name=first, fit=found)]
     saved = shared.save(
         (arguments.figure, lambda file: _draw(file, shown)),
         (arguments.csv, lambda file: write_residuals(file, shown)),
+        progress_wanted=arguments.progress,
     )
     _report(found, ranked, complete=not interrupted, as_json=arguments.json)
     return shared.INTERRUPTED if interrupted else max(saved, _failures(ranked))

@@ -106,9 +106,8 @@ def _check(arguments: argparse.Namespace) -> int:
     """Put a law through its contract; the kit is loaded only here."""
     from contactlab.testing import examine
 
-    outcomes = examine(
-        arguments.name, progress=progress(arguments.progress, f"checking {arguments.name}")
-    )
+    with progress(arguments.progress, f"checking {arguments.name}") as counted:
+        outcomes = examine(arguments.name, progress=counted)
     failures = [outcome for outcome in outcomes if not outcome.verdict.good]
     if arguments.json:
         entries = [

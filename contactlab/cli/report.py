@@ -14,6 +14,7 @@ import sys
 
 import attrs
 
+from contactlab.analysis.compare import compare
 from contactlab.cli import arguments as shared
 from contactlab.files import written
 from contactlab.scene_file import LawChoice, read_scene
@@ -38,21 +39,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the scene under the laws, write the page and print its path."""
-    from contactlab.pages.report import report_page  # matplotlib only when drawing
-
     file = read_scene(arguments.scene)
     own = file.laws.resolved()
     simulations = {str(own.tangential): own.simulation()}
     for name in arguments.tangential:
         if name.removeprefix("tangential.") not in simulations:
             simulations[name] = _other(file.laws, name).simulation()
-    progress = shared.progress(arguments.progress, "laws")
-    with contextlib.redirect_stdout(sys.stderr):  # what a plug-in prints is not our output
-        page = report_page(file, simulations, progress=progress)
+    with (
+        shared.progress(arguments.progress, "laws") as progress,
+        contextlib.redirect_stdout(sys.stderr),  # what a plug-in prints is not our output
+    ):
+        from contactlab.pages.report import report_page  # matplotlib only when drawing
+
+        comparison = compare(file, simulations, history=True, progress=progress)
+        page = report_page(file, simulations, comparison)
     with written(arguments.out) as stream:
         stream.write(page)
     print(arguments.out)
-    return shared.OK
+    return shared.INTERRUPTED if comparison.interrupted else shared.OK
 
 
 def _other(laws: LawChoice, tangential: str) -> LawChoice:

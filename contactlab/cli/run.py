@@ -63,9 +63,11 @@ def execute(arguments: argparse.Namespace) -> int:
     file, scene, simulation = given(arguments)
     if arguments.history and scene.shape:
         raise ValueError("--history: needs a single impact, this scene is a sweep; leave it out")
-    with contextlib.redirect_stdout(sys.stderr):  # what a plug-in prints is not our output
+    with (
+        shared.progress(arguments.progress, "impacts" if scene.shape else "impact") as progress,
+        contextlib.redirect_stdout(sys.stderr),  # what a plug-in prints is not our output
+    ):
         if scene.shape:
-            progress = shared.progress(arguments.progress, "impacts")
             result = simulation.sweep(scene, progress=progress)
         else:
             result = simulation.run(
@@ -77,6 +79,7 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.history, lambda path: export.write_history_csv(result, path)),
         (arguments.figure, lambda path: draw(path, result, arguments.style)),
+        progress_wanted=arguments.progress,
     )
     varied: Mapping[str, Any] = file.varied if file else {}
     met = file.encounter if file else None

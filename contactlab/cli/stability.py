@@ -50,19 +50,21 @@ def execute(arguments: argparse.Namespace) -> int:
 
     why_not = "the budget ran out"
     try:
-        found = stability(
-            methods(arguments.law),
-            quick=arguments.quick,
-            budget=arguments.budget,
-            progress=shared.progress(arguments.progress, "stability"),
-            judged=judged,
-        )
+        with shared.progress(arguments.progress, "stability") as progress:
+            found = stability(
+                methods(arguments.law),
+                quick=arguments.quick,
+                budget=arguments.budget,
+                progress=progress,
+                judged=judged,
+            )
     except KeyboardInterrupt:
         # What is done of the map is listed with the other outcomes.
         found, why_not = Stability(outcomes=tuple(kept), regions=(), complete=False), "interrupted"
     saved = shared.save(
         (arguments.csv, lambda path: _write_csv(path, found)),
         (arguments.figure, lambda path: _draw(path, found, why_not)),
+        progress_wanted=arguments.progress,
     )
     content = json.dumps(_content(found), indent=2) if arguments.json else report(found, why_not)
     print(content)

@@ -70,13 +70,16 @@ def execute(arguments: argparse.Namespace) -> int:
         raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
     simulation = composed(arguments, file.laws if file else LawChoice())
     keep = _folder(arguments.out) if arguments.resume else None
-    progress = shared.progress(arguments.progress, "impacts")
-    # What a plug-in prints is not our output.
-    with contextlib.redirect_stdout(sys.stderr), _executor(arguments.workers) as executor:
+    with (
+        shared.progress(arguments.progress, "impacts") as progress,
+        contextlib.redirect_stdout(sys.stderr),  # what a plug-in prints is not our output
+        _executor(arguments.workers) as executor,
+    ):
         result = simulation.sweep(scene, progress=progress, executor=executor, keep=keep)
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.figure, lambda path: draw(path, result, arguments.style)),
+        progress_wanted=arguments.progress,
     )
     if keep is not None and saved == shared.OK:
         _clear(keep, result)

@@ -11,6 +11,7 @@ import contextlib
 import io
 import re
 import sys
+import threading
 import unicodedata
 from collections.abc import Iterable, Iterator
 from typing import Any, TextIO
@@ -53,6 +54,25 @@ def _letters(character: str, encoding: str) -> str:
     return near.encode(encoding, "ignore").decode(encoding) or "?"
 
 
+class Screen:
+    """What the two streams of a command share.
+
+    Attributes
+    ----------
+    lock : lock
+        Held while one of them writes: the line of progress is written by a thread.
+    progress : text stream or None
+        The stream with an unfinished line of progress, if there is one.
+    within_line : bool
+        Whether what was printed last is to go on in the same line.
+    """
+
+    def __init__(self) -> None:
+        self.lock = threading.RLock()
+        self.progress: TextIO | None = None
+        self.within_line = False
+
+
 class Printed:
     """A text stream that passes on only what the stream below can show.
 
@@ -60,18 +80,21 @@ class Printed:
     ----------
     stream : text stream
         Where the text goes; of everything but ``write`` it decides.
-    line : list
-        The stream with an unfinished line of progress, if there is one; shared by the two
-        streams of a command, so that whatever is printed first wipes the line out.
+    screen : Screen
+        Shared by the two streams of a command, so that whatever is printed first wipes the line
+        of progress out.
     """
 
-    def __init__(self, stream: TextIO, line: list[TextIO]) -> None:
-        self._stream, self._line = stream, line
+    def __init__(self, stream: TextIO, screen: Screen) -> None:
+        self._stream, self._screen = stream, screen
 
     def write(self, text: str) -> int:
         """Write text, after the line of progress has been wiped out."""
-        self.overwrite("")
-        self._stream.write(self._fit(text))
+        with self._screen.lock:
+            self.overwrite("")
+            self._stream.write(self._fit(text))
+            if text:
+                self._screen.within_line = not text.endswith("\n")
         return len(text)
 
     def writelines(self, lines: Iterable[str]) -> None:
@@ -80,14 +103,20 @@ class Printed:
             self.write(line)
 
     def overwrite(self, text: str) -> None:
-        """Put ``text`` in place of the last line of progress; an empty one leaves none."""
-        for stream in self._line:
-            stream.write("\r\x1b[K")
-            stream.flush()
-        self._line[:] = [self._stream] if text else []
-        if text:
-            self._stream.write(self._fit(text))
-            self._stream.flush()
+        """Put ``text`` in place of the last line of progress; an empty one leaves none.
+
+        In the middle of a line that is being printed nothing is put.
+        """
+        screen = self._screen
+        with screen.lock:
+            if screen.progress is not None:
+                screen.progress.write("\r\x1b[K")
+                screen.progress.flush()
+                screen.progress = None
+            if text and not screen.within_line:
+                screen.progress = self._stream
+                self._stream.write(self._fit(text))
+                self._stream.flush()
 
     def _fit(self, text: str) -> str:
         return fitting(safe(text), getattr(self._stream, "encoding", None) or "utf-8")
@@ -99,8 +128,8 @@ class Printed:
 @contextlib.contextmanager
 def fitted() -> Iterator[None]:
     """Put ``Printed`` over stdout and stderr inside a ``with`` block."""
-    line: list[TextIO] = []
+    screen = Screen()
     # A program without a terminal may have no streams; print would then take stdout for stderr.
-    out, err = (Printed(stream or io.StringIO(), line) for stream in (sys.stdout, sys.stderr))
+    out, err = (Printed(stream or io.StringIO(), screen) for stream in (sys.stdout, sys.stderr))
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         yield

@@ -42,10 +42,18 @@ def execute(arguments: argparse.Namespace) -> int:
     folder: Path | None = arguments.figures
     if folder is not None and not folder.parent.is_dir():
         raise ValueError(f"--figures {folder}: there is no folder {folder.parent}")
-    findings = validate(shared.progress(arguments.progress, "checks"))
-    gathered = gather(
-        curves=folder is not None, progress=shared.progress(arguments.progress, "sources")
-    )
+    findings: list[Finding] = []
+    gathered: list[Evidence] = []
+    interrupted = False
+    try:  # extend keeps what came before an interruption
+        with shared.progress(arguments.progress, "checks") as progress:
+            findings.extend(validate(progress))
+        with shared.progress(arguments.progress, "sources") as progress:
+            gathered.extend(gather(curves=folder is not None, progress=progress))
+    except KeyboardInterrupt:
+        if not findings:
+            raise
+        interrupted = True
     findings += [finding for evidence in gathered for finding in judged(evidence)]
     saved = shared.OK
     if folder is not None:
@@ -54,16 +62,20 @@ def execute(arguments: argparse.Namespace) -> int:
             (folder / f"{one.source.name}.png", lambda path, one=one: _draw(path, one))
             for one in gathered
         ]
-        saved = shared.save(*drawings)
+        saved = shared.save(*drawings, progress_wanted=arguments.progress)
     if arguments.json:
         checks = [attrs.asdict(finding) | {"ok": finding.ok} for finding in findings]
         content = {
             "checks": [{key: json_value(value) for key, value in row.items()} for row in checks],
             "sources": [_plain(one) for one in gathered],
+            "complete": not interrupted,
         }
         print(json.dumps(content, indent=2, allow_nan=False))
     else:
-        print("\n\n".join([_checks(findings), *map(_told, gathered)]))
+        ending = ["not complete: interrupted"] if interrupted else []
+        print("\n\n".join([_checks(findings), *map(_told, gathered), *ending]))
+    if interrupted:
+        return shared.INTERRUPTED
     return saved if all(finding.ok for finding in findings) else shared.FAILED
 
 

@@ -79,6 +79,8 @@ def animate(
 
     Raises
     ------
+    KeyboardInterrupt
+        On Ctrl-C, after the frames that are done have been written.
     ValueError
         If the result has no history of a single impact.
     """
@@ -93,10 +95,16 @@ def animate(
     from PIL import Image  # matplotlib needs it, so it is there
 
     adaptive = Image.Palette.ADAPTIVE
-    pictures = [
-        Image.fromarray(frame).convert("P", palette=adaptive, colors=COLOURS)
-        for frame in _frames(result, progress)
-    ]
+    pictures: list[Image.Image] = []
+    interrupt: KeyboardInterrupt | None = None
+    try:
+        for frame in _frames(result, progress):
+            picture = Image.fromarray(frame)
+            pictures.append(picture.convert("P", palette=adaptive, colors=COLOURS))
+    except KeyboardInterrupt as error:
+        if not pictures:
+            raise
+        interrupt = error
     with written(path, binary=True) as stream:
         pictures[0].save(
             stream,
@@ -106,6 +114,8 @@ def animate(
             duration=FRAME_TIME,
             loop=0,
         )
+    if interrupt is not None:
+        raise interrupt
 
 
 def _frames(

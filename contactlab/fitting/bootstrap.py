@@ -13,6 +13,9 @@ from contactlab.fitting.problem import Problem, solved
 
 Array = NDArray[np.float64]
 
+#: Samples from which an interruption keeps them: of fewer, a 95 % interval is two of them.
+FEWEST = 100
+
 
 def bootstrapped(
     problem: Problem,
@@ -22,8 +25,10 @@ def bootstrapped(
     seed: int,
     tail: float,
     progress: Callable[[int, int], object] | None = None,
-) -> list[tuple[float, float]]:
-    """Return an interval for each parameter, between quantiles of the samples.
+) -> tuple[list[tuple[float, float]], int]:
+    """Return an interval for each parameter, between quantiles of the samples, and their number.
+
+    Interrupting (Ctrl-C) keeps the samples that are done if they are enough.
 
     Parameters
     ----------
@@ -49,15 +54,19 @@ def bootstrapped(
     residuals = {name: rows[0] for name, rows in problem.residuals(values[None]).items()}
     numbers = sum(problem.counts.values())
     wider = math.sqrt(numbers / max(numbers - len(values), 1))
-    found = np.empty((samples, len(values)))
-    for sample in range(samples):
-        signs = wider * generator.choice([-1.0, 1.0], len(residuals[next(iter(residuals))]))
-        measured = {
-            name: numbers_measured + (signs - 1.0) * residuals[name]
-            for name, numbers_measured in problem.measured.items()
-        }
-        found[sample] = solved(attrs.evolve(problem, measured=measured), values)
-        if progress is not None:
-            progress(sample + 1, samples)
-    ends = np.quantile(found, [tail, 1.0 - tail], axis=0)
-    return [(float(low), float(high)) for low, high in ends.T]
+    found: list[Array] = []
+    try:
+        while len(found) < samples:
+            signs = wider * generator.choice([-1.0, 1.0], len(residuals[next(iter(residuals))]))
+            measured = {
+                name: numbers_measured + (signs - 1.0) * residuals[name]
+                for name, numbers_measured in problem.measured.items()
+            }
+            found.append(solved(attrs.evolve(problem, measured=measured), values))
+            if progress is not None:
+                progress(len(found), samples)
+    except KeyboardInterrupt:
+        if len(found) < FEWEST:
+            raise
+    ends = np.quantile(np.array(found), [tail, 1.0 - tail], axis=0)
+    return [(float(low), float(high)) for low, high in ends.T], len(found)

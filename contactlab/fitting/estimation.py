@@ -88,6 +88,9 @@ def fit(
     Known errors (columns ``..._error``) are taken as they are, and intervals widened by the
     square root of the reduced chi square if that is above 1. Where errors are not known, those
     of each quantity are estimated by its residuals.
+
+    Interrupting (Ctrl-C) keeps the samples of the bootstrap from a hundred on; ``samples`` and a
+    note of the fit tell how many they are.
     """
     if scene is None and isinstance(measurements, SceneFile):
         scene = measurements
@@ -114,12 +117,17 @@ def fit(
     samples = whole("bootstrap", bootstrap, least=0, most=100_000)
     if not samples:
         return found
-    intervals = bootstrapped(problem, values, samples, seed=seed, tail=TAIL, progress=progress)
+    intervals, done = bootstrapped(
+        problem, values, samples, seed=seed, tail=TAIL, progress=progress
+    )
     estimates = {
         name: attrs.evolve(one, bootstrap=interval)
         for (name, one), interval in zip(found.parameters.items(), intervals, strict=True)
     }
-    return attrs.evolve(found, parameters=estimates)
+    notes = found.notes
+    if done < samples:
+        notes += (f"bootstrap: interrupted, intervals are those of {done} samples of {samples}",)
+    return attrs.evolve(found, parameters=estimates, notes=notes, samples=done)
 
 
 def _model(

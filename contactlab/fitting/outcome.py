@@ -61,6 +61,8 @@ class Fit:
         Mean square of residuals over their known errors, a degree of freedom; None where
         errors are not known.
     notes : tuple of str
+    samples : int
+        Of the bootstrap; fewer than asked for where Ctrl-C has ended it, 0 for none.
     """
 
     parameters: Mapping[str, Estimate]
@@ -71,6 +73,7 @@ class Fit:
     aic: float
     reduced_chi_square: float | None = None
     notes: tuple[str, ...] = ()
+    samples: int = 0
 
     def __getitem__(self, name: str) -> float:
         """Return the value of a parameter."""
@@ -123,6 +126,7 @@ class Fit:
             "measured": {name: json_value(values) for name, values in content.measured.items()},
             "predicted": {name: json_value(values) for name, values in self.predicted.items()},
             "notes": list(self.notes),
+            "samples": self.samples,
         }
 
     def __repr__(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from html import escape
 from importlib import metadata, resources
 from string import Template
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 import contactlab
-from contactlab.analysis.compare import Agreement, Comparison, compare
+from contactlab.analysis.compare import Agreement, Comparison
 from contactlab.citations import references
 from contactlab.figures.comparison import differences, forces_over_contact, laws_over_sweep
 from contactlab.figures.files import as_svg
@@ -33,8 +33,7 @@ ROWS = 25
 def report_page(
     file: SceneFile,
     simulations: Mapping[str, Simulation],
-    *,
-    progress: Callable[[int, int], object] | None = None,
+    comparison: Comparison,
 ) -> str:
     """Return the page of a scene file.
 
@@ -43,10 +42,9 @@ def report_page(
     file : SceneFile
     simulations : mapping of str to Simulation
         Name to laws: the first is that of the report, the others are compared with it.
-    progress : callable, optional
-        Called as ``progress(done, total)`` after each law.
+    comparison : Comparison
+        Of these laws on the scene of the file, with the history of a single impact.
     """
-    comparison = compare(file, simulations, history=True, progress=progress)
     result = comparison.runs[0].result
     first = next(iter(simulations.values()))
     if not result.scene.shape:
@@ -111,6 +109,8 @@ def _comparison(comparison: Comparison) -> list[str]:
     headings = ["law", f"largest difference of psi2 from {first}", "run time an impact"]
     found.append(html.table(headings, rows, digits=3))
     found += [html.paragraph(f"failed: {sentence}") for sentence in comparison.failures()]
+    if comparison.interrupted:
+        found.append(html.paragraph("Interrupted before all laws were compared."))
     return found
 
 

@@ -18,6 +18,19 @@ class Ran(NamedTuple):
     err: str
 
 
+def interrupting(function, after):
+    """Return ``function`` as interrupted in its call number ``after`` + 1."""
+    calls = []
+
+    def interrupted(*arguments, **keywords):
+        calls.append(None)
+        if len(calls) > after:
+            raise KeyboardInterrupt
+        return function(*arguments, **keywords)
+
+    return interrupted
+
+
 @pytest.fixture
 def run(capsys):
     def call(*arguments):

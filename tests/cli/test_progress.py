@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import sys
+import threading
 
 import pytest
 
@@ -35,8 +37,7 @@ def work(monkeypatch):
         monkeypatch.setattr(sys, "stderr", screen)
         monkeypatch.setattr(sys, "stdout", screen)
         monkeypatch.setattr(module.time, "perf_counter", lambda: clock[0])
-        with fitted():
-            show = progress(asked, "things")
+        with fitted(), progress(asked, "things") as show:
             for done in range(1, count + 1):
                 clock[0] += each
                 each_time()
@@ -75,6 +76,75 @@ def test_elsewhere_a_line_now_and_then_and_only_when_asked(work):
     assert lines[-1] == "things: 100 % (100/100), took 50 s"
     assert len(lines) == 6
     assert work(100, 0.5, terminal=True, asked=False) == ""
+
+
+@pytest.fixture
+def slowly(monkeypatch):
+    """Return a function that makes a terminal and a clock; no thread writes to it."""
+
+    def begin():
+        clock = [100.0]
+        screen = Screen(terminal=True)
+        monkeypatch.setattr(sys, "stderr", screen)
+        monkeypatch.setattr(module.time, "perf_counter", lambda: clock[0])
+        monkeypatch.setattr(module.Progress, "_keep_alive", lambda _: None)
+        return screen, clock
+
+    return begin
+
+
+def test_the_time_left_goes_on_while_one_thing_takes_long(slowly):
+    screen, clock = slowly()
+    with fitted(), progress(None, "things") as show:
+        for passed, done, expected in (
+            (1.0, None, ""),
+            (5.0, None, "things: 6 s so far"),
+            (2.0, 1, "things: 33 % (1/3), 16 s left"),
+            (3.0, None, "things: 33 % (1/3), 13 s left"),
+            (9.0, None, "things: 33 % (1/3), 8 s left"),  # it takes longer than the first
+            (4.0, 2, "things: 66 % (2/3), 12 s left"),
+            (13.0, None, "things: 66 % (2/3), 37 s so far"),  # longer than was to be expected
+            (4.0, 3, "things: 100 % (3/3), 41 s so far"),
+        ):
+            clock[0] += passed
+            if done is None:
+                show._show(clock[0])
+            else:
+                show(done, 3)
+            assert screen.getvalue().rpartition("\r\x1b[K")[2] == expected
+    assert screen.getvalue().endswith("\r\x1b[K")
+
+
+def test_the_line_ends_with_an_interruption(slowly):
+    screen, clock = slowly()
+    with fitted():
+        with contextlib.suppress(KeyboardInterrupt), progress(None, "things") as show:
+            clock[0] += 5.0
+            show(1, 3)
+            raise KeyboardInterrupt
+        print("what is done", file=sys.stderr)
+    assert screen.getvalue() == "things: 33 % (1/3), 10 s left\r\x1b[Kwhat is done\n"
+
+
+def test_a_line_that_is_being_printed_is_left_alone(slowly):
+    screen, clock = slowly()
+    with fitted(), progress(None, "things") as show:
+        clock[0] += 5.0
+        print("half a", end="", file=sys.stderr)
+        show._show(clock[0])
+        print(" line", file=sys.stderr)
+        assert screen.getvalue() == "half a line\n"
+
+
+def test_a_thread_keeps_it_alive(monkeypatch):
+    screen = Screen(terminal=True)
+    monkeypatch.setattr(sys, "stderr", screen)
+    monkeypatch.setattr(module, "QUIET", 0.0)
+    monkeypatch.setattr(module, "ALIVE", 0.001)
+    seen = threading.Event()
+    monkeypatch.setattr(module.Progress, "_overwrite", lambda _, text: text and seen.set())
+    with progress(None, "things"):
+        assert seen.wait(60.0)
 
 
 def test_times():

@@ -11,23 +11,11 @@ from contactlab.analysis import paper_figures, validation, work_precision
 from contactlab.analysis.bench_methods import Method
 from contactlab.cli import bench, stability
 from contactlab.simulation import Simulation
+from tests.cli.conftest import interrupting
 
 pytestmark = pytest.mark.slow
 
 STEPPED = [Method(tangential="springs", integrator="symplectic")]
-
-
-def interrupting(function, after):
-    """Return ``function`` as interrupted in its call number ``after`` + 1."""
-    calls = []
-
-    def interrupted(*arguments, **keywords):
-        calls.append(None)
-        if len(calls) > after:
-            raise KeyboardInterrupt
-        return function(*arguments, **keywords)
-
-    return interrupted
 
 
 def rows(path):

@@ -1,0 +1,105 @@
+"""Ctrl-C in the middle of laws, checks, samples or frames keeps those that are done."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from contactlab.analysis import compare, evidence, validation
+from contactlab.cli import fit as fit_command
+from contactlab.figures import animation
+from contactlab.fitting import bootstrap
+from tests.cli.conftest import EXAMPLES, interrupting
+
+KHARAZ = EXAMPLES / "kharaz2001.toml"
+E_T = ("--quantity", "tangential_restitution", "--laws", "exact,coulomb,stronge")
+
+
+def test_compare_keeps_the_laws_that_are_done(run, monkeypatch, measured, tmp_path):
+    """Of the second law the sweep is done, the measured points are not: it is left out."""
+    picture = tmp_path / "c.png"
+    words = ("compare", measured, "--tangential", "coulomb,frictionless,stronge")
+    runs = compare._run
+    monkeypatch.setattr(compare, "REPEATS", 1)
+    monkeypatch.setattr(compare, "LONG_RUN", np.inf)  # of each law two sweeps, and measured points
+    monkeypatch.setattr(compare, "_run", interrupting(runs, 5))
+    ran = run(*words, "--figure", picture)
+    assert ran.status == 130
+    assert "coulomb" in ran.out
+    assert "frictionless" not in ran.out
+    assert "interrupted: not compared: frictionless, stronge" in ran.err
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    monkeypatch.setattr(compare, "_run", interrupting(runs, 7))
+    ran = run(*words, "--json")
+    content = json.loads(ran.out)
+    assert (ran.status, content["complete"]) == (130, False)
+    assert list(content["laws"]) == ["coulomb", "frictionless"]
+    assert list(content["measured"][0]["laws"]) == ["coulomb", "frictionless"]
+    monkeypatch.setattr(compare, "_run", interrupting(runs, 2))
+    ran = run(*words)
+    assert (ran.status, ran.out) == (130, "")
+
+
+def test_all_laws_keep_those_that_are_done(run, monkeypatch, short_sweep):
+    monkeypatch.setattr(compare, "_timed", interrupting(compare._timed, 2))
+    ran = run("compare", short_sweep, "--all", "--json")
+    assert ran.status == 130
+    content = json.loads(ran.out)
+    assert len(content["laws"]) == len(content["scores"]) == 2
+
+
+def test_a_report_of_the_laws_that_are_done(run, monkeypatch, ball, tmp_path):
+    page = tmp_path / "r.html"
+    monkeypatch.setattr(compare, "_timed", interrupting(compare._timed, 1))
+    ran = run("report", ball, "--tangential", "coulomb,stronge", "--out", page)
+    assert (ran.status, ran.out) == (130, f"{page}\n")
+    assert "Interrupted before all laws were compared" in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(("done", "sources"), [(1, 0), (2, 0), (2, 1)])
+def test_validate_keeps_checks_and_sources(run, monkeypatch, done, sources):
+    checks = [validation._rigid] * done + [interrupting(None, 0)] * (sources == 0)
+    monkeypatch.setattr(validation, "_checks", lambda: iter(checks))
+    monkeypatch.setattr(evidence, "_evidence", interrupting(evidence._evidence, sources))
+    ran = run("validate")
+    assert ran.status == 130
+    assert ran.out.endswith("not complete: interrupted\n")
+    assert ran.out.count("coulomb: psi2") == done
+    assert ran.out.count("(experiment)") == sources
+
+
+def test_a_fit_keeps_the_laws_that_are_done(run, monkeypatch, tmp_path):
+    monkeypatch.setattr(fit_command, "rank", interrupting(fit_command.rank, 1))
+    ran = run("fit", KHARAZ, *E_T, "--json", "--csv", tmp_path / "r.csv")
+    assert ran.status == 130
+    assert {one["law"] for one in json.loads(ran.out)["ranking"]} == {"exact", "coulomb"}
+    rows = csv.DictReader((tmp_path / "r.csv").read_text(encoding="utf-8").splitlines())
+    assert {row["law"] for row in rows} == {"exact", "coulomb"}
+
+
+@pytest.mark.parametrize(("after", "kept"), [(10, True), (9, False)])
+def test_a_bootstrap_keeps_its_samples_if_they_are_enough(run, monkeypatch, after, kept):
+    monkeypatch.setattr(bootstrap, "FEWEST", 10)
+    monkeypatch.setattr(bootstrap, "solved", interrupting(bootstrap.solved, after))
+    words = ("fit", KHARAZ, *E_T[:2], "--bootstrap", 150)
+    ran = run(*words, "--json")
+    assert ran.status == 130
+    content = json.loads(ran.out)
+    assert not content["complete"]
+    assert content["samples"] == after * kept
+    interval = content["parameters"]["friction_coefficient"]["bootstrap_95"]
+    assert (interval is not None) == kept
+    assert any("10 samples of 150" in note for note in content["notes"]) == kept
+
+
+def test_an_animation_keeps_its_frames(run, monkeypatch, ball, tmp_path):
+    monkeypatch.setattr(animation.Forces, "show", interrupting(animation.Forces.show, 3))
+    picture = tmp_path / "a.gif"
+    ran = run("animate", ball, "--out", picture)
+    assert (ran.status, ran.out) == (130, "")
+    with Image.open(picture) as written:
+        assert written.n_frames == 3
