@@ -17,6 +17,10 @@ from typing import Any
 
 #: Permissions of a new file, before the umask takes its share.
 NEW_FILE = 0o666
+#: How text is written; a name of a file that is no UTF-8, or was not read as such, as it is.
+TEXT: dict[str, Any] = {
+    "mode": "w", "encoding": "utf-8", "errors": "surrogateescape", "newline": "",
+}  # fmt: skip
 
 
 @contextlib.contextmanager
@@ -44,7 +48,7 @@ def written(path: str | Path, *, binary: bool = False) -> Iterator[Any]:
     beside = os.path.join(os.path.dirname(target), f".contactlab-{os.urandom(6).hex()}.part")
     try:
         handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, NEW_FILE)
-        form: Any = {"mode": "wb"} if binary else {"mode": "w", "encoding": "utf-8", "newline": ""}
+        form: Any = {"mode": "wb"} if binary else TEXT
         try:
             with open(handle, **form) as stream:
                 yield stream

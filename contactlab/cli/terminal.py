@@ -26,7 +26,7 @@ LETTERS = {
     "≈": "~", "\N{MULTIPLICATION SIGN}": "x", "·": ".", "√": "sqrt", "∞": "inf", "→": "->",
     "\N{MINUS SIGN}": "-", "\N{EN DASH}": "-", "—": "-", "\N{LEFT SINGLE QUOTATION MARK}": "'",
     "\N{RIGHT SINGLE QUOTATION MARK}": "'", "“": '"', "”": '"', "\N{FRACTION SLASH}": "/",
-    "ß": "ss", "ø": "o",
+    "ß": "ss", "ø": "o", "§": "section ", "∫": "int",
 }  # fmt: skip
 
 

@@ -6,11 +6,14 @@ import io
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
+import contactlab
 from contactlab.cli.terminal import fitted, fitting, safe
 
+PACKAGE = Path(contactlab.__file__).parent
 COMMAND = [sys.executable, "-m", "contactlab"]
 PSI = ["run", "--psi1", "6", "--chi", "1", "--tangential", "coulomb"]
 EVIL = "\x1b[31mred\x1b]0;title\x07 \x9b2J \u202e back \r over"
@@ -28,6 +31,31 @@ def test_symbols_in_letters():
     assert fitting(text, "utf-8") == text.replace("\udcff", "?")
     assert fitting(text, "ascii") == "3 us, mu = 0.1, psi1 <= 2 m2, 30deg, cafe, 1/2, ? ?"
     assert fitting("3 µs ψ", "latin-1") == "3 µs psi"
+
+
+@pytest.mark.parametrize("suffix", [".py", ".md", ".toml"])
+def test_everything_that_is_printed_has_its_letters(suffix):
+    """Symbols of the code, of the guide and of packaged data; none is a question mark."""
+    found = [path for path in PACKAGE.rglob(f"*{suffix}") if path.parent.name != "pages"]
+    texts = [path.read_text(encoding="utf-8") for path in found]
+    symbols = {letter for text in texts for letter in text if not letter.isascii()}
+    assert symbols
+    assert [letter for letter in symbols if "?" in fitting(letter, "ascii")] == []
+
+
+def test_a_name_of_a_file_that_is_not_in_the_encoding(tmp_path, ball):
+    """Under an ASCII locale the letters of a name are bytes that no encoding has."""
+    folder = tmp_path / "ψ"
+    folder.mkdir()
+    scene, page = folder / "µ.toml", folder / "é.html"
+    scene.write_bytes(ball.read_bytes().replace(b"title", b"#title"))
+    narrow = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    words = ["report", scene, "--tangential", "coulomb", "--out", page]
+    done = subprocess.run(
+        [*COMMAND, *words], capture_output=True, env=os.environ | narrow, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert "<h1>µ.toml</h1>" in page.read_text(encoding="utf-8")
 
 
 def test_everything_printed_goes_through_it(monkeypatch):
