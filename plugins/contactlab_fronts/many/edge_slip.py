@@ -42,29 +42,20 @@ SETTLED, CONVERGED = 1e-3, 1e-2
 SAFETY = 0.1
 
 
-def advance(impacts: Impacts, who: Rows, tolerance: float, *, laid: bool, fitted: bool) -> None:
-    """Take one panel for impacts whose outermost piece was laid down, or locked.
+def advance(impacts: Impacts, who: Rows, tolerance: float) -> None:
+    """Take one panel for impacts of one kind: of ``Impacts.laid`` and of ``Impacts.fitted``.
 
     Panels are refused, and come again shorter or fitted to an event, if they did not converge
     or are not resolved.
-
-    Parameters
-    ----------
-    impacts : Impacts
-    who : ndarray of int
-        All of which slip through a piece of one kind.
-    tolerance : float
-        Error of psi2 over max(1, psi1).
-    laid, fitted : bool
-        Whether the piece was laid down, and whether the panel is to end where it is left.
     """
+    laid, fitted = bool(impacts.laid(who[:1])[0]), bool(impacts.fitted[who[0]])
     piece, sign = impacts.pieces.piece(impacts.outermost[who], laid=laid), impacts.sign[who]
     slipping = EdgeSlip(sign, (piece,))
     singular = piece.singular_inner_end(sign)
     if not laid:
         singular |= piece.inner_q < NEAR_CENTRE * np.sin(impacts.phase[who]) ** 2
     free = _length(impacts, who)
-    reach = impacts.limit[who] if fitted else _reach(impacts, who, slipping)
+    reach = impacts.longest[who] if fitted else _reach(impacts, who, slipping)
     held = reach < free
     length = reach if fitted else np.minimum(free, reach)
     limit = SAFETY * tolerance * np.clip(impacts.first[who], LEAST_SCALE, 1.0)
@@ -87,7 +78,7 @@ def advance(impacts: Impacts, who: Rows, tolerance: float, *, laid: bool, fitted
         cut = (leaves <= 1.0) & ~to_fit & (near > PROGRESS)
         cut &= ~good | (laid & (leaves < PART_INSIDE))
         impacts.fitted[who[to_fit]] = True
-        impacts.limit[who[to_fit]] = near[to_fit]
+        impacts.longest[who[to_fit]] = near[to_fit]
         part = np.minimum(1.02 * leaves, np.where(good, 1.0, shorter))
         _refuse(impacts, who[cut], (part * panel.length)[cut])
         again = to_fit | cut
@@ -97,7 +88,7 @@ def advance(impacts: Impacts, who: Rows, tolerance: float, *, laid: bool, fitted
     if done.size:
         wanted = panel.length * np.clip(growth, 0.5, 3.0)
         # a panel kept short by its piece says nothing against longer ones
-        wanted = np.where(held, np.maximum(wanted, impacts.estimate[who]), wanted)
+        wanted = np.where(held, np.maximum(wanted, impacts.estimated_length[who]), wanted)
         _accept(impacts, who[done], panel, done, tau[done], event[done], wanted[done])
 
 
@@ -107,7 +98,9 @@ def _length(impacts: Impacts, who: Rows) -> Array:
     # the square of the fastest oscillation in x is 2.4 inertia u at most
     swing = LONGEST_SWING / np.sqrt(2.4 * impacts.inertia[who] * np.sin(phase) + 0.5)
     length = np.minimum(np.minimum(np.pi - phase, LONGEST), swing)
-    return np.asarray(np.minimum(length, np.minimum(impacts.limit[who], impacts.estimate[who])))
+    return np.asarray(
+        np.minimum(length, np.minimum(impacts.longest[who], impacts.estimated_length[who]))
+    )
 
 
 def _reach(impacts: Impacts, who: Rows, slipping: EdgeSlip) -> Array:
@@ -139,7 +132,7 @@ def _events(panel: Panel, idle: Flags) -> tuple[Array, Rows, Array]:
 
 def _refuse(impacts: Impacts, who: Rows, length: Array) -> None:
     impacts.fitted[who] = False
-    impacts.limit[who] = length
+    impacts.longest[who] = length
     impacts.attempts[who] += 1
     impacts.regime[who[impacts.attempts[who] > MOST_ATTEMPTS]] = UNSOLVED
 
@@ -170,8 +163,8 @@ def _accept(
     impacts.work[who] += value(weights, panel.work[:, columns])
     impacts.slip[who] = value(weights, panel.sample.slip[:, columns])
     impacts.force[who] = value(weights, panel.sample.response.force[:, columns])
-    impacts.estimate[who] = wanted
-    impacts.limit[who] = np.inf
+    impacts.estimated_length[who] = wanted
+    impacts.longest[who] = np.inf
     impacts.fitted[who] = False
     impacts.attempts[who] = 0
     impacts.idle[who] = np.where(progress < PROGRESS, impacts.idle[who] + 1, 0)

@@ -6,6 +6,7 @@ The phases and their formulas are those of one impact: ``contactlab_fronts.phase
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.collocation import Array, Nodes
 from contactlab.contracts import ClosedFormMotion
@@ -49,14 +50,20 @@ class Impacts:
         self.pieces = PieceTable(nodes, 2 * count + 64)
         # how the next panel is to be taken
         self.fitted = np.zeros(count, dtype=bool)  # up to the event at the end of the piece
-        self.limit = np.full(count, np.inf)  # no longer than this
-        self.estimate = np.full(count, np.inf)  # the length that the last error estimate asks for
+        self.longest = np.full(count, np.inf)  # no longer than this
+        self.estimated_length = np.full(
+            count, np.inf
+        )  # the length that the last error estimate asks for
         self.attempts = np.zeros(count, dtype=np.intp)  # refused in a row
         self.idle = np.zeros(count, dtype=np.intp)  # events in a row without progress
 
     def velocity(self, who: Rows) -> Array:
         """Return psi."""
         return self.first[who] + self.change[who]
+
+    def laid(self, who: Rows) -> NDArray[np.bool_]:
+        """Return whether the outermost piece was laid down while all stuck."""
+        return np.asarray(self.pieces["sign"][self.outermost[who]] == 0.0)
 
     def slide_through(self, who: Rows) -> None:
         """Take gross slip, in closed form, until it sticks again or the impact ends."""

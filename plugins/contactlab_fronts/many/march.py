@@ -71,12 +71,8 @@ def _round(impacts: Impacts, tolerance: float) -> bool:
     slipping = np.flatnonzero(impacts.regime == EDGE_SLIP)
     if not slipping.size:
         return bool(np.any(impacts.regime < DONE))
-    laid = impacts.pieces["sign"][impacts.outermost[slipping]] == 0.0
-    fitted = impacts.fitted[slipping]
-    for is_laid in (False, True):
-        for fit in (False, True):
-            who = slipping[(laid == is_laid) & (fitted == fit)]
-            for first in range(0, who.size, BLOCK):
-                part = who[first : first + BLOCK]
-                edge_slip.advance(impacts, part, tolerance, laid=is_laid, fitted=fit)
+    kind = 2 * impacts.laid(slipping) + impacts.fitted[slipping]
+    for who in (slipping[kind == each] for each in range(4)):
+        for first in range(0, who.size, BLOCK):
+            edge_slip.advance(impacts, who[first : first + BLOCK], tolerance)
     return True
