@@ -93,6 +93,24 @@ class Turning(Phase):
 
 
 @attrs.frozen(kw_only=True)
+class Unfinished(PhasedTangentialLaw):
+    """A law whose phase says nothing of its force."""
+
+    api_version: ClassVar[int] = 2
+
+    def begin(self, velocity, inertia, motion):
+        return Phase()
+
+
+def test_a_phase_without_a_force_is_named():
+    result = Simulation(tangential=Unfinished(), integrator="events").run(
+        Scene.nondimensional(psi1=1.2, chi=CHI)
+    )
+    assert result.status is Status.LAW_RAISED
+    assert "Phase has neither respond nor closed_form" in result.failures[0]
+
+
+@attrs.frozen(kw_only=True)
 class Turns(PhasedTangentialLaw):
     """No force, after so many phases of no length."""
 

@@ -7,18 +7,14 @@ the centre), the shrinking edge catches the front.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.collocation import Array, lobatto, rows
-from contactlab_fronts.many.crossing import NEVER, first_crossing, value
+from contactlab_fronts.many.crossing import value
 from contactlab_fronts.many.impacts import DONE, UNSOLVED, Impacts
-from contactlab_fronts.many.panel import NODES, Panel, solve
+from contactlab_fronts.many.panel import CAUGHT, LEAVES, NO_EVENT, NODES, STOPS, Panel, solve
 from contactlab_fronts.many.pieces import Rows
 from contactlab_fronts.phases import EdgeSlip
 
-Flags = NDArray[np.bool_]
-
-NO_EVENT, STOPS, LEAVES, CAUGHT = range(4)
 #: Radians of the fastest oscillation that one panel may hold: its square in x is 6 chi u at most.
 LONGEST_SWING = 2.0
 LONGEST = 0.8
@@ -30,8 +26,8 @@ NEAR_CENTRE = 0.1
 PART_INSIDE = 0.6
 #: Panels are refused this often in a row before an impact is given up, or an end is not fitted.
 MOST_ATTEMPTS, MOST_FITS = 40, 6
-#: Events this often in a row with no more progress than this are looked for later in the panel.
-MOST_IDLE, PROGRESS = 4, 1e-7
+#: An event with no more progress in x than this is counted as idle.
+PROGRESS = 1e-7
 #: psi1 below this is solved to the same absolute error.
 LEAST_SCALE = 1e-6
 #: Moves of psi, in parts of the tolerance, at which iteration stops and a panel is good.
@@ -67,11 +63,9 @@ def advance(impacts: Impacts, who: Rows, tolerance: float) -> None:
     good = converged & (panel.tail < limit)
     shorter = np.where(converged, np.clip(growth, 0.2, 0.8), 0.5)
 
-    tau, event, leaves = _events(panel, impacts.idle[who] > MOST_IDLE)
-    if fitted:
-        event = np.where(tau > 1.0, LEAVES, event)
-        again = np.zeros_like(good)
-    else:
+    again = np.zeros_like(good)
+    if not fitted:
+        leaves = panel.leaves
         # singular ends are fitted; far beyond a kink a panel is not to be trusted
         near = leaves * panel.length
         to_fit = (leaves <= 1.0) & singular & (impacts.attempts[who] < MOST_FITS) & (near > 1e-9)
@@ -89,7 +83,8 @@ def advance(impacts: Impacts, who: Rows, tolerance: float) -> None:
         wanted = panel.length * np.clip(growth, 0.5, 3.0)
         # a panel kept short by its piece says nothing against longer ones
         wanted = np.where(held, np.maximum(wanted, impacts.estimated_length[who]), wanted)
-        _accept(impacts, who[done], panel, done, tau[done], event[done], wanted[done])
+        impacts.estimated_length[who[done]] = wanted[done]
+        _accept(impacts, panel, done)
 
 
 def _length(impacts: Impacts, who: Rows) -> Array:
@@ -116,20 +111,6 @@ def _reach(impacts: Impacts, who: Rows, slipping: EdgeSlip) -> Array:
     return np.where(known, np.maximum(BEYOND * reach, LEAST_REACH), np.inf)
 
 
-def _events(panel: Panel, idle: Flags) -> tuple[Array, Rows, Array]:
-    """Return (tau, which) of the first event, and the tau at which the piece is left."""
-    nodes = lobatto(NODES)
-    stops, caught = (first_crossing(nodes, panel.margins[event]) for event in (0, 2))
-    leaves = np.full(stops.shape, NEVER)
-    if not panel.fitted:
-        leaves = first_crossing(nodes, panel.margins[1])
-    for found in (stops, caught):
-        found[idle & (found < nodes.points[1])] = NEVER
-    tau = np.minimum(np.minimum(stops, caught), leaves)
-    event = np.where(tau == stops, STOPS, np.where(tau == caught, CAUGHT, LEAVES))
-    return np.minimum(tau, NEVER), np.where(tau > 1.0, NO_EVENT, event), leaves
-
-
 def _refuse(impacts: Impacts, who: Rows, length: Array) -> None:
     impacts.fitted[who] = False
     impacts.longest[who] = length
@@ -137,33 +118,17 @@ def _refuse(impacts: Impacts, who: Rows, length: Array) -> None:
     impacts.regime[who[impacts.attempts[who] > MOST_ATTEMPTS]] = UNSOLVED
 
 
-def _accept(
-    impacts: Impacts, who: Rows, panel: Panel, columns: Rows, tau: Array, event: Rows, wanted: Array
-) -> None:
-    """Go to the event, or to the end of the panel, and on to the next phase.
-
-    Parameters
-    ----------
-    impacts : Impacts
-    who, columns : ndarray of int
-        Impacts, and which of the panels are theirs.
-    panel : Panel
-    tau : ndarray
-        Panel coordinate of the event; above 1 if there is none.
-    event : ndarray of int
-    wanted : ndarray
-        Length that the error estimate asks for, in x.
-    """
-    tau = np.minimum(tau, 1.0)
+def _accept(impacts: Impacts, panel: Panel, done: Rows) -> None:
+    """Go to the event of some of the panels, or to their end, and on to the next phase."""
+    who, event, tau = panel.who[done], panel.event[done], np.minimum(panel.tau[done], 1.0)
     weights = rows(lobatto(NODES), tau)
-    phase = panel.phase(columns, tau)
+    phase = panel.phase(done, tau)
     progress = phase - impacts.phase[who]
     impacts.phase[who] = phase
-    impacts.change[who] += value(weights, panel.change[:, columns])
-    impacts.work[who] += value(weights, panel.work[:, columns])
-    impacts.slip[who] = value(weights, panel.sample.slip[:, columns])
-    impacts.force[who] = value(weights, panel.sample.response.force[:, columns])
-    impacts.estimated_length[who] = wanted
+    impacts.change[who] += value(weights, panel.change[:, done])
+    impacts.work[who] += value(weights, panel.work[:, done])
+    impacts.slip[who] = value(weights, panel.sample.slip[:, done])
+    impacts.force[who] = value(weights, panel.sample.response.force[:, done])
     impacts.longest[who] = np.inf
     impacts.fitted[who] = False
     impacts.attempts[who] = 0
@@ -173,7 +138,7 @@ def _accept(
     stops = event == STOPS
     if stops.any():
         edge = np.sin(phase[stops]) ** 2
-        depth = value(weights[stops], panel.margins[2][:, columns[stops]])
+        depth = value(weights[stops], panel.depth[:, done[stops]])
         least = impacts.pieces["inner_q"][impacts.outermost[who[stops]]]
         impacts.lock(who[stops], np.maximum(edge - np.maximum(depth, 0.0), least))
     impacts.leave_piece(who[event == LEAVES])

@@ -7,17 +7,24 @@ systems.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.collocation import Array, lobatto
 from contactlab.contracts import PhaseSample, ScaledContact
+from contactlab_fronts.many.crossing import NEVER, first_crossing
 from contactlab_fronts.many.impacts import Impacts
 from contactlab_fronts.many.pieces import Rows
 from contactlab_fronts.phases import EdgeSlip
 
+Flags = NDArray[np.bool_]
+
+NO_EVENT, STOPS, LEAVES, CAUGHT = range(4)
 NODES = 8
+#: Events this often in a row without progress are looked for later in the panel.
+MOST_IDLE = 4
 ITERATIONS = 12
 FEWEST_ITERATIONS = 4
 #: Moves of a fitted end in one iteration, in parts of the panel.
@@ -28,12 +35,16 @@ SHORTEST = 1e-9
 class Panel(NamedTuple):
     """Values at the nodes, shape (nodes, impacts), or for each panel, shape (impacts,)."""
 
+    who: Rows  # of the impacts
     start: Array
     length: Array
     sample: PhaseSample
     change: Array  # of velocity in this panel
     work: Array  # in this panel
-    margins: tuple[Array, Array, Array]  # of the events of ``EdgeSlip``
+    depth: Array  # of the slip zone, zeta - q at the front
+    tau: Array  # panel coordinate of the first event, or ``NEVER``
+    event: Rows  # which it is
+    leaves: Array  # panel coordinate at which the front leaves its piece, or ``NEVER``
     update: Array  # last move of the velocity, (impacts,)
     tail: Array  # what the nodes cannot resolve of the velocity, (impacts,)
     fitted: bool
@@ -99,8 +110,22 @@ def solve(
     tail *= inertia
     sample = PhaseSample(contact, slip, first + change, response)
     work = nodes.integral @ (time * slipping.friction_power(sample))
-    margins: Any = tuple(slipping.margin(event, sample) for event in range(3))
-    return Panel(start, length, sample, change, work, margins, update, tail, fitted)
+    margins = [slipping.margin(event, sample) for event in range(3)]
+    events = _events(margins, impacts.idle[who] > MOST_IDLE, fitted=fitted)
+    known = sample, change, work, margins[2], *events
+    return Panel(who, start, length, *known, update, tail, fitted)
+
+
+def _events(margins: list[Array], idle: Flags, *, fitted: bool) -> tuple[Array, Rows, Array]:
+    """Return ``Panel.tau``, ``event`` and ``leaves``; a fitted panel ends where its piece does."""
+    nodes = lobatto(NODES)
+    stops, caught = (first_crossing(nodes, margins[event]) for event in (0, 2))
+    leaves = np.full(stops.shape, NEVER) if fitted else first_crossing(nodes, margins[1])
+    for found in (stops, caught):
+        found[idle & (found < nodes.points[1])] = NEVER
+    tau = np.minimum(np.minimum(stops, caught), leaves)
+    event = np.where(tau == stops, STOPS, np.where(tau == caught, CAUGHT, LEAVES))
+    return tau, np.where(tau > 1.0, LEAVES if fitted else NO_EVENT, event), leaves
 
 
 def _settled(iteration: int, update: Array, settled: Array) -> bool:

@@ -69,14 +69,7 @@ class PieceTable:
         return self.columns[name]
 
     def add(self, inside: Rows, **values: Any) -> Rows:
-        """Append a piece outside each row of ``inside``, and return their rows.
-
-        Parameters
-        ----------
-        inside : ndarray of int
-        **values : float or array
-            Columns.
-        """
+        """Append a piece with these columns outside each row of ``inside``; return their rows."""
         first, last = self.used, self.used + inside.size
         while last > self.inside.size:
             self.columns = {name: _doubled(old) for name, old in self.columns.items()}
