@@ -37,11 +37,8 @@ class Impacts:
     ) -> None:
         count = velocity.size
         self.first, self.inertia, self.motion = velocity, inertia, motion
-        self.phase = np.zeros(count)
-        self.slip = np.zeros(count)
-        self.change = np.zeros(count)  # of velocity, since first touch
-        self.force = np.zeros(count)
-        self.work = np.zeros(count)
+        # x, D, the change of psi since first touch, F/(mu P_max), friction work
+        self.phase, self.slip, self.change, self.force, self.work = np.zeros((5, count))
         self.panels = np.zeros(count, dtype=np.intp)
         self.regime = np.where(velocity > 1.0, GROSS_SLIP, STUCK)
         self.sign = np.ones(count)  # of the slip, if any
@@ -51,9 +48,7 @@ class Impacts:
         # how the next panel is to be taken
         self.fitted = np.zeros(count, dtype=bool)  # up to the event at the end of the piece
         self.longest = np.full(count, np.inf)  # no longer than this
-        self.estimated_length = np.full(
-            count, np.inf
-        )  # the length that the last error estimate asks for
+        self.estimated_length = np.full(count, np.inf)  # asked for by the last error estimate
         self.attempts = np.zeros(count, dtype=np.intp)  # refused in a row
         self.idle = np.zeros(count, dtype=np.intp)  # events in a row without progress
 
