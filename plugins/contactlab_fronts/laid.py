@@ -50,22 +50,22 @@ class Laid(ProfilePiece):
     sign = 0.0
 
     @classmethod
-    def along(cls, output: DenseOutput, start: float, stop: float, began: int, ended: int) -> Laid:
+    def along(cls, output: DenseOutput, start: Real, stop: Real, began: Real, ended: Real) -> Laid:
         """Return the piece laid down along a panel of sticking.
 
         Parameters
         ----------
         output : DenseOutput
             Of the panel.
-        start, stop : float
+        start, stop : float or ndarray
             In x.
-        began, ended : int
+        began, ended : float or ndarray
             As in the class.
         """
-        slip, _, q = output.fields(np.array([start, stop]))[:3].tolist()
-        centre = start == 0.0  # where rounding leaves a little of q
-        inner_q = 0.0 if centre else q[0]
-        return cls(output, start, stop, began, ended, inner_q, -slip[0], q[1], -slip[1])
+        slip, _, q, *_ = output.fields(np.array([start, stop]))
+        # at the centre rounding leaves a little of q
+        ends: Any = np.array([q[0] * (start != 0.0), -slip[0], q[1], -slip[1]])
+        return cls(output, start, stop, began, ended, *(ends if ends.ndim > 1 else ends.tolist()))
 
     def front(self, sign: Any, contact: ScaledContact, slip: Array, memo: Memo) -> Front:
         """Return the front, by Newton's method for the phase y at which the edge was there.

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from contactlab.collocation import Array, Nodes
 from contactlab.contracts import ClosedFormMotion
 from contactlab_fronts.gross import Slide
-from contactlab_fronts.many.pieces import LOCKED, NO_PIECE, PieceTable, Rows
+from contactlab_fronts.many.pieces import NO_PIECE, PieceTable, Rows
 from contactlab_fronts.profile import Locked
 
 STUCK, EDGE_SLIP, GROSS_SLIP, DONE, UNSOLVED = range(5)
@@ -78,8 +78,7 @@ class Impacts:
         now, sign = self.motion.scaled(self.phase[who]), self.sign[who]
         front = np.minimum(front, now.approach)
         locked = Locked.between(front, sign, now, self.slip[who], self.force[who])
-        columns = {name: getattr(locked, name) for name in LOCKED}
-        self.outermost[who] = self.pieces.add(self.outermost[who], **columns)
+        self.outermost[who] = self.pieces.add(self.outermost[who], locked)
         loading = now.rate > LEAST_RATE
         grows, shrinks = who[loading], who[~loading]
         self.regime[grows] = STUCK

@@ -68,26 +68,32 @@ class PieceTable:
     def __getitem__(self, name: str) -> Array:
         return self.columns[name]
 
-    def add(self, inside: Rows, **values: Any) -> Rows:
-        """Append a piece with these columns outside each row of ``inside``; return their rows."""
+    def add(self, inside: Rows, piece: Laid | Locked) -> Rows:
+        """Append a piece outside each row of ``inside``; return their rows."""
+        if isinstance(piece, Laid):
+            assert isinstance(piece.output, Polynomials)
+            names, values = LAID, piece.output._asdict()
+            values["terms"] = values["terms"].transpose(2, 0, 1)
+        else:
+            names, values = LOCKED, {}
         first, last = self.used, self.used + inside.size
         while last > self.inside.size:
             self.columns = {name: _doubled(old) for name, old in self.columns.items()}
             self.inside = _doubled(self.inside)
         self.inside[first:last] = inside
-        for name, given in values.items():
+        for name, given in (values | {name: getattr(piece, name) for name in names}).items():
             self.columns[name][first:last] = given
         self.used = last
         return np.arange(first, last)
 
-    def terms(self, slip: Array, force: Array) -> Array:
-        """Return the coefficients of ``Polynomials``, impacts first, from values at the nodes."""
+    def output(self, start: Array, length: Array, at_nodes: tuple[Array, Array]) -> Polynomials:
+        """Return panels from ``start`` on, from slip and force at their nodes."""
         nodes = self.nodes
-        found = np.zeros((slip.shape[1], 3, len(nodes.points)))
-        for column, values in enumerate((slip, force)):
-            found[:, column] = (nodes.powers @ (nodes.legendre @ values)).T
-        found[:, 2, :-1] = found[:, 0, 1:] * np.arange(1, len(nodes.points))
-        return found
+        terms = np.zeros((3, len(nodes.points), start.size))
+        for column, values in enumerate(at_nodes):
+            terms[column] = nodes.powers @ (nodes.legendre @ values)
+        terms[2, :-1] = terms[0, 1:] * np.arange(1, len(nodes.points))[:, None]
+        return Polynomials(start, 2.0 / length, terms)
 
     def piece(self, rows: Rows, *, laid: bool) -> ProfilePiece:
         """Return the pieces of some rows, all laid down or all locked, as one."""

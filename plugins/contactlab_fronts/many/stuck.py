@@ -10,6 +10,7 @@ import numpy as np
 
 from contactlab.collocation import Array, lobatto, rows
 from contactlab.contracts import ScaledContact
+from contactlab_fronts.laid import Laid
 from contactlab_fronts.many.crossing import first_crossing, value
 from contactlab_fronts.many.impacts import Impacts
 from contactlab_fronts.many.pieces import Rows
@@ -46,31 +47,18 @@ def advance(impacts: Impacts, who: Rows) -> None:
     slips = late | (tau <= 1.0)
     weights = rows(nodes, np.minimum(tau, 1.0))
 
-    before = np.where(start == 0.0, 0.0, np.sin(start) ** 2)
     end = start + length * np.minimum(tau, 1.0)
-    after = np.sin(end) ** 2
-    last_slip = value(weights, slip)
-    thick = (end - start > THINNEST) & (after - before > THINNEST_RING)
-    laid = who[thick]
-    impacts.outermost[laid] = impacts.pieces.add(
-        impacts.outermost[laid],
-        sign=0.0,
-        inner_q=before[thick],
-        inner_f=-impacts.slip[laid],
-        outer_q=after[thick],
-        outer_f=-last_slip[thick],
-        start=start[thick],
-        stop=end[thick],
-        origin=start[thick],
-        scale=2.0 / length[thick],
-        began=impacts.began[laid],
-        ended=np.where(slips, sign, 0.0)[thick],
-        terms=impacts.pieces.terms(slip[:, thick], force[:, thick]),
-    )
+    ring = np.sin(end) ** 2 - np.sin(start) ** 2
+    thick = (end - start > THINNEST) & (ring > THINNEST_RING)
+    laid, first, last = who[thick], start[thick], end[thick]
+    output = impacts.pieces.output(first, length[thick], (slip[:, thick], force[:, thick]))
+    ended = np.where(slips, sign, 0.0)[thick]
+    piece = Laid.along(output, first, last, impacts.began[laid], ended)
+    impacts.outermost[laid] = impacts.pieces.add(impacts.outermost[laid], piece)
     impacts.phase[who] = end
     impacts.panels[who] += 1
     impacts.change[who] += value(weights, velocity - impacts.velocity(who))
-    impacts.slip[who] = last_slip
+    impacts.slip[who] = value(weights, slip)
     impacts.force[who] = value(weights, force)
     impacts.began[who] = 0.0
     impacts.sign[who] = np.where(slips, sign, impacts.sign[who])
