@@ -23,6 +23,8 @@ METADATA: dict[str, dict[str, Any]] = {
     "pdf": {"CreationDate": None},
     "svg": {"Date": None},
 }
+#: The same names in an SVG every time; TrueType in a PDF, where journals refuse matplotlib's Type 3.
+WRITING: Any = {"svg.hashsalt": "contactlab", "pdf.fonttype": 42}
 
 
 @attrs.frozen
@@ -124,5 +126,5 @@ def _drawn(
 def save_figure(figure: Figure, path: str | Path, **options: Any) -> None:
     """Write a figure, whole or not at all; options are those of ``savefig``."""
     form = FORMATS[Path(path).suffix.lower()]
-    with written(path, binary=True) as stream, mpl.rc_context({"svg.hashsalt": "contactlab"}):
+    with written(path, binary=True) as stream, mpl.rc_context(WRITING):
         figure.savefig(stream, format=form, dpi=RESOLUTION, metadata=METADATA[form], **options)

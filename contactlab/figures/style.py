@@ -39,7 +39,6 @@ SETTINGS: Any = {  # matplotlib types the keys of this one by one
     "legend.handlelength": 2.2,
     "figure.constrained_layout.use": True,
     "savefig.dpi": RESOLUTION,
-    "pdf.fonttype": 42,  # TrueType: journals refuse Type 3, which is matplotlib's own choice
 }
 
 TIME_LABEL = r"time over duration of contact $t/t_{\mathrm{c}}$"

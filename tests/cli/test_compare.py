@@ -15,6 +15,7 @@ from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scen
 from contactlab.analysis.compare import compare
 from contactlab.cli import progress
 from contactlab.figures.comparison import differences, laws_over_sweep
+from contactlab.figures.files import save_figure
 from tests.tangential_laws import Creator
 
 BOTH = ("--tangential", "coulomb,frictionless")
@@ -197,6 +198,10 @@ def test_a_batch_without_a_file_is_drawn_over_what_varies():
 def test_a_pdf_has_fonts_that_journals_take(run, short_sweep, tmp_path):
     path = tmp_path / "figure.pdf"
     assert run("compare", short_sweep, *BOTH, "--figure", path).status == 0
+    assert b"/Type3" not in path.read_bytes()
+    figure = Figure()
+    figure.subplots().set_xlabel("of one's own")
+    save_figure(figure, path)
     assert b"/Type3" not in path.read_bytes()
 
 
