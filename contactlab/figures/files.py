@@ -23,7 +23,7 @@ METADATA: dict[str, dict[str, Any]] = {
     "pdf": {"CreationDate": None},
     "svg": {"Date": None},
 }
-#: The same names in an SVG every time; TrueType in a PDF, where journals refuse matplotlib's Type 3.
+#: The same names in an SVG every time; TrueType in a PDF, as journals refuse matplotlib's Type 3.
 WRITING: Any = {"svg.hashsalt": "contactlab", "pdf.fonttype": 42}
 
 

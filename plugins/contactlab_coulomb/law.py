@@ -54,8 +54,8 @@ class Coulomb(WholeImpactTangentialLaw):
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return that the elasticity of the surfaces is left out."""
         return (
-            "rigid bodies: tangential elasticity is left out, which moves psi2 by up to about 1.4 "
-            "where the contact sticks (model, not numerical error)",
+            "rigid bodies: tangential elasticity is left out, which moves psi2 of solid spheres by "
+            "up to about 1.5 where the contact sticks (model, not numerical error)",
         )
 
 

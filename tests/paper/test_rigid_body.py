@@ -1,5 +1,7 @@
 """Section 4.3: the rigid-body theory, exact whatever the step."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -20,6 +22,16 @@ def test_slip_then_rolling_is_exact_whatever_the_step(steps, psi1):
     )
     result = sim.run(Scene.nondimensional(psi1=psi1, chi=chi)).check()
     assert result.psi2 == pytest.approx(rigid_body_rebound(psi1, chi), abs=1e-14)
+
+
+@pytest.mark.parametrize(("poisson_ratio", "chi"), [(0.5, 7 / 6), (0.3, 49 / 34), (0.0, 7 / 4)])
+def test_the_caution_tells_how_far_off_a_rigid_solid_sphere_is(poisson_ratio, chi):
+    assert chi == pytest.approx(3.5 * (1.0 - poisson_ratio) / (2.0 - poisson_ratio))
+    psi1 = np.linspace(0.0, 4.0 * chi, 300)
+    largest = np.max(np.abs(contactlab.rebound(psi1, chi) - rigid_body_rebound(psi1, chi)))
+    plan = Simulation(tangential="coulomb").plan(Scene.nondimensional(psi1=1.0, chi=chi))
+    (told,) = re.findall(r"up to about (\d\.\d) where the contact sticks", str(plan))
+    assert largest == pytest.approx(float(told), abs=0.12)
 
 
 def test_no_chatter_once_the_sphere_rolls():
