@@ -16,7 +16,7 @@ from contactlab.checks import Real, real, refuse
 from contactlab.encounter import Encounter, components
 from contactlab.energy import EnergyLedger, books
 from contactlab.plan import Plan, Sentence
-from contactlab.rebounds import RESTITUTION, damped
+from contactlab.rebounds import DAMPED_ERROR, RESTITUTION, damped
 from contactlab.result import ImpactResult
 from contactlab.signatures import named_arguments
 from contactlab.simulation import Simulation
@@ -125,6 +125,8 @@ class Collision:
             return Plan(computed=(), left_out=(parted,), marched=np.zeros_like(passed))
         met, known = self._met, self.known
         plan = self._simulation.plan(met.scene) if known is None else known.plan
+        if self.simulation is None and known is None and self.restitution != 1.0:
+            plan = _of_rebound(plan, self.restitution)
         left_out = list(plan.left_out)
         turning = np.array(np.broadcast_to(_turns(met), met.shape))
         if turning.any():
@@ -280,6 +282,24 @@ def collide(
     known = _run(simulation, (encounter if np.all(met) else encounter.take(met)).scene)
     columns = _columns(encounter, known, met)
     return _collision(encounter, columns, simulation=simulation, known=known)
+
+
+def _of_rebound(plan: Plan, restitution: float) -> Plan:
+    """Return the plan with ``rebound`` in place of the laws that stand for it in ``result``."""
+    unknown = np.isnan(plan.psi2_error)
+    heads = {
+        "tangential motion": f"contactlab.rebound with restitution={restitution:g}",
+        "numerical error of psi2": f"at most {DAMPED_ERROR:g}, of contactlab.rebound",
+    }
+    computed = []
+    for text, where in plan.computed:
+        head = text.partition(": ")[0]
+        said = head in heads and np.any(where & unknown)
+        computed.append(Sentence(f"{head}: {heads[head]}" if said else text, where))
+    error = np.where(unknown, DAMPED_ERROR, plan.psi2_error)
+    return attrs.evolve(
+        plan, computed=tuple(computed), psi2_error=error if error.ndim else float(error)
+    )
 
 
 def _run(simulation: Simulation, scene: Any) -> ImpactResult:

@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 GROUP, TABLE = "contactlab.rebound", "elastic"
 #: The one for a restitution below 1, (psi1, chi, restitution), and the range that it holds.
 DAMPED, DAMPED_CHI, DAMPED_RESTITUTION = "damped", (0.8, 1.8), 0.5
+#: Its largest error in psi2, that of the springs that it is made of included.
+DAMPED_ERROR = 2e-4
 #: Springs elsewhere, four steps to each.
 SPRINGS = 200
 #: Up to this chi, and for tolerances above this, the table answers: it holds psi2 to 1e-9.

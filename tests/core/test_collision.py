@@ -413,6 +413,19 @@ def test_a_restitution_is_that_of_tsujis_law_and_of_its_springs():
     assert (np.abs(made.velocity - elastic.velocity).max(axis=1) > 1e-3).all()
 
 
+def test_the_plan_of_a_restitution_says_who_answered():
+    """It is not the springs, which only ``result`` runs; their plan declares no error."""
+    plan = collide(meeting(), restitution=0.9).plan
+    assert "tangential motion: contactlab.rebound with restitution=0.9" in str(plan)
+    assert "psi2: at most 0.0002" in str(plan)
+    assert "Springs" not in str(plan)
+    assert plan.psi2_error == 2e-4
+    batch = collide(meeting(velocity=[(0.5, 0, -1), (0, 0, -1)], spin=(0, 0, 0)), restitution=0.9)
+    assert batch.plan.psi2_error.max() == 2e-4
+    assert "psi2 (1 of 2 impacts): at most 0.0002" in str(batch.plan)
+    assert "Springs" in str(collide(meeting(), Simulation(tangential="springs")).plan)
+
+
 def test_gross_slip_with_a_restitution():
     """Impulse mu (1 + e) M_n v1 in the limit of a long slide, theory §11."""
     met = meeting(friction_coefficient=0.01, velocity=(50.0, 0.0, -1.0))
