@@ -10,6 +10,7 @@ The modules, each of which imports from those above it only:
 ``status``            how a run ended
 ``checks``            checked numbers, refusals
 ``signatures``        refusals of unknown arguments
+``vectors``           checked vectors of three numbers, and their components
 ``batch``             trees of numbers stacked, taken apart and joined
 ``collocation``       nodes and matrices of Lobatto collocation
 ``json_values``       values as JSON takes them

@@ -13,7 +13,7 @@ from contactlab import impulses
 from contactlab.batch import filled
 from contactlab.bodies import Sphere
 from contactlab.checks import Real, real, refuse
-from contactlab.encounter import Encounter, components
+from contactlab.encounter import Encounter
 from contactlab.energy import EnergyLedger, books
 from contactlab.plan import Plan, Sentence
 from contactlab.rebounds import DAMPED_ERROR, RESTITUTION, damped
@@ -21,6 +21,7 @@ from contactlab.result import ImpactResult
 from contactlab.signatures import named_arguments
 from contactlab.simulation import Simulation
 from contactlab.status import Status
+from contactlab.vectors import components
 
 Array = NDArray[np.float64]
 

@@ -12,75 +12,16 @@ from numpy.typing import NDArray
 
 from contactlab import batch
 from contactlab.bodies import HalfSpace, Pair, Sphere
-from contactlab.checks import NON_NEGATIVE, Real, Rule, key, quantity, real, refuse
+from contactlab.checks import NON_NEGATIVE, Real, quantity, refuse
 from contactlab.scene import Scene, is_sphere, is_target
 from contactlab.signatures import named_arguments
+from contactlab.vectors import LEAST, components, difference, first_of, root, vector
 
 Array = NDArray[np.float64]
 
-#: Largest number in a vector, and least length of a normal and speed of approach: their squares
-#: are held in floating point.
-LARGEST, LEAST = 1e100, 1e-100
-RANGE = Rule(lambda value: np.abs(value) <= LARGEST, f"must be finite, at most {LARGEST:g}")
 NOTHING = (0.0, 0.0, 0.0)
 #: Encounters whose directions are found together: arrays of this length stay in the cache.
 TOGETHER = 1 << 14
-
-
-def _vector(value: object, field: attrs.Attribute[Any]) -> Array:
-    """Return vectors, shape (..., 3), as a read-only copy."""
-    remedy = f"give three numbers in {field.metadata['unit']}, or an array of shape (..., 3)"
-    if field.metadata["unit"] == "1":
-        remedy = "give three numbers, or an array of shape (..., 3)"
-    alone = _alone(value)
-    if alone is not None:
-        return alone
-    if type(value) is np.ndarray and value.dtype == np.float64 and value.size:
-        # no temporary arrays: a million vectors are common; NaN fails both comparisons
-        found = value if value.min() >= -LARGEST and value.max() <= LARGEST else None
-    else:
-        found = None
-    if found is None and type(value) is np.ndarray and value.ndim > 1 and value.dtype.kind == "f":
-        where = np.argwhere(~(np.abs(value) <= LARGEST).all(axis=-1))
-        if where.size:
-            first = value[tuple(where[0])].tolist()
-            raise refuse(field.name, first, RANGE.sentence + _first(where), remedy)
-    vectors = np.asarray(
-        real(field.name, value, rule=RANGE, remedy=remedy) if found is None else found.copy()
-    )
-    if vectors.shape[-1:] != (3,):
-        if vectors.ndim < 2:
-            raise refuse(field.name, value, "must be a vector of three numbers", remedy)
-        if vectors.shape[0] == 3:
-            remedy = "x, y and z belong on the last axis: np.moveaxis(vectors, 0, -1)"
-        raise refuse(f"{field.name}.shape", vectors.shape, "must end with 3", remedy)
-    vectors.flags.writeable = False
-    return vectors
-
-
-def _alone(value: Any) -> Array | None:
-    """Return one vector of three plain numbers without a detour, as loops give it; else None."""
-    numbers = value.tolist() if type(value) is np.ndarray and value.shape == (3,) else value
-    if type(numbers) not in (list, tuple) or len(numbers) != 3:
-        return None
-    for each in numbers:
-        plain = isinstance(each, float) or type(each) is int
-        if not (plain and -LARGEST <= each <= LARGEST):
-            return None
-    found = np.array(numbers, dtype=np.float64)
-    found.flags.writeable = False
-    return found
-
-
-def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
-    """Return an attrs field for checked vectors."""
-    return attrs.field(
-        default=default,
-        kw_only=True,
-        converter=attrs.Converter(_vector, takes_field=True),
-        eq=key,
-        metadata={"vector": True, "unit": unit},
-    )
 
 
 class Contact(NamedTuple):
@@ -171,7 +112,7 @@ class Encounter:
         length2 = np.einsum("...i,...i->...", self.normal, self.normal)
         if not math.sqrt(length2.min()) >= LEAST:
             where = np.argwhere(~(np.sqrt(length2) >= LEAST))
-            rule = f"must be at least {LEAST:g} long, not zero{_first(where)}"
+            rule = f"must be at least {LEAST:g} long, not zero{first_of(where)}"
             first = self.normal[tuple(where[0])].tolist() if where.size else self.normal.tolist()
             raise refuse("normal", first, rule, "two bodies at one place have no normal")
 
@@ -241,15 +182,15 @@ class Encounter:
         slip, each of three components; ``approach`` and ``slip``, speeds in m/s.
         """
         n1, n2, n3 = components(self.normal)
-        length = _root(n1 * n1 + n2 * n2 + n3 * n3)
+        length = root(n1 * n1 + n2 * n2 + n3 * n3)
         n1, n2, n3 = n1 / length, n2 / length, n3 / length
-        u1, u2, u3 = _difference(self.velocity, self.target_velocity)
+        u1, u2, u3 = difference(self.velocity, self.target_velocity)
         approach = u1 * n1 + u2 * n2 + u3 * n3
         w1, w2, w3 = self._rim()
         u1 = u1 + (w2 * n3 - w3 * n2) - approach * n1
         u2 = u2 + (w3 * n1 - w1 * n3) - approach * n2
         u3 = u3 + (w1 * n2 - w2 * n1) - approach * n3
-        slip = _root(u1 * u1 + u2 * u2 + u3 * u3)
+        slip = root(u1 * u1 + u2 * u2 + u3 * u3)
         one = 1.0 / (slip + (slip == 0.0))
         return Contact((n1, n2, n3), (u1 * one, u2 * one, u3 * one), approach, slip)
 
@@ -279,7 +220,7 @@ class Encounter:
         contact = self.contact()
         if not np.all(contact.approach >= LEAST):
             raise self.separate()
-        u = _difference(self.velocity, self.target_velocity)
+        u = difference(self.velocity, self.target_velocity)
         along = sum(each * direction for each, direction in zip(u, contact.along, strict=True))
         along = np.broadcast_to(along, self.shape)
         spin = (contact.slip - along) / self.sphere.radius
@@ -298,40 +239,12 @@ class Encounter:
         return refuse(
             "velocity, target_velocity",
             float(approach[first]),
-            f"{told}: the speed of approach, in m/s, must be positive{_first(where)}",
+            f"{told}: the speed of approach, in m/s, must be positive{first_of(where)}",
             f"{turned}let such pairs pass: collide(encounter, separating='pass')",
         )
-
-
-def _first(where: Any) -> str:
-    """Return the index of the first of those at ``where``, in words; nothing of one encounter."""
-    return f" (the first of {len(where)} has index {where[0].tolist()})" if where.shape[1] else ""
 
 
 @cache
 def _fields(kind: Any, word: str) -> tuple[str, ...]:
     """Return names of the fields with this word in their metadata."""
     return tuple(field.name for field in attrs.fields(kind) if word in field.metadata)
-
-
-def components(vectors: Array) -> tuple[Any, Any, Any]:
-    """Return x, y and z of vectors, each contiguous, or a number of one vector."""
-    if vectors.ndim == 1:  # plain numbers, as one collision after another wants them
-        x, y, z = vectors.tolist()
-        return x, y, z
-    x, y, z = np.ascontiguousarray(np.moveaxis(vectors, -1, 0))
-    return x, y, z
-
-
-def _root(square: Any) -> Any:
-    """Return the square root of a plain number, as one, or of an array."""
-    return math.sqrt(square) if isinstance(square, float) else np.sqrt(square)
-
-
-def _difference(one: Array, other: Array) -> tuple[Any, Any, Any]:
-    """Return the components of a difference of vectors."""
-    x, y, z = components(one)
-    if not other.any():
-        return x, y, z
-    a, b, c = components(other)
-    return x - a, y - b, z - c

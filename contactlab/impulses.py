@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from contactlab.batch import locked
 from contactlab.bodies import Pair, Sphere
 from contactlab.checks import Real, refuse
-from contactlab.encounter import LEAST, Contact, Encounter, components
+from contactlab.encounter import Contact, Encounter
 from contactlab.rebounds import rebound
 from contactlab.scene import LEAST_IMPULSE
+from contactlab.vectors import LEAST, components
 
 Array = NDArray[np.float64]
 
