@@ -57,6 +57,7 @@ The modules, each of which imports from those above it only:
 ``executors``         a sweep on any executor
 ``rebounds``          psi2 of arrays of psi1 and chi
 ``impulses``          velocities and spins from an impulse
+``collision_plan``    what its plan says besides that of its scenes
 ``collision``         what any law makes of an encounter
 ``export``            results as files
 ``labelled``          results with named axes: pandas, xarray

@@ -13,15 +13,15 @@ from contactlab import impulses
 from contactlab.batch import filled
 from contactlab.bodies import Sphere
 from contactlab.checks import Real, real, refuse
+from contactlab.collision_plan import by_rebound, collision_plan
 from contactlab.encounter import Encounter
 from contactlab.energy import EnergyLedger, books
-from contactlab.plan import Plan, Sentence
-from contactlab.rebounds import DAMPED_ERROR, RESTITUTION, damped
+from contactlab.plan import Plan
+from contactlab.rebounds import RESTITUTION, damped
 from contactlab.result import ImpactResult
 from contactlab.signatures import named_arguments
 from contactlab.simulation import Simulation
 from contactlab.status import Status
-from contactlab.vectors import components
 
 Array = NDArray[np.float64]
 
@@ -29,10 +29,6 @@ Array = NDArray[np.float64]
 #: their own; where it is not installed the default takes its place.
 SAME_ANSWERS = "tangential.tabulated"
 SEPARATING = ("refuse", "pass")
-PARTED = "collision: the bodies separate, they pass through untouched"
-TURNS = "spin about the normal: friction makes no moment about it, it passes through unchanged"
-#: Spin about the normal over the whole spin below which it is rounding.
-TURNING = 1e-12
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
@@ -121,20 +117,13 @@ class Collision:
     def plan(self) -> Plan:
         """What was computed, what was left out, and what to be wary of."""
         passed = ~np.asarray(self.collided)
-        parted = Sentence(PARTED, passed)
         if passed.all():
-            return Plan(computed=(), left_out=(parted,), marched=np.zeros_like(passed))
+            return collision_plan(Plan.nothing(passed.shape), None, passed)
         met, known = self._met, self.known
         plan = self._simulation.plan(met.scene) if known is None else known.plan
         if self.simulation is None and known is None and self.restitution != 1.0:
-            plan = _of_rebound(plan, self.restitution)
-        left_out = list(plan.left_out)
-        turning = np.array(np.broadcast_to(_turns(met), met.shape))
-        if turning.any():
-            left_out.append(Sentence(TURNS, turning))
-        if passed.any():
-            left_out.append(parted)
-        return attrs.evolve(plan, left_out=tuple(left_out))
+            plan = by_rebound(plan, self.restitution)
+        return collision_plan(plan, met, passed)
 
     @property
     def status(self) -> Any:
@@ -285,24 +274,6 @@ def collide(
     return _collision(encounter, columns, simulation=simulation, known=known)
 
 
-def _of_rebound(plan: Plan, restitution: float) -> Plan:
-    """Return the plan with ``rebound`` in place of the laws that stand for it in ``result``."""
-    unknown = np.isnan(plan.psi2_error)
-    heads = {
-        "tangential motion": f"contactlab.rebound with restitution={restitution:g}",
-        "numerical error of psi2": f"at most {DAMPED_ERROR:g}, of contactlab.rebound",
-    }
-    computed = []
-    for text, where in plan.computed:
-        head = text.partition(": ")[0]
-        said = head in heads and np.any(where & unknown)
-        computed.append(Sentence(f"{head}: {heads[head]}" if said else text, where))
-    error = np.where(unknown, DAMPED_ERROR, plan.psi2_error)
-    return attrs.evolve(
-        plan, computed=tuple(computed), psi2_error=error if error.ndim else float(error)
-    )
-
-
 def _run(simulation: Simulation, scene: Any) -> ImpactResult:
     return simulation.sweep(scene) if len(scene.shape) == 1 else simulation.run(scene)
 
@@ -347,15 +318,3 @@ def _rim(body: Sphere, spin: Array, normal: Array) -> Array:
     """Return the velocity that spin gives to the surface in the direction of ``normal``."""
     radius: Any = np.asarray(body.radius)[..., None]
     return np.asarray(radius * np.cross(spin, normal))
-
-
-def _turns(encounter: Encounter) -> Any:
-    """Return whether either body spins about the normal."""
-    found: Any = False
-    normal = encounter.contact().normal
-    for spin in (encounter.spin, encounter.target_spin):
-        parts = components(spin)
-        about = sum(one * n for one, n in zip(parts, normal, strict=True))
-        whole = np.sqrt(sum(one * one for one in parts))
-        found = found | (np.abs(about) > TURNING * whole)
-    return found
