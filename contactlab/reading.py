@@ -108,8 +108,13 @@ def sections(result: ImpactResult) -> list[Section]:
     ]
 
 
-def sweep_section(result: ImpactResult, varied: Mapping[str, tuple[str, Any]]) -> Section:
-    """Return a row an impact: what varies, by name with its unit, and what came of it."""
+def sweep_section(
+    result: ImpactResult, varied: Mapping[str, tuple[str, Any]], *, most: int | None = None
+) -> Section:
+    """Return a row an impact: what varies, by name with its unit, and what came of it.
+
+    With ``most`` there are at most so many rows, evenly spread, both ends among them.
+    """
     columns = {heading(name, unit): values for name, (unit, values) in varied.items()}
     for name in SWEEP_TABLE:
         values = QUANTITIES[name].of(result)
@@ -118,9 +123,15 @@ def sweep_section(result: ImpactResult, varied: Mapping[str, tuple[str, Any]]) -
     statuses = np.array(result.status, dtype=object)
     rows = [
         [*(float(values[index]) for values in columns.values()), statuses[index].name]
-        for index in range(len(result))
+        for index in spread(len(result), most)
     ]
     return Section([*columns, "status"], rows)
+
+
+def spread(count: int, most: int | None) -> list[int]:
+    """Return indices of ``count`` rows, or of ``most`` evenly spread, both ends among them."""
+    shown = count if most is None else min(count, most)
+    return [int(index) for index in np.round(np.linspace(0, count - 1, shown))]
 
 
 def largest_imbalance(result: ImpactResult) -> str:

@@ -29,9 +29,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--tangential",
         type=shared.names,
-        default=list(DEFAULT_LAWS),
         metavar="A,B,...",
-        help="tangential laws to compare with the file's own (default: fronts,coulomb)",
+        help="tangential laws to compare with the file's own (default: those of "
+        "fronts, coulomb that fit its normal law)",
     )
     parser.add_argument("--out", type=shared.file_of(".html"), required=True, metavar="FILE.html")
     shared.add_progress(parser)
@@ -42,9 +42,14 @@ def execute(arguments: argparse.Namespace) -> int:
     file = read_scene(arguments.scene)
     own = file.laws.resolved()
     simulations = {str(own.tangential): own.simulation()}
-    for name in arguments.tangential:
-        if name.removeprefix("tangential.") not in simulations:
+    for name in arguments.tangential or DEFAULT_LAWS:
+        if name.removeprefix("tangential.") in simulations:
+            continue
+        try:
             simulations[name] = _other(file.laws, name).simulation()
+        except ValueError:  # a default that does not fit the file's normal law is left out
+            if arguments.tangential:
+                raise
     with (
         shared.progress(arguments.progress, "laws") as progress,
         contextlib.redirect_stdout(sys.stderr),  # what a plug-in prints is not our output

@@ -13,7 +13,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,15 +25,19 @@ from contactlab.cli.run import draw, report
 from contactlab.cli.scene import composed
 from contactlab.cli.table import table
 from contactlab.export import COLUMNS, WRITERS, heading
+from contactlab.reading import spread, sweep_section
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.scene_file import LawChoice, read_scene
+from contactlab.scene_file.entries import entry_unit
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
 #: Columns that are printed.
 SHOWN = ("psi1", "chi", "psi2", "status")
+#: Rows that are printed of a sweep that is written to a file.
+MOST_ROWS = 25
 #: Most impacts of a range: a slip of the finger should not fill the memory.
 MOST_IMPACTS = 1_000_000
 
@@ -83,15 +87,28 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     if keep is not None and saved == shared.OK:
         _clear(keep, result)
+    varied = file.varied if file else {}
     if arguments.csv:
         units = {name: unit for name, unit, _ in COLUMNS}
         print(",".join(heading(name, units[name], result.scene) for name in SHOWN))
         for psi1, chi, psi2, status in _rows(result):
             print(f"{psi1!r},{chi!r},{psi2!r},{status}")
     elif not arguments.json:
-        print(table(SHOWN, _rows(result)))
-    varied = file.varied if file else {}
+        _print_table(result, varied, arguments.out)
     return max(saved, report(result, as_json=arguments.json, varied=varied))
+
+
+def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | None) -> None:
+    """Print a row an impact; of many that are in a file, some that are evenly spread."""
+    most = None if out is None else MOST_ROWS
+    if varied:
+        shown = {name: (entry_unit(name), values) for name, values in varied.items()}
+        print(table(*sweep_section(result, shown, most=most)))
+    else:
+        rows = _rows(result)
+        print(table(SHOWN, [rows[index] for index in spread(len(rows), most)]))
+    if most is not None and len(result) > most:
+        print(f"{most} of {len(result)} impacts; all of them are in {out}")
 
 
 @contextlib.contextmanager

@@ -13,16 +13,17 @@ from contactlab.scene_file.entries import ENTRIES, entry_unit
 #: What can be measured of a rebound; everything else of a result follows from these and a law.
 MEASURABLE = (
     "normal_restitution", "tangential_restitution", "slip_restitution", "rebound_angle_deg",
-    "local_rebound_angle_deg", "rebound_angle", "local_rebound_angle", "rebound_speed", "rebound_normal_velocity",
-    "rebound_tangential_velocity", "rebound_slip_velocity", "rebound_spin", "contact_time",
-    "psi2",
+    "local_rebound_angle_deg", "rebound_angle", "local_rebound_angle", "rebound_speed",
+    "rebound_normal_velocity", "rebound_tangential_velocity", "rebound_slip_velocity",
+    "rebound_spin", "contact_time", "psi2",
 )  # fmt: skip
 #: Units that are converted: to which, and by what factor.
 CONVERSIONS = {
     ("rad", "deg"): math.degrees(1.0), ("deg", "rad"): math.radians(1.0),
     ("mm/s", "m/s"): 1e-3, ("cm/s", "m/s"): 1e-2, ("mm", "m"): 1e-3, ("g", "kg"): 1e-3,
     ("rpm", "rad/s"): 2.0 * math.pi / 60.0, ("rev/s", "rad/s"): 2.0 * math.pi,
-    ("1/min", "rad/s"): 2.0 * math.pi / 60.0, ("deg/s", "rad/s"): math.radians(1.0), ("ms", "s"): 1e-3, ("µs", "s"): 1e-6, ("us", "s"): 1e-6,
+    ("1/min", "rad/s"): 2.0 * math.pi / 60.0, ("deg/s", "rad/s"): math.radians(1.0),
+    ("ms", "s"): 1e-3, ("µs", "s"): 1e-6, ("us", "s"): 1e-6,
 }  # fmt: skip
 ERROR = "_error"
 HEADING = re.compile(r"^\s*([^()\[\]]+?)\s*(?:[(\[]([^()\[\]]*)[)\]])?\s*$")

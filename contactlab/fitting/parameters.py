@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import abc
+import inspect
 import math
 from collections.abc import Callable
 from functools import partial
@@ -13,7 +14,7 @@ import numpy as np
 
 from contactlab.bodies import HalfSpace, Material, Sphere
 from contactlab.checks import Real, Rule, nearest
-from contactlab.registry import KINDS
+from contactlab.registry import KINDS, REGISTRY, PluginError
 from contactlab.scene import Scene
 from contactlab.simulation import Simulation
 
@@ -148,9 +149,25 @@ def parameter_named(name: str, setup: Setup) -> Parameter:
     near = nearest(name, [*known, *short])
     told = f"known here: {', '.join(known)}" if known else "nothing can be fitted here"
     remedy = "; options of a law are there once it is chosen and they have a number"
+    if having := _laws_with(name.rpartition(".")[2]):
+        remedy = f"; it is an option of {', '.join(having)}: choose one of them, by --normal or in the Simulation"
     raise ValueError(
         f"parameters = {name!r}: scene and laws have no such number; {near}{told}{remedy}"
     )
+
+
+def _laws_with(option: str) -> list[str]:
+    """Return the installed normal and tangential laws with an option of that name."""
+    kinds = [kind for kind in KINDS if kind != "integrator"]
+    names = [name for kind in kinds for name in REGISTRY.names(kind)]
+    found = []
+    for name in names:
+        try:
+            options = inspect.signature(REGISTRY.law_class(name)).parameters
+        except (ValueError, PluginError):  # broken: it is not one to be advised
+            continue
+        found += [name] if option in options else []
+    return found
 
 
 def _known(setup: Setup) -> dict[str, Callable[[], Parameter]]:

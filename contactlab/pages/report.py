@@ -80,10 +80,10 @@ def _answer(result: ImpactResult, varied: Mapping[str, Any]) -> list[str]:
     if not result.scene.shape:
         return [html.one_impact(result)]
     shown = {name: (entry_unit(name), values) for name, values in varied.items()}
-    headings, rows = sweep_section(result, shown)
-    found = [f"<div class='wide'>{html.table(headings, rows[:ROWS])}</div>"]
-    if len(rows) > ROWS:
-        found.append(html.paragraph(f"{ROWS} of {len(rows)} impacts are shown."))
+    headings, rows = sweep_section(result, shown, most=ROWS)
+    found = [f"<div class='wide'>{html.table(headings, rows)}</div>"]
+    if len(rows) < len(result):
+        found.append(html.paragraph(f"{len(rows)} of {len(result)} impacts are shown."))
     found.append(html.paragraph(largest_imbalance(result)))
     return [*found, html.pairs(closing(result))]
 

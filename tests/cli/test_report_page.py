@@ -43,6 +43,30 @@ def test_a_measured_sweep_has_its_residuals(reported, measured):
     assert "made up" in text
 
 
+def test_rows_of_a_long_sweep_are_spread_over_all_of_it(reported, tmp_path):
+    path = tmp_path / "long.toml"
+    path.write_text(
+        "[nondimensional]\nchi = 1.0\n[sweep]\npsi1 = { start = 0.0, stop = 96.0, count = 97 }\n"
+        "[simulation]\ntangential = 'coulomb'\n",
+        encoding="utf-8",
+    )
+    text = reported(path, "--tangential", "frictionless")
+    assert "25 of 97 impacts are shown" in text
+    assert all(f'<td class="number">{psi1}</td>' in text for psi1 in (0, 48, 96))
+
+
+def test_a_default_law_that_does_not_fit_the_normal_law_is_left_out(reported, tmp_path):
+    path = tmp_path / "damped.toml"
+    path.write_text(
+        "[nondimensional]\npsi1 = 1.0\nchi = 1.0\n[simulation]\nnormal = 'tsuji'\n"
+        "tangential = 'springs'\n[simulation.options]\nnormal.restitution = 0.9\n",
+        encoding="utf-8",
+    )
+    text = reported(path)
+    assert "coulomb" in text
+    assert "fronts" not in text
+
+
 def test_text_of_a_file_is_escaped(reported, tmp_path):
     path = tmp_path / "odd.toml"
     path.write_text(

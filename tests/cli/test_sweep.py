@@ -48,3 +48,28 @@ def test_bad_ranges_are_one_line_and_status_2(run, arguments, words):
     assert ran.status == 2
     assert len(ran.err.splitlines()) == 1
     assert words in ran.err
+
+
+def test_of_many_impacts_in_a_file_some_are_printed(run, tmp_path):
+    ran = run("sweep", "--psi1", "0:8:401", "--chi", "1", *LAWS, "--out", tmp_path / "a.csv")
+    *lines, last = ran.out.splitlines()
+    shown = [float(line.split()[0]) for line in lines[2:]]
+    assert (shown[0], shown[-1], len(shown)) == (0.0, 8.0, 25)
+    assert last == f"25 of 401 impacts; all of them are in {tmp_path / 'a.csv'}"
+    assert len((tmp_path / "a.csv").read_text("utf-8").splitlines()) == 402
+    assert len(run("sweep", "--psi1", "0:8:401", "--chi", "1", *LAWS).out.splitlines()) == 403
+
+
+def test_the_table_of_a_file_has_what_it_varies(run, tmp_path):
+    path = tmp_path / "drops.toml"
+    path.write_text(
+        "[sphere]\nradius = 0.01\nmaterial = 'steel'\n[target]\nkind = 'half-space'\n"
+        "material = 'steel'\n[impact]\nspeed = 2.0\nfriction_coefficient = 0.1\n"
+        "[sweep]\nangle_deg = [60.0, 70.0]\n",
+        encoding="utf-8",
+    )
+    rows = run("sweep", path, *LAWS).out.splitlines()[-2:]
+    for row, angle in zip(rows, (60.0, 70.0), strict=True):
+        first, *_, along = map(float, row.split()[:5])  # angle, psi1, psi2, e_n, e_t
+        assert first == angle
+        assert along == pytest.approx(1.0 - 0.2 / np.tan(np.radians(angle)), rel=1e-5)

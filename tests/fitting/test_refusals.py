@@ -141,13 +141,14 @@ def test_a_law_that_is_not_that_of_the_data_ends_at_the_end_of_a_range():
     ("arguments", "words"),
     [
         ({"parameters": ["mu"]}, "did you mean 'friction_coefficient'"),
-        ({"parameters": ["normal.restitution"]}, "once it is chosen"),
         ({"parameters": "friction_coefficient"}, "must be a list of names"),
         ({"parameters": []}, "must be a list of names"),
         ({"parameters": ["friction_coefficient"] * 2}, "twice"),
         ({"simulation": "coulomb"}, "must be a Simulation"),
         ({"quantities": ["rebound_spin"]}, "was not measured"),
         ({"bootstrap": -1}, "bootstrap"),
+        ({"parameters": ["restitution"]}, "it is an option of normal.hunt_crossley, "),
+        ({"parameters": ["normal.restitution"]}, "normal.tsuji"),
         ({"paramters": ["friction_coefficient"]}, "did you mean 'parameters'"),
     ],
 )
