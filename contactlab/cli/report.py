@@ -4,6 +4,7 @@ Examples
 --------
   contactlab report examples/steel_ball.toml --out report.html
   contactlab report examples/kharaz2001.toml --tangential fronts,coulomb --out report.html
+  contactlab report drops.toml --measured drops.csv --out report.html
 """
 
 from __future__ import annotations
@@ -33,6 +34,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="tangential laws to compare with the file's own (default: those of "
         "fronts, coulomb that fit its normal law)",
     )
+    parser.add_argument(
+        "--measured",
+        metavar="DATA.csv",
+        help="measured impacts to draw beside the laws, as for contactlab fit; needs a sweep",
+    )
     parser.add_argument("--out", type=shared.file_of(".html"), required=True, metavar="FILE.html")
     shared.add_progress(parser)
 
@@ -40,6 +46,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Run the scene under the laws, write the page and print its path."""
     file = read_scene(arguments.scene)
+    if arguments.measured:
+        from contactlab.fitting import read_measurements, with_measurements  # when asked for
+
+        file = with_measurements(file, read_measurements(arguments.measured))
     own = file.laws.resolved()
     simulations = {str(own.tangential): own.simulation()}
     for name in arguments.tangential or DEFAULT_LAWS:

@@ -4,6 +4,7 @@ from contactlab.fitting.estimation import fit
 from contactlab.fitting.measurements import Measurements, read_measurements
 from contactlab.fitting.outcome import Estimate, Fit
 from contactlab.fitting.ranking import Ranked, in_order, rank
+from contactlab.fitting.series import with_measurements
 
 __all__ = [
     "Estimate",
@@ -14,4 +15,5 @@ __all__ = [
     "in_order",
     "rank",
     "read_measurements",
+    "with_measurements",
 ]

@@ -150,7 +150,7 @@ def parameter_named(name: str, setup: Setup) -> Parameter:
     told = f"known here: {', '.join(known)}" if known else "nothing can be fitted here"
     remedy = "; options of a law are there once it is chosen and they have a number"
     if having := _laws_with(name.rpartition(".")[2]):
-        remedy = f"; it is an option of {', '.join(having)}: choose one of them, by --normal or in the Simulation"
+        remedy = f"; it is an option of {', '.join(having)}: choose one of them"
     raise ValueError(
         f"parameters = {name!r}: scene and laws have no such number; {near}{told}{remedy}"
     )

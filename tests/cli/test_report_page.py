@@ -67,6 +67,43 @@ def test_a_default_law_that_does_not_fit_the_normal_law_is_left_out(reported, tm
     assert "fronts" not in text
 
 
+DROPS = (
+    "[sphere]\nradius = 0.01\nmaterial = 'steel'\n[target]\nkind = 'half-space'\n"
+    "material = 'steel'\n[impact]\nspeed = 2.0\nfriction_coefficient = 0.1\n"
+    "[simulation]\ntangential = 'coulomb'\n"
+)
+SWEPT = "[sweep]\nangle_deg = [50.0, 60.0, 70.0]\n"
+HEAD = "angle_deg,speed (m/s),tangential_restitution\n"
+
+
+def test_impacts_of_a_table_stand_beside_the_laws(reported, tmp_path):
+    """Gross slip at 45 degrees has e_t = 1 - 2 mu = 0.8: 0.75 is 0.05 off, and 1.0 is 0.2."""
+    (tmp_path / "drops.toml").write_text(DROPS + SWEPT, encoding="utf-8")
+    table = tmp_path / "drops.csv"
+    table.write_text(f"{HEAD}45,2.0,0.75\n45,2.05,1.0\n60,1.95,\n70,2,0.9\n", encoding="utf-8")
+    text = reported(tmp_path / "drops.toml", "--measured", table)
+    assert f"tangential_restitution, measured: {table}" in text
+    assert re.search(r"<td>coulomb</td>\s*<td class=\"number\">[\d.]+</td>\s*<td[^>]*>0.2<", text)
+
+
+@pytest.mark.parametrize(
+    ("scene", "rows", "words"),
+    [
+        (DROPS.replace("2.0", "2.0\nangle_deg = 45.0"), "45,2,0.8\n", "needs a [sweep]"),
+        (DROPS + SWEPT, "45,2,0.8\n60,3,0.9\n", "these vary by more than 10%: angle_deg, speed"),
+        (DROPS + SWEPT, "45,2,0.8\n45,2,0.9\n", "one column must vary"),
+        (DROPS + SWEPT, "45,3,0.8\n60,3,0.9\n", "speed is 3 m/s, and 2 m/s in"),
+    ],
+)
+def test_impacts_that_are_not_those_of_the_scene_are_refused(run, tmp_path, scene, rows, words):
+    (tmp_path / "drops.toml").write_text(scene, encoding="utf-8")
+    (tmp_path / "drops.csv").write_text(HEAD + rows, encoding="utf-8")
+    files = tmp_path / "drops.toml", "--measured", tmp_path / "drops.csv"
+    ran = run("report", *files, "--out", tmp_path / "report.html")
+    assert (ran.status, len(ran.err.splitlines())) == (2, 1)
+    assert words in ran.err
+
+
 def test_text_of_a_file_is_escaped(reported, tmp_path):
     path = tmp_path / "odd.toml"
     path.write_text(
