@@ -28,8 +28,9 @@ def draw_fits(path: Path, fits: Mapping[str, Fit]) -> None:
             measured_and_laws(axes[0, column], fits, name)
             residuals(axes[1, column], fits, name)
             axes[0, column].set_xlabel("")
-            if column:
-                axes[0, column].get_legend().remove()  # the same laws in the same colours
+            axes[0, column].get_legend().remove()  # the same laws in the same colours
+        known = axes[0, 0].get_legend_handles_labels()
+        axes[0, 0].figure.legend(*known, loc="outside upper left", ncols=len(names))
         axes[0, 0].figure.align_ylabels()
 
     save(path, draw, rows=2, columns=len(names), heights=(2.0, 1.0))
@@ -39,18 +40,25 @@ def measured_and_laws(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axe
     """Draw measured values of a quantity with their errors, and what each law says there."""
     first = next(iter(fits.values()))
     x, words = _abscissa(first)
-    order = np.argsort(x)
     measured = first.measurements.measured[quantity]
     for number, (name, one) in enumerate(fits.items()):
         look = law_style(number) | {"marker": MARKERS[number % 6], "markersize": 3.0}
-        known = order[np.isfinite(measured[order])]
-        axes.plot(x[known], one.predicted[quantity][known], label=_legend(name, one), **look)
+        there = np.isfinite(measured)
+        law = one.predicted[quantity][there]
+        axes.plot(*_means(x[there], law), label=_legend(name, one), markevery=[], **look)
+        axes.plot(x[there], law, **(look | {"linestyle": "none"}))
     errors = first.measurements.errors.get(quantity)
     axes.errorbar(x, measured, yerr=errors, label="measured", **POINTS)
     axes.set_xlabel(words)
     axes.set_ylabel(label(quantity, QUANTITIES[quantity].unit))
     axes.legend()
     return axes
+
+
+def _means(x: Any, values: Any) -> tuple[Any, Any]:
+    """Return the means of what has the same abscissa: a repeat is no step of the law's curve."""
+    places, which = np.unique(x, return_inverse=True)
+    return places, np.bincount(which, values) / np.bincount(which)
 
 
 def residuals(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axes:
