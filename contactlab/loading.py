@@ -113,13 +113,18 @@ def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
     if not (isinstance(law, type) and issubclass(law, Law)):
         raise PluginError(f"{source} returned {law!r}, which is not the class of a law")
     if law.kind != info.kind:
-        raise PluginError(f"{source} returned {law.__name__}, a {law.kind} law")
+        raise PluginError(
+            f"{source} returned {law.__name__}, a {law.kind} law; "
+            "each entry point needs a module of its own with a function contactlab_law"
+        )
     if law.__abstractmethods__:
         missing = ", ".join(sorted(law.__abstractmethods__))
         raise PluginError(f"{source}: {law.__name__} does not define {missing}")
     version = getattr(law, "api_version", None)
     if version != API_VERSION:
         raise PluginError(
-            f"{source}: {law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}"
+            f"{source}: {law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}; "
+            f"if the law keeps to these contracts, write api_version: ClassVar[int] = {API_VERSION} "
+            "in its class"
         )
     return law

@@ -110,7 +110,7 @@ def test_the_code_of_the_site_prints_numbers_and_draws(capsys):
 
 def test_there_is_code():
     assert len(BLOCKS.findall(text("getting-started"))) >= 5
-    assert len(BLOCKS.findall(text("extending"))) == len(LAWS) + 1
+    assert len(BLOCKS.findall(text("extending"))) == len(LAWS) + 2
 
 
 @pytest.mark.parametrize("name", LAWS)
