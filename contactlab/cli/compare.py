@@ -25,6 +25,7 @@ from typing import Any
 from contactlab.analysis.compare import Comparison, compare
 from contactlab.analysis.compare_export import plain_score, to_dict, write_csv
 from contactlab.analysis.scores import DEFAULT_SCENE, candidates, scores
+from contactlab.checks import nearest
 from contactlab.cli import arguments as shared
 from contactlab.cli import side_by_side
 from contactlab.quantities import quantity_named
@@ -166,29 +167,48 @@ def simulations(arguments: argparse.Namespace, laws: LawChoice) -> dict[str, Sim
     several = [kind for kind in KINDS if len(asked[kind]) > 1] or ["tangential"]
     found = {}
     used: set[str] = set()
+    offered: set[str] = set()
     for combination in itertools.product(*asked.values()):
         chosen = dict(zip(KINDS, combination, strict=True))
         choice = laws.choose(**chosen)
         choice = (choice if arguments.integrator else choice.suited()).resolved()
-        settings = {path: value for path, value in arguments.settings if _knows(choice, path, used)}
+        settings = {
+            path: value for path, value in arguments.settings if _knows(choice, path, used, offered)
+        }
         name = " + ".join(getattr(choice, kind) for kind in several)
         found[name] = choice.set(settings).simulation()
     for path, _ in arguments.settings:
         if path not in used:
-            raise ValueError(f"--set {path}: none of the laws asked for has this option")
+            raise ValueError(
+                f"--set {path}: none of the laws asked for has this option; "
+                f"{nearest(path, offered)}they have {', '.join(sorted(offered)) or 'none'}"
+            )
     return found
 
 
-def _knows(choice: LawChoice, path: str, used: set[str]) -> bool:
-    """Return True if the option is one of the chosen laws', and note that it was used."""
+def _knows(choice: LawChoice, path: str, used: set[str], offered: set[str]) -> bool:
+    """Return True if the option is one of the chosen laws', and note that it was used.
+
+    Parameters
+    ----------
+    choice : LawChoice
+    path : str
+        As it was given: ``tangential.springs``, or ``tangential.annulus.annuli`` for one law.
+    used : set of str
+        Paths that some law takes; added to.
+    offered : set of str
+        Paths that the laws would take; added to.
+    """
     owner, _, option = path.rpartition(".")
     kind, _, name = owner.partition(".")
     if kind not in KINDS:
         used.add(path)
         return True  # let the choice refuse it, with the remedy
     chosen: Any = getattr(choice, kind)
+    options = inspect.signature(REGISTRY.law_class(f"{kind}.{chosen}")).parameters
+    offered.update(f"{kind}.{each}" for each in options)
     if name not in ("", chosen):
         return False
-    known = option in inspect.signature(REGISTRY.law_class(f"{kind}.{chosen}")).parameters
+    known = option in options
     used.update([path] if known else [])
     return known

@@ -93,6 +93,10 @@ def test_option_goes_to_the_laws_that_know_it(run, short_sweep):
     unknown = run("compare", short_sweep, *BOTH, "--set", "tangential.annuli=5")
     assert unknown.status == 2
     assert "none of the laws" in unknown.err
+    assert "they have none" in unknown.err
+    springs = ("--tangential", "springs,coulomb", "--set", "tangential.sprngs=5")
+    misspelt = run("compare", short_sweep, *springs)
+    assert "did you mean 'tangential.springs'? they have" in misspelt.err
 
 
 @pytest.mark.parametrize("scene", ["measured", "short_sweep", "ball"])
