@@ -124,7 +124,7 @@ def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
     if version != API_VERSION:
         raise PluginError(
             f"{source}: {law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}; "
-            f"if the law keeps to these contracts, write api_version: ClassVar[int] = {API_VERSION} "
-            "in its class"
+            "if the law keeps to these contracts, write "
+            f"api_version: ClassVar[int] = {API_VERSION} in its class"
         )
     return law

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import contactlab
 from contactlab.figures.files import save
-from contactlab.figures.stick_slip import stick_slip_map
+from contactlab.figures.stick_slip import draw_stick_slip
 
 scene = contactlab.Scene.nondimensional(psi1=1.2, chi=1.4412)
 simulation = contactlab.Simulation(
@@ -19,13 +19,9 @@ history = result.history
 assert history is not None
 fields = history.fields
 time = history.time / result.motion.duration
-radius = fields["radius"][0] / result.motion.maximum_radius
 in_contact = fields["stuck"] | (fields["slipping"] != 0)
 for instant in (0.1, 0.3, 0.5, 0.7, 0.9):
     row = int(abs(time - instant).argmin())
     share = fields["stuck"][row].sum() / in_contact[row].sum()
     print(f"t/t_c = {instant}: {share:4.0%} of the annuli in contact stick")
-save(
-    Path("stick_slip_map.png"),
-    lambda axes: stick_slip_map(axes, time, radius, fields["stuck"], fields["slipping"]),
-)
+save(Path("stick_slip_map.png"), lambda axes: draw_stick_slip(axes, result))

@@ -6,6 +6,7 @@ Examples
   contactlab run examples/steel_ball.toml --tangential coulomb
   contactlab run examples/steel_ball.toml --set tangential.annuli=100 --history force.csv
   contactlab run examples/sweep.toml --out sweep.csv
+  contactlab run --psi1 1.2 --chi 1.4412 --stick-slip map.png --style slides
   contactlab run --psi1 1.2 --chi 1.4412 --json
 """
 
@@ -50,6 +51,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     shared.add_figure(parser, "also draw the forces over the contact, or psi2 over psi1")
     parser.add_argument(
+        "--stick-slip",
+        type=shared.file_of(*shared.PICTURES),
+        metavar="FILE",
+        help="also draw where the contact of a single impact sticks and slips",
+    )
+    parser.add_argument(
         "--estimate",
         action=argparse.BooleanOptionalAction,
         default=True,
@@ -61,8 +68,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Run and report; 1 if an impact was not followed to its end."""
     file, scene, simulation = given(arguments)
-    if arguments.history and scene.shape:
-        raise ValueError("--history: needs a single impact, this scene is a sweep; leave it out")
+    for name in ("history", "stick_slip"):
+        if getattr(arguments, name) and scene.shape:
+            option = name.replace("_", "-")
+            raise ValueError(
+                f"--{option}: needs a single impact, this scene is a sweep; leave it out"
+            )
     with (
         shared.progress(arguments.progress, "impacts" if scene.shape else "impact") as progress,
         contextlib.redirect_stdout(sys.stderr),  # what a plug-in prints is not our output
@@ -72,13 +83,16 @@ def execute(arguments: argparse.Namespace) -> int:
         else:
             result = simulation.run(
                 scene,
-                history=bool(arguments.history or arguments.figure),
+                history="fields"
+                if arguments.stick_slip
+                else bool(arguments.history or arguments.figure),
                 estimate_error=arguments.estimate,
             )
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.history, lambda path: export.write_history_csv(result, path)),
         (arguments.figure, lambda path: draw(path, result, arguments.style)),
+        (arguments.stick_slip, lambda path: draw_map(path, result, arguments.style)),
         progress_wanted=arguments.progress,
     )
     varied: Mapping[str, Any] = file.varied if file else {}
@@ -96,6 +110,14 @@ def draw(path: Path, result: ImpactResult, look: Any) -> None:
     from contactlab.figures.files import save  # matplotlib only when drawing
 
     save(path, lambda axes: result.plot(axes=axes), look=look)
+
+
+def draw_map(path: Path, result: ImpactResult, look: Any) -> None:
+    """Write the map of stick and slip of an impact."""
+    from contactlab.figures.files import save  # matplotlib only when drawing
+    from contactlab.figures.stick_slip import draw_stick_slip
+
+    save(path, lambda axes: draw_stick_slip(axes, result), look=look)
 
 
 def report(

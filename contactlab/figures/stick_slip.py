@@ -8,11 +8,37 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from contactlab.checks import refuse
 from contactlab.figures.style import LAW_COLOURS, TIME_LABEL
+from contactlab.result import ImpactResult
 
 #: What an annulus may do, its colour and its number in the map.
 STATES = {"slip, backward": LAW_COLOURS[1], "stick": "#C4C4C4", "slip, forward": LAW_COLOURS[0]}
 NO_CONTACT = "#FFFFFF"
+
+
+def draw_stick_slip(axes: Axes, result: ImpactResult) -> Axes:
+    """Draw where the contact sticks and slips over one impact, ``run(scene, history="fields")``.
+
+    Raises
+    ------
+    ValueError
+        If the result is of a batch, or has no fields ``radius``, ``stuck`` and ``slipping``.
+    """
+    history = result.history
+    single = history is not None and not result.scene.shape
+    if history is None or not single or not {"radius", "stuck", "slipping"} <= set(history.fields):
+        raise refuse(
+            "result",
+            result,
+            "must have the fields radius, stuck and slipping of a single impact",
+            "run(scene, history='fields') with a law that follows partial slip, as the default "
+            "does; an impact without slip velocity may have none",
+        )
+    fields = history.fields
+    time = history.time / result.motion.duration
+    radius = fields["radius"][0] / result.motion.maximum_radius
+    return stick_slip_map(axes, time, radius, fields["stuck"], fields["slipping"])
 
 
 def stick_slip_map(

@@ -133,6 +133,18 @@ def test_a_sweep_is_drawn_for_slides(run, tmp_path):
     assert one.read_bytes() != other.read_bytes()
 
 
+def test_where_the_contact_sticks_is_drawn(run, short_sweep, tmp_path):
+    out = tmp_path / "map.png"
+    one = ("run", "--psi1", 1.2, "--chi", 1.4, "--no-estimate")
+    assert run(*one, "--stick-slip", out).status == 0
+    with Image.open(out) as picture:
+        colours = {tuple(colour) for _, colour in picture.convert("RGB").getcolors(1 << 16)}
+    assert {(0, 114, 178), (196, 196, 196), (213, 94, 0)} <= colours
+    refused = run("run", short_sweep, "--stick-slip", out)
+    assert refused.status == 2
+    assert "--stick-slip: needs a single impact" in refused.err
+
+
 def test_a_picture_of_unknown_form_is_refused(run, ball, tmp_path):
     ran = run("run", ball, "--figure", tmp_path / "a.bmp")
     assert ran.status == 2

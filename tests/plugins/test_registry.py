@@ -219,7 +219,7 @@ def test_wrong_interface_version_wrong_kind_and_abstract_laws(registry, install,
     install("odd", "odd_law", law_source, "normal.odd")
     start = "    def start(self, scene, normal):\n        return 0.0\n"
     install("half", "half_law", law_source.replace(start, ""), "tangential.half")
-    with pytest.raises(PluginError, match="api_version is 99.*write api_version: ClassVar"):
+    with pytest.raises(PluginError, match=r"api_version is 99.*write api_version: ClassVar"):
         registry.create("tangential.old")
     with pytest.raises(
         PluginError, match="a tangential law; each entry point needs a module of its own"
