@@ -9,6 +9,7 @@ Examples
   contactlab compare --all --figure laws.png
   contactlab compare examples/kharaz2001.toml --figure kharaz.png
   contactlab compare examples/steel_ball.toml --tangential annulus,coulomb
+  contactlab compare --psi1 0:6:13 --chi 1.18 --tangential fronts,stronge,coulomb
   contactlab compare examples/sweep.toml --integrator paper,symplectic --csv > sweep.csv
 """
 
@@ -22,14 +23,18 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from contactlab.analysis.compare import Comparison, compare
 from contactlab.analysis.compare_export import plain_score, to_dict, write_csv
 from contactlab.analysis.scores import DEFAULT_SCENE, candidates, scores
 from contactlab.checks import nearest
 from contactlab.cli import arguments as shared
 from contactlab.cli import side_by_side
+from contactlab.cli.sweep import numbers
 from contactlab.quantities import quantity_named
 from contactlab.registry import KINDS, REGISTRY
+from contactlab.scene import Scene
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.simulation import Simulation
 
@@ -45,6 +50,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         help="a scene or a sweep (default: psi2 over psi1 of a solid sphere, chi = 49/34)",
     )
+    for name, words in (("psi1", "angle of incidence (29)"), ("chi", "inertia ratio (38)")):
+        parser.add_argument(
+            f"--{name}", type=numbers, metavar="START:STOP:COUNT", help=f"{words}; or one number"
+        )
     parser.add_argument(
         "--all",
         action="store_true",
@@ -73,7 +82,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Compare and report; 1 if a law did not follow every impact."""
     for quantity in arguments.quantity or ():
         quantity_named(quantity, where="--quantity")
-    file = read_scene(arguments.scene or DEFAULT_SCENE)
+    file = _file(arguments)
     if arguments.all:
         compared = _all(arguments, file)
     else:
@@ -117,6 +126,33 @@ def execute(arguments: argparse.Namespace) -> int:
     return shared.FAILED if failures else saved
 
 
+def _file(arguments: argparse.Namespace) -> SceneFile:
+    """Return the scene file, or what stands in place of one: psi1 and chi."""
+    given = {name: getattr(arguments, name) for name in ("psi1", "chi")}
+    varied = {name: value for name, value in given.items() if np.ndim(value)}
+    missing = [f"--{name}" for name, value in given.items() if value is None]
+    if len(missing) == len(given):
+        return read_scene(arguments.scene or DEFAULT_SCENE)
+    if arguments.scene:
+        raise ValueError("--psi1, --chi: stand in place of a scene file; leave out one of them")
+    if missing:
+        raise ValueError(f"{missing[0]}: must be given too (chi is 1.4412 for a solid sphere)")
+    if len(varied) > 1:
+        raise ValueError("--psi1, --chi: one of them may be a range; give the other one number")
+    return SceneFile(
+        path=Path("--psi1, --chi"),
+        title="",
+        citation="",
+        notes="",
+        scene=Scene.nondimensional(**given),
+        varied=varied,
+        laws=LawChoice(),
+        encounter=None,
+        measured=(),
+        tables={},
+    )
+
+
 def _draw(path: Path, arguments: argparse.Namespace, comparison: Comparison) -> None:
     from contactlab.cli.drawing import draw_all, draw_comparison  # matplotlib only when drawing
 
@@ -145,7 +181,10 @@ def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation
             example = "--set integrator.symplectic.steps=400"
             raise ValueError(f"--set {path}: with --all say of which law, such as {example}")
     if not file.scene.shape:
-        raise ValueError(f"{file.path}: --all compares over a sweep; give the file a [sweep]")
+        raise ValueError(
+            f"{file.path}: --all compares over a sweep; a file needs [sweep], and "
+            "--psi1 a range START:STOP:COUNT"
+        )
     chosen = file.laws.choose(normal=arguments.normal[0] if arguments.normal else None)
     found = candidates(chosen.set(dict(arguments.settings)))
     for name, reason in found.left_out.items():

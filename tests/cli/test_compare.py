@@ -289,3 +289,31 @@ def test_single_scene_object_can_be_compared(short_sweep):
     assert comparison.names == ["rigid"]
     assert comparison.agreements == ()
     assert comparison.failures() == []
+
+
+def test_psi1_and_chi_stand_in_place_of_a_file(run):
+    ran = run("compare", "--psi1", "0:6:4", "--chi", 1.18, *BOTH, "--json")
+    assert ran.status == 0
+    psi2 = json.loads(ran.out)["laws"]["coulomb"]["values"]["psi2"]
+    assert psi2 == pytest.approx([max(psi1 - 4 * 1.18, 0.0) for psi1 in (0.0, 2.0, 4.0, 6.0)])
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (("--psi1", 1), "--chi: must be given too"),
+        (("--chi", 1), "--psi1: must be given too"),
+        (("--psi1", "0:6:4", "--chi", "1:2:3"), "one of them may be a range"),
+        (("--psi1", 1, "--chi", 1, "--all"), "compares over a sweep"),
+    ],
+)
+def test_half_given_or_doubly_varied_numbers_are_refused(run, given, words):
+    ran = run("compare", *given)
+    assert ran.status == 2
+    assert words in ran.err
+
+
+def test_numbers_beside_a_file_are_refused(run, short_sweep):
+    ran = run("compare", short_sweep, "--psi1", 1, "--chi", 1)
+    assert ran.status == 2
+    assert "leave out one of them" in ran.err
