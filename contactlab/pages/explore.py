@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlab
+from contactlab.checks import refuse
 
 #: Digits of psi2 after the point, as they are shown.
 DIGITS = 4
@@ -41,6 +42,15 @@ class Axis:
         """Return the stops, shape (count,)."""
         return self.start + self.step * np.arange(self.count, dtype=np.float64)
 
+    def nearest(self, value: float, name: str) -> int:
+        """Return the number of the stop nearest to ``value``; ``name`` is for who is refused."""
+        last = self.start + self.step * (self.count - 1)
+        if not self.start <= value <= last:
+            raise refuse(
+                name, value, f"must lie in [{self.start:g}, {last:g}], where the slider is"
+            )
+        return round((value - self.start) / self.step)
+
     def to_dict(self) -> dict[str, float]:
         """Return what the page needs."""
         return {"from": self.start, "step": self.step, "count": self.count}
@@ -51,10 +61,16 @@ PSI1 = Axis(0.0, 0.05, 181, 2.0)
 CHI = Axis(0.4, 0.02, 106, 1.44)
 
 
-def explore_page() -> str:
-    """Return the page."""
+def explore_page(*, psi1: float = PSI1.first, chi: float = CHI.first) -> str:
+    """Return the page; it opens at the stops that are nearest to ``psi1`` and ``chi``.
+
+    Raises
+    ------
+    ValueError
+        If a slider does not reach as far.
+    """
+    first = [PSI1.nearest(psi1, "psi1"), CHI.nearest(chi, "chi")]
     psi2 = contactlab.rebound(PSI1.stops, CHI.stops[:, np.newaxis])
-    first = [round((axis.first - axis.start) / axis.step) for axis in (PSI1, CHI)]
     grid: dict[str, Any] = {
         "psi1": PSI1.to_dict(),
         "chi": CHI.to_dict(),

@@ -26,6 +26,18 @@ def test_the_page_holds_the_exact_rebound_at_every_stop(run, tmp_path):
         assert np.abs(shown - exact).max() <= 0.5000001 * 10 ** -grid["digits"]
 
 
+def test_the_sliders_stand_where_they_are_asked_to(run, tmp_path):
+    page = tmp_path / "explore.html"
+    assert run("explore", "--psi1", 1.9, "--chi", 1.18, "--out", page).status == 0
+    grid = json.loads(re.search(r"const GRID = (.*);\n", page.read_text("utf-8"))[1])
+    found = [axis.stops[stop] for axis, stop in zip((PSI1, CHI), grid["first"], strict=True)]
+    assert found == pytest.approx([1.9, 1.18])
+    refused = run("explore", "--chi", 30, "--out", page)
+    assert refused.status == 2
+    assert "chi = 30" in refused.err
+    assert "[0.4, 2.5]" in refused.err
+
+
 def test_the_page_fetches_nothing(run, tmp_path):
     page = tmp_path / "explore.html"
     run("explore", "--out", page)
