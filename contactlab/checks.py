@@ -99,7 +99,14 @@ def nearest(name: str, known: Iterable[str], *, cutoff: float = 0.5) -> str:
     return f"did you mean {meant[0]!r}? " if meant else ""
 
 
-def real(argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "") -> Real:
+def real(
+    argument: str,
+    value: object,
+    *,
+    rule: Rule = FINITE,
+    remedy: str = "",
+    kept: bool = True,
+) -> Real:
     """Return ``value`` as a float or a float64 array, or refuse it.
 
     Parameters
@@ -113,6 +120,8 @@ def real(argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "")
         What every element must satisfy besides being finite.
     remedy : str
         What to do about a refusal, such as the unit expected.
+    kept : bool
+        Whether an array outlives the call: then it is a copy, and read-only.
 
     Raises
     ------
@@ -135,12 +144,13 @@ def real(argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "")
         raise refuse(argument, value, "must be a real number", remedy)
     if array.size == 0:
         raise refuse(argument, value, "must hold at least one number", remedy)
-    widened = array.astype(np.float64)
-    if not (np.isfinite(widened).all() and np.all(rule.holds(widened))):
+    widened = array.astype(np.float64, copy=kept)
+    if not (np.isfinite(widened) & rule.holds(widened)).all():
         raise refuse(argument, value, rule.sentence, remedy)
     if widened.ndim == 0:
         return float(widened)
-    widened.flags.writeable = False  # a copy, which nobody may change under those who read it
+    if kept:
+        widened.flags.writeable = False  # nobody may change it under those who read it
     return widened
 
 

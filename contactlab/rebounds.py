@@ -123,8 +123,12 @@ def rebound(
         alone = _alone(psi1, chi)
         if alone is not None:
             return alone
-    incidence = real("psi1", psi1, remedy="give the non-dimensional angle of incidence (29)")
-    inertia = real("chi", chi, rule=CHI, remedy="chi of eq. (38); 1.4412 for a solid steel sphere")
+    incidence = real(
+        "psi1", psi1, remedy="give the non-dimensional angle of incidence (29)", kept=False
+    )
+    inertia = real(
+        "chi", chi, rule=CHI, remedy="chi of eq. (38); 1.4412 for a solid steel sphere", kept=False
+    )
     aim = real("tolerance", tolerance, rule=TOLERANCE, remedy="leave it out for 1e-5")
     if not isinstance(aim, float):
         raise refuse("tolerance", tolerance, "must be one number", "leave it out for 1e-5")

@@ -81,9 +81,7 @@ def _slopes(table: Table, here: Places) -> Slopes:
     return result
 
 
-def _of_psi2(
-    region: int, place: Places, slopes: Slopes, cuts: Cuts
-) -> tuple[Array, Array]:
+def _of_psi2(region: int, place: Places, slopes: Slopes, cuts: Cuts) -> tuple[Array, Array]:
     """Return both derivatives of psi2 = psi1 (-1 + measure g) in one region.
 
     Parameters

@@ -16,25 +16,33 @@ Rows = NDArray[np.intp]
 
 #: Fewer impacts than this are computed from gathered terms, a kilobyte for each, so many at once
 #: as fit into the cache; more are sorted by patch, which costs some 3 us a patch.
-FEW, GATHERED = 2000, 100
+FEW, GATHERED = 2000, 200
 #: Impacts sorted together, and sorted places taken together, which fit into the cache.
-BLOCK, STRETCH = 1 << 17, 8192
+BLOCK, STRETCH = 1 << 16, 6144
 
 
 def rebound(table: Table, speed: Array, chi: Array) -> Array:
     """Return psi2 for psi1 = speed >= 0 and 0 < chi <= LARGEST_CHI, shape (impacts,)."""
-    psi2 = -4.0 * chi
-    psi2 += speed  # slips throughout, eq. (45)
+    psi2 = np.empty_like(speed)
     for first in range(0, speed.size, BLOCK):
         part = slice(first, first + BLOCK)
-        here = places(speed[part], chi[part], table.cuts)
+        p, x = speed[part], chi[part]
+        psi2[part] = _full_slip(p, x)
+        here = places(p, x, table.cuts)
         if here.who.size:
-            _fill(table.polynomials, here, psi2[part])
+            psi2[part][here.who] = _partial_slip(table.polynomials, here)
     return psi2
 
 
-def _fill(polynomials: Polynomials, here: Places, psi2: Array) -> None:
-    """Write psi2 of these places; ``psi2`` is that of full slip."""
+def _full_slip(speed: Array, chi: Array) -> Array:
+    """Return psi2 of slip throughout, eq. (45)."""
+    psi2 = -4.0 * chi
+    psi2 += speed
+    return psi2
+
+
+def _partial_slip(polynomials: Polynomials, here: Places) -> Array:
+    """Return psi2 of these places."""
     patch = patches(polynomials.grid, here)
     g = (_sorted if here.who.size >= FEW else _gathered)(polynomials, patch, here)
     g *= here.measure
@@ -43,7 +51,7 @@ def _fill(polynomials: Polynomials, here: Places, psi2: Array) -> None:
     np.maximum(g, -1.0, out=g)
     np.minimum(g, 1.0, out=g)
     g *= here.speed
-    psi2[here.who] = np.maximum(g, psi2[here.who], out=g)
+    return np.maximum(g, _full_slip(here.speed, here.chi), out=g)
 
 
 def patches(grid: NDArray[np.int16], here: Places) -> NDArray[np.int16]:
@@ -80,27 +88,29 @@ def powers(argument: Array, out: Array | None = None) -> Array:
 def _sorted(polynomials: Polynomials, patch: NDArray[np.int16], here: Places) -> Array:
     """Return g, patch by patch: a product for each, the rest for whole stretches of places."""
     order = np.argsort(patch, kind="stable")
-    patch = patch[order]
-    stops = np.bincount(patch, minlength=len(polynomials.terms)).cumsum()
-    corner_a, corner_b = polynomials.corners
+    counts = np.bincount(patch, minlength=len(polynomials.terms))
+    stops = counts.cumsum()
+    corner_a, corner_b = (np.repeat(corner, counts) for corner in polynomials.corners)
     g = np.empty_like(here.a)
     # room for all stretches: new memory for each would take longer than the rest
     room = np.empty((2, NODES, min(STRETCH, g.size)))
     for first in range(0, g.size, STRETCH):
-        who, of = order[first : first + STRETCH], patch[first : first + STRETCH]
+        stretch = slice(first, first + STRETCH)
+        who = order[stretch]
         x, y = here.a[who], here.b[who]
-        x -= corner_a[of]
-        y -= corner_b[of]
-        least, most = of[0], of[-1] + 1
-        rows, columns = polynomials.needed[:, least:most].max(axis=1)
+        x -= corner_a[stretch]
+        y -= corner_b[stretch]
+        found = slice(patch[who[0]], patch[who[-1]] + 1)
+        rows, columns = (max(needed[found]) for needed in polynomials.needed)
         y_powers, sums = powers(y, room[0, :columns, : x.size]), room[1, :rows, : x.size]
-        terms = polynomials.terms[:, :rows, :columns]
         start = 0
-        for number, stop in enumerate((stops[least:most] - first).tolist(), least):
-            stop = min(stop, x.size)
+        for terms, stop in zip(
+            polynomials.terms[found, :rows, :columns],
+            np.minimum(stops[found] - first, x.size).tolist(),
+            strict=True,
+        ):
             if stop > start:
-                part = slice(start, stop)
-                np.matmul(terms[number], y_powers[:, part], out=sums[:, part])
+                np.matmul(terms, y_powers[:, start:stop], out=sums[:, start:stop])
                 start = stop
         g[who] = _horner(sums, x)
     return g

@@ -81,7 +81,7 @@ def chebyshev_nodes() -> Array:
 
 
 @cache
-def to_chebyshev() -> Array:
+def _chebyshev() -> Array:
     """Return the matrix from values at the nodes to Chebyshev coefficients."""
     k = np.arange(NODES)
     matrix = np.cos(np.pi * np.outer(k, k + 0.5) / NODES) * (2.0 / NODES)
@@ -119,7 +119,7 @@ def fit(cell: Cell, psi1: Array, chi: Array, psi2: Array, slope: Array | None = 
     bounce = psi2 / psi1 + 1.0
     scale = measure(cell.region, psi1, chi)
     g = bounce / scale
-    coefficients = to_chebyshev() @ bounce @ to_chebyshev().T
+    coefficients = _chebyshev() @ bounce @ _chebyshev().T
     error_a = np.abs(coefficients[-2:]).sum()
     error_b = np.abs(coefficients[:, -2:]).sum()
     missing_a, missing_b = missing_powers(cell)
@@ -145,6 +145,12 @@ def _local(cell: Cell, slope: Array | None) -> Array | None:
 @cache
 def _basis() -> Array:
     return np.asarray(chebyshev_nodes()[:, None] ** np.arange(NODES))
+
+
+@cache
+def chebyshev_of_powers() -> Array:
+    """Return the matrix from powers of a coordinate in [0, 1] to Chebyshev coefficients."""
+    return np.asarray(_chebyshev() @ _basis())
 
 
 def _solve(values: Array, missing: tuple[int, ...], first: Array | None = None) -> Array:

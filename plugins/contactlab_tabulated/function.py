@@ -82,8 +82,12 @@ def rebound(
 
 def _any(psi1: object, chi: object, derivatives: bool) -> Real | tuple[Real, Real, Real]:
     """Return what ``rebound`` returns, for anything."""
-    incidence = real("psi1", psi1, remedy="give the non-dimensional angle of incidence (29)")
-    inertia = real("chi", chi, rule=POSITIVE, remedy="chi of eq. (38); 1.4412 for a steel sphere")
+    incidence = real(
+        "psi1", psi1, remedy="give the non-dimensional angle of incidence (29)", kept=False
+    )
+    inertia = real(
+        "chi", chi, rule=POSITIVE, remedy="chi of eq. (38); 1.4412 for a steel sphere", kept=False
+    )
     velocity, ratio = paired("psi1", "chi", (incidence, inertia))
     shape, velocity, ratio = velocity.shape, velocity.ravel(), ratio.ravel()
     if derivatives and not (ratio <= LARGEST_CHI).all():

@@ -72,14 +72,14 @@ def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
         Polynomials of the boundaries between regions.
     """
     kind = _kinds(speed, chi)
-    stops = np.bincount(kind, minlength=FULL + 1).cumsum().tolist()
-    who = np.argsort(kind, kind="stable")[: stops[LATE]]
+    stops = [np.count_nonzero(kind <= last) for last in range(FULL)]
+    who = np.argsort(kind, kind="stable")[: stops[-1]]
     p, x = speed[who], chi[who]
     measure = np.abs(2.0 * x - 1.0)
     region = np.empty(who.size, dtype=np.int32)
     here = Places(who, region, np.empty_like(p), np.empty_like(p), p, x, measure)
     start = 0
-    for stop, place in zip(stops, (_near, _far, _stuck, _early, _late), strict=False):
+    for stop, place in zip(stops, (_near, _far, _stuck, _early, _late), strict=True):
         if stop > start:
             part = slice(start, stop)
             place(Places(*(column[part] for column in here)), cuts)

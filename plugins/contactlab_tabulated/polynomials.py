@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab_tabulated.fit import to_chebyshev
+from contactlab_tabulated.fit import chebyshev_of_powers
 from contactlab_tabulated.table import NODES, Table
 
 Array = NDArray[np.float64]
@@ -19,8 +19,8 @@ SMALL = 1e-11
 class Polynomials:
     """g by powers of a and b, each less its value at the corner of the cell.
 
-    Patches are numbered by how many powers of a they need, so that those that are sorted need as
-    many as their neighbours.
+    Patches are numbered by how many powers they need, so that those that are sorted need as many
+    as their neighbours.
 
     Attributes
     ----------
@@ -30,36 +30,49 @@ class Polynomials:
         Of the cells, least a and b.
     terms : array, shape (patches, 12, 12)
         Zero where they are left out.
-    needed : array of int, shape (2, patches)
-        Powers of a and of b that are left.
+    needed : list of list of int
+        Powers of a and of b that are left in each patch.
     """
 
     grid: NDArray[np.int16]
     corners: Array
     terms: Array
-    needed: NDArray[np.intp]
+    needed: list[list[int]]
 
     @classmethod
     def of(cls, table: Table) -> Polynomials:
         """Return the polynomials of a table."""
-        found = to_chebyshev() @ table.terms @ to_chebyshev().T
+        forth, back = chebyshev_of_powers(), _powers_of_chebyshev()
+        found = forth @ table.terms @ forth.T
         sizes = np.abs(found)
         needed = np.array([_needed(sizes.sum(axis=2)), _needed(sizes.sum(axis=1))])
         kept = np.arange(NODES) < needed[..., None]
-        inside = kept[0, :, :, None] & kept[1, :, None, :]
-        back = np.linalg.inv(to_chebyshev())
-        terms = (table.terms - back @ np.where(inside, 0.0, found) @ back.T) * inside
+        found *= kept[0, :, :, None] & kept[1, :, None, :]
+        terms = back @ found @ back.T
         scales, places = np.array(table.scales), np.array(table.corners)
         power_a, power_b = scales[..., None] ** np.arange(NODES)  # of two: nothing is rounded
         terms *= power_a[:, :, None] * power_b[:, None, :]
-        order = np.argsort(needed[0], kind="stable")
+        order = np.lexsort(needed[::-1])
         rank = np.empty(order.size, dtype=np.int16)
         rank[order] = np.arange(order.size)
         corners = places / scales
-        return cls(rank[table.grid.ravel()], corners[:, order], terms[order], needed[:, order])
+        return cls(
+            rank[table.grid.ravel()], corners[:, order], terms[order], needed[:, order].tolist()
+        )
 
 
 def _needed(sizes: Array) -> NDArray[np.intp]:
     """Return how many terms are needed along a coordinate, at least one, shape (patches,)."""
     left = np.cumsum(sizes[:, ::-1], axis=1)[:, ::-1]
     return np.maximum(np.count_nonzero(left > SMALL, axis=1), 1)
+
+
+def _powers_of_chebyshev() -> Array:
+    """Return the matrix from Chebyshev coefficients to powers: whole numbers, nothing rounded."""
+    matrix = np.zeros((NODES, NODES))
+    matrix[0, 0] = 1.0
+    matrix[:2, 1] = -1.0, 2.0
+    for k in range(2, NODES):
+        matrix[1:, k] = 4.0 * matrix[:-1, k - 1]
+        matrix[:, k] -= 2.0 * matrix[:, k - 1] + matrix[:, k - 2]
+    return matrix
