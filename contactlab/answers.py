@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab import faults
+from contactlab.batch import locked
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
 from contactlab.contracts.whole_impact import WholeImpact
@@ -16,8 +17,9 @@ from contactlab.status import Status
 
 Mask = NDArray[np.bool_]
 
-#: The mask of a single impact.
-ONE: Mask = np.array(True)
+#: The masks of a single impact: NumPy takes longer to make one than to say what it says.
+ONE: Mask = locked(np.array(True))
+NONE: Mask = locked(np.array(False))
 
 
 class Answer(NamedTuple):

@@ -106,6 +106,16 @@ def halves(shape: tuple[int, ...]) -> tuple[Any, Any]:
     return first, ~first
 
 
+def some(mask: Any) -> bool:
+    """Return whether a mask holds for any impact."""
+    return bool(mask.any() if mask.ndim else mask)
+
+
+def every(mask: Any) -> bool:
+    """Return whether a mask holds for all impacts."""
+    return bool(mask.all() if mask.ndim else mask)
+
+
 def share(where: Any) -> str:
     """Return how many impacts of a batch a mask holds, in words."""
     return f"{int(np.sum(where))} of {np.size(where)} impacts"

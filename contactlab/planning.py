@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from contactlab.answers import ONE, Answer, Mask
-from contactlab.batch import for_share, spread
+from contactlab.answers import NONE, ONE, Answer, Mask
+from contactlab.batch import every, for_share, some, spread
 from contactlab.composition import Laws
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw
@@ -44,24 +45,21 @@ def make_plan(
         What is asked for.
     """
     everywhere = np.ones(scene.shape, dtype=bool) if scene.shape else ONE
-    separated = np.array(np.asarray(normal.status, dtype=object) == Status.SUCCESS) & everywhere
-    marched = np.array(separated)
-    for answer in known:
-        marched &= ~answer.where
+    separated, marched = _separated_and_marched(scene, normal, known)
     error = _error(scene, normal, laws, known, marched)
     how = "integrated from first touch to separation"
     if isinstance(normal.law, ClosedFormNormalLaw):
         how = "in closed form"
     computed = [Sentence(f"normal motion: {type(normal.law).__name__}, {how}", everywhere)]
     cautions = unit_slips(scene)
-    if separated.any():
+    if some(separated):
         cautions += normal.law.cautions(scene, normal)
         cautions += laws.tangential.cautions(scene, normal)
-    if marched.any():
+    if some(marched):
         text = f"tangential motion: {laws.integrator!r} over {laws.tangential!r}"
         computed.append(Sentence(text, marched))
         part = (normal, scene)
-        if not marched.all():
+        if not every(marched):
             part = normal.take(marched), scene.take(marched)
         cautions += laws.integrator.remarks(part[0], laws.tangential, part[1])
         cautions += _coarse(scene, error, marched, laws)
@@ -73,15 +71,31 @@ def make_plan(
         left_out=tuple(left_out),
         cautions=tuple(Sentence(text, everywhere) for text in cautions),
         marched=marched,
-        psi2_error=error if error.ndim else float(error),
+        psi2_error=error,
     )
+
+
+def _separated_and_marched(
+    scene: Scene, normal: NormalMotion, known: Sequence[Answer]
+) -> tuple[Mask, Mask]:
+    """Return the impacts that the normal motion ends, and those of them not known as a whole."""
+    if not scene.shape:
+        if normal.status is not Status.SUCCESS:
+            return NONE, NONE
+        return ONE, NONE if known else ONE
+    separated = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
+    separated = np.array(np.broadcast_to(separated, scene.shape))
+    marched = np.array(separated)
+    for answer in known:
+        marched &= ~answer.where
+    return separated, marched
 
 
 def _not_marched(known: Sequence[Answer], separated: Mask) -> list[Sentence]:
     """Return why impacts are not marched."""
     march = "march of the tangential motion"
     found = [Sentence(f"{march}: {answer.known.reason}", answer.where) for answer in known]
-    if not separated.all():
+    if not every(separated):
         found.append(Sentence(f"{march}: the normal motion came to no end", ~separated))
     return found
 
@@ -92,7 +106,7 @@ def _no_history(history: bool | str, marched: Mask) -> str | None:
         return "history: not asked for"
     if history != "fields":
         return "traction and stick/slip fields: not asked for (history='fields')"
-    if not marched.any():
+    if not some(marched):
         return "traction and stick/slip fields: there is no march to take them from"
     return None
 
@@ -100,7 +114,7 @@ def _no_history(history: bool | str, marched: Mask) -> str | None:
 def _error(
     scene: Scene, normal: NormalMotion, laws: Laws, known: Sequence[Answer], marched: Mask
 ) -> Any:
-    """Return the declared numerical error of psi2, an array of the scene's shape.
+    """Return the declared numerical error of psi2: of one impact a float, of a batch an array.
 
     Parameters
     ----------
@@ -112,25 +126,30 @@ def _error(
         Impacts that no whole-impact answer is for.
     """
     rounding = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
-    error: Any = np.array(spread(rounding, scene.shape))
+    error: Any = spread(rounding, scene.shape)
     for answer in known:
         error = error + np.where(answer.where, answer.known.psi2_error, 0.0)
-    if not marched.any():
-        return np.asarray(error)
-    with np.errstate(all="ignore"):
-        declared = laws.integrator.psi2_error(normal, laws.tangential, scene)
-        return np.array(np.where(marched, declared, error))
+    if some(marched):
+        with np.errstate(all="ignore"):
+            declared = laws.integrator.psi2_error(normal, laws.tangential, scene)
+            error = np.where(marched, declared, error) if scene.shape else declared
+    return error if scene.shape else float(error)
 
 
 def _error_sentences(error: Any, separated: Mask) -> list[Sentence]:
     """Return what a plan says of the numerical error."""
-    undeclared = separated & np.isnan(error)
-    declared = separated & ~undeclared
+    if separated.ndim:
+        undeclared = separated & np.isnan(error)
+        declared = separated & ~undeclared
+    elif math.isnan(error):
+        undeclared, declared = separated, NONE
+    else:
+        undeclared, declared = NONE, separated
     found = []
-    if declared.any():
-        most = float(np.max(error[declared]))
+    if some(declared):
+        most = float(np.max(error[declared])) if declared.ndim else error
         found.append(Sentence(f"numerical error of psi2: at most {most:.2g}, declared", declared))
-    if undeclared.any():
+    if some(undeclared):
         text = "numerical error of psi2: none is declared for these laws"
         found.append(Sentence(text, undeclared))
     return found
@@ -142,12 +161,14 @@ def _coarse(scene: Scene, error: Any, marched: Mask, laws: Laws) -> list[str]:
     Parameters
     ----------
     scene : Scene
-    error : array
+    error : float or array
         Declared, of psi2.
     marched : array of bool
     laws : Laws
     """
     unit, width, _ = range_of(scene)
+    if not scene.shape and width > 0.0 and error * (unit / width) <= COARSE:
+        return []  # one impact, as it should be: plain numbers are ten times as fast
     with np.errstate(all="ignore"):
         share = np.where(marched, error * np.divide(unit, width), 0.0)
     coarse = share > COARSE
