@@ -48,7 +48,8 @@ def coupling_shift(scene: Scene) -> Any:
 
 def coupling(scene: Scene) -> tuple[str, ...]:
     """Return the caution of unlike bodies, whose pressure drags the surfaces sideways."""
-    if not np.any(np.asarray(scene.pair.dundurs_beta) != 0.0):
+    beta = scene.pair.dundurs_beta
+    if beta == 0.0 if isinstance(beta, float) else not np.any(beta):
         return ()
     number, shift = (
         np.broadcast_to(each, scene.shape)

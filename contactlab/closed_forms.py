@@ -6,7 +6,7 @@ Shortcuts for the plan, oracles for the tests. Arguments may be floats or arrays
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -82,7 +82,9 @@ def slips_throughout_elastic(psi1: Real, chi: Real) -> Mask:
     ``|psi1| >= max(1, 4 chi - 1)``. For chi < 1/2 eq. (46) alone is not enough:
     below ``|psi1| = 1`` the contact sticks from the start (44).
     """
-    return np.abs(psi1) >= np.maximum(1.0, 4.0 * chi - 1.0)
+    greater: Any = max if isinstance(chi, float) else np.maximum
+    slips: Mask = abs(psi1) >= greater(1.0, 4.0 * chi - 1.0)
+    return slips
 
 
 def rigid_body_rebound(psi1: Real, chi: Real, restitution: Real = 1.0) -> Real:

@@ -107,8 +107,9 @@ class TangentialLaw(Law):
         normal : NormalMotion
             Of all impacts of ``scene``.
         """
-        central = np.asarray(scene.slip_velocity) == 0.0
-        smooth = np.asarray(scene.friction_coefficient) == 0.0
+        slip: Any = scene.slip_velocity
+        friction: Any = scene.friction_coefficient
+        central, smooth = slip == 0.0, friction == 0.0
         return (
             no_force(scene, where=central, reason="central impact, no slip velocity"),
             no_force(scene, where=smooth, reason="friction coefficient 0"),

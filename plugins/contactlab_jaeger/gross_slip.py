@@ -12,5 +12,7 @@ def gross_slip(scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
     if "elastic_hertz" not in normal.offers:
         return ()
     where = slips_throughout_elastic(scene.psi1, scene.chi)
+    if where is False:  # of one impact; of a batch the mask says it
+        return ()
     reason = "the impact slips from start to end, eq. (45)"
     return (sliding(scene, normal, where=where, reason=reason, stops=False),)

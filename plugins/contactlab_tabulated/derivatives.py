@@ -56,9 +56,8 @@ def gradient(table: Table, speed: Array, chi: Array) -> tuple[Array, Array]:
         slopes = _slopes(table, here)
         for region, part in here.parts():
             who = first + here.who[part]
-            place = Places(*(column[part] for column in here))
             local = Slopes(*(column[part] for column in slopes))
-            by_psi1[who], by_chi[who] = _of_psi2(region, place, local, table.cuts)
+            by_psi1[who], by_chi[who] = _of_psi2(region, here.taken(part), local, table.cuts)
     return by_psi1, by_chi
 
 

@@ -130,7 +130,7 @@ def _gathered(polynomials: Polynomials, patch: NDArray[np.int16], here: Places) 
 
 def _horner(terms: Array, argument: Array) -> Array:
     """Return polynomials with ``terms`` of their own, lowest first; ``terms`` are lost."""
-    total = terms[-1]
+    total: Array = terms[-1]
     for term in terms[-2::-1]:
         total *= argument
         total += term

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +55,11 @@ class Places(NamedTuple):
     chi: Array
     measure: Array
 
+    def taken(self, part: slice | Rows) -> Places:
+        """Return some of them, in views if ``part`` is a slice."""
+        columns: Any = (column[part] for column in self)
+        return Places(*columns)
+
     def parts(self) -> list[tuple[int, Rows]]:
         """Return regions, and which of the places are in each."""
         found = [(region, (self.region == region).nonzero()[0]) for region in range(REGIONS)]
@@ -72,7 +77,7 @@ def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
         Polynomials of the boundaries between regions.
     """
     kind = _kinds(speed, chi)
-    stops = [np.count_nonzero(kind <= last) for last in range(FULL)]
+    stops = [int(np.count_nonzero(kind <= last)) for last in range(FULL)]
     who = np.argsort(kind, kind="stable")[: stops[-1]]
     p, x = speed[who], chi[who]
     measure = np.abs(2.0 * x - 1.0)
@@ -81,8 +86,7 @@ def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
     start = 0
     for stop, place in zip(stops, (_near, _far, _stuck, _early, _late), strict=True):
         if stop > start:
-            part = slice(start, stop)
-            place(Places(*(column[part] for column in here)), cuts)
+            place(here.taken(slice(start, stop)), cuts)
         start = stop
     return here
 

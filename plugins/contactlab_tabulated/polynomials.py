@@ -64,7 +64,7 @@ class Polynomials:
 def _needed(sizes: Array) -> NDArray[np.intp]:
     """Return how many terms are needed along a coordinate, at least one, shape (patches,)."""
     left = np.cumsum(sizes[:, ::-1], axis=1)[:, ::-1]
-    return np.maximum(np.count_nonzero(left > SMALL, axis=1), 1)
+    return np.asarray(np.maximum(np.count_nonzero(left > SMALL, axis=1), 1))
 
 
 def _powers_of_chebyshev() -> Array:
