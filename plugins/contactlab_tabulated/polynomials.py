@@ -11,7 +11,7 @@ from contactlab_tabulated.table import NODES, Table
 
 Array = NDArray[np.float64]
 
-#: What is left out along each coordinate changes g by less: an eighth is left of 12 terms by 12.
+#: What is left out along each coordinate changes g by less; half of 12 terms by 12 are left.
 SMALL = 1e-11
 
 

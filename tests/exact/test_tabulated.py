@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+from numpy.polynomial.polynomial import polyval2d
 
 import contactlab
 from contactlab import rebounds
@@ -212,6 +213,22 @@ def test_patches_cover_every_region_and_lack_the_powers_that_g_lacks():
         of_a, of_b = missing_powers(Cell(*row))
         assert not terms[list(of_a)].any()
         assert not terms[:, list(of_b)].any()
+
+
+def test_terms_left_out_are_too_small_to_matter():
+    """Each patch against all of its terms, in local coordinates, by another evaluation."""
+    made = shipped()
+    short = made.polynomials
+    x, y = np.random.default_rng(29).uniform(size=(2, 40))
+    for patch, (row, terms) in enumerate(zip(made.cells.tolist(), made.terms, strict=True)):
+        region, level_a, level_b, i, j = row
+        wide, high = 64 >> level_a, 64 >> level_b
+        number = short.grid.reshape(-1, 64, 64)[region, i * wide, j * high]
+        assert made.grid[region, i * wide, j * high] == patch
+        assert short.corners[:, number].tolist() == [i / 2**level_a, j / 2**level_b]
+        left = polyval2d(x / 2**level_a, y / 2**level_b, short.terms[number])
+        assert np.abs(left - polyval2d(x, y, terms)).max() < 3e-11
+    assert 60 < np.prod(short.needed, axis=0).mean() < 100
 
 
 def test_a_damaged_file_is_refused(tmp_path):
