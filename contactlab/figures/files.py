@@ -12,6 +12,7 @@ import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from contactlab.checks import refuse
 from contactlab.figures.style import HEIGHT, RESOLUTION, WIDTH, Look, styled
 from contactlab.files import written
 
@@ -124,7 +125,15 @@ def _drawn(
 
 
 def save_figure(figure: Figure, path: str | Path, **options: Any) -> None:
-    """Write a figure, whole or not at all; options are those of ``savefig``."""
-    form = FORMATS[Path(path).suffix.lower()]
+    """Write a figure, whole or not at all; options are those of ``savefig``.
+
+    Raises
+    ------
+    ValueError
+        If the name does not end in one of ``FORMATS``.
+    """
+    form = FORMATS.get(Path(path).suffix.lower())
+    if form is None:
+        raise refuse("path", str(path), f"must end in {', '.join(FORMATS)}")
     with written(path, binary=True) as stream, mpl.rc_context(WRITING):
         figure.savefig(stream, format=form, dpi=RESOLUTION, metadata=METADATA[form], **options)
