@@ -125,6 +125,14 @@ class Kept:
         return found
 
 
+def count(folder: Path) -> int:
+    """Return the number of impacts in the pieces of a sweep; zero if nothing is there."""
+    ends = (path.stem.split("-")[1:] for path in folder.glob(PIECES))
+    return sum(
+        int(end[1]) - int(end[0]) for end in ends if len(end) == 2 and all(map(str.isdigit, end))
+    )
+
+
 def remove(folder: Path) -> None:
     """Delete the pieces of a sweep, and their folder if nothing else is in it."""
     for pattern in (PIECES, ".contactlab-*.part", ABOUT):

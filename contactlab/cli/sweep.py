@@ -74,12 +74,15 @@ def execute(arguments: argparse.Namespace) -> int:
         raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
     simulation = composed(arguments, file.laws if file else LawChoice())
     keep = _folder(arguments.out) if arguments.resume else None
+    before = 0 if keep is None else _done(keep)
     with (
         shared.progress(arguments.progress, "impacts") as progress,
         contextlib.redirect_stdout(sys.stderr),  # what a plug-in prints is not our output
         _executor(arguments.workers) as executor,
     ):
         result = simulation.sweep(scene, progress=progress, executor=executor, keep=keep)
+    if before:
+        print(f"contactlab sweep: {before} impacts were done before", file=sys.stderr)
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.figure, lambda path: draw(path, result, arguments.style)),
@@ -131,6 +134,13 @@ def _folder(out: Path | None) -> Path:
     if out is None:
         raise ValueError("--resume: needs --out FILE; what is done is kept beside it")
     return out.with_name(f"{out.name}.kept")
+
+
+def _done(folder: Path) -> int:
+    """Return how many impacts are there from before."""
+    from contactlab.kept import count
+
+    return count(folder)
 
 
 def _clear(folder: Path, result: ImpactResult) -> None:
