@@ -38,6 +38,26 @@ def check_enough(problem: Problem) -> None:
         )
 
 
+def check_scatter(problem: Problem) -> None:
+    """Refuse, among several quantities, one that the parameters can meet to the last digit.
+
+    Its residuals would be zero, and with them the error that its weight is found by.
+
+    Raises
+    ------
+    ValueError
+    """
+    if len(problem.measured) == 1:
+        return
+    for name, count in problem.counts.items():
+        if name not in problem.errors and count <= len(problem.model.parameters):
+            raise ValueError(
+                f"{name}: {count} measured, too few to find their scatter beside that of the other "
+                f"quantities; give a column {name}_error, measure more, or leave it out of those "
+                "that are fitted"
+            )
+
+
 def idle(problem: Problem, values: Array) -> list[str]:
     """Return the quantities that depend on no parameter, where others do.
 

@@ -110,6 +110,7 @@ def fit(
         )  # fmt: skip
         told = f"{', '.join(idle)}: not met, for no parameter moves it under these laws"
         return attrs.evolve(found, notes=(told, *found.notes))
+    determinacy.check_scatter(problem)
     determinacy.check_determined(problem, values)
     found, reaches = _outcome(problem, table, values)
     determinacy.check_precise(problem, values, reaches)

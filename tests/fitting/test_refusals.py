@@ -99,6 +99,17 @@ def test_effects_that_are_alike_are_not_told_apart():
     assert found["friction_coefficient"] == pytest.approx(0.1 * 2.0 / 1.9, rel=0.05)
 
 
+def test_a_single_number_of_a_quantity_needs_its_error():
+    """It would be met to the last digit, whatever the others say."""
+    one = np.where(np.arange(4) == 2, -120.0, np.nan)
+    data = table(scattered(GRAZING), GRAZING) | {"rebound_spin (rad/s)": one}
+    with pytest.raises(ValueError, match="rebound_spin: 1 measured, too few"):
+        fit(data, BODIES)
+    known = {"rebound_spin_error (rad/s)": np.full(4, 100.0)}
+    known["tangential_restitution_error"] = np.full(4, 0.004)
+    assert fit(data | known, BODIES)["friction_coefficient"] == pytest.approx(0.1, abs=0.01)
+
+
 def test_fewer_numbers_than_parameters():
     with pytest.raises(ValueError, match="1 measured numbers cannot determine 2 parameters"):
         fit(table([0.7], [20.0]), BODIES, parameters=["friction_coefficient", "stiffness_ratio"])
