@@ -9,6 +9,7 @@ The modules, each of which imports from those above it only:
 *numbers and files*
 ``status``            how a run ended
 ``checks``            checked numbers, refusals
+``attributes``        refusals of unknown attributes
 ``signatures``        refusals of unknown arguments
 ``vectors``           checked vectors of three numbers, and their components
 ``batch``             trees of numbers stacked, taken apart and joined

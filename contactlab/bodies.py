@@ -8,6 +8,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.attributes import named_attributes
 from contactlab.checks import (
     GYRATION,
     POISSON,
@@ -23,6 +24,7 @@ from contactlab.signatures import named_arguments
 SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)
 
 
+@named_attributes
 @named_arguments("Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)")
 @attrs.frozen(init=False, kw_only=True)
 class Material:
@@ -113,6 +115,7 @@ def _material() -> Any:
     return attrs.field(validator=_is_material)
 
 
+@named_attributes
 @named_arguments("Sphere(0.0127, steel)")
 @attrs.frozen
 class Sphere:
@@ -156,6 +159,7 @@ class Sphere:
         object.__setattr__(self, "mass", real("mass", solid, rule=POSITIVE))
 
 
+@named_attributes
 @named_arguments("HalfSpace(steel)")
 @attrs.frozen
 class HalfSpace:
@@ -170,6 +174,7 @@ class HalfSpace:
     material: Material = _material()
 
 
+@named_attributes
 @named_arguments("Pair.of(Sphere(0.0127, steel), HalfSpace(glass))")
 @attrs.frozen(kw_only=True)
 class Pair:

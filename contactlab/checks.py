@@ -28,14 +28,18 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "d": ("radius",),
     "law": ("tangential",), "theta": ("angle_deg",), "alpha": ("angle_deg",),
     "m": ("mass",), "M": ("mass",), "K": ("gyration_ratio",),
-    "v": ("tangential_velocity", "speed"), "vx": ("tangential_velocity",),
+    "v": ("tangential_velocity", "speed", "velocity"), "vx": ("tangential_velocity",),
+    "velocity": ("rebound_tangential_velocity", "rebound_normal_velocity"),
     "speed": ("normal_speed",), "v1": ("normal_speed",), "vn": ("normal_speed",),
-    "vz": ("normal_speed",),
-    "omega": ("spin",), "w": ("spin",), "e": ("restitution", "normal_restitution"),
+    "vz": ("normal_speed",), "v2": ("rebound_normal_velocity",),
+    "omega": ("spin", "rebound_spin"), "w": ("spin", "rebound_spin"), "spin": ("rebound_spin",),
+    "e": ("restitution", "normal_restitution"), "restitution": ("normal_restitution",),
     "e_n": ("normal_restitution",), "e_t": ("tangential_restitution",),
+    "et": ("tangential_restitution",), "t": ("time",), "T": ("duration",), "force": ("normal_force", "tangential_force"),
+    "F": ("tangential_force",), "P": ("normal_force",), "work": ("friction_work",),
     "beta0": ("slip_restitution", "beta"), "kappa": ("stiffness_ratio",),
     "shear_modulus_ratio": ("stiffness_ratio",),
-    "angle": ("angle_deg",), "psi": ("psi1",), "dt": ("steps",), "n": ("steps",),
+    "angle": ("angle_deg", "rebound_angle"), "psi": ("psi1",), "dt": ("steps",), "n": ("steps",),
 }  # fmt: skip
 
 

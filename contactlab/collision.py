@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab import impulses
+from contactlab.attributes import named_attributes
 from contactlab.batch import filled
 from contactlab.bodies import Sphere
 from contactlab.checks import Real, real, refuse
@@ -31,6 +32,7 @@ SAME_ANSWERS = "tangential.tabulated"
 SEPARATING = ("refuse", "pass")
 
 
+@named_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
 class Collision:
     """Both bodies after an encounter; vectors have the shape ``(..., 3)``, numbers the batch's.

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab import batch
+from contactlab.attributes import named_attributes
 from contactlab.bodies import HalfSpace, Pair, Sphere
 from contactlab.checks import NON_NEGATIVE, Real, quantity, refuse
 from contactlab.scene import Scene, is_sphere, is_target
@@ -42,6 +43,7 @@ class Contact(NamedTuple):
     slip: Any
 
 
+@named_attributes
 @named_arguments("Encounter(ball, plate, friction_coefficient=0.2, normal=[0, 0, -1], velocity=v)")
 @attrs.frozen
 class Encounter:

@@ -7,6 +7,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.attributes import named_attributes
 from contactlab.bodies import Pair
 from contactlab.checks import Real
 from contactlab.json_values import json_value
@@ -26,6 +27,7 @@ def _energy() -> Any:
     return attrs.field(metadata={"unit": "J"})
 
 
+@named_attributes
 @attrs.frozen(kw_only=True, eq=False)
 class EnergyLedger:
     """Kinetic energy of the relative motion at the contact, in J.

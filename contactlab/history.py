@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.answers import Answer
+from contactlab.attributes import named_attributes
 from contactlab.contracts.integrator import Observer, Sample
 from contactlab.contracts.motion import NormalMotion
 
@@ -26,6 +27,7 @@ def _column(unit: str) -> Any:
     return attrs.field(metadata={"unit": unit})
 
 
+@named_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class History:
     """Arrays over the instants of an impact, shape (K, ...): instants first, then the batch.

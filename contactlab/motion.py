@@ -8,6 +8,7 @@ from typing import Any, Self
 import attrs
 import numpy as np
 
+from contactlab.attributes import named_attributes
 from contactlab.batch import locked, spread
 from contactlab.checks import Real
 from contactlab.contracts.integrator import TangentialMotion
@@ -15,6 +16,7 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.status import Status
 
 
+@named_attributes
 @attrs.frozen(kw_only=True, eq=False)
 class Motion(TangentialMotion):
     """A tangential motion, and how the normal motion that it went along began and ended.

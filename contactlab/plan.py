@@ -11,6 +11,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.attributes import named_attributes
 from contactlab.batch import share, taken
 from contactlab.checks import Real
 from contactlab.json_values import json_value
@@ -35,6 +36,7 @@ class Sentence(NamedTuple):
 Sentences = tuple[Sentence, ...]
 
 
+@named_attributes
 @attrs.frozen(kw_only=True, eq=False)
 class Plan:
     """What will be computed, what is left out, and what to be wary of.

@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 
 from contactlab import batch
+from contactlab.attributes import named_attributes
 from contactlab.bodies import Sphere
 from contactlab.checks import Real
 from contactlab.energy import EnergyLedger, ledger
@@ -38,6 +39,7 @@ class ImpactError(RuntimeError):
         return str(self.args[0])
 
 
+@named_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class ImpactResult:
     """Outcome of one impact, or of a batch: every entry has the scene's shape.

@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 
 from contactlab import batch
+from contactlab.attributes import named_attributes
 from contactlab.bodies import HalfSpace, Pair, Sphere
 from contactlab.checks import NON_NEGATIVE, POSITIVE, Real, Rule, quantity, real, refuse
 from contactlab.signatures import named_arguments
@@ -44,6 +45,7 @@ def _is_pair(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
         raise refuse(attribute.name, value, "must be a Pair", "or leave it out")
 
 
+@named_attributes
 @named_arguments("Scene(ball, plate, friction_coefficient=0.2, normal_speed=1.0)")
 @attrs.frozen
 class Scene:

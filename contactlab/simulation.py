@@ -11,6 +11,7 @@ import attrs
 import numpy as np
 
 from contactlab import composition
+from contactlab.attributes import named_attributes
 from contactlab.cautions import vectors
 from contactlab.checks import refuse
 from contactlab.composition import Laws
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
 
+@named_attributes
 @named_arguments("Simulation(tangential='annulus', integrator='symplectic')")
 @attrs.frozen(kw_only=True, init=False)
 class Simulation:

@@ -12,6 +12,7 @@ from typing import Any
 
 import attrs
 
+from contactlab.attributes import named_attributes
 from contactlab.checks import Real, real, refuse
 from contactlab.encounter import Encounter
 from contactlab.grid import over
@@ -36,6 +37,7 @@ LARGEST, DEEPEST = 32_000_000, 20
 ABOUT_KEYS = ("title", "citation", "notes")
 
 
+@named_attributes
 @attrs.frozen(kw_only=True, eq=False)
 class SceneFile:
     """What a scene file says.
