@@ -36,6 +36,9 @@ SWEEP, SWEEP_BUDGET = 500, 2.0
 SLOW, SLOW_QUICK = 0.1, 0.05
 #: Errors below this are rounding: an order is fitted above it.
 ROUNDING = 1e-11
+#: A row is good enough for a short table from this error, or from so many times its law's least;
+#: the best row is told too where it is better by a factor of ``FINER``.
+GOOD, ALIKE, FINER = 1e-3, 2.0, 10.0
 #: A method whose log error falls by less than this over its resolutions does not converge.
 LEAST_GAIN = 0.5
 
@@ -101,6 +104,25 @@ class Benchmark:
                 # Below rounding nothing is better than anything else.
                 least = row.error_rms if row.error_rms > ROUNDING else 0.0
         return best
+
+    def short(self) -> list[Row]:
+        """Return a row or two of each law, the most accurate law first.
+
+        The first is the quickest that is good to a per mille, or as good as its law becomes; the
+        second the most accurate, if that is another matter.
+        """
+        of: dict[str, list[Row]] = {}
+        for row in self.rows:
+            if row.ok:
+                of.setdefault(row.method.partition(" / ")[0], []).append(row)
+        found = []
+        for rows in of.values():
+            best = min(rows, key=lambda row: (row.error_rms, row.time_s))
+            limit = max(GOOD, ALIKE * best.error_rms)
+            quick = min((row for row in rows if row.error_rms <= limit), key=lambda row: row.time_s)
+            finer = best.error_rms * FINER <= quick.error_rms
+            found.append([best, quick] if finer and best.time_s > quick.time_s else [quick])
+        return [row for rows in sorted(found, key=lambda rows: rows[0].error_rms) for row in rows]
 
 
 def bench(

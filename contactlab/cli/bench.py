@@ -5,6 +5,7 @@ Examples
   contactlab bench --quick
   contactlab bench --figure bench.png --csv bench.csv
   contactlab bench --law tangential.cundall --law tangential.springs
+  contactlab bench --markdown --figure bench.png > bench.md
 """
 
 from __future__ import annotations
@@ -31,11 +32,16 @@ BUDGET = "the budget ran out"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the laws, the size, and the outputs."""
     shared.add_report(parser)
+    parser.add_argument(
+        "--markdown", action="store_true", help="print a row or two of each law, as Markdown"
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the benchmark and report."""
     shared.check_budget(arguments.budget)
+    if arguments.json and arguments.markdown:
+        raise ValueError("--json, --markdown: are two forms of the same table; leave out one")
     chosen = methods(arguments.law)
     with shared.progress(arguments.progress, "bench") as progress:
         benchmark = bench(chosen, quick=arguments.quick, budget=arguments.budget, progress=progress)
@@ -44,7 +50,10 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.figure, lambda path: _draw(path, benchmark)),
         progress_wanted=arguments.progress,
     )
-    print(json.dumps(_content(benchmark), indent=2) if arguments.json else _report(benchmark))
+    if arguments.json:
+        print(json.dumps(_content(benchmark), indent=2))
+    else:
+        print(markdown(benchmark) if arguments.markdown else _report(benchmark))
     return shared.INTERRUPTED if benchmark.interrupted else saved
 
 
@@ -67,11 +76,32 @@ def _content(benchmark: Benchmark) -> dict[str, object]:
     return {"rows": rows, "orders": orders, "complete": benchmark.complete}
 
 
+def markdown(benchmark: Benchmark) -> str:
+    """Return the short table as Markdown."""
+    lines = [["law, integrator", "resolution", "psi2 rms", "worst", "energy books", "one impact",
+              "in a sweep"], ["---"] * 7]  # fmt: skip
+    for row in benchmark.short():
+        law, _, integrator = row.method.partition(" / ")
+        name = f"`{law}`" + f", `{integrator}`" * bool(integrator)
+        numbers = [f"{value:.1e}" for value in (row.error_rms, row.error_worst, row.books_worst)]
+        lines.append([name, row.options, *numbers, *_times(row)])
+    text = "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    return text if benchmark.complete else f"{text}\n\n{_why_not(benchmark)}"
+
+
+def _times(row: Row) -> list[str]:
+    return [time(value) if value == value else "-" for value in (row.time_s, row.sweep_time_s)]
+
+
+def _why_not(benchmark: Benchmark) -> str:
+    return f"not complete: {'interrupted' if benchmark.interrupted else BUDGET}"
+
+
 def _report(benchmark: Benchmark) -> str:
     front = benchmark.front()
     lines = []
     for row in benchmark.rows:
-        times = [time(value) if value == value else "-" for value in (row.time_s, row.sweep_time_s)]
+        times = _times(row)
         errors = [row.error_rms, row.error_worst, row.force_error_rms, row.books_worst]
         note = "front" if row in front else "" if row.ok else f"{row.failed} x {row.status}"
         lines.append([row.method, row.options, *errors, *times, note])
@@ -85,7 +115,7 @@ def _report(benchmark: Benchmark) -> str:
         text += "\n\n" + table(["method", "order observed"], orders, digits=3)
     if benchmark.complete:
         return text
-    return f"{text}\n\nnot complete: {'interrupted' if benchmark.interrupted else BUDGET}"
+    return f"{text}\n\n{_why_not(benchmark)}"
 
 
 def _write_csv(path: Path, benchmark: Benchmark) -> None:

@@ -8,6 +8,7 @@ import pytest
 from contactlab.analysis import work_precision
 from contactlab.analysis.bench_methods import Method, methods, scenes
 from contactlab.analysis.work_precision import Benchmark, Row, bench
+from contactlab.cli.bench import markdown
 from contactlab.cli.main import main
 
 
@@ -72,6 +73,32 @@ def test_failed_and_slow_resolutions_are_gaps_never_dropped(monkeypatch):
     found = bench([Method(tangential="springs", integrator="symplectic")], quick=True)
     assert [entry.status for entry in found.rows] == ["SUCCESS", "NOT_RUN", "NOT_RUN"]
     assert not found.rows[-1].ok
+
+
+def test_a_short_table_has_what_is_good_enough_and_what_is_best():
+    rows = (
+        row("fine / a", error=1e-2, time=1.0),
+        row("fine / a", error=9e-4, time=2.0),
+        row("fine / b", error=8e-4, time=3.0),
+        row("fine / b", error=8e-5, time=9.0),
+        row("fine / a", error=7e-6, time=8.0),
+        row("rigid", error=0.7, time=0.5),
+        row("capped / a", error=0.39, time=0.1),
+        row("capped / a", error=0.26, time=0.4),
+        row("capped / a", error=0.2, time=0.8),
+        row("failed / a", error=np.nan, time=np.nan, failed=1),
+    )
+    benchmark = Benchmark(rows=rows, orders={}, complete=False, interrupted=True)
+    assert benchmark.short() == [rows[4], rows[1], rows[6], rows[5]]
+    lines = markdown(benchmark).splitlines()
+    assert len({line.count("|") for line in lines[:6]}) == 1
+    assert lines[2].startswith("| `fine`, `a` | steps=10 | 7.0e-06 |")
+    assert lines[-1] == "not complete: interrupted"
+
+
+def test_two_forms_of_one_table_are_refused(capsys):
+    assert main(["bench", "--json", "--markdown"]) == 2
+    assert "leave out one" in capsys.readouterr().err
 
 
 def test_budget_ends_it_and_says_so(capsys):
