@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -117,9 +117,11 @@ def save(
     return status
 
 
-def add_laws(parser: argparse.ArgumentParser, *, many: bool = False) -> None:
-    """Add ``--normal``, ``--tangential``, ``--integrator`` and ``--set``."""
-    for kind in KINDS:
+def add_laws(
+    parser: argparse.ArgumentParser, *, kinds: Sequence[str] = KINDS, many: bool = False
+) -> None:
+    """Add ``--normal``, ``--tangential``, ``--integrator``, or some of them, and ``--set``."""
+    for kind in kinds:
         word = "integrator" if kind == "integrator" else f"{kind} law"
         parser.add_argument(
             f"--{kind}",

@@ -54,17 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="tangential laws, the first reported and all ranked; exact (default) is the exact "
         "elastic one by its table",
     )
-    parser.add_argument("--normal", metavar="NAME", help="name of the normal law")
-    parser.add_argument("--integrator", metavar="NAME", help="name of the integrator")
-    parser.add_argument(
-        "--set",
-        type=shared.setting,
-        action="append",
-        default=[],
-        dest="settings",
-        metavar="KIND.OPTION=VALUE",
-        help="option of a law: normal.restitution=0.9; may be repeated",
-    )
+    shared.add_laws(parser, kinds=("normal", "integrator"))
     parser.add_argument(
         "--quantity",
         type=shared.names,

@@ -13,12 +13,10 @@ import argparse
 import contextlib
 import sys
 
-import attrs
-
 from contactlab.analysis.compare import compare
 from contactlab.cli import arguments as shared
 from contactlab.files import written
-from contactlab.scene_file import LawChoice, read_scene
+from contactlab.scene_file import read_scene
 
 #: Compared with the file's own law where nothing else is asked for.
 DEFAULT_LAWS = ("fronts", "coulomb")
@@ -56,7 +54,7 @@ def execute(arguments: argparse.Namespace) -> int:
         if name.removeprefix("tangential.") in simulations:
             continue
         try:
-            simulations[name] = _other(file.laws, name).simulation()
+            simulations[name] = file.laws.choose(tangential=name).suited().simulation()
         except ValueError:  # a default that does not fit the file's normal law is left out
             if arguments.tangential:
                 raise
@@ -72,10 +70,3 @@ def execute(arguments: argparse.Namespace) -> int:
         stream.write(page)
     print(arguments.out)
     return shared.INTERRUPTED if comparison.interrupted else shared.OK
-
-
-def _other(laws: LawChoice, tangential: str) -> LawChoice:
-    """Return the choice with another tangential law, under the integrator that suits it."""
-    other = laws.choose(tangential=tangential)
-    options = {name: given for name, given in other.options.items() if name != "integrator"}
-    return attrs.evolve(other, integrator=None, options=options)
