@@ -6,7 +6,6 @@ import attrs
 import numpy as np
 import pytest
 
-import contactlab
 from contactlab import (
     Collision,
     Encounter,
@@ -22,8 +21,14 @@ from contactlab import (
 from tests.normal_laws import ForceFree
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+
+
 GLASS = Material(young_modulus=70e9, poisson_ratio=0.2, density=2500.0)
+
+
 BALL, PLATE = Sphere(0.01, STEEL), HalfSpace(GLASS)
+
+
 DOWN = (0.0, 0.0, -1.0)
 
 
@@ -341,103 +346,3 @@ def test_scenes_by_speed_and_angle():
     for wrong in ({"angle_deg": 90.0}, {"speed": 0.0}, {"speed": "fast"}):
         with pytest.raises(ValueError, match=next(iter(wrong))):
             Scene.at_angle(BALL, PLATE, 0.2, **({"speed": 1.0, "angle_deg": 3.0} | wrong))
-
-
-VECTORS = """
-[sphere]
-radius = 0.01
-material = {young_modulus = 208e9, poisson_ratio = 0.3, density = 7850}
-[target]
-kind = "half-space"
-material = {young_modulus = 70e9, poisson_ratio = 0.2, density = 2500}
-[impact]
-friction_coefficient = 0.2
-normal = [0, 0, -1]
-velocity = [0.5, 0, -1]
-spin = [0, -20, 0]
-"""
-
-
-def test_a_file_may_give_vectors(tmp_path):
-    path = tmp_path / "vectors.toml"
-    path.write_text(VECTORS)
-    file = contactlab.read_scene(path)
-    assert file.encounter == meeting()
-    assert hash(file.encounter) == hash(meeting())
-    assert file.encounter != meeting(spin=(0.0, -20.0, 1.0))
-    assert file.scene == meeting().scene
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ("velocity = [0.5, 0, -1]", "velocity = [1, 2]", "impact.velocity"),
-        ("normal = [0, 0, -1]", "", "impact.normal: is missing"),
-        ("normal = [0, 0, -1]", "normal = [0, 0, 1]", "bodies separate"),
-        ("spin = [0, -20, 0]", "spin = 20", "impact.spin"),
-        ("spin = [0, -20, 0]", "speed = 20", "has vectors, and speed too"),
-        ("spin = [0, -20, 0]", "target_spin = [0, 1, 0]", "impact.target_spin"),
-        ("velocity = [0.5, 0, -1]", "velocities = [0.5, 0, -1]", "did you mean 'velocity'"),
-        ("[impact]", "[sweep]\nspin = [1, 2, 3]\n[impact]", "impact.spin"),
-    ],
-)
-def test_what_a_file_of_vectors_refuses(old, new, words, tmp_path):
-    path = tmp_path / "vectors.toml"
-    path.write_text(VECTORS.replace(old, new))
-    with pytest.raises(ValueError, match=words):
-        contactlab.read_scene(path)
-
-
-def test_a_restitution_is_that_of_tsujis_law_and_of_its_springs():
-    """The table against springs, which it was not made from at these resolutions."""
-    rng = np.random.default_rng(11)
-    met = meeting(
-        target=BALL,
-        velocity=rng.normal((0, 0, -5), size=(12, 3)),
-        spin=40 * rng.normal(size=(12, 3)),
-    )
-    made = collide(met, restitution=0.8)
-    laws = Simulation(
-        normal=contactlab.create("normal.tsuji", restitution=0.8),
-        tangential="springs",
-        integrator=contactlab.create("integrator.symplectic", steps=400),
-    )
-    other = collide(met, laws)
-    np.testing.assert_allclose(made.normal_velocity, other.normal_velocity, rtol=1e-9)
-    scale = np.abs(other.slip_velocity_change).max()
-    apart = np.abs(made.slip_velocity_change - other.slip_velocity_change).max()
-    assert 0.0 < apart < 2e-3 * scale
-    np.testing.assert_allclose(made.energy.imbalance, 0.0, atol=1e-12)
-    assert made.result.laws["normal"].startswith("tsuji")
-    elastic = collide(met)
-    assert (np.abs(made.velocity - elastic.velocity).max(axis=1) > 1e-3).all()
-
-
-def test_the_plan_of_a_restitution_says_who_answered():
-    """It is not the springs, which only ``result`` runs; their plan declares no error."""
-    plan = collide(meeting(), restitution=0.9).plan
-    assert "tangential motion: contactlab.rebound with restitution=0.9" in str(plan)
-    assert "psi2: at most 0.0002" in str(plan)
-    assert "Springs" not in str(plan)
-    assert plan.psi2_error == 2e-4
-    batch = collide(meeting(velocity=[(0.5, 0, -1), (0, 0, -1)], spin=(0, 0, 0)), restitution=0.9)
-    assert batch.plan.psi2_error.max() == 2e-4
-    assert "psi2 (1 of 2 impacts): at most 0.0002" in str(batch.plan)
-    assert "Springs" in str(collide(meeting(), Simulation(tangential="springs")).plan)
-
-
-def test_gross_slip_with_a_restitution():
-    """Impulse mu (1 + e) M_n v1 in the limit of a long slide, theory §11."""
-    met = meeting(friction_coefficient=0.01, velocity=(50.0, 0.0, -1.0))
-    for e in (1.0, 0.9, 0.6):
-        drag = -collide(met, restitution=e).slip_velocity_change
-        pair = met.pair
-        full = 0.01 * (1.0 + e) * pair.normal_mass * 1.0 / pair.tangential_mass
-        assert drag == pytest.approx(full, rel=1e-3)
-
-
-def test_a_restitution_stands_in_place_of_laws():
-    with pytest.raises(ValueError, match="restitution"):
-        collide(meeting(), Simulation(), restitution=0.9)
-    with pytest.raises(ValueError, match="restitution"):
-        collide(meeting(), restitution=1.2)

@@ -1,16 +1,12 @@
 """The tabulated rebound against fresh exact impacts, and against itself."""
 
-import shutil
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from numpy.polynomial.polynomial import polyval2d
 
 import contactlab
 from contactlab import rebounds
-from contactlab_tabulated import build, evaluate, rebound, table
+from contactlab_tabulated import evaluate, rebound
 from contactlab_tabulated.coordinates import (
     CUT_END,
     LARGEST_CHI,
@@ -231,31 +227,6 @@ def test_terms_left_out_are_too_small_to_matter():
     assert 60 < np.prod(short.needed, axis=0).mean() < 100
 
 
-def test_a_damaged_file_is_refused(tmp_path):
-    path = tmp_path / "elastic.npz"
-    made = shipped()
-    terms = made.terms.copy()
-    terms[3, 2, 1] = np.nextafter(terms[3, 2, 1], 1.0)
-    with np.load(table.SHIPPED) as file:
-        content = {name: file[name] for name in file.files}
-    np.savez(path, **{**content, "terms": terms})
-    with pytest.raises(ValueError, match="checksum"):
-        table.read(path)
-    shutil.copy(table.SHIPPED, path)
-    assert np.array_equal(table.read(path).terms, made.terms)
-    path.write_bytes(path.read_bytes()[:-1000])
-    with pytest.raises(ValueError, match="no table that can be trusted"):
-        table.read(path)
-
-
-def test_file_is_small_and_tells_where_it_came_from():
-    assert table.SHIPPED.stat().st_size <= 400_000
-    made = shipped().provenance
-    assert made.version
-    assert made.built > "2026"
-    assert 0.0 < made.tolerance <= BOUND
-
-
 def test_beyond_the_table():
     psi1 = np.linspace(0.0, 10.0, 41)
     seam = [rebound(psi1, chi) for chi in (LARGEST_CHI, np.nextafter(LARGEST_CHI, 3.0))]
@@ -307,48 +278,3 @@ def test_contactlab_rebound_uses_the_table_up_to_its_tolerance(monkeypatch):
     assert np.abs(contactlab.rebound(psi1, chi) - mixture).max() < 1e-5
     with pytest.raises(ValueError, match="derivatives"):
         contactlab.rebound(1.2, 1.44, derivatives=True)
-
-
-def test_nothing_is_loaded_before_it_is_called():
-    probe = (
-        "import sys, contactlab; contactlab.rebound; "
-        "assert not [m for m in sys.modules if m.startswith(('contactlab_', 'scipy'))]; "
-        "contactlab.rebound(1.2, 1.44); "
-        "assert 'contactlab_tabulated' in sys.modules; "
-        "assert not [m for m in sys.modules if m.startswith(('contactlab_fronts', 'scipy'))]"
-    )
-    subprocess.run([sys.executable, "-c", probe], check=True)
-
-
-def test_a_build_goes_on_where_it_was_interrupted(tmp_path, monkeypatch):
-    """With the table itself in place of exact impacts: two ways to the same coarse table."""
-    made = shipped()
-    calls = []
-
-    def solve(psi1, chi):
-        calls.append(psi1.size)
-        if len(calls) == interrupted:
-            raise KeyboardInterrupt
-        return evaluate.rebound(made, psi1, chi)
-
-    monkeypatch.setattr(build, "exact", solve)
-    monkeypatch.setattr(build, "BATCH", 4)
-    monkeypatch.setattr(build.curves, "find", lambda: made.cuts)
-    interrupted = 0
-    build.build(tmp_path / "whole.npz", tolerance=1e-6)
-    whole, of_whole = table.read(tmp_path / "whole.npz"), len(calls)
-    calls.clear()
-    interrupted = of_whole // 2
-    with pytest.raises(KeyboardInterrupt):
-        build.build(tmp_path / "part.npz", tolerance=1e-6)
-    interrupted = 0
-    calls.clear()
-    build.build(tmp_path / "part.npz", tolerance=1e-6)
-    part = table.read(tmp_path / "part.npz")
-    assert len(calls) < of_whole
-    assert np.array_equal(part.cells, whole.cells)
-    assert np.array_equal(part.terms, whole.terms)
-    assert not list(tmp_path.glob("*.part.npz"))
-    psi1, chi = mixed(3000, 28)
-    error = np.abs(evaluate.rebound(part, psi1, chi) - rebound(psi1, chi)) / np.maximum(1.0, psi1)
-    assert 1e-9 < error.max() < 1e-5
