@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from contactlab.registry import REGISTRY
 from contactlab.testing import CHECKS, Verdict, check_law
 
 TEXT = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
@@ -33,6 +34,18 @@ def test_a_snippet_prints_what_is_shown(code, expected):
 
 def test_there_are_snippets():
     assert len(SNIPPETS) == 4
+
+
+def test_the_table_of_errors_names_every_law():
+    """But for the one that makes no force, and laws of other distributions."""
+    table = TEXT.partition("## Error against run time")[2].partition("\n## ")[0]
+    told = set(re.findall(r"^\| (?:rigid )?(\w+)", table, re.MULTILINE)) - {"law"}
+    ours = {
+        info.name.partition(".")[2]
+        for info in REGISTRY.installed()
+        if info.kind == "tangential" and info.distribution == "contactlab"
+    }
+    assert told == ours - {"frictionless"}
 
 
 def test_the_law_of_ones_own_passes_the_kit_as_it_stands():
