@@ -7,9 +7,9 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.checks import POSITIVE, count, quantity
+from contactlab.checks import POSITIVE, quantity
 from contactlab.closed_forms import hertz_scales
-from contactlab.contracts import SteppedTangentialLaw, TangentialLaw, TangentialResponse
+from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 
 
 class Spring(NamedTuple):
@@ -297,36 +297,6 @@ class ClaimsPartialSlip(Sound):
     offers: ClassVar[frozenset] = frozenset({"partial_slip"})
 
 
-class WrongVersion(Sound):
-    api_version: ClassVar[int] = 1
-
-
-class ExpectsTooMuch(Sound):
-    expected_failures: ClassVar[dict] = {"units": "it says so, but it is not so"}
-
-
-class ExpectsWithoutReason(Sound):
-    expected_failures: ClassVar[dict] = {"units": ""}
-
-
-class ExpectsTheUnknown(Sound):
-    expected_failures: ClassVar[dict] = {"unit": "there is no such check at all"}
-
-
-class Misspells(Sound):
-    offers: ClassVar[frozenset] = frozenset({"partialslip"})
-
-
-class NeedsTheUnknown(Sound):
-    needs: ClassVar[frozenset] = frozenset({"advance"})
-
-
-class OneOfThreeWays(TangentialLaw):
-    """Derived from none of the contracts by which a law is run."""
-
-    api_version: ClassVar[int] = 2
-
-
 class StatesThatOfHertz(Sound):
     """As stiff as the contact is wide; it states the stiffness of Hertz's contact."""
 
@@ -389,35 +359,6 @@ class LeansUnderTension(Sound):
         return response._replace(force=force[()]), new
 
 
-@attrs.define(kw_only=True)
-class Mutable(Sound):
-    def __setattr__(self, name, value):
-        object.__setattr__(self, name, value)
-
-
-@attrs.frozen(kw_only=True)
-class CannotBePickled(Sound):
-    rule: Any = attrs.field(factory=lambda: lambda value: value)
-
-
-@attrs.frozen(kw_only=True)
-class TakesAnything(Sound):
-    extra: float = 1.0
-
-
-@attrs.frozen(kw_only=True)
-class TakesAnyFlag(Sound):
-    flag: bool = False
-
-
-@attrs.frozen(kw_only=True)
-class TwoRequired(Sound):
-    """Sound, with parameters that have no defaults."""
-
-    stretch: float = quantity("m", rule=POSITIVE)
-    count: int = count()
-
-
 #: Each with the check meant for it, and words of what the check says of it.
 BROKEN = [
     (SoftUnloading, "closed_cycles", "give 0.045 of energy"),
@@ -465,16 +406,6 @@ BROKEN = [
     (FirstBody, "batch", "Contact 1 of a batch is off"),
     (FirstBody, "impact_batch", "Impact 1 of a batch is off"),
     (NeverQuiteSlips, "sliding_impulse", "A grazing impact under Hertz, chi = 0.4, is 0.1 off"),
-    (Misspells, "contract", "'partialslip' is a word that no check knows"),
-    (NeedsTheUnknown, "contract", "needs: 'advance' is a word that no check knows; there are: el"),
-    (OneOfThreeWays, "contract", "It must be derived from one of SteppedTangentialLaw"),
     (MeanOfTheBatch, "batch", "Contact 0 of a batch is off"),
     (ClaimsPartialSlip, "cattaneo_mindlin", "off Cattaneo and Mindlin's"),
-    (WrongVersion, "api_version", "api_version = 1"),
-    (ExpectsWithoutReason, "expected_failures", "'units' needs a reason"),
-    (ExpectsTheUnknown, "expected_failures", "'unit', which is not a check"),
-    (Mutable, "immutable", "ratio can be set"),
-    (CannotBePickled, "copies", "Can't pickle local object"),
-    (TakesAnything, "parameters", "extra = nan: taken without a word"),
-    (TakesAnyFlag, "parameters", "flag = nan: taken without a word"),
 ]

@@ -25,10 +25,12 @@ def _imported(stem):
 
 
 laws = _imported("broken_laws")
+declarations = _imported("broken_declarations")
 impacts = _imported("broken_impacts")
 normal = _imported("broken_normal")
 BROKEN = [
     *laws.BROKEN,
+    *declarations.BROKEN,
     *impacts.BROKEN,
     *normal.BROKEN,
     *_imported("broken_integrators").BROKEN,
@@ -45,7 +47,7 @@ def failed(law):
     "law",
     [
         laws.Sound(),
-        laws.TwoRequired(stretch=1e-3, count=3),
+        declarations.TwoRequired(stretch=1e-3, count=3),
         impacts.AllAtOnce(),
         impacts.Knowing(),
         impacts.Whole(),
@@ -86,7 +88,7 @@ def test_the_counts_of_the_readme():
     [
         (laws.NotOdd, "odd_in_slip"),
         (laws.UnderstatesStiffness, "stiffness"),
-        (laws.WrongVersion, "api_version"),
+        (declarations.WrongVersion, "api_version"),
     ],
 )
 def test_a_fault_in_one_clause_fails_few_checks(broken, name):
@@ -95,7 +97,7 @@ def test_a_fault_in_one_clause_fails_few_checks(broken, name):
 
 
 def test_what_cannot_be_run_is_not_passed():
-    law = laws.OneOfThreeWays()
+    law = declarations.OneOfThreeWays()
     found = {entry.name: outcome(law, entry).verdict for entry in checks_for(law)}
     marched = ("impact_", "whole_impacts", "sliding_impulse")
     tried = {name: verdict for name, verdict in found.items() if name.startswith(marched)}
@@ -109,7 +111,7 @@ def test_a_refusal_names_law_check_and_fault():
 
 
 def test_an_unexpected_pass_is_reported():
-    law = laws.ExpectsTooMuch()
+    law = declarations.ExpectsTooMuch()
     check = next(check for check in checks_for(law) if check.name == "units")
     assert outcome(law, check).verdict is Verdict.UNEXPECTED_PASS
     with pytest.raises(ConformanceError, match="units: unexpected pass"):

@@ -1,0 +1,85 @@
+"""Stepped laws that answer well, and break a clause of what is declared or of how they are made."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import attrs
+
+from contactlab.checks import POSITIVE, count, quantity
+from contactlab.contracts import TangentialLaw
+from tests.conformance.broken_laws import Sound
+
+
+class WrongVersion(Sound):
+    api_version: ClassVar[int] = 1
+
+
+class ExpectsTooMuch(Sound):
+    expected_failures: ClassVar[dict] = {"units": "it says so, but it is not so"}
+
+
+class ExpectsWithoutReason(Sound):
+    expected_failures: ClassVar[dict] = {"units": ""}
+
+
+class ExpectsTheUnknown(Sound):
+    expected_failures: ClassVar[dict] = {"unit": "there is no such check at all"}
+
+
+class Misspells(Sound):
+    offers: ClassVar[frozenset] = frozenset({"partialslip"})
+
+
+class NeedsTheUnknown(Sound):
+    needs: ClassVar[frozenset] = frozenset({"advance"})
+
+
+class OneOfThreeWays(TangentialLaw):
+    """Derived from none of the contracts by which a law is run."""
+
+    api_version: ClassVar[int] = 2
+
+
+@attrs.define(kw_only=True)
+class Mutable(Sound):
+    def __setattr__(self, name, value):
+        object.__setattr__(self, name, value)
+
+
+@attrs.frozen(kw_only=True)
+class CannotBePickled(Sound):
+    rule: Any = attrs.field(factory=lambda: lambda value: value)
+
+
+@attrs.frozen(kw_only=True)
+class TakesAnything(Sound):
+    extra: float = 1.0
+
+
+@attrs.frozen(kw_only=True)
+class TakesAnyFlag(Sound):
+    flag: bool = False
+
+
+@attrs.frozen(kw_only=True)
+class TwoRequired(Sound):
+    """Sound, with parameters that have no defaults."""
+
+    stretch: float = quantity("m", rule=POSITIVE)
+    count: int = count()
+
+
+#: Each with the check meant for it, and words of what the check says of it.
+BROKEN = [
+    (WrongVersion, "api_version", "api_version = 1"),
+    (ExpectsWithoutReason, "expected_failures", "'units' needs a reason"),
+    (ExpectsTheUnknown, "expected_failures", "'unit', which is not a check"),
+    (Misspells, "contract", "'partialslip' is a word that no check knows"),
+    (NeedsTheUnknown, "contract", "needs: 'advance' is a word that no check knows; there are: el"),
+    (OneOfThreeWays, "contract", "It must be derived from one of SteppedTangentialLaw"),
+    (Mutable, "immutable", "ratio can be set"),
+    (CannotBePickled, "copies", "Can't pickle local object"),
+    (TakesAnything, "parameters", "extra = nan: taken without a word"),
+    (TakesAnyFlag, "parameters", "flag = nan: taken without a word"),
+]
