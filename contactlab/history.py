@@ -17,6 +17,8 @@ from contactlab.contracts.motion import NormalMotion
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from contactlab.figures.style import Width
+
 Array = NDArray[np.float64]
 
 #: Instants in the history of impacts that are not marched.
@@ -56,11 +58,14 @@ class History:
         names = [item.name for item in attrs.fields(History) if item.name != "fields"]
         return {name: getattr(self, name) for name in names}
 
-    def plot(self, *, axes: Axes | None = None) -> Axes:
-        """Draw the forces over time on ``axes``, or on a new figure of ``matplotlib.pyplot``."""
+    def plot(self, *, axes: Axes | None = None, width: Width | None = None) -> Axes:
+        """Draw the forces over time on ``axes``, or on a new figure of ``matplotlib.pyplot``.
+
+        The ``width``, ``"one"`` or ``"two"`` columns of a page, is that of a new figure.
+        """
         from contactlab.figures.results import draw_history  # matplotlib only when drawing
 
-        return draw_history(axes, self)
+        return draw_history(axes, self, width=width)
 
     @staticmethod
     def unit(name: str) -> str:

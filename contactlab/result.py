@@ -23,6 +23,8 @@ from contactlab.status import Status
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from contactlab.figures.style import Width
+
 
 class ImpactError(RuntimeError):
     """Raised by ``ImpactResult.check()`` for a run that did not succeed.
@@ -244,7 +246,14 @@ class ImpactResult:
         """Energy before and after, friction work, and what does not add up."""
         return ledger(self.scene, self.motion)
 
-    def plot(self, x: str | None = None, y: str | None = None, *, axes: Axes | None = None) -> Axes:
+    def plot(
+        self,
+        x: str | None = None,
+        y: str | None = None,
+        *,
+        axes: Axes | None = None,
+        width: Width | None = None,
+    ) -> Axes:
         """Draw a batch as ``y`` over ``x``, a single impact as its forces over the contact.
 
         Parameters
@@ -253,6 +262,8 @@ class ImpactResult:
             Columns of the exports, angles also in degrees: ``"psi1"``, ``"rebound_angle_deg"``.
         axes : Axes, optional
             Where to draw; a new figure of ``matplotlib.pyplot`` by default.
+        width : {"one", "two"}, optional
+            Columns of a page that a new figure fills.
 
         Raises
         ------
@@ -261,7 +272,7 @@ class ImpactResult:
         """
         from contactlab.figures.results import draw_result  # matplotlib only when drawing
 
-        return draw_result(axes, self, x, y)
+        return draw_result(axes, self, x, y, width=width)
 
     def to_dataframe(self) -> Any:
         """Return a ``pandas.DataFrame``: a row an impact, units in ``.attrs["units"]``.

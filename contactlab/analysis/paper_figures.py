@@ -31,9 +31,10 @@ FIGURE_1_PSI1 = (0.4, 0.8, 1.2, 2.0, 3.0, 4.0)
 FIGURE_3_GYRATION = (1.0, 0.4**0.5, 0.4, 0.25)
 #: psi1 of Figs 3 and 4.
 FIXED_PSI1 = 1.2
-#: Ranges of Figs 2 and 4, wide enough for the change of regime and every sign of psi2.
-FIGURE_2_PSI1 = np.linspace(0.0, 7.0, 211)
-FIGURE_4_CHI = np.geomspace(0.25, 16.0, 321)
+#: Ranges of Figs 2 and 4, wide enough for the change of regime and every sign of psi2. Between the
+#: points a straight line is within the width of a drawn one. psi2 oscillates in the root of chi.
+FIGURE_2_PSI1 = np.linspace(0.0, 7.0, 141)
+FIGURE_4_CHI = np.linspace(0.5, 4.0, 161) ** 2
 
 
 class Curve(NamedTuple):

@@ -72,13 +72,28 @@ PICTURES = (".png", ".pdf", ".svg")
 
 
 def add_figure(parser: argparse.ArgumentParser, words: str) -> None:
-    """Add ``--figure`` and ``--style``; ``words`` say what is drawn."""
+    """Add ``--figure``, ``--style`` and ``--width``; ``words`` say what is drawn."""
     parser.add_argument(
         "--figure", type=file_of(*PICTURES), metavar="FILE", help=f"{words} (.png, .pdf or .svg)"
     )
+    add_look(parser)
+
+
+def add_look(parser: argparse.ArgumentParser) -> None:
+    """Add ``--style`` and ``--width``."""
     parser.add_argument(
         "--style", choices=("print", "slides"), default="print", help="of the figure"
     )
+    parser.add_argument(
+        "--width",
+        choices=("one", "two"),
+        help="columns of a page that the figure fills, with its text in the sizes of print",
+    )
+
+
+def look(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Return look and width of a figure, as ``contactlab.figures.files.save`` takes them."""
+    return {"look": arguments.style, "width": arguments.width}
 
 
 def check_outputs(arguments: argparse.Namespace) -> None:
@@ -166,7 +181,7 @@ def add_report(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         help="begin no further run after this time",
     )
-    parser.add_argument("--figure", type=file_of(*PICTURES), metavar="FILE")
+    add_figure(parser, "also draw it")
     parser.add_argument("--csv", type=file_of(".csv"), metavar="FILE.csv")
     parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
     add_progress(parser)

@@ -14,6 +14,7 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import attrs
 
@@ -47,7 +48,7 @@ def execute(arguments: argparse.Namespace) -> int:
         benchmark = bench(chosen, quick=arguments.quick, budget=arguments.budget, progress=progress)
     saved = shared.save(
         (arguments.csv, lambda path: _write_csv(path, benchmark)),
-        (arguments.figure, lambda path: _draw(path, benchmark)),
+        (arguments.figure, lambda path: _draw(path, benchmark, **shared.look(arguments))),
         progress_wanted=arguments.progress,
     )
     if arguments.json:
@@ -57,14 +58,14 @@ def execute(arguments: argparse.Namespace) -> int:
     return shared.INTERRUPTED if benchmark.interrupted else saved
 
 
-def _draw(path: Path, benchmark: Benchmark) -> None:
+def _draw(path: Path, benchmark: Benchmark, **look: Any) -> None:
     if not benchmark.rows:
         print("no figure drawn: nothing was measured", file=sys.stderr)
         return
     from contactlab.figures.files import save  # matplotlib only when drawing
     from contactlab.figures.work_precision import work_precision
 
-    save(path, lambda axes: work_precision(axes, benchmark), wide=True)
+    save(path, lambda axes: work_precision(axes, benchmark), wide=True, **look)
 
 
 def _content(benchmark: Benchmark) -> dict[str, object]:

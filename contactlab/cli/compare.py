@@ -158,9 +158,9 @@ def _draw(path: Path, arguments: argparse.Namespace, comparison: Comparison) -> 
 
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
     if arguments.all:
-        draw_all(path, comparison, quantities[0], look=arguments.style)
+        draw_all(path, comparison, quantities[0], **shared.look(arguments))
     else:
-        draw_comparison(path, comparison, quantities, look=arguments.style)
+        draw_comparison(path, comparison, quantities, **shared.look(arguments))
 
 
 def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation]:

@@ -14,11 +14,10 @@ from contactlab.figures.comparison import (
     laws_over_sweep,
 )
 from contactlab.figures.files import save
-from contactlab.figures.style import Look
 
 
 def draw_comparison(
-    path: Path, comparison: Comparison, quantities: Sequence[str], *, look: Look = "print"
+    path: Path, comparison: Comparison, quantities: Sequence[str], **look: Any
 ) -> None:
     """Draw the laws over the sweep, or over one contact, and their differences.
 
@@ -27,11 +26,11 @@ def draw_comparison(
     path : Path
     comparison : Comparison
     quantities : sequence of str
-        A column of the picture each.
-    look : {"print", "slides"}
+    **look
+        Options ``look`` and ``width`` of ``contactlab.figures.files.save``.
     """
     if not comparison.scene.shape:
-        save(path, lambda axes: forces_over_contact(axes, comparison), look=look)
+        save(path, lambda axes: forces_over_contact(axes, comparison), **look)
         return
     panels: list[tuple[str, Any]] = []
     for name in quantities:
@@ -48,10 +47,10 @@ def draw_comparison(
                 upper.get_legend().remove()  # the same laws in the same colours
         axes[0, 0].figure.align_ylabels()
 
-    save(path, draw, rows=2, columns=len(panels), heights=(2.4, 1.0), look=look)
+    save(path, draw, rows=2, columns=len(panels), heights=(2.4, 1.0), **look)
 
 
-def draw_all(path: Path, comparison: Comparison, quantity: str, *, look: Look = "print") -> None:
+def draw_all(path: Path, comparison: Comparison, quantity: str, **look: Any) -> None:
     """Draw every law over the sweep, and below what parts it from the first.
 
     Parameters
@@ -59,13 +58,14 @@ def draw_all(path: Path, comparison: Comparison, quantity: str, *, look: Look = 
     path : Path
     comparison : Comparison
     quantity : str
-    look : {"print", "slides"}
+    **look
+        Options ``look`` and ``width`` of ``contactlab.figures.files.save``.
     """
 
     def draw(axes: Any) -> None:
         all_laws(axes[0, 0], axes[1, 0], comparison, quantity)
 
-    save(path, draw, rows=2, heights=(1.9, 1.0), wide=True, look=look)
+    save(path, draw, rows=2, heights=(1.9, 1.0), wide=True, **look)
 
 
 def _labels(axes: Any) -> list[str]:

@@ -1,9 +1,10 @@
-"""Draw the paper's Figs 1-4 as PNG, with their numbers as CSV.
+"""Draw the paper's Figs 1-4, as PNG if nothing else is asked for, with their numbers as CSV.
 
 Examples
 --------
   contactlab figures --out figures
   contactlab figures --out figures --only 2,4 --set tangential.annuli=100
+  contactlab figures --out figures --format pdf --width one
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from contactlab.scene_file import LawChoice
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the folder, the figures and the laws."""
+    """Add the folder, the figures, their form and the laws."""
     parser.add_argument(
         "--out", required=True, type=Path, metavar="DIR", help="folder for the files; made if new"
     )
@@ -31,6 +32,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="1,2,...",
         help="some of the figures",
     )
+    parser.add_argument(
+        "--format",
+        choices=[end[1:] for end in shared.PICTURES],
+        default="png",
+        help="of the pictures",
+    )
+    shared.add_look(parser)
     shared.add_laws(parser)
     shared.add_progress(parser)
 
@@ -52,9 +60,11 @@ def execute(arguments: argparse.Namespace) -> int:
 
         for done, number in enumerate(arguments.only, start=1):
             data = figures()[number](simulation)
-            numbers, picture = (arguments.out / f"figure-{number}{end}" for end in (".csv", ".png"))
+            numbers, picture = (
+                arguments.out / f"figure-{number}.{end}" for end in ("csv", arguments.format)
+            )
             _write_csv(numbers, data)
-            save(picture, functools.partial(draw, data=data))
+            save(picture, functools.partial(draw, data=data), **shared.look(arguments))
             print(picture, numbers, sep="\n")
             if progress is not None:
                 progress(done, len(arguments.only))

@@ -68,12 +68,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="SAMPLES",
         help=f"samples of the bootstrap of the first law (default {SAMPLES}; 0 for none)",
     )
-    parser.add_argument(
-        "--figure",
-        type=shared.file_of(".png"),
-        metavar="FILE.png",
-        help="draw measured values, laws and residuals",
-    )
+    shared.add_figure(parser, "draw measured values, laws and residuals")
     parser.add_argument(
         "--csv", type=shared.file_of(".csv"), metavar="FILE.csv", help="write the residuals"
     )
@@ -116,7 +111,7 @@ def execute(arguments: argparse.Namespace) -> int:
         ranked = in_order([*ranked, Ranked(name=first, fit=found)])
     shown = [one for one in ranked if one.fit] or [Ranked(name=first, fit=found)]
     saved = shared.save(
-        (arguments.figure, lambda file: _draw(file, shown)),
+        (arguments.figure, lambda file: _draw(file, shown, **shared.look(arguments))),
         (arguments.csv, lambda file: write_residuals(file, shown)),
         progress_wanted=arguments.progress,
     )
@@ -188,7 +183,7 @@ def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Si
     return found
 
 
-def _draw(path: Path, shown: list[Ranked]) -> None:
+def _draw(path: Path, shown: list[Ranked], **look: Any) -> None:
     from contactlab.figures.fitting import draw_fits  # matplotlib only when drawing
 
-    draw_fits(path, {one.name: one.fit for one in shown if one.fit})
+    draw_fits(path, {one.name: one.fit for one in shown if one.fit}, **look)

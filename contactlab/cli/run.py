@@ -91,8 +91,8 @@ def execute(arguments: argparse.Namespace) -> int:
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.history, lambda path: export.write_history_csv(result, path)),
-        (arguments.figure, lambda path: draw(path, result, arguments.style)),
-        (arguments.stick_slip, lambda path: draw_map(path, result, arguments.style)),
+        (arguments.figure, lambda path: draw(path, result, **shared.look(arguments))),
+        (arguments.stick_slip, lambda path: draw_map(path, result, **shared.look(arguments))),
         progress_wanted=arguments.progress,
     )
     varied: Mapping[str, Any] = file.varied if file else {}
@@ -105,19 +105,19 @@ def execute(arguments: argparse.Namespace) -> int:
     return max(saved, status)
 
 
-def draw(path: Path, result: ImpactResult, look: Any) -> None:
+def draw(path: Path, result: ImpactResult, **look: Any) -> None:
     """Write a picture of a result."""
     from contactlab.figures.files import save  # matplotlib only when drawing
 
-    save(path, lambda axes: result.plot(axes=axes), look=look)
+    save(path, lambda axes: result.plot(axes=axes), **look)
 
 
-def draw_map(path: Path, result: ImpactResult, look: Any) -> None:
+def draw_map(path: Path, result: ImpactResult, **look: Any) -> None:
     """Write the map of stick and slip of an impact."""
     from contactlab.figures.files import save  # matplotlib only when drawing
     from contactlab.figures.stick_slip import draw_stick_slip
 
-    save(path, lambda axes: draw_stick_slip(axes, result), look=look)
+    save(path, lambda axes: draw_stick_slip(axes, result), **look)
 
 
 def report(

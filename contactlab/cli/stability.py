@@ -13,6 +13,7 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import attrs
 import numpy as np
@@ -42,6 +43,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Run the report; a single silently wrong answer makes it fail."""
     shared.check_budget(arguments.budget)
+    if arguments.width == "one":
+        raise ValueError("--width one: the map needs two columns")
     kept: list[Outcome] = []
 
     def judged(case: Case) -> Outcome:
@@ -63,7 +66,7 @@ def execute(arguments: argparse.Namespace) -> int:
         found, why_not = Stability(outcomes=tuple(kept), regions=(), complete=False), "interrupted"
     saved = shared.save(
         (arguments.csv, lambda path: _write_csv(path, found)),
-        (arguments.figure, lambda path: _draw(path, found, why_not)),
+        (arguments.figure, lambda path: _draw(path, found, why_not, **shared.look(arguments))),
         progress_wanted=arguments.progress,
     )
     content = json.dumps(_content(found), indent=2) if arguments.json else report(found, why_not)
@@ -73,14 +76,14 @@ def execute(arguments: argparse.Namespace) -> int:
     return shared.FAILED if found.failures() else saved
 
 
-def _draw(path: Path, found: Stability, why_not: str) -> None:
+def _draw(path: Path, found: Stability, why_not: str, **look: Any) -> None:
     if not found.regions and not found.models:
         why = "the map is of laws that take steps" if found.complete else f"{why_not} before it"
         print(f"no map drawn: {why}", file=sys.stderr)
         return
     from contactlab.figures.stability import draw_stability  # matplotlib only when drawing
 
-    draw_stability(path, found)
+    draw_stability(path, found, **look)
 
 
 def report(found: Stability, why_not: str = "the budget ran out") -> str:

@@ -85,7 +85,7 @@ def execute(arguments: argparse.Namespace) -> int:
         print(f"contactlab sweep: {before} impacts were done before", file=sys.stderr)
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
-        (arguments.figure, lambda path: draw(path, result, arguments.style)),
+        (arguments.figure, lambda path: draw(path, result, **shared.look(arguments))),
         progress_wanted=arguments.progress,
     )
     if keep is not None and saved == shared.OK:

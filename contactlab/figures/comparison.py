@@ -11,8 +11,11 @@ from matplotlib.axes import Axes
 from contactlab.analysis.compare import Agreement, Comparison
 from contactlab.analysis.paper_figures import scaled_forces
 from contactlab.figures.style import (
+    BELOW,
     LAW_COLOURS,
     MEASURED_COLOUR,
+    NARROW,
+    error_band,
     force_axes,
     friction_limit,
     label,
@@ -34,15 +37,13 @@ POINTS: dict[str, Any] = {
 #: Laws this close to the first, over the range drawn, would lie within its line: they are named
 #: with it.
 AS_GOOD_AS = 0.01
-#: A band narrower than this, over the range drawn, would not be seen.
-VISIBLE = 0.004
 FORM_DASHES: tuple[Any, ...] = ("-", (0, (6, 1.5)), (0, (2.5, 1.2)), (0, (1, 1)))
 MARKERS = "os^Dv"
 #: What points without error bars take of the look of measured ones.
 CODE_LOOK = ("color", "linestyle", "markersize", "markerfacecolor", "markeredgewidth", "zorder")
 
 
-def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) -> None:
+def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) -> tuple[Axes, Axes]:
     """Draw many laws: the first thick, above; below what the others are off by.
 
     Laws that agree with the first are named with it; those that make no force are left out.
@@ -89,13 +90,17 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
         half = ordered(comparison.band(quantity, name))
         upper.plot(x, values, label=verbatim(name), zorder=3, **look)
         lower.plot(x, apart, **look)
-        band(upper, x, values, half, size, look["color"])
-        band(lower, x, apart, half, size, look["color"])
+        for axes, middle in ((upper, values), (lower, apart)):
+            error_band(axes, x, middle, half, look)
     _codes(upper, comparison, quantity, varied)
     upper.set_ylabel(label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
     lower.set_ylabel(rf"law $-$ {verbatim(first)}")
     lower.set_xlabel(label(varied, entry_unit(varied)))
-    upper.legend(loc="upper left", bbox_to_anchor=(1.0, 1.03), borderaxespad=0.0)
+    if upper.get_figure(root=True).get_figwidth() < NARROW:
+        lower.legend(*upper.get_legend_handles_labels(), **BELOW)
+    else:
+        upper.legend(loc="upper left", bbox_to_anchor=(1.0, 1.03), borderaxespad=0.0)
+    return upper, lower
 
 
 def _codes(axes: Axes, comparison: Comparison, quantity: str, varied: str) -> None:
@@ -118,25 +123,6 @@ def _codes(axes: Axes, comparison: Comparison, quantity: str, varied: str) -> No
         axes.plot(item.x, item.values, label=verbatim(item.label), **look)
 
 
-def band(axes: Axes, x: Any, middle: Any, half: Any, size: float, colour: Any) -> None:
-    """Shade the numerical error around a curve, where it is known and wide enough to be seen.
-
-    Parameters
-    ----------
-    axes : Axes
-    x, middle : array, shape (points,)
-        The curve, in the units of the axes.
-    half : array, shape (points,)
-        Numerical error in the unit of ``middle``; NaN where unknown.
-    size : float
-        Range of the curves drawn, in the same unit.
-    colour : colour of matplotlib
-    """
-    half = np.nan_to_num(half)
-    if float(np.max(half)) >= VISIBLE * size:
-        axes.fill_between(x, middle - half, middle + half, color=colour, alpha=0.22, linewidth=0.0)
-
-
 def laws_over_sweep(
     axes: Axes, comparison: Comparison, quantity: str, agreement: Agreement | None = None
 ) -> Axes:
@@ -157,11 +143,12 @@ def laws_over_sweep(
     """
     varied, x, ordered = _abscissa(comparison, agreement)
     for number, name in enumerate(comparison.names):
-        values, style = ordered(comparison.values(quantity, name)), law_style(number)
-        axes.plot(x, values, label=verbatim(name), **style)
-        size = float(np.nanmax(values) - np.nanmin(values)) if np.isfinite(values).any() else 1.0
+        values = ordered(comparison.values(quantity, name))
+        axes.plot(x, values, label=verbatim(name), **law_style(number))
+    for number, name in enumerate(comparison.names):
+        values = ordered(comparison.values(quantity, name))
         half = ordered(comparison.band(quantity, name))
-        band(axes, x, values, half, size or 1.0, style["color"])
+        error_band(axes, x, values, half, law_style(number))
     if agreement is not None:
         measured = agreement.measured
         axes.errorbar(

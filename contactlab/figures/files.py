@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from contactlab.checks import refuse
-from contactlab.figures.style import HEIGHT, RESOLUTION, WIDTH, Look, styled
+from contactlab.figures.style import NARROW, RESOLUTION, Look, Width, figure_size, styled
 from contactlab.files import written
 
 #: Form of picture by the end of the file's name.
@@ -46,6 +46,10 @@ class Picture:
         return self.path.read_text("utf-8") if self.path.suffix.lower() == ".svg" else None
 
 
+#: Heights over those of a figure with one panel and a short legend.
+NARROWER, LEGEND_BESIDE, LEGEND_BELOW = 0.8, 1.25, 1.9
+
+
 def save(
     path: Path,
     draw: Callable[[Any], object],
@@ -55,6 +59,7 @@ def save(
     heights: tuple[float, ...] = (1.0,),
     wide: bool = False,
     look: Look = "print",
+    width: Width | None = None,
 ) -> Picture:
     """Draw on one Axes, or on an array of them, write a picture and return it.
 
@@ -74,9 +79,12 @@ def save(
         Whether there is a long legend.
     look : {"print", "slides"}
         Of a page or of a screen: see ``contactlab.figures.style``.
+    width : {"one", "two"}, optional
+        Columns of a page that the picture fills, in the size it is printed at.
     """
-    with styled(look):
-        figure = _drawn(draw, rows=rows, columns=columns, heights=heights, wide=wide)
+    size = _size(columns=columns, heights=heights, wide=wide, width=width)
+    with styled(look, width):
+        figure = _drawn(draw, rows=rows, columns=columns, heights=heights, size=size)
         save_figure(figure, path)
     return Picture(Path(path))
 
@@ -87,10 +95,38 @@ def as_svg(
     """Return a picture as SVG that can stand within a page; arguments are those of ``save``."""
     text = io.StringIO()
     with styled(), mpl.rc_context({"svg.hashsalt": "contactlab"}):
-        figure = _drawn(draw, rows=rows, columns=1, heights=heights, wide=False)
+        size = _size(columns=1, heights=heights, wide=False, width=None)
+        figure = _drawn(draw, rows=rows, columns=1, heights=heights, size=size)
         figure.savefig(text, format="svg", metadata=METADATA["svg"])
     content = text.getvalue()
     return content[content.index("<svg") :]
+
+
+def _size(
+    *, columns: int, heights: tuple[float, ...], wide: bool, width: Width | None
+) -> tuple[float, float]:
+    """Return width and height of a figure in inches; arguments are those of ``save``.
+
+    Parameters
+    ----------
+    columns : int
+        Of axes.
+    heights : tuple of float
+        Relative heights of the rows.
+    wide : bool
+        Whether there is a long legend.
+    width : {"one", "two"} or None
+        Columns of a page.
+    """
+    across, up = figure_size(width)
+    up *= sum(heights) / max(heights)
+    if width is None:
+        across *= 0.85 * columns if columns > 1 else 1.6 if wide else 1.0
+    elif columns > 1:
+        up *= NARROWER
+    if wide:
+        up *= LEGEND_BELOW if across < NARROW else LEGEND_BESIDE
+    return across, up
 
 
 def _drawn(
@@ -99,7 +135,7 @@ def _drawn(
     rows: int,
     columns: int,
     heights: tuple[float, ...],
-    wide: bool,
+    size: tuple[float, float],
 ) -> Figure:
     """Return a figure that is drawn; arguments are those of ``save``.
 
@@ -110,12 +146,10 @@ def _drawn(
     rows, columns : int
     heights : tuple of float
         Relative heights of the rows.
-    wide : bool
-        Whether one pair of axes takes the width of a page.
+    size : tuple of float
+        Width and height in inches.
     """
-    scale = sum(heights) / max(heights)
-    width = WIDTH * (0.85 * columns if columns > 1 else 1.6 if wide else 1.0)
-    figure = Figure(figsize=(width, HEIGHT * scale * (1.25 if wide else 1.0)))
+    figure = Figure(figsize=size)
     FigureCanvasAgg(figure)
     axes = figure.subplots(
         rows, columns, sharex="col", gridspec_kw={"height_ratios": heights}, squeeze=False

@@ -19,8 +19,11 @@ from contactlab.scene_file.entries import entry_unit
 MARKERS = "os^Dv<"
 
 
-def draw_fits(path: Path, fits: Mapping[str, Fit]) -> None:
-    """Draw every quantity that was measured in a column of its own, and write a PNG."""
+def draw_fits(path: Path, fits: Mapping[str, Fit], **look: Any) -> None:
+    """Draw every quantity that was measured in a column of its own, and write a picture.
+
+    Options ``look`` and ``width`` are those of ``contactlab.figures.files.save``.
+    """
     names = list(next(iter(fits.values())).measurements.measured)
 
     def draw(axes: Any) -> None:
@@ -33,7 +36,7 @@ def draw_fits(path: Path, fits: Mapping[str, Fit]) -> None:
         axes[0, 0].figure.legend(*known, loc="outside upper left", ncols=len(names))
         axes[0, 0].figure.align_ylabels()
 
-    save(path, draw, rows=2, columns=len(names), heights=(2.0, 1.0))
+    save(path, draw, rows=2, columns=len(names), heights=(2.0, 1.0), **look)
 
 
 def measured_and_laws(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axes:

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 
 from contactlab.analysis.paper_figures import FIXED_PSI1, SOLID_CHI, FigureData, chi_of_gyration
 from contactlab.figures.style import (
+    ASIDE,
     LAW_COLOURS,
     QUIET,
     force_axes,
@@ -59,7 +60,7 @@ def figure_2(axes: Axes, data: FigureData) -> Axes:
     words = {0.5: "sticks\nat first", 0.5 * (1.0 + full_slip): "slips, sticks, slips"}
     words[0.5 * (full_slip + data.curves[0].x[-1])] = "slips\nthroughout"
     for place, text in words.items():
-        axes.text(place, top, text, ha="center", va="top", color="#555555", fontsize=9.5)
+        axes.text(place, top, text, ha="center", va="top", **ASIDE)
     axes.legend(title=rf"$\chi$ = {SOLID_CHI:.4f}", loc="upper left", bbox_to_anchor=(0.17, 0.9))
     return axes
 
@@ -89,8 +90,7 @@ def figure_4(axes: Axes, data: FigureData) -> Axes:
         "solid spheres,\n" r"$\nu$ from 0 to 0.5",
         ha="right",
         va="top",
-        color="#555555",
-        fontsize=9.5,
+        **ASIDE,
     )
     axes.legend(title=rf"$\psi_1$ = {FIXED_PSI1}", loc="upper right")
     return axes

@@ -12,6 +12,9 @@ from contactlab.checks import refuse
 from contactlab.export import unit_in
 from contactlab.figures.style import (
     LAW_COLOURS,
+    Width,
+    error_band,
+    figure_size,
     force_axes,
     friction_limit,
     label,
@@ -22,11 +25,15 @@ from contactlab.history import History
 from contactlab.quantities import quantity_named
 from contactlab.result import ImpactResult
 
-#: A band of numerical error narrower than this share of the range of y cannot be seen.
-VISIBLE = 2e-3
 
-
-def draw_result(axes: Axes | None, result: ImpactResult, x: str | None, y: str | None) -> Axes:
+def draw_result(
+    axes: Axes | None,
+    result: ImpactResult,
+    x: str | None,
+    y: str | None,
+    *,
+    width: Width | None = None,
+) -> Axes:
     """Draw a batch as ``y`` over ``x``, a single impact as its forces over the contact.
 
     Parameters
@@ -37,6 +44,8 @@ def draw_result(axes: Axes | None, result: ImpactResult, x: str | None, y: str |
     x, y : str or None
         Columns of the exports, angles also in degrees (``rebound_angle_deg``); psi1 and psi2
         where not given. Only for a batch.
+    width : {"one", "two"}, optional
+        Columns of a page that a new figure fills.
 
     Raises
     ------
@@ -49,13 +58,13 @@ def draw_result(axes: Axes | None, result: ImpactResult, x: str | None, y: str |
             raise refuse(
                 "x, y", (x, y), "are for the result of many impacts", "leave them out for forces"
             )
-        return _forces(_axes(axes), result)
-    return _quantities(_axes(axes), result, x or "psi1", y or "psi2")
+        return _forces(_axes(axes, width), result)
+    return _quantities(_axes(axes, width), result, x or "psi1", y or "psi2")
 
 
-def draw_history(axes: Axes | None, history: History) -> Axes:
+def draw_history(axes: Axes | None, history: History, *, width: Width | None = None) -> Axes:
     """Draw normal and tangential force over time, in the history's units."""
-    axes = _axes(axes)
+    axes = _axes(axes, width)
     zero_line(axes)
     force, time = History.unit("normal_force"), History.unit("time")
     for number, name in enumerate(("normal_force", "tangential_force")):
@@ -67,13 +76,16 @@ def draw_history(axes: Axes | None, history: History) -> Axes:
     return axes
 
 
-def _axes(axes: Axes | None) -> Axes:
+def _axes(axes: Axes | None, width: Width | None) -> Axes:
+    if axes is not None and width is not None:
+        raise refuse("width", width, "is that of a new figure", "leave it out where axes are given")
     if axes is not None:
         return axes
     from matplotlib import pyplot  # only here: it chooses a backend for the process
 
-    with styled():
-        drawn: Axes = pyplot.subplots()[1]
+    size = None if width is None else figure_size(width)
+    with styled(width=width):
+        drawn: Axes = pyplot.subplots(figsize=size)[1]
     return drawn
 
 
@@ -136,11 +148,7 @@ def _band(axes: Axes, result: ImpactResult, x: Any, y: Any, order: Any) -> None:
     if error is None:
         error = result.plan.psi2_error
     error = np.broadcast_to(np.asarray(error, dtype=float), result.scene.shape).ravel()
-    if not np.nanmax(error, initial=0.0) > VISIBLE * np.nanmax(np.ptp(y[np.isfinite(y)])):
-        return
-    lower, upper = (y - error)[order], (y + error)[order]
-    axes.fill_between(
-        x[order], lower, upper, color=LAW_COLOURS[0], alpha=0.25, linewidth=0.0,
-        label="numerical error",
-    )  # fmt: skip
-    axes.legend()
+    look = {"color": LAW_COLOURS[0], "label": "numerical error"}
+    error_band(axes, x[order], y[order], error[order], look)
+    if axes.collections:
+        axes.legend()

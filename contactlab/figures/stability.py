@@ -33,7 +33,16 @@ from contactlab.analysis.stability_map import (
     Region,
 )
 from contactlab.figures.files import save_figure
-from contactlab.figures.style import ORDERED_MAP, QUIET, label, law_style, styled
+from contactlab.figures.style import (
+    ORDERED_MAP,
+    QUIET,
+    WIDTHS,
+    Look,
+    Width,
+    label,
+    law_style,
+    styled,
+)
 
 #: Errors over the range at which the colour changes: whole decades.
 DECADES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
@@ -51,16 +60,28 @@ NAME_PLACE = (-58.0, 0.0)
 LEAST_MODEL = 1e-6
 
 
-def draw_stability(path: Path, found: Stability) -> None:
-    """Draw a panel a method and the model errors below, and write a picture."""
+def draw_stability(
+    path: Path, found: Stability, *, look: Look = "print", width: Width | None = None
+) -> None:
+    """Draw a panel a method and the model errors below, and write a picture.
+
+    Parameters
+    ----------
+    path : Path
+    found : Stability
+    look : {"print", "slides"}
+    width : {"two"}, optional
+        Columns of a page that the picture fills; one is too narrow for the panels.
+    """
     regions = {tuple(region.method.split(" / ")): region for region in found.regions}
     laws = list(dict.fromkeys(law for law, _ in regions))
     integrators = sorted({name for _, name in regions}, key=_rank)
     rows, columns = len(laws), max(len(integrators), 2)
     below = bool(found.models)
-    with styled():
-        height = PANEL_HEIGHT * rows + MODELS_HEIGHT * below + 1.0
-        figure = Figure(figsize=(PANEL_WIDTH * columns + 1.3, height))
+    with styled(look, width):
+        across, up = PANEL_WIDTH * columns + 1.3, PANEL_HEIGHT * rows + MODELS_HEIGHT * below + 1.0
+        scale = 1.0 if width is None else WIDTHS[width] / across
+        figure = Figure(figsize=(scale * across, scale * up))
         FigureCanvasAgg(figure)
         heights = [PANEL_HEIGHT] * rows + [MODELS_HEIGHT] * below
         grid = figure.add_gridspec(rows + below, columns, height_ratios=heights)
@@ -101,7 +122,7 @@ def _fill(panels: Any, regions: Any, laws: Sequence[str], integrators: Sequence[
                 axes.set_xlabel(label("chi"))
         panels[row, 0].annotate(
             law.replace("_", " "), (0.0, 0.5), xycoords="axes fraction", xytext=NAME_PLACE,
-            textcoords="offset points", rotation=90, ha="center", va="center", fontsize=12.0,
+            textcoords="offset points", rotation=90, ha="center", va="center", fontsize="large",
         )  # fmt: skip
 
 

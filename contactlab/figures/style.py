@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, Literal
 
@@ -10,17 +10,32 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 
+from contactlab.checks import refuse
+
+Look = Literal["print", "slides"]
+Width = Literal["one", "two"]
+
 #: Okabe and Ito's palette, in an order that keeps neighbours apart; for things without order.
 LAW_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 LAW_DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.5, 1.5)), "-", "-")
+#: Of words on a figure that are no label.
+ASIDE: Any = {"color": "#555555", "fontsize": "small"}
 MEASURED_COLOUR = "#000000"
 QUIET = "#8C8C8C"
 #: A map whose lightness grows evenly, for things in order; its yellow end is too pale for lines.
 ORDERED_MAP, ORDERED_END = "viridis", 0.86
 
-#: Column of one and a half of a journal, in inches.
+#: Width, where none is asked for, and height over it, in inches: a column and a half of a journal.
 WIDTH, HEIGHT = 5.6, 3.9
+#: Widths of a column and of two, in inches: they fit the columns of nearly all journals.
+WIDTHS: dict[Width, float] = {"one": 3.4, "two": 7.0}
 RESOLUTION = 200
+#: In a figure narrower than this, in inches, a long legend stands below the axes, not beside them.
+NARROW = 4.5
+BELOW: Any = {"loc": "upper center", "bbox_to_anchor": (0.45, -0.45), "borderaxespad": 0.0}
+#: An error band is drawn where it is wider than this share of the height of the axes: half of a
+#: line's width, below which it would be hidden by its own curve.
+VISIBLE = 0.004
 
 SETTINGS: Any = {  # matplotlib types the keys of this one by one
     "font.family": "STIXGeneral",
@@ -69,15 +84,77 @@ SLIDES: Any = {
     "axes.linewidth": 1.2,
     "lines.linewidth": 2.6,
 }
-Look = Literal["print", "slides"]
+#: Text and lines at the width they are printed at: no letter below 7 points.
+PRINTED: dict[Width, Any] = {
+    "one": {
+        "font.size": 8.0,
+        "axes.labelsize": 8.5,
+        "legend.fontsize": 7.5,
+        "legend.title_fontsize": 8.0,
+        "axes.linewidth": 0.6,
+        "lines.linewidth": 1.2,
+    },
+    "two": {
+        "font.size": 9.5,
+        "axes.labelsize": 10.0,
+        "legend.fontsize": 9.0,
+        "legend.title_fontsize": 9.5,
+    },
+}
 LOOKS: dict[Look, Any] = {"print": SETTINGS, "slides": SETTINGS | SLIDES}
 
 
+def figure_size(width: Width | None) -> tuple[float, float]:
+    """Return width and height, in inches, of a figure of one pair of axes.
+
+    Raises
+    ------
+    ValueError
+        If there is no such width.
+    """
+    if width is not None and width not in WIDTHS:
+        raise refuse("width", width, f"must be one of {', '.join(map(repr, WIDTHS))}")
+    inches = WIDTH if width is None else WIDTHS[width]
+    # across two columns a figure as high as it should be would fill the page
+    return inches, inches * HEIGHT / WIDTH * (0.8 if width == "two" else 1.0)
+
+
 @contextmanager
-def styled(look: Look = "print") -> Iterator[None]:
-    """Apply the look inside a ``with`` block and leave the user's settings as they were."""
-    with mpl.rc_context(LOOKS[look]):
+def styled(look: Look = "print", width: Width | None = None) -> Iterator[None]:
+    """Apply the look inside a ``with`` block and leave the user's settings as they were.
+
+    Parameters
+    ----------
+    look : {"print", "slides"}
+        Of a page, or of a screen seen from the last row.
+    width : {"one", "two"}, optional
+        Columns of a page that the figure fills: its text then has the sizes of print.
+    """
+    sizes = {} if width is None else PRINTED[width]
+    with mpl.rc_context(LOOKS[look] | sizes):
         yield
+
+
+def error_band(axes: Axes, x: Any, middle: Any, half: Any, look: Mapping[str, Any]) -> Axes:
+    """Shade the numerical error around a curve, where it is known and wide enough to be seen.
+
+    Parameters
+    ----------
+    axes : Axes
+        With the curves drawn: its height decides what can be seen.
+    x, middle : array, shape (points,)
+        The curve, in the units of the axes.
+    half : array, shape (points,)
+        Numerical error in the unit of ``middle``; NaN where unknown.
+    look : mapping
+        Of the curve; and its label, if the band is to be named.
+    """
+    half = np.nan_to_num(half)
+    lower, upper = axes.get_ylim()
+    if np.max(half, initial=0.0) >= VISIBLE * abs(upper - lower):
+        shade = {key: look[key] for key in ("color", "label") if key in look}
+        axes.fill_between(x, middle - half, middle + half, alpha=0.22, linewidth=0.0, **shade)
+    return axes
 
 
 def label(name: str, unit: str = "1") -> str:
@@ -104,24 +181,27 @@ def law_style(number: int) -> dict[str, Any]:
     return {"color": LAW_COLOURS[place], "linestyle": LAW_DASHES[place]}
 
 
-def zero_line(axes: Axes) -> None:
+def zero_line(axes: Axes) -> Axes:
     """Draw y = 0 quietly, behind everything."""
     axes.axhline(0.0, color=QUIET, linewidth=0.8, zorder=0)
+    return axes
 
 
-def force_axes(axes: Axes) -> None:
+def force_axes(axes: Axes) -> Axes:
     """Label the axes of a tangential force over the contact, from first touch to separation."""
     axes.set_xlabel(TIME_LABEL)
     axes.set_ylabel(r"tangential force $F/(\mu P_{\max})$")
     axes.set_xlim(0.0, 1.0)
+    return axes
 
 
-def friction_limit(axes: Axes, time: Any, normal_force: Any) -> None:
+def friction_limit(axes: Axes, time: Any, normal_force: Any) -> Axes:
     """Draw P/P_max and its mirror image, with a word: inside them |F| <= mu P."""
     look: Any = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.9, "zorder": 4}
     axes.plot(time, normal_force, **look)
     axes.plot(time, -normal_force, **look)
     axes.annotate(
         r"limit $\pm\mu P$", (0.5, -0.9), xycoords=("axes fraction", "data"), ha="center",
-        va="bottom", color="#555555", fontsize=9.5,
+        va="bottom", **ASIDE,
     )  # fmt: skip
+    return axes

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from contactlab.analysis.work_precision import Benchmark
-from contactlab.figures.style import LAW_COLOURS, QUIET
+from contactlab.figures.style import ASIDE, LAW_COLOURS, NARROW, QUIET
 
 MARKERS = {"paper": "o", "symplectic": "s", "adaptive": "D", "events": "*"}
 #: Errors below this are drawn at it: the axis would otherwise be all rounding.
@@ -46,7 +46,7 @@ def work_precision(axes: Axes, benchmark: Benchmark) -> Axes:
     if any(row.ok and row.error_rms <= FLOOR for row in benchmark.rows):
         axes.annotate(
             f"≤ {FLOOR:.0e}: rounding", (0.01, FLOOR), xycoords=("axes fraction", "data"),
-            va="center", color="#555555", fontsize=8.5,
+            va="center", **ASIDE,
         )  # fmt: skip
     marched = [row.method for row in benchmark.rows if " / " in row.method]
     _legends(axes, laws, list(dict.fromkeys(method.split(" / ")[1] for method in marched)))
@@ -63,6 +63,17 @@ def _legends(axes: Axes, laws: list[str], integrators: list[str]) -> None:
         Line2D([], [], color=QUIET, linestyle="", label=name, **_mark(name)) for name in integrators
     ]
     markers.append(Line2D([], [], color=QUIET, linewidth=6.0, alpha=0.35, label="Pareto front"))
+    if axes.get_figure(root=True).get_figwidth() < NARROW:
+        below: dict[str, Any] = {"alignment": "left", "borderaxespad": 0.0}
+        first = axes.legend(
+            handles=markers, title="integrator", loc="upper right", bbox_to_anchor=(1.0, -0.25),
+            **below,
+        )  # fmt: skip
+        axes.add_artist(first)
+        axes.legend(
+            handles=colours, title="law", loc="upper left", bbox_to_anchor=(-0.15, -0.25), **below
+        )
+        return
     beside: dict[str, Any] = {"bbox_to_anchor": (1.0, 0.5), "alignment": "left"}
     # The last one is what the layout makes room for, so the wider.
     first = axes.legend(handles=markers, title="integrator", loc="upper left", **beside)
