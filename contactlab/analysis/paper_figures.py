@@ -31,10 +31,16 @@ FIGURE_1_PSI1 = (0.4, 0.8, 1.2, 2.0, 3.0, 4.0)
 FIGURE_3_GYRATION = (1.0, 0.4**0.5, 0.4, 0.25)
 #: psi1 of Figs 3 and 4.
 FIXED_PSI1 = 1.2
-#: Ranges of Figs 2 and 4, wide enough for the change of regime and every sign of psi2. Between the
-#: points a straight line is within the width of a drawn one. psi2 oscillates in the root of chi.
+#: Ranges of Figs 2 and 4, wide enough for the change of regime and every sign of psi2. Between
+#: points a straight line is within the width of a drawn one. psi2 oscillates in the root of chi,
+#: and chi is drawn by its logarithm: points are evenly spaced in a power of chi between the two.
+#: At chi = psi1/4 the rigid-body theory has its corner.
 FIGURE_2_PSI1 = np.linspace(0.0, 7.0, 141)
-FIGURE_4_CHI = np.linspace(0.5, 4.0, 161) ** 2
+FIGURE_4_POWER = 0.35
+FIGURE_4_CHI = np.union1d(
+    np.linspace(0.25**FIGURE_4_POWER, 16.0**FIGURE_4_POWER, 201) ** (1.0 / FIGURE_4_POWER),
+    FIXED_PSI1 / 4.0,
+)
 
 
 class Curve(NamedTuple):

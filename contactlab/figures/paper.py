@@ -56,12 +56,13 @@ def figure_2(axes: Axes, data: FigureData) -> Axes:
     full_slip = 4.0 * SOLID_CHI - 1.0
     for place in (1.0, full_slip):
         axes.axvline(place, color=QUIET, linewidth=0.8, linestyle=":", zorder=0)
-    top = axes.get_ylim()[1]
+    top = 1.7  # room for the words above the curves
+    axes.set_ylim(top=top)
     words = {0.5: "sticks\nat first", 0.5 * (1.0 + full_slip): "slips, sticks, slips"}
     words[0.5 * (full_slip + data.curves[0].x[-1])] = "slips\nthroughout"
     for place, text in words.items():
         axes.text(place, top, text, ha="center", va="top", **ASIDE)
-    axes.legend(title=rf"$\chi$ = {SOLID_CHI:.4f}", loc="upper left", bbox_to_anchor=(0.17, 0.9))
+    axes.text(0.98, 0.03, rf"$\chi$ = {SOLID_CHI:.4f}", ha="right", transform=axes.transAxes)
     return axes
 
 
@@ -82,7 +83,7 @@ def figure_4(axes: Axes, data: FigureData) -> Axes:
     ticks = [0.25, 0.5, 1, 2, 4, 8, 16]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xticks([], minor=True)
-    axes.set_ylim(top=1.05)  # room for the legend above the oscillation
+    axes.set_ylim(top=0.95)  # room for the words above the oscillation
     axes.axvspan(*SOLID_CHI_RANGE, color="#E4E4E4", zorder=-1, linewidth=0.0)
     axes.text(
         0.97 * SOLID_CHI_RANGE[0],
@@ -92,7 +93,7 @@ def figure_4(axes: Axes, data: FigureData) -> Axes:
         va="top",
         **ASIDE,
     )
-    axes.legend(title=rf"$\psi_1$ = {FIXED_PSI1}", loc="upper right")
+    axes.text(0.02, 0.03, rf"$\psi_1$ = {FIXED_PSI1}", transform=axes.transAxes)
     return axes
 
 
@@ -120,3 +121,4 @@ def _reflexion(axes: Axes, data: FigureData) -> None:
     axes.plot(exact.x, exact.y, color="black", linewidth=0.9, label=exact.name)
     axes.plot(rigid.x, rigid.y, **law_style(1), label=rigid.name)
     axes.set_ylabel(label("psi2"))
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, columnspacing=1.2)
