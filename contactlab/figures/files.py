@@ -110,7 +110,7 @@ def _size(
     Parameters
     ----------
     columns : int
-        Of axes.
+        Of axes; where the figure is narrow, they stand one below the other.
     heights : tuple of float
         Relative heights of the rows.
     wide : bool
@@ -123,7 +123,7 @@ def _size(
     if width is None:
         across *= 0.85 * columns if columns > 1 else 1.6 if wide else 1.0
     elif columns > 1:
-        up *= NARROWER
+        up *= columns if across < NARROW else NARROWER
     if wide:
         up *= LEGEND_BELOW if across < NARROW else LEGEND_BESIDE
     return across, up
@@ -151,11 +151,35 @@ def _drawn(
     """
     figure = Figure(figsize=size)
     FigureCanvasAgg(figure)
-    axes = figure.subplots(
-        rows, columns, sharex="col", gridspec_kw={"height_ratios": heights}, squeeze=False
-    )
+    if columns > 1 and size[0] < NARROW:
+        axes = _stacked(figure, rows=rows, columns=columns, heights=heights)
+    else:
+        axes = figure.subplots(
+            rows, columns, sharex="col", gridspec_kw={"height_ratios": heights}, squeeze=False
+        )
     draw(axes[0, 0] if rows == columns == 1 else axes)
     return figure
+
+
+def _stacked(figure: Figure, *, rows: int, columns: int, heights: tuple[float, ...]) -> Any:
+    """Return axes, shape (rows, columns), the second column below the first and so on.
+
+    Parameters
+    ----------
+    figure : Figure
+    rows, columns : int
+    heights : tuple of float
+        Of the rows of a column, relative to each other.
+    """
+    ratios = {"height_ratios": heights * columns}
+    stack = figure.subplots(rows * columns, 1, gridspec_kw=ratios, squeeze=False)
+    axes = stack.reshape(columns, rows).T
+    for column in axes.T:
+        for lower in column[1:]:
+            lower.sharex(column[0])
+        for upper in column[:-1]:
+            upper.tick_params(labelbottom=False)
+    return axes
 
 
 def save_figure(figure: Figure, path: str | Path, **options: Any) -> None:
