@@ -2,7 +2,8 @@
 
     pip install "contactlab[dask,xarray]"
 
-The scene is a grid, so that the answer is an array with named axes. Of `LocalCluster` only the
+Writes ``sweep_on_a_cluster.png`` in the current folder. The scene is a grid, so that the answer
+is an array with named axes, which xarray can draw. Of `LocalCluster` only the
 name changes elsewhere: `dask_jobqueue.SLURMCluster`, say.
 """
 
@@ -13,7 +14,7 @@ import contactlab
 
 
 def main() -> None:
-    grid = contactlab.Scene.grid(chi=np.linspace(0.8, 1.6, 5), psi1=np.linspace(0.0, 6.0, 400))
+    grid = contactlab.Scene.grid(chi=[0.8, 1.0, 1.2, 1.4, 1.6], psi1=np.linspace(0.0, 6.0, 400))
     simulation = contactlab.Simulation(tangential="springs")
     with (
         LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
@@ -26,6 +27,7 @@ def main() -> None:
         least = psi2.sel(chi=chi).min()
         print(f"chi = {chi:.1f}: least psi2 = {float(least):.3f}")
     here = simulation.sweep(grid)
+    psi2.plot.line(x="psi1")[0].figure.savefig("sweep_on_a_cluster.png")
     print(f"the same to the last bit as here: {np.array_equal(here.psi2, result.psi2)}")
 
 

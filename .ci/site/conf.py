@@ -9,7 +9,7 @@ from typing import Any
 import contactlab
 
 sys.path.insert(0, str(Path(__file__).parent))
-from examples import Pictures, arguments
+from examples import NOT_RUN, Pictures, arguments
 
 project = "contactlab"
 author = "The contactlab developers"
@@ -41,8 +41,7 @@ suppress_warnings = [
 sphinx_gallery_conf = {
     "examples_dirs": os.environ["CONTACTLAB_EXAMPLES"],
     "gallery_dirs": "gallery",
-    # all are run but the one that starts processes
-    "filename_pattern": r"/(?!sweep_on_a_cluster)\w+\.py$",
+    "filename_pattern": rf"/(?!{'|'.join(NOT_RUN)})\w+\.py$",
     "reset_argv": arguments,
     "image_scrapers": (Pictures(),),
     "reset_modules": (),

@@ -18,10 +18,22 @@ __file__, __doc__ = {path!r}, {doc!r}
 #: Arguments that make a script short.
 SHORT = {"billiards": ["--collisions", "60", "--frames", "40"]}
 
+#: Start processes, and are not run for the gallery; their pictures are those kept in the tree.
+NOT_RUN = ("sweep_on_a_cluster",)
+KEPT_PICTURE = """
+.. image:: /{picture}
+
+"""
+THUMBNAIL = """
+# sphinx_gallery_thumbnail_path = "{picture}"
+"""
+
 
 def lay_out(examples: Path, to: Path) -> None:
     """Copy the examples, the first sentence of each as its title."""
     to.mkdir(parents=True)
+    kept = to.parent / "kept-pictures"
+    kept.mkdir()
     for script in sorted(examples.glob("*.py")):
         text = script.read_text("utf-8")
         doc = ast.get_docstring(ast.parse(text)) or script.stem
@@ -34,6 +46,11 @@ def lay_out(examples: Path, to: Path) -> None:
         # a script in cells is a notebook, which has no file, and begins with words
         cells = code.lstrip().startswith("# %%")
         hidden = "" if cells else HIDDEN.format(path=str(to / script.name), doc=doc)
+        if script.stem in NOT_RUN:
+            picture = shutil.copy(examples / "pictures" / f"{script.stem}.png", kept)
+            place = Path(picture).relative_to(to.parent).as_posix()
+            words.append(KEPT_PICTURE.format(picture=place))
+            hidden += THUMBNAIL.format(picture=place)
         page = '"""\n' + "\n".join(words) + '\n"""\n' + hidden + code
         (to / script.name).write_text(page, "utf-8")
     for scene in examples.glob("*.toml"):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -58,35 +60,39 @@ def draw_result(
             raise refuse(
                 "x, y", (x, y), "are for the result of many impacts", "leave them out for forces"
             )
-        return _forces(_axes(axes, width), result)
-    return _quantities(_axes(axes, width), result, x or "psi1", y or "psi2")
+        with _on(axes, width) as drawn:
+            return _forces(drawn, result)
+    with _on(axes, width) as drawn:
+        return _quantities(drawn, result, x or "psi1", y or "psi2")
 
 
 def draw_history(axes: Axes | None, history: History, *, width: Width | None = None) -> Axes:
     """Draw normal and tangential force over time, in the history's units."""
-    axes = _axes(axes, width)
-    zero_line(axes)
     force, time = History.unit("normal_force"), History.unit("time")
-    for number, name in enumerate(("normal_force", "tangential_force")):
-        curves = axes.plot(history.time, getattr(history, name), color=LAW_COLOURS[number])
-        curves[0].set_label(name.replace("_", " "))
-    axes.set_xlabel(f"time ({time})")
-    axes.set_ylabel(f"force ({force})")
-    axes.legend()
-    return axes
+    with _on(axes, width) as drawn:
+        zero_line(drawn)
+        for number, name in enumerate(("normal_force", "tangential_force")):
+            curves = drawn.plot(history.time, getattr(history, name), color=LAW_COLOURS[number])
+            curves[0].set_label(name.replace("_", " "))
+        drawn.set_xlabel(f"time ({time})")
+        drawn.set_ylabel(f"force ({force})")
+        drawn.legend()
+    return drawn
 
 
-def _axes(axes: Axes | None, width: Width | None) -> Axes:
+@contextmanager
+def _on(axes: Axes | None, width: Width | None) -> Iterator[Axes]:
+    """Give the Axes, or those of a new figure; on a new one all is drawn in the package's look."""
     if axes is not None and width is not None:
         raise refuse("width", width, "is that of a new figure", "leave it out where axes are given")
     if axes is not None:
-        return axes
+        yield axes
+        return
     from matplotlib import pyplot  # only here: it chooses a backend for the process
 
     size = None if width is None else figure_size(width)
     with styled(width=width):
-        drawn: Axes = pyplot.subplots(figsize=size)[1]
-    return drawn
+        yield pyplot.subplots(figsize=size)[1]
 
 
 def _forces(axes: Axes, result: ImpactResult) -> Axes:

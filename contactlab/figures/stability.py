@@ -129,8 +129,8 @@ def _fill(panels: Any, regions: Any, laws: Sequence[str], integrators: Sequence[
 def _bars(figure: Figure, panels: Any, regions: Sequence[Region]) -> None:
     """Draw the bars of the colours that are there, one below the other."""
     words = {
-        True: "numerical error of $\\psi_2$, from the exact\nsolution, over its possible range",
-        False: "numerical error of $\\psi_2$, from the law's\nown limit, which is another (below)",
+        True: "numerical error of $\\psi_2$\nover its range, from\nthe exact solution",
+        False: "numerical error of $\\psi_2$\nover its range, from the\nlaw's own, other limit",
     }
     shown = [known for known in words if any(item.converges is known for item in regions)]
     parts = np.array_split(np.arange(len(panels)), len(shown))

@@ -193,6 +193,7 @@ def test_a_plot_fills_its_column(simulation):
         assert isinstance(axes, Axes)
         assert axes.figure.get_figwidth() == style.WIDTHS["one"]
         assert axes.xaxis.label.get_fontsize() == style.PRINTED["one"]["axes.labelsize"]
+        assert axes.lines[-1].get_linewidth() == style.PRINTED["one"]["lines.linewidth"]
         pyplot.close(axes.figure)
 
 
