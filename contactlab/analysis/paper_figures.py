@@ -33,13 +33,19 @@ FIGURE_3_GYRATION = (1.0, 0.4**0.5, 0.4, 0.25)
 FIXED_PSI1 = 1.2
 #: Ranges of Figs 2 and 4, wide enough for the change of regime and every sign of psi2. Between
 #: points a straight line is within the width of a drawn one. psi2 oscillates in the root of chi,
-#: and chi is drawn by its logarithm: points are evenly spaced in a power of chi between the two.
-#: At chi = psi1/4 the rigid-body theory has its corner.
+#: and chi is drawn by its logarithm: points are evenly spaced in a power of chi between the two,
+#: closer where psi2 turns sharply, with one where the rigid-body theory has its corner.
 FIGURE_2_PSI1 = np.linspace(0.0, 7.0, 141)
 FIGURE_4_POWER = 0.35
-FIGURE_4_CHI = np.union1d(
-    np.linspace(0.25**FIGURE_4_POWER, 16.0**FIGURE_4_POWER, 201) ** (1.0 / FIGURE_4_POWER),
-    FIXED_PSI1 / 4.0,
+FIGURE_4_TURNS = (0.565, 4.33, 11.17)
+FIGURE_4_CHI = np.unique(
+    np.concatenate(
+        [
+            np.linspace(0.25**FIGURE_4_POWER, 16.0**FIGURE_4_POWER, 141) ** (1.0 / FIGURE_4_POWER),
+            *(turn * np.linspace(0.94, 1.06, 9) for turn in FIGURE_4_TURNS),
+            [FIXED_PSI1 / 4.0],
+        ]
+    )
 )
 
 
