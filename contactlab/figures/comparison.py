@@ -16,6 +16,7 @@ from contactlab.figures.style import (
     MEASURED_COLOUR,
     NARROW,
     error_band,
+    figure_width,
     force_axes,
     friction_limit,
     label,
@@ -96,7 +97,7 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
     upper.set_ylabel(label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
     lower.set_ylabel(rf"law $-$ {verbatim(first)}")
     lower.set_xlabel(label(varied, entry_unit(varied)))
-    if upper.get_figure(root=True).get_figwidth() < NARROW:
+    if figure_width(upper) < NARROW:
         lower.legend(*upper.get_legend_handles_labels(), **BELOW)
     else:
         upper.legend(loc="upper left", bbox_to_anchor=(1.0, 1.03), borderaxespad=0.0)

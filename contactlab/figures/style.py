@@ -119,6 +119,13 @@ def figure_size(width: Width | None) -> tuple[float, float]:
     return inches, inches * HEIGHT / WIDTH * (0.8 if width == "two" else 1.0)
 
 
+def figure_width(axes: Axes) -> float:
+    """Return the width, in inches, of the figure that axes stand in."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    return float(figure.get_figwidth())
+
+
 @contextmanager
 def styled(look: Look = "print", width: Width | None = None) -> Iterator[None]:
     """Apply the look inside a ``with`` block and leave the user's settings as they were.

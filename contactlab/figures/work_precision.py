@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from contactlab.analysis.work_precision import Benchmark
-from contactlab.figures.style import ASIDE, LAW_COLOURS, NARROW, QUIET
+from contactlab.figures.style import ASIDE, LAW_COLOURS, NARROW, QUIET, figure_width
 
 MARKERS = {"paper": "o", "symplectic": "s", "adaptive": "D", "events": "*"}
 #: Errors below this are drawn at it: the axis would otherwise be all rounding.
@@ -63,7 +63,7 @@ def _legends(axes: Axes, laws: list[str], integrators: list[str]) -> None:
         Line2D([], [], color=QUIET, linestyle="", label=name, **_mark(name)) for name in integrators
     ]
     markers.append(Line2D([], [], color=QUIET, linewidth=6.0, alpha=0.35, label="Pareto front"))
-    if axes.get_figure(root=True).get_figwidth() < NARROW:
+    if figure_width(axes) < NARROW:
         below: dict[str, Any] = {"alignment": "left", "borderaxespad": 0.0}
         first = axes.legend(
             handles=markers, title="integrator", loc="upper right", bbox_to_anchor=(1.0, -0.25),

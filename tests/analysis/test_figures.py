@@ -32,14 +32,15 @@ LEGIBLE = 6.0
 
 
 def figure_functions():
-    """The public functions of ``contactlab.figures`` whose first argument is Axes."""
+    """The public functions of ``contactlab.figures`` whose first argument is Axes, to draw on."""
     found = {}
     for module in pkgutil.iter_modules(contactlab.figures.__path__, "contactlab.figures."):
         functions = inspect.getmembers(importlib.import_module(module.name), inspect.isfunction)
         for name, function in functions:
             first = next(iter(inspect.signature(function).parameters.values()), None)
             of_axes = first is not None and "Axes" in str(first.annotation)
-            if of_axes and not name.startswith("_") and function.__module__ == module.name:
+            draws = of_axes and inspect.signature(function).return_annotation != "float"
+            if draws and not name.startswith("_") and function.__module__ == module.name:
                 found[f"{module.name}.{name}"] = function
     return found
 
