@@ -44,7 +44,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the report; a single silently wrong answer makes it fail."""
     shared.check_budget(arguments.budget)
     if arguments.width == "one":
-        raise ValueError("--width one: the map needs two columns")
+        raise ValueError("--width one: the map is too wide for one column; use --width two")
     kept: list[Outcome] = []
 
     def judged(case: Case) -> Outcome:
