@@ -18,7 +18,7 @@ Rows = NDArray[np.intp]
 #: as fit into the cache; more are sorted by patch, which costs some 3 us a patch.
 FEW, GATHERED = 2000, 200
 #: Impacts sorted together, and sorted places taken together, which fit into the cache.
-BLOCK, STRETCH = 1 << 16, 6144
+BLOCK, STRETCH = 1 << 16, 8192
 
 
 def rebound(table: Table, speed: Array, chi: Array) -> Array:
