@@ -301,6 +301,23 @@ class PhasedTangentialLaw(TangentialLaw):
             The normal motion, of one impact.
         """
 
+    def tolerance_needed(
+        self, velocity: float, inertia: float, motion: ClosedFormMotion, tolerance: float
+    ) -> float:
+        """Return the tolerance to solve an impact with: that asked for, or a closer one.
+
+        Closer where the margins of events are so narrow that an error of the size asked for would
+        mistake one event for another.
+
+        Parameters
+        ----------
+        velocity, inertia, motion
+            As ``begin`` has them.
+        tolerance : float
+            Error of psi2 over max(1, psi1) that is asked for.
+        """
+        return tolerance
+
     def phase_fields(
         self,
         normal: ClosedFormMotion,

@@ -35,7 +35,7 @@ ATTEMPTS = ((1.6, 1e-2), (0.6, 3e-3), (0.2, 1e-3))
 BOOKS = 1e-3
 #: Books that miss by more are suspect, and those of shorter panels may be better: next to psi1 = 1
 #: and chi = 1/2, where psi and V differ by rounding, a mistaken event showed at 1e-7 and above.
-SUSPECT = 2e-8
+SUSPECT = 2e-9
 LEAST_AUDITED = 0.1
 SHORTEST_PANEL = 1e-9
 #: Beyond this chi the shortest panels are taken at once: they need a third fewer solves there,
@@ -99,6 +99,7 @@ def trajectory(
         Error of psi2 over max(1, psi1) that is aimed at.
     """
     collocation = Collocation(motion, inertia, lobatto(NODES))
+    tolerance = law.tolerance_needed(velocity, inertia, motion, tolerance)
     solves, best = 0, None
     dense = 0.5 * inertia * motion.scaled_mass > DENSE_CHI
     for longest, part in ATTEMPTS[-1:] if dense else ATTEMPTS:

@@ -183,6 +183,25 @@ def test_no_scipy_for_the_exact_law():
     subprocess.run([sys.executable, "-c", probe], check=True)
 
 
+@pytest.mark.parametrize(
+    ("psi1", "chi"),
+    [
+        (1.0 - 1.083109903e-7, 0.5 - 1.26158579e-8),
+        (1.0 - 2.083845889e-7, 0.5 - 2.36000072e-8),
+        (1.0 - 4.230063710e-5, 0.5 - 1.0293614093e-6),
+        (0.9999987917493628, 0.4999994424348435),
+        (0.9999617933606803, 0.49999492783624133),
+    ],
+)
+def test_next_to_one_and_one_half_no_event_is_mistaken(psi1, chi):
+    """At chi = 1/2 the contact rebounds with -psi1; beside it no further off than chi is."""
+    result = Simulation().run(Scene.nondimensional(psi1=psi1, chi=chi)).check()
+    assert abs(result.psi2 + psi1) < abs(2.0 * chi - 1.0)
+    closest = Simulation(integrator=contactlab.create("integrator.events", tolerance=1e-12))
+    other = closest.run(Scene.nondimensional(psi1=psi1, chi=chi)).check()
+    assert abs(result.psi2 - other.psi2) < 1e-10
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CORNERS)
 def test_corners_at_length(monkeypatch, name):
