@@ -52,8 +52,10 @@ class Progress:
             self._ended.set()
             self._thread.join()
             self._overwrite("")
-        elif self._shown and self._done == self._total:
-            print(self._line(time.perf_counter()), file=sys.stderr, flush=True)
+        elif self._total and self._done == self._total:
+            now = time.perf_counter()
+            if self._shown or now >= self._next:
+                print(self._line(now), file=sys.stderr, flush=True)
 
     def __call__(self, done: int, total: int) -> None:
         """Count ``done`` of ``total``, and show it if it is time for it."""

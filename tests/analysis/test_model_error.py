@@ -124,7 +124,7 @@ def test_the_map_says_which_error_is_which(tmp_path, monkeypatch):
     ):
         found = Stability(outcomes=(), regions=shown, complete=True, models=models)
         draw_stability(tmp_path / "m.png", found)
-        labels = " ".join(axes.get_ylabel() for axes in drawn[-1].axes)
+        labels = " ".join(word for axes in drawn[-1].axes for word in axes.get_ylabel().split())
         assert {word: word in labels for word in words} == words
 
 
