@@ -12,12 +12,17 @@ from contactlab.analysis.work_precision import Benchmark
 from contactlab.figures.style import ASIDE, LAW_COLOURS, NARROW, QUIET, figure_width
 
 MARKERS = {"paper": "o", "symplectic": "s", "adaptive": "D", "events": "*"}
+#: Said of laws that answer whole impacts.
+NONE = "none needed"
 #: Errors below this are drawn at it: the axis would otherwise be all rounding.
 FLOOR = 1e-12
 
 
 def work_precision(axes: Axes, benchmark: Benchmark) -> Axes:
-    """Draw each method's ladder: colour is the law, marker the integrator; lower left is better."""
+    """Draw each method's ladder: colour is the law, marker the integrator; lower left is better.
+
+    A second law of one colour has dashes and hollow markers.
+    """
     laws = list(dict.fromkeys(row.method.partition(" / ")[0] for row in benchmark.rows))
     for method in dict.fromkeys(row.method for row in benchmark.rows):
         law, _, integrator = method.partition(" / ")
@@ -48,19 +53,28 @@ def work_precision(axes: Axes, benchmark: Benchmark) -> Axes:
             f"≤ {FLOOR:.0e}: rounding", (0.01, FLOOR), xycoords=("axes fraction", "data"),
             va="center", **ASIDE,
         )  # fmt: skip
-    marched = [row.method for row in benchmark.rows if " / " in row.method]
-    _legends(axes, laws, list(dict.fromkeys(method.split(" / ")[1] for method in marched)))
+    _legends(axes, [row.method for row in benchmark.rows])
     return axes
 
 
-def _legends(axes: Axes, laws: list[str], integrators: list[str]) -> None:
+def _legends(axes: Axes, methods: list[str]) -> None:
     """Say what the colours are, and what the markers."""
+    laws = list(dict.fromkeys(method.partition(" / ")[0] for method in methods))
+    integrators = {method.partition(" / ")[2] for method in methods}
+    whole = [method for method in methods if " / " not in method]
     colours: list[Any] = [
-        Line2D([], [], label=law.replace("_", " "), **_line(place))
+        Line2D(
+            [],
+            [],
+            label=law.replace("_", " "),
+            **_line(place),
+            **(_mark("") if law in whole else {}),
+        )
         for place, law in enumerate(laws)
     ]
     markers: list[Any] = [
-        Line2D([], [], color=QUIET, linestyle="", label=name, **_mark(name)) for name in integrators
+        Line2D([], [], color=QUIET, linestyle="", label=name or NONE, **_mark(name))
+        for name in sorted(integrators, reverse=True)
     ]
     markers.append(Line2D([], [], color=QUIET, linewidth=6.0, alpha=0.35, label="Pareto front"))
     if figure_width(axes) < NARROW:
@@ -83,8 +97,10 @@ def _legends(axes: Axes, laws: list[str], integrators: list[str]) -> None:
 
 def _line(place: int) -> dict[str, Any]:
     """Return the look of the law listed at ``place``."""
-    dashes = ("-", "--")[place // len(LAW_COLOURS) % 2]
-    return {"color": LAW_COLOURS[place % len(LAW_COLOURS)], "linestyle": dashes}
+    colour = LAW_COLOURS[place % len(LAW_COLOURS)]
+    if place // len(LAW_COLOURS) % 2:
+        return {"color": colour, "linestyle": "--", "markerfacecolor": "white"}
+    return {"color": colour, "linestyle": "-"}
 
 
 def _mark(integrator: str) -> dict[str, Any]:
