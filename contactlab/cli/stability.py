@@ -78,7 +78,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _draw(path: Path, found: Stability, why_not: str, **look: Any) -> None:
     if not found.regions and not found.models:
-        why = "the map is of laws that take steps" if found.complete else f"{why_not} before it"
+        why = "there is nothing to map" if found.complete else f"{why_not} before it was done"
         print(f"no map drawn: {why}", file=sys.stderr)
         return
     from contactlab.figures.stability import draw_stability  # matplotlib only when drawing
