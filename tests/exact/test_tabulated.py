@@ -179,7 +179,14 @@ def test_scalar_gathered_and_sorted_agree(monkeypatch):
     monkeypatch.setattr(evaluate, "STRETCH", 3)
     assert np.abs(rebound(psi1, chi) - gathered).max() < 2e-12
     singly = [rebound(*pair) for pair in zip(psi1.tolist(), chi.tolist(), strict=True)]
-    assert np.abs(np.array(singly) - gathered).max() < 2e-12
+    off = np.abs(np.array(singly) - gathered)
+    # At a seam rounding, which is not that of arrays, may choose the patch of the other side.
+    here = places(np.abs(psi1), chi, shipped().cuts)
+    cells = np.array([here.a, here.b]) * 64.0
+    seam = np.zeros(psi1.size, dtype=bool)
+    seam[here.who] = (np.abs(cells - np.round(cells)) < 1e-9).any(axis=0)
+    assert off[~seam].max() < 2e-12
+    assert off[seam].max(initial=0.0) < 4e-11
 
 
 def test_places_and_impacts_are_each_others_inverse():
