@@ -1,4 +1,4 @@
-"""Output files: each is written beside its place and renamed, so that it is whole or not there.
+"""Files: each is written beside its place and renamed, so that it is whole or not there.
 
 Every file that contactlab writes goes through ``written``. A full disk, an error or a killed
 process leaves the file that was there before as it was; only a killed process leaves a file
@@ -21,6 +21,38 @@ NEW_FILE = 0o666
 TEXT: dict[str, Any] = {
     "mode": "w", "encoding": "utf-8", "errors": "surrogateescape", "newline": "",
 }  # fmt: skip
+#: Most bytes of a file that people write, a scene or a table: a sweep of a million numbers fits.
+LARGEST = 32_000_000
+
+
+def content(path: Path, *, kind: str, remedy: str) -> bytes:
+    """Return the content of a regular file of a size to be expected.
+
+    Parameters
+    ----------
+    path : Path
+    kind : str
+        What it should be, for the refusal of its size: ``"a scene"``.
+    remedy : str
+        What to do where there is no such file.
+
+    Raises
+    ------
+    ValueError
+        With the path, if there is no such file, or it cannot be read or is too large.
+    """
+    try:
+        status = os.stat(path)
+        if not stat.S_ISREG(status.st_mode):  # a pipe may never end, or never begin
+            raise ValueError(f"{path}: cannot be read: is not a regular file")
+        if status.st_size > LARGEST:
+            size, most = status.st_size / 1e6, LARGEST / 1e6
+            raise ValueError(f"{path}: is too large: {size:.0f} MB, {kind} has at most {most:.0f}")
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise ValueError(f"{path}: no such file; {remedy}") from None
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
 
 
 @contextlib.contextmanager

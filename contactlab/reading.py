@@ -123,12 +123,12 @@ def sweep_section(
     statuses = np.array(result.status, dtype=object)
     rows = [
         [*(float(values[index]) for values in columns.values()), statuses[index].name]
-        for index in spread(len(result), most)
+        for index in evenly(len(result), most)
     ]
     return Section([*columns, "status"], rows)
 
 
-def spread(count: int, most: int | None) -> list[int]:
+def evenly(count: int, most: int | None) -> list[int]:
     """Return indices of ``count`` rows, or of ``most`` evenly spread, both ends among them."""
     shown = count if most is None else min(count, most)
     return [int(index) for index in np.round(np.linspace(0, count - 1, shown))]

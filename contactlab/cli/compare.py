@@ -31,7 +31,7 @@ from contactlab.analysis.scores import DEFAULT_SCENE, candidates, scores
 from contactlab.checks import nearest
 from contactlab.cli import arguments as shared
 from contactlab.cli import side_by_side
-from contactlab.cli.sweep import numbers
+from contactlab.cli.scene import add_ranges, check_alone
 from contactlab.quantities import quantity_named
 from contactlab.registry import KINDS, REGISTRY
 from contactlab.scene import Scene
@@ -50,10 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         help="a scene or a sweep (default: psi2 over psi1 of a solid sphere, chi = 49/34)",
     )
-    for name, words in (("psi1", "angle of incidence (29)"), ("chi", "inertia ratio (38)")):
-        parser.add_argument(
-            f"--{name}", type=numbers, metavar="START:STOP:COUNT", help=f"{words}; or one number"
-        )
+    add_ranges(parser)
     parser.add_argument(
         "--all",
         action="store_true",
@@ -133,8 +130,7 @@ def _file(arguments: argparse.Namespace) -> SceneFile:
     missing = [f"--{name}" for name, value in given.items() if value is None]
     if len(missing) == len(given):
         return read_scene(arguments.scene or DEFAULT_SCENE)
-    if arguments.scene:
-        raise ValueError("--psi1, --chi: stand in place of a scene file; leave out one of them")
+    check_alone(arguments)
     if missing:
         raise ValueError(f"{missing[0]}: must be given too (chi is 1.4412 for a solid sphere)")
     if len(varied) > 1:

@@ -11,6 +11,7 @@ from contactlab.cli.table import table
 from contactlab.files import write_table
 from contactlab.fitting import Fit, Ranked
 from contactlab.quantities import QUANTITIES
+from contactlab.reading import heading
 from contactlab.scene_file.entries import entry_unit
 
 
@@ -19,7 +20,7 @@ def describe(found: Fit) -> str:
     headings = ["parameter", "value", "standard error", "95 % from", "to"]
     rows: list[list[Any]] = []
     for one in found.parameters.values():
-        name = one.name if one.unit == "1" else f"{one.name} ({one.unit})"
+        name = heading(one.name, one.unit)
         rows.append([name, one.value, one.standard_error, *one.interval, *(one.bootstrap or ())])
     if any(one.bootstrap for one in found.parameters.values()):
         headings += ["bootstrap from", "to"]

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import argparse
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from contactlab.cli import arguments as shared
 from contactlab.scene import Scene
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.simulation import Simulation
+
+#: Most impacts of a range: a slip of the finger should not fill the memory.
+MOST_IMPACTS = 1_000_000
 
 
 class Given(NamedTuple):
@@ -36,6 +41,37 @@ def add_scene(parser: argparse.ArgumentParser) -> None:
     shared.add_laws(parser)
 
 
+def add_ranges(parser: argparse.ArgumentParser) -> None:
+    """Add ``--psi1`` and ``--chi``, of which each may be a range."""
+    for name, words in (("psi1", "angle of incidence (29)"), ("chi", "inertia ratio (38)")):
+        parser.add_argument(
+            f"--{name}", type=numbers, metavar="START:STOP:COUNT", help=f"{words}; or one number"
+        )
+
+
+def numbers(text: str) -> Any:
+    """Return one number, or an evenly spaced array from START:STOP:COUNT."""
+    parts = text.split(":")
+    if len(parts) == 1:
+        return shared.finite(text)
+    if len(parts) != 3:
+        raise argparse.ArgumentTypeError(f"{text!r}: write START:STOP:COUNT, or one number")
+    start, stop = shared.finite(parts[0]), shared.finite(parts[1])
+    try:
+        count = int(parts[2])
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}: COUNT must be a whole number") from None
+    if not 1 <= count <= MOST_IMPACTS:
+        raise argparse.ArgumentTypeError(f"{text!r}: COUNT must lie in [1, {MOST_IMPACTS}]")
+    return np.linspace(start, stop, count)
+
+
+def check_alone(arguments: argparse.Namespace) -> None:
+    """Refuse psi1 or chi beside a scene file."""
+    if arguments.scene and not (arguments.psi1 is None and arguments.chi is None):
+        raise ValueError("--psi1, --chi: stand in place of a scene file; leave out one of them")
+
+
 def given(arguments: argparse.Namespace) -> Given:
     """Return the scene and the simulation.
 
@@ -58,13 +94,12 @@ def composed(arguments: argparse.Namespace, choice: LawChoice) -> Simulation:
 
 
 def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Scene:
-    numbers = (arguments.psi1, arguments.chi)
+    check_alone(arguments)
     if file is not None:
-        if numbers != (None, None):
-            raise ValueError("--psi1, --chi: stand in place of a scene file; leave out one of them")
         return file.scene
-    if None in numbers:
-        missing = "a scene file, or --psi1 and --chi" if numbers == (None, None) else "both"
-        missing = missing if missing != "both" else "--chi" if numbers[1] is None else "--psi1"
+    pair = (arguments.psi1, arguments.chi)
+    if None in pair:
+        missing = "--chi" if pair[1] is None else "--psi1"
+        missing = "a scene file, or --psi1 and --chi" if pair == (None, None) else missing
         raise ValueError(f"{missing}: must be given (chi is 1.4412 for a solid sphere, nu = 0.3)")
-    return Scene.nondimensional(psi1=numbers[0], chi=numbers[1])
+    return Scene.nondimensional(psi1=pair[0], chi=pair[1])

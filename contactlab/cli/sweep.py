@@ -22,10 +22,10 @@ import numpy as np
 from contactlab.checks import refuse
 from contactlab.cli import arguments as shared
 from contactlab.cli.run import draw, report
-from contactlab.cli.scene import composed
+from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
 from contactlab.cli.table import table
 from contactlab.export import COLUMNS, WRITERS, heading
-from contactlab.reading import spread, sweep_section
+from contactlab.reading import evenly, sweep_section
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
 from contactlab.scene_file import LawChoice, read_scene
@@ -38,17 +38,12 @@ if TYPE_CHECKING:
 SHOWN = ("psi1", "chi", "psi2", "status")
 #: Rows that are printed of a sweep that is written to a file.
 MOST_ROWS = 25
-#: Most impacts of a range: a slip of the finger should not fill the memory.
-MOST_IMPACTS = 1_000_000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the scenes, the laws and the outputs."""
     parser.add_argument("scene", nargs="?", metavar="SCENE.toml", help="a sweep, instead of ranges")
-    for name, words in (("psi1", "angle of incidence (29)"), ("chi", "inertia ratio (38)")):
-        parser.add_argument(
-            f"--{name}", type=numbers, metavar="START:STOP:COUNT", help=f"{words}; or one number"
-        )
+    add_ranges(parser)
     shared.add_laws(parser)
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="print JSON instead of the table")
@@ -67,8 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Run the sweep and report; 1 if an impact was not followed to its end."""
     file = read_scene(arguments.scene) if arguments.scene else None
-    if file is not None and (arguments.psi1 is not None or arguments.chi is not None):
-        raise ValueError("--psi1, --chi: stand in place of a scene file; leave out one of them")
+    check_alone(arguments)
     scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
     if not scene.shape:
         raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
@@ -109,7 +103,7 @@ def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | No
         print(table(*sweep_section(result, shown, most=most)))
     else:
         rows = _rows(result)
-        print(table(SHOWN, [rows[index] for index in spread(len(rows), most)]))
+        print(table(SHOWN, [rows[index] for index in evenly(len(rows), most)]))
     if most is not None and len(result) > most:
         print(f"{most} of {len(result)} impacts; all of them are in {out}")
 
@@ -149,23 +143,6 @@ def _clear(folder: Path, result: ImpactResult) -> None:
 
     if not any(status in TRIED_AGAIN for status in result.status):
         remove(folder)
-
-
-def numbers(text: str) -> Any:
-    """Return one number, or an evenly spaced array from START:STOP:COUNT."""
-    parts = text.split(":")
-    if len(parts) == 1:
-        return shared.finite(text)
-    if len(parts) != 3:
-        raise argparse.ArgumentTypeError(f"{text!r}: write START:STOP:COUNT, or one number")
-    start, stop = shared.finite(parts[0]), shared.finite(parts[1])
-    try:
-        count = int(parts[2])
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r}: COUNT must be a whole number") from None
-    if not 1 <= count <= MOST_IMPACTS:
-        raise argparse.ArgumentTypeError(f"{text!r}: COUNT must lie in [1, {MOST_IMPACTS}]")
-    return np.linspace(start, stop, count)
 
 
 def _ranges(psi1: Any, chi: Any) -> Scene:

@@ -23,6 +23,7 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.table import WIDTH, table
 from contactlab.json_values import json_value
 from contactlab.quantities import QUANTITIES
+from contactlab.reading import heading
 
 #: Laws that a picture shows, as far as they are installed: a reader tells no more apart.
 DRAWN = ("fronts", "springs, tsuji restitution=0.98", "mindlin_cap", "coulomb")
@@ -95,7 +96,7 @@ def _told(evidence: Evidence) -> str:
     for agreement in agreements:
         quantity = agreement.measured.quantity
         unit = QUANTITIES[quantity].unit
-        name = quantity if unit == "1" else f"{quantity} ({unit})"
+        name = heading(quantity, unit)
         headings += [f"{name} rms", "largest", "at"]
         for row in rows:
             law = str(row[0])

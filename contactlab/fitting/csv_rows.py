@@ -6,6 +6,7 @@ import csv
 from pathlib import Path
 from typing import NamedTuple
 
+from contactlab.files import content
 from contactlab.fitting.headings import read_heading
 
 #: Encodings that are tried: that of today with or without a mark, and that of older spreadsheets.
@@ -52,15 +53,11 @@ def read_rows(path: Path) -> Rows:
 
 
 def _text(path: Path) -> str:
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        raise ValueError(f"{path}: no such file; give the path of a CSV of impacts") from None
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read: {error}") from None
+    remedy = "give the path of a CSV of impacts"
+    found = content(path, kind="a table of impacts", remedy=remedy)
     for encoding in ENCODINGS:
         try:
-            text = content.decode(encoding)
+            text = found.decode(encoding)
         except UnicodeDecodeError:
             continue
         if "\0" not in text:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import stat
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,6 +14,7 @@ import attrs
 from contactlab.attributes import named_attributes
 from contactlab.checks import Real, real, refuse
 from contactlab.encounter import Encounter
+from contactlab.files import content
 from contactlab.grid import over
 from contactlab.scene import Scene
 from contactlab.scene_file.build import build_scene
@@ -32,8 +32,8 @@ from contactlab.scene_file.table import Table
 SECTIONS = (
     "about", "sphere", "target", "impact", "nondimensional", "sweep", "simulation", "measured",
 )  # fmt: skip
-#: Largest file, in bytes: a sweep of a million numbers fits; and deepest nesting.
-LARGEST, DEEPEST = 32_000_000, 20
+#: Deepest nesting of tables and lists.
+DEEPEST = 20
 ABOUT_KEYS = ("title", "citation", "notes")
 
 
@@ -170,26 +170,18 @@ def _document(file: Path) -> dict[str, Any]:
 
 
 def _text(file: Path) -> str:
-    """Return the text of a regular file of a size to be expected of a scene."""
+    """Return the text of a scene file."""
+    remedy = "give the path of a scene in TOML"
+    if file.suffix in (".csv", ".json", ".npz", ".png"):
+        remedy += "; where to write is said by --out or --figure"
     try:
-        status = os.stat(file)
-        if not stat.S_ISREG(status.st_mode):  # a pipe may never end, or never begin
-            raise ValueError(f"{file}: cannot be read: is not a regular file")
-        if status.st_size > LARGEST:
-            size, most = status.st_size / 1e6, LARGEST / 1e6
-            raise ValueError(f"{file}: is too large: {size:.0f} MB, a scene has at most {most:.0f}")
-        return file.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
-    except FileNotFoundError:
-        remedy = "give the path of a scene in TOML"
-        if file.suffix in (".csv", ".json", ".npz", ".png"):
-            remedy += "; where to write is said by --out or --figure"
-        raise ValueError(f"{file}: no such file; {remedy}") from None
+        # some editors begin a file with a mark
+        text = content(file, kind="a scene", remedy=remedy).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise ValueError(
             f"{file}: is not UTF-8 text ({error.reason} at byte {error.start})"
         ) from None
-    except OSError as error:
-        raise ValueError(f"{file}: cannot be read: {error.strerror}") from None
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _deep(document: Mapping[str, Any]) -> bool:

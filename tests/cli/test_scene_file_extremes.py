@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import contactlab
+from contactlab import files
 from contactlab.checks import refuse, whole
-from contactlab.scene_file import read
 from contactlab.scene_file.table import number_list
 
 
@@ -98,7 +98,7 @@ def test_a_number_of_many_digits(run, tmp_path):
 
 
 def test_the_limits_leave_room_for_a_sweep_of_a_million(tmp_path):
-    assert len(", ".join(["-1.234567890123456789e-123"] * 1_000_000)) < read.LARGEST
+    assert len(", ".join(["-1.234567890123456789e-123"] * 1_000_000)) < files.LARGEST
 
 
 def test_a_value_that_cannot_be_shown():

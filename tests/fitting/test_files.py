@@ -1,9 +1,11 @@
 """Files of measured impacts as spreadsheets, data loggers and people write them."""
 
+import os
+
 import numpy as np
 import pytest
 
-from contactlab import Simulation
+from contactlab import Simulation, files
 from contactlab.fitting import read_measurements
 from contactlab.quantities import QUANTITIES
 from tests.fitting.impacts import scene
@@ -55,3 +57,18 @@ def test_the_rebound_speed_of_what_slips_throughout():
     found = QUANTITIES["rebound_speed"].of(Simulation().sweep(impacts).check())
     along = impacts.tangential_velocity - 0.2 * impacts.normal_speed
     np.testing.assert_allclose(found, np.hypot(along, impacts.normal_speed), rtol=1e-8)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX files")
+def test_a_pipe_is_refused_as_it_is_for_a_scene(tmp_path):
+    """It was waited for without end."""
+    path = tmp_path / "impacts.csv"
+    os.mkfifo(path)
+    with pytest.raises(ValueError, match="cannot be read: is not a regular file"):
+        read_measurements(path)
+
+
+def test_a_giant_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(files, "LARGEST", 10)
+    with pytest.raises(ValueError, match=r"is too large: .* a table of impacts has at most"):
+        read(tmp_path, PLAIN.encode())
