@@ -116,7 +116,12 @@ def test_interrupted_sweep_reports_what_is_done(tmp_path):
         "[simulation]\ntangential = 'springs'\nintegrator = 'symplectic'\n",
         encoding="utf-8",
     )
-    talkative = "import sys; from contactlab.cli import main, progress; progress.QUIET = 0.0;"
+    # It waits for the signal after its first line, however fast it is.
+    talkative = (
+        "import signal, sys; from contactlab.cli import main, progress; progress.QUIET = 0.0; "
+        "usual = progress.Progress.__call__; progress.Progress.__call__ = "
+        "lambda self, *counts: usual(self, *counts) or self.what == 'impacts' and signal.pause(); "
+    )
     command = [sys.executable, "-c", talkative + "sys.exit(main.main())", "run", path,
                "--progress", "--out", tmp_path / "part.npz", "--json"]  # fmt: skip
     with subprocess.Popen(
