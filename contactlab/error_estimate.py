@@ -12,6 +12,7 @@ from contactlab.status import Status
 
 if TYPE_CHECKING:
     from contactlab.result import ImpactResult
+    from contactlab.scene import Scene
     from contactlab.simulation import Simulation
 
 #: By how much a resolution is changed: a count is doubled, a tolerance divided by this.
@@ -23,11 +24,11 @@ LEAST_ORDER, MOST_ORDER = 1.0, 2.0
 def estimated(simulation: Simulation, result: ImpactResult) -> Real:
     """Return the estimated numerical error of psi2 of a result.
 
-    The scene is run again at half and at twice the resolution of integrator and tangential law
-    together. If the change of psi2 falls by r from one doubling to the next the error that is left
-    is the last change over 1 - 1/r, r = 2 for a method of first order and 4 for one of second. The
-    errors of the model are not in it. What has no resolution, and is known in closed form, has
-    the error that the plan declares.
+    Each impact is run again at half and at twice the resolution that it got, of integrator and
+    tangential law together. If the change of psi2 falls by r from one doubling to the next the
+    error that is left is the last change over 1 - 1/r, r = 2 for a method of first order and 4 for
+    one of second. The errors of the model are not in it. What has no resolution, and is known in
+    closed form, has the error that the plan declares.
 
     Parameters
     ----------
@@ -40,41 +41,83 @@ def estimated(simulation: Simulation, result: ImpactResult) -> Real:
         NaN where one of the runs failed.
     """
     scene = result.scene
-    fine, coarse = _at(simulation, 1), _at(simulation, -1)
+    successes = _successes(result)
+    error = np.where(successes, result.plan.psi2_error, np.nan)
+    marched = successes & result.plan.marched
+    got = _resolution(simulation, scene) if np.any(marched) else np.zeros(scene.shape)
+    change = np.asarray(result.motion.slip_velocity_change)
+    for value in np.unique(got[marched]).tolist():
+        where = marched & (got == value)
+        left = _left(simulation, scene.take(where) if scene.shape else scene, value, change[where])
+        # Answers that do not differ at all say nothing: what is declared stands.
+        error[where] = np.where(left == 0.0, error[where], left)
+    return error if error.ndim else float(error)
+
+
+def _resolution(simulation: Simulation, scene: Scene) -> Any:
+    """Return the resolution of the integrator that each impact gets; 0 of one without."""
+    integrator = simulation.integrator
+    normal = simulation.normal_motion(scene)
+    got = integrator.resolution_for(normal, simulation.tangential, scene)
+    return np.broadcast_to(got, scene.shape)
+
+
+def _left(simulation: Simulation, scene: Scene, resolution: float, change: Any) -> Any:
+    """Return the estimated error of impacts that all got one resolution; 0 where they have none.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    scene : Scene
+    resolution : float
+        Of the integrator.
+    change : array
+        Change of slip velocity, in m/s.
+    """
+    fine, coarse = (_at(simulation, resolution, doublings) for doublings in (1, -1))
     if fine is None:
-        return result.plan.psi2_error
+        return np.zeros(change.shape)
     better = fine.run(scene)
-    here = np.asarray(result.motion.slip_velocity_change)
-    last = np.abs(np.asarray(better.motion.slip_velocity_change) - here)
+    last = np.abs(np.asarray(better.motion.slip_velocity_change) - change)
     ratio: Any = COUNT**MOST_ORDER
-    good = _successes(result) & _successes(better)
     if coarse is not None:
-        worse = coarse.run(scene)
-        first = np.abs(here - np.asarray(worse.motion.slip_velocity_change))
-        with np.errstate(all="ignore"):
-            found = np.where(last > 0.0, first / last, ratio)
-        found = np.where(_successes(worse), found, COUNT**LEAST_ORDER)
-        ratio = np.clip(found, COUNT**LEAST_ORDER, COUNT**MOST_ORDER)
+        ratio = COUNT**LEAST_ORDER
+        if _gets_what_it_asks(coarse, scene):
+            worse = coarse.run(scene)
+            first = np.abs(change - np.asarray(worse.motion.slip_velocity_change))
+            with np.errstate(all="ignore"):
+                found = np.where(last > 0.0, first / last, COUNT**MOST_ORDER)
+            found = np.where(_successes(worse), found, COUNT**LEAST_ORDER)
+            ratio = np.clip(found, COUNT**LEAST_ORDER, COUNT**MOST_ORDER)
     with np.errstate(all="ignore"):
         error = np.abs(scene.psi(last / (1.0 - 1.0 / ratio)))
-        # Answers that do not differ at all say nothing: what is declared stands.
-        error = np.where(result.plan.marched & (last > 0.0), error, result.plan.psi2_error)
-        error = np.where(good, error, np.nan)
-    return float(error) if not error.ndim else error
+    return np.where(_successes(better), error, np.nan)
+
+
+def _gets_what_it_asks(simulation: Simulation, scene: Scene) -> bool:
+    """Return whether the integrator has as many steps as asked for, raised for no impact."""
+    integrator = simulation.integrator
+    asked = getattr(integrator, integrator.resolution) if integrator.resolution else 0.0
+    return bool(np.all(_resolution(simulation, scene) == asked))
 
 
 def _successes(result: ImpactResult) -> Any:
     return np.asarray(result.status, dtype=object) == Status.SUCCESS
 
 
-def _at(simulation: Simulation, doublings: int) -> Simulation | None:
-    """Return the simulation at twice, or half, the resolution; None if there is none."""
+def _at(simulation: Simulation, resolution: float, doublings: int) -> Simulation | None:
+    """Return the simulation at twice, or half, the resolution; None if there is none.
+
+    ``resolution`` is what the integrator got; the law has that of its option.
+    """
     changed: dict[str, Any] = {}
     for kind in ("tangential", "integrator"):
         law: Any = getattr(simulation, kind)
         if law.resolution is None:
             continue
         value = getattr(law, law.resolution)
+        if kind == "integrator":
+            value = type(value)(resolution)
         if isinstance(value, int):
             other: Any = max(round(value * float(COUNT) ** doublings), 1)
         elif doublings < 0:

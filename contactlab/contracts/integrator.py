@@ -208,6 +208,9 @@ class Integrator(Law):
     6. ``tangential_contract`` and ``normal_contract`` are the classes of the laws that it runs.
     7. ``psi2_error`` is a bound of the numerical error of psi2, from what the tangential law
        declares; NaN, the default, where nothing is declared.
+    8. ``resolution`` is the name of the option, steps or tolerance, that the error falls with.
+       One that raises it by itself where it is too low says so by ``resolution_for``: errors
+       are estimated by doubling what an impact got, not what was asked for.
     """
 
     kind: ClassVar[str] = "integrator"
@@ -252,6 +255,24 @@ class Integrator(Law):
             One impact or a batch.
         """
         return ()
+
+    def resolution_for(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
+        """Return the resolution that each impact gets: that of the option, unless overridden.
+
+        Parameters
+        ----------
+        normal : NormalMotion
+            Of all impacts of ``scene``.
+        tangential : TangentialLaw
+        scene : Scene
+            One impact or a batch.
+
+        Returns
+        -------
+        float or array
+            0 of an integrator without one.
+        """
+        return float(getattr(self, self.resolution)) if self.resolution else 0.0
 
     def psi2_error(
         self,

@@ -138,15 +138,16 @@ class FixedSteps(Integrator):
     def divide(self, normal: NormalMotion, count: int) -> Steps:
         """Return ``count`` steps of a normal motion."""
 
-    def steps_for(self, normal: NormalMotion, law: TangentialLaw, scene: Scene) -> Any:
+    def resolution_for(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return how many steps each impact takes, more than ``steps`` where those are too few."""
         if not self.refine:
             return float(self.steps)
-        return refined(self.steps, needed_steps(normal, law, scene))
+        steps: Real = refined(self.steps, needed_steps(normal, tangential, scene))
+        return steps
 
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return what the tangential law declares for as many steps."""
-        steps = self.steps_for(normal, tangential, scene)
+        steps: Any = self.resolution_for(normal, tangential, scene)
         return tangential.psi2_error(scene, normal, steps)
 
     def remarks(

@@ -1,5 +1,6 @@
 """``run(estimate_error=True)``: an estimate of the error, for laws that declare none too."""
 
+import attrs
 import numpy as np
 import pytest
 
@@ -62,3 +63,28 @@ def test_what_is_known_has_the_declared_error():
     assert result.psi2_error_estimate[[0, 2]].tolist() == result.plan.psi2_error[[0, 2]].tolist()
     assert 0.0 < result.psi2_error_estimate[1] < 0.01
     assert Simulation().run(Scene.nondimensional(psi1=1.2, chi=CHI)).psi2_error_estimate is None
+
+
+@pytest.mark.parametrize("name", ["springs", "sharp_annulus"])
+def test_where_steps_are_raised_it_is_what_was_taken_that_is_doubled(name):
+    """Asked for 100, 200 or 400 steps, a heavy inertia takes 392 or 400 of them."""
+    laws = {"normal": "linear", "integrator": "symplectic"}
+    scene = Scene.nondimensional(psi1=0.3, chi=1e3)
+    result = Simulation(tangential=name, **laws).run(scene, estimate_error=True).check()
+    law = contactlab.create(f"tangential.{name}")
+    fine = Simulation(
+        normal="linear",
+        tangential=attrs.evolve(law, **{law.resolution: 1000}),
+        integrator=contactlab.create("integrator.symplectic", steps=6000),
+    )
+    error = abs(result.psi2 - fine.run(scene).check().psi2)
+    assert error > 0.1
+    assert error / 3.0 < result.psi2_error_estimate < 3.0 * error
+
+
+def test_a_batch_is_estimated_as_its_impacts_are_alone():
+    laws = {"tangential": "springs", "integrator": "symplectic"}
+    scene = Scene.nondimensional(psi1=np.array([0.3, 1.2, 9.0, 0.3]), chi=np.array([1e3, 1, 1, 50]))
+    together = Simulation(**laws).run(scene, estimate_error=True).psi2_error_estimate
+    alone = [Simulation(**laws).run(one, estimate_error=True) for one in map(scene.take, range(4))]
+    assert together == pytest.approx([one.psi2_error_estimate for one in alone], rel=1e-6)
