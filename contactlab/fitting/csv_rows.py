@@ -93,7 +93,7 @@ def _with_points(path: Path, line: int, row: list[str]) -> list[str]:
             raise ValueError(
                 f"{path}: line {line}: {cell!r}: write numbers without marks for thousands"
             )
-        found.append(changed if "," in cell and _is_number(changed) else cell)
+        found.append(changed if _is_number(changed) else cell)
     return found
 
 

@@ -19,6 +19,7 @@ from contactlab.figures.files import save_figure
 from tests.tangential_laws import Creator
 
 BOTH = ("--tangential", "coulomb,frictionless")
+UNITS = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}
 
 
 def test_differences_are_from_the_first_law(run, short_sweep):
@@ -45,6 +46,10 @@ def test_tables(run, measured, short_sweep, ball):
     for words in ("made up", "coulomb - measured", "rms", "run time an impact", "2 of 2"):
         assert words in with_points.out
     assert "frictionless - coulomb" in run("compare", short_sweep, *BOTH).out
+    first, second = with_points.out.partition("relative")[2].splitlines()[2:4]
+    times = [float(row.split()[1]) * UNITS[row.split()[2]] for row in (first, second)]
+    ratios = [float(row.split()[3]) for row in (first, second)]
+    assert ratios == pytest.approx([1.0, times[1] / times[0]], rel=0.1)
     single = run("compare", ball, *BOTH, "--normal", "hertz").out
     assert "rebound_spin" in single
     assert "1 of 1" in single

@@ -63,6 +63,17 @@ def test_tables(run, impacts):
     assert "columns not used: # remark" in ran.out
 
 
+def test_a_parameter_has_a_row_with_its_intervals(run, impacts):
+    options = ("--laws", "coulomb", "--bootstrap", 5)
+    ran = run("fit", impacts, KHARAZ, *options)
+    found = json.loads(run("fit", impacts, KHARAZ, *options, "--json").out)
+    one = found["parameters"]["friction_coefficient"]
+    (row,) = [row for row in ran.out.splitlines() if row.startswith("friction_coefficient")]
+    told = [float(number) for number in row.split()[1:]]
+    expected = [one["value"], one["standard_error"], *one["interval_95"], *one["bootstrap_95"]]
+    assert told == pytest.approx(expected, rel=1e-4)
+
+
 @pytest.mark.slow
 def test_restitution_of_a_damped_law_comes_out_of_kharaz(run):
     """Of e_t and the rebound angle: nearer to 1 than the 0.98 that is quoted beside them."""

@@ -170,3 +170,16 @@ def test_a_source_that_is_not_known_is_kept_in_words():
 def test_a_law_without_references_has_none():
     assert references(create("tangential.frictionless")) == []
     assert len(references(create("normal.hertz"))) == 1
+
+
+def test_a_law_that_is_asked_for_and_does_not_fit_is_refused(run, tmp_path):
+    path = tmp_path / "damped.toml"
+    path.write_text(
+        "[nondimensional]\npsi1 = 1.0\nchi = 1.0\n[simulation]\nnormal = 'tsuji'\n"
+        "tangential = 'springs'\n[simulation.options]\nnormal.restitution = 0.9\n",
+        encoding="utf-8",
+    )
+    ran = run("report", path, "--tangential", "fronts", "--out", tmp_path / "report.html")
+    assert (ran.status, ran.out) == (2, "")
+    assert "Fronts: needs 'elastic_hertz'" in ran.err
+    assert not (tmp_path / "report.html").exists()
