@@ -34,8 +34,11 @@ REFERENCE_TOLERANCES = (1e-11, 1e-9)
 #: range. At chi = 1e3 a fixed 4000 were wrong by 5e-3, more than the adaptive scheme claims.
 FINE, FEWEST, MOST = 4, 1000, 200_000
 SETTLED = 3e-5
-#: Springs or annuli of the reference under normal laws that are not Hertz's; 8 steps for each.
-FINE_PARTS = 100
+#: Springs or annuli that the reference under normal laws that are not Hertz's begins with, steps
+#: for each, and how often both are doubled until the answer stands still to ``AGREED`` of the
+#: range: a heavy inertia needs many more than a ball.
+FINE_PARTS, STEPS_A_PART, DOUBLINGS = 50, 8, 5
+AGREED = 3e-3
 
 #: Change of slip velocity in m/s, or None where there is nothing to judge by.
 Reference = Callable[[Scene, TangentialLaw], float | None]
@@ -71,12 +74,21 @@ def _another(normal: NormalLaw, name: str) -> Reference:
 
 @lru_cache(maxsize=4096)
 def _fine_under(scene: Scene, normal: NormalLaw, name: str) -> float | None:
-    """Return the change under ``normal`` by a fine law of the continuum."""
+    """Return the change under ``normal`` by a fine law of the continuum; None if none settles."""
     law: Any = REGISTRY.law_class(f"tangential.{name}")
-    fine = law(**{law.resolution: FINE_PARTS})
-    march = REGISTRY.create("integrator.symplectic", steps=8 * FINE_PARTS)
-    result = Simulation(normal=normal, tangential=fine, integrator=march).run(scene)
-    return float(result.motion.slip_velocity_change) if result.status else None
+    width = range_of(scene).width
+    before = np.inf
+    for parts in FINE_PARTS * 2 ** np.arange(DOUBLINGS + 1):
+        fine = law(**{law.resolution: int(parts)})
+        march = REGISTRY.create("integrator.symplectic", steps=STEPS_A_PART * int(parts))
+        result = Simulation(normal=normal, tangential=fine, integrator=march).run(scene)
+        if not result.status:
+            return None
+        change = float(result.motion.slip_velocity_change)
+        if abs(change - before) <= AGREED * width:
+            return change
+        before = change
+    return None
 
 
 @lru_cache(maxsize=4096)

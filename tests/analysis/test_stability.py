@@ -244,3 +244,13 @@ def test_every_family_of_the_issue_is_there():
     method = Method(tangential="annulus", integrator="symplectic")
     listed = {case.family for case in cases(method)}
     assert listed >= {"steps", "parts"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("normal", ["jkr", "linear", "thornton"])
+def test_references_under_another_normal_law_agree_where_inertia_is_heavy(normal):
+    """Springs and sharp annuli, neither of which knows the other, settle on one answer."""
+    scene = Scene.nondimensional(psi1=0.3, chi=1e3)
+    law = contactlab.create(f"normal.{normal}")
+    found = [reference_for(name, law)(scene, None) for name in ("springs", "sharp_annulus")]
+    assert found[0] == pytest.approx(found[1], abs=0.004 * 0.6)
