@@ -134,19 +134,23 @@ class _Solver:
 
     def _align(self, touch: _Instant) -> None:
         """Make the times to greatest compression the units, so that all items turn together."""
-        before, solver = touch, self._solver(touch, FIRST_STEP)
-        found = np.zeros(self.items)
+        law, before, solver = self.law, touch, self._solver(touch, FIRST_STEP)
+        found = np.ones(self.items)
         for _ in range(MOST_ALIGNING):
             after, dense = self._step(solver)
-            turns = (found == 0.0) & (after.scaled[self.items :] <= 0.0)
-            part = self._turning(dense[:, self.items :])
-            found = np.where(turns, before.time + part * (after.time - before.time), found)
-            self.law.remember(dense[-1])
+            rate = dense[:, self.items :]
+            turns = law.active & (rate[-1] <= 0.0)
+            if turns.any():
+                times = before.time + self._turning(rate) * (after.time - before.time)
+                found[turns] = times[turns]
+            # Those that turned, or never will, move on without a force: steps grow for the rest.
+            law.active &= ~(turns | self._deep(dense[-1]))
+            law.remember(dense[-1])
             before = after
-            if (found > 0.0).all():
+            if not law.active.any():
                 break
-        self.law.start()
-        self.law.set_unit(self.law.unit * np.where(found > 0.0, found, 1.0))
+        law.start()
+        law.set_unit(law.unit * found)
 
     def _solver(self, begin: _Instant, first: float, until: float = math.inf) -> Any:
         """Return a solver from ``begin`` on, with a first step of at most ``first``."""
@@ -246,13 +250,16 @@ class _Solver:
         if np.isnan(overlap[..., self.law.active]).any():
             raise self.law.fault(Status.NON_FINITE, "the overlap nan")
 
+    def _deep(self, scaled: Array) -> Mask:
+        """Return the items that have gone deeper than any contact is."""
+        return np.asarray(self.law.in_si(scaled)[0] > DEEPEST * self.law.radius)
+
     def _give_up(self, scaled: Array, rate_before: Array, time: float) -> None:
         """Give up contacts that do not come to an end."""
         law, rate = self.law, scaled[self.items :]
         self.turns += rate * rate_before < 0.0
         rests = (np.abs(rate) < AT_REST) & (np.abs(rate - rate_before) < AT_REST)
-        deep = law.in_si(scaled)[0] > DEEPEST * law.radius
-        lost = (self.turns > MOST_TURNS) | rests | deep
+        lost = (self.turns > MOST_TURNS) | rests | self._deep(scaled)
         if law.steps >= MOST_STEPS:
             lost = law.active
         lost = lost & law.active

@@ -48,14 +48,14 @@ class ScaledNormalLaw:
         self.mass = self._one_an_item(scene.pair.normal_mass)
         self.radius = self._one_an_item(scene.pair.radius)
         self.set_unit(self._one_an_item(hertz_scales(scene).duration))
-        self.active = np.ones(self.items, dtype=bool)
         self.time, self.finite = 0.0, True
         self.start()
 
     def start(self) -> None:
-        """Ask the law for its state before first touch."""
+        """Begin all impacts: ask the law for its state before first touch."""
         with np.errstate(all="ignore"), faults.blaming(self.law):
             self.state = self.law.start(self.scene)
+        self.active = np.ones(self.items, dtype=bool)
         self.steps, self.remembers = 0, False
 
     def set_unit(self, unit: Array) -> None:

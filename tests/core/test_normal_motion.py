@@ -11,7 +11,7 @@ from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
 from contactlab.contracts import NormalContact, NormalLaw
 from contactlab.normal_motion import normal_motion
 from tests.exact.laws import order
-from tests.normal_laws import Damped, ForceFree
+from tests.normal_laws import Damped, ForceFree, LinearSpring
 from tests.outside_laws import Adhesive, LinearDashpot, Plastic, RescaledSpring, Tsuji
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
@@ -111,6 +111,25 @@ def test_a_contact_that_never_ends_is_no_answer(law, integrator):
     assert result.status is Status.NOT_SEPARATED
     assert type(law).__name__ in result.motion.detail
     assert np.isnan(result.psi2)
+
+
+@pytest.mark.parametrize("other", [0.0, 1e6])
+def test_a_soft_contact_costs_its_batch_little(other, monkeypatch):
+    """Beside one that is a million times as stiff, or bodies that go through one another."""
+    calls = []
+    respond = LinearSpring.respond
+
+    def counted(*given):
+        calls.append(given)
+        assert len(calls) < 5000
+        return respond(*given)
+
+    monkeypatch.setattr(LinearSpring, "respond", counted)
+    law = LinearSpring(stiffness=np.array([1e-6, other]))
+    found = normal_motion(law, scene(speed=np.array([1.0, 2.0])))
+    duration = np.pi * np.sqrt(found.scene.pair.normal_mass / 1e-6)
+    assert found.duration[0] == pytest.approx(duration, rel=1e-8)
+    assert bool(found.status[1]) is (other > 0.0)
 
 
 @pytest.mark.parametrize("damping", [0.0, 1.5])
