@@ -15,6 +15,7 @@ from contactlab.contracts.tangential import (
     TangentialLaw,
     WholeImpactTangentialLaw,
 )
+from contactlab.loading import outdated
 from contactlab.registry import REGISTRY, PluginError
 
 #: Taken where none is named, the first that is installed and fits: exact, then of second order,
@@ -41,6 +42,8 @@ def law(kind: str, value: object) -> Any:
     if isinstance(value, str):
         return REGISTRY.create(value if value.startswith(f"{kind}.") else f"{kind}.{value}")
     if isinstance(value, Law) and value.kind == kind:
+        if (complaint := outdated(type(value))) is not None:
+            raise ValueError(f"{kind} = {complaint}")
         return value
     remedy = f"installed: {', '.join(REGISTRY.names(kind))}"
     if isinstance(value, type) and issubclass(value, Law):

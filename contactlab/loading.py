@@ -120,11 +120,17 @@ def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
     if law.__abstractmethods__:
         missing = ", ".join(sorted(law.__abstractmethods__))
         raise PluginError(f"{source}: {law.__name__} does not define {missing}")
-    version = getattr(law, "api_version", None)
-    if version != API_VERSION:
-        raise PluginError(
-            f"{source}: {law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}; "
-            "if the law keeps to these contracts, write "
-            f"api_version: ClassVar[int] = {API_VERSION} in its class"
-        )
+    if (complaint := outdated(law)) is not None:
+        raise PluginError(f"{source}: {complaint}")
     return law
+
+
+def outdated(law: type[Law]) -> str | None:
+    """Return what is wrong with the version of the contracts that a law was written for, if any."""
+    version = getattr(law, "api_version", None)
+    if version == API_VERSION:
+        return None
+    return (
+        f"{law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}; if the law "
+        f"keeps to these contracts, write api_version: ClassVar[int] = {API_VERSION} in its class"
+    )

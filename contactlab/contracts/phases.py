@@ -144,7 +144,8 @@ class Phase:
        It stays finite, and smooth if it can, somewhat beyond the end of the phase. It is not
        asked of a phase that has a closed form.
     2. ``margin`` is positive inside the phase, smooth, and zero where the event happens. It
-       may be zero at the start. Events are numbered as in ``singular_events``.
+       may be zero at the start. Events are numbered as in ``singular_events``, which is declared
+       wherever there is a margin.
     3. ``singular_events[i]`` says that the force behaves as (x_event - x)^1.5 when event i comes
        near; the integrator then ends a panel at the event and crowds its nodes there.
     4. ``after_event`` gives the phase after event i. It may end at once (zero length). Its
@@ -163,6 +164,12 @@ class Phase:
     #: The force is linear in slip: one step of Newton's method is exact.
     linear: bool = False
     dissipates: bool = True
+
+    def __init_subclass__(cls) -> None:
+        """Refuse margins of events that are not declared: nobody would look for them."""
+        bases = cls.__mro__[: cls.__mro__.index(Phase)]
+        if cls.margin is not Phase.margin and not any("singular_events" in vars(b) for b in bases):
+            raise TypeError(f"{cls.__name__}: has a margin, and no singular_events (clause 2)")
 
     def respond(
         self, contact: ScaledContact, slip: Array, memo: tuple[Array, ...]

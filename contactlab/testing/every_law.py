@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import difflib
 import inspect
 import pickle
 from collections.abc import Iterator
@@ -23,6 +24,8 @@ from contactlab.registry import KINDS
 from contactlab.testing.check import CHECKS, check, hold
 from contactlab.testing.compare import same
 
+#: How alike two names have to be, of 1, for one to be taken for the other misspelt.
+ALIKE = 0.85
 #: What no numerical parameter may be.
 BAD_NUMBERS = (float("nan"), float("inf"), float("-inf"), "seven", 1j)
 #: What no parameter that is a word may be, and none that is True or False.
@@ -71,6 +74,19 @@ def contract(law: Law) -> None:
         law.resolution is None or law.resolution in known,
         f"resolution = {law.resolution!r}: must name a parameter.",
     )
+
+
+@check(Law)
+def spelling(law: Law) -> None:
+    """No public name is nearly that of an optional member of its contracts, and passed over."""
+    own: set[str] = set()
+    optional: set[str] = set()
+    for owner in type(law).__mro__:
+        theirs = owner.__module__.startswith("contactlab.contracts")
+        (optional if theirs else own).update(name for name in vars(owner) if name[0] != "_")
+    for name in sorted(own - optional):
+        meant = difflib.get_close_matches(name, optional - own, n=1, cutoff=ALIKE)
+        hold(not meant, f"{name} is no member of its contracts: {''.join(meant)} misspelt?")
 
 
 @check(Law)

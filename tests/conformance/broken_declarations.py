@@ -31,6 +31,11 @@ class Misspells(Sound):
     offers: ClassVar[frozenset] = frozenset({"partialslip"})
 
 
+class MisspellsMember(Sound):
+    def psi2_eror(self, scene, normal, steps):
+        return 0.1
+
+
 class NeedsTheUnknown(Sound):
     needs: ClassVar[frozenset] = frozenset({"advance"})
 
@@ -76,6 +81,7 @@ BROKEN = [
     (ExpectsWithoutReason, "expected_failures", "'units' needs a reason"),
     (ExpectsTheUnknown, "expected_failures", "'unit', which is not a check"),
     (Misspells, "contract", "'partialslip' is a word that no check knows"),
+    (MisspellsMember, "spelling", "psi2_eror is no member of its contracts: psi2_error misspelt?"),
     (NeedsTheUnknown, "contract", "needs: 'advance' is a word that no check knows; there are: el"),
     (OneOfThreeWays, "contract", "It must be derived from one of SteppedTangentialLaw"),
     (Mutable, "immutable", "ratio can be set"),

@@ -16,6 +16,7 @@ from contactlab import (
 from contactlab.contracts import (
     TangentialLaw,
 )
+from tests.conformance.broken_laws import Sound
 from tests.core.test_simulation import CHI, RIGID, STEEL, Misbehaving, scene
 from tests.normal_laws import LinearSpring
 from tests.outside_laws import Tsuji
@@ -51,6 +52,14 @@ def test_wrong_kind_of_law_is_refused():
         Simulation(normal=contactlab.create("tangential.coulomb"))
     with pytest.raises(ValueError, match="tangential"):
         Simulation(tangential=3.0)
+
+
+def test_a_law_of_another_version_of_the_contracts_is_refused():
+    class Old(Sound):
+        api_version = 1
+
+    with pytest.raises(ValueError, match=r"tangential = Old\.api_version is 1, contactlab has 2"):
+        Simulation(tangential=Old())
 
 
 def test_what_is_left_out_is_the_best_that_fits():

@@ -110,6 +110,17 @@ def test_a_phase_without_a_force_is_named():
     assert "Phase has neither respond nor closed_form" in result.failures[0]
 
 
+def test_a_phase_with_a_margin_of_no_event_is_refused():
+    """Its events would be passed over: the word of an older contract, or a misspelt one."""
+    with pytest.raises(TypeError, match="Old: has a margin, and no singular_events"):
+
+        class Old(Phase):
+            rough = (False,)
+
+            def margin(self, event, sample):
+                return 1.0 - sample.velocity
+
+
 @attrs.frozen(kw_only=True)
 class Turns(PhasedTangentialLaw):
     """No force, after so many phases of no length."""
