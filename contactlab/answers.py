@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from contactlab import faults
 from contactlab.batch import locked
+from contactlab.checks import shown
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
 from contactlab.contracts.whole_impact import WholeImpact
@@ -84,9 +85,7 @@ def _checked(known: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> 
     """
     for entry in (known.slip_velocity_change, known.friction_work):
         if faults.malformed(entry, shape):
-            sentence = faults.sentence(
-                law, f"the answer {faults.shown(entry)} to a whole impact", 1
-            )
+            sentence = faults.sentence(law, f"the answer {shown(entry)} to a whole impact", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)
     return known
 

@@ -65,9 +65,9 @@ GYRATION = Rule(
 
 
 def shown(value: object, *, most: int = 80) -> str:
-    """Return a value for a message, of at most so many characters."""
+    """Return a value for a message, on one line of at most so many characters."""
     try:
-        text = repr(value)
+        text = " ".join(repr(value).split())
     except Exception:  # an integer of too many digits, lists in lists in lists, anybody's class
         text = f"a {type(value).__name__}"
     return text if len(text) <= most else text[: most - 3] + "..."

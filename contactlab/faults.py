@@ -91,12 +91,6 @@ def raised(error: BaseException) -> str:
     return f"{type(error).__name__}: {error} ({where.name}, line {where.lineno})"
 
 
-def shown(value: Any) -> str:
-    """Return a value on one short line."""
-    text = " ".join(repr(value).split())
-    return text if len(text) <= 60 else text[:57] + "..."
-
-
 def _broadcasts(given: tuple[int, ...], shape: tuple[int, ...]) -> bool:
     try:
         return np.broadcast_shapes(given, shape) == shape

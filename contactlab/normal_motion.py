@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab import faults
+from contactlab.checks import shown
 from contactlab.collocation import lobatto, rows
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
@@ -56,7 +57,7 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
         with faults.blaming(law):
             motion = law.motion(scene)
             if not isinstance(motion, NormalMotion):
-                raise TypeError(f"motion returned {faults.shown(motion)}, which is no NormalMotion")
+                raise TypeError(f"motion returned {shown(motion)}, which is no NormalMotion")
             return motion
     quantities = (*attrs.astuple(scene.pair), scene.normal_speed)
     if scene.shape and all(isinstance(quantity, float) for quantity in quantities):
@@ -212,7 +213,7 @@ class _Solver:
             self.ends[ended] = left + cut[ended] * (right - left)
         force, radius, _, load = np.moveaxis(contacts, 1, 0)
         if not np.isfinite(contacts[:, (0, 1, 3)][..., law.active]).all():
-            raise law.fault(Status.NON_FINITE, f"the answer {faults.shown(force.max())}")
+            raise law.fault(Status.NON_FINITE, f"the answer {shown(force.max())}")
         approach, rate = law.in_si(dense)
         width = (right - left) * (1.0 if cut is None else cut) * law.unit
         gained = nodes.integral @ load * width

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab import batch, faults
+from contactlab.checks import shown
 from contactlab.closed_forms import hertz_scales
 from contactlab.contracts.normal import NormalContact, NormalLaw
 from contactlab.scene import Scene
@@ -110,7 +111,7 @@ class ScaledNormalLaw:
                 else:
                     contact, state = self.law.respond(self.state, approach.item(), rate.item())
             if not isinstance(contact, NormalContact):
-                raise TypeError(f"respond gave {faults.shown(contact)}, not a NormalContact")
+                raise TypeError(f"respond gave {shown(contact)}, not a NormalContact")
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a plug-in may not end the process
@@ -118,7 +119,7 @@ class ScaledNormalLaw:
         for entry in contact:
             usual = type(entry) is float or entry is None
             if not usual and faults.malformed(entry, self.shape):
-                raise self.fault(Status.MALFORMED, f"the answer {faults.shown(entry)}")
+                raise self.fault(Status.MALFORMED, f"the answer {shown(entry)}")
         return contact, state
 
     def _one_an_item(self, entry: Any) -> Any:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
-from contactlab import faults
+from contactlab import batch, faults
 from contactlab.checks import Real, Rule, quantity
 from contactlab.contracts import (
     Integrator,
@@ -84,43 +84,27 @@ class Adaptive(Integrator):
         law = tangential
         assert isinstance(law, SteppedTangentialLaw)
 
-        def even(normal: NormalMotion, scene: Scene, count: int) -> TangentialMotion:
-            return self._from(normal, law, scene, count)
+        def even(normal: NormalMotion, count: int) -> TangentialMotion:
+            first = _march(normal, law, count)
+            second = _march(normal, law, 2 * count) if _succeeded(first) else first
+            if not _succeeded(second):
+                return second
+            return self._doubled(normal, law, 4 * count, (first, second), 3 * count)
 
         try:
             with faults.blaming(law):
-                needed = needed_steps(normal, law, scene)
-            motion = in_groups(normal, scene, FIRST, needed, refined(FIRST, needed), even)
+                needed = needed_steps(normal, law)
+            motion = in_groups(normal, FIRST, needed, refined(FIRST, needed), even)
             if observer is not None:
-                _march(normal, law, scene, motion.counters.get("steps", FIRST), observer)
+                _march(normal, law, motion.counters.get("steps", FIRST), observer)
         except faults.LawFaultError as fault:
             return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
         return motion
-
-    def _from(
-        self, normal: NormalMotion, law: SteppedTangentialLaw, scene: Scene, count: int
-    ) -> TangentialMotion:
-        """Return the motion of impacts that all begin with ``count`` steps.
-
-        Parameters
-        ----------
-        normal : NormalMotion
-        law : SteppedTangentialLaw
-        scene : Scene
-        count : int
-        """
-        first = _march(normal, law, scene, count)
-        second = _march(normal, law, scene, 2 * count) if _succeeded(first) else first
-        if not _succeeded(second):
-            return second
-        tried = 3 * count
-        return self._doubled(normal, law, scene, 4 * count, (first, second), tried)
 
     def _doubled(
         self,
         normal: NormalMotion,
         law: SteppedTangentialLaw,
-        scene: Scene,
         count: int,
         before: tuple[TangentialMotion, TangentialMotion],
         tried: int,
@@ -131,44 +115,33 @@ class Adaptive(Integrator):
         ----------
         normal : NormalMotion
         law : SteppedTangentialLaw
-        scene : Scene
         count : int
         before : tuple of two TangentialMotion
             With a quarter and with half the steps.
         tried : int
             Steps taken before, for the counters.
         """
-        last = _march(normal, law, scene, count)
+        shape = normal.scene.shape
         counters = {"steps": count, "evaluations": tried + count}
-        last = attrs.evolve(last, counters=counters)
+        last = attrs.evolve(_march(normal, law, count), counters=counters)
         if not _succeeded(last):
             return last
-        left, allowed = self._error(*before, last), self._allowed(scene)
+        left, allowed = self._error(*before, last), self._allowed(normal.scene)
         open_: Any = np.asarray(~(left <= allowed))
         if not open_.any():
             return last
         if 2 * count > MOST_STEPS:
             sentence = f"After {count} steps psi2 still changes by more than the tolerance."
             return last.failing(open_, Status.UNRESOLVED, sentence)
-        if not scene.shape or open_.all():
-            return self._doubled(normal, law, scene, 2 * count, (before[1], last), tried + count)
-
-        def some(motion: TangentialMotion) -> TangentialMotion:
-            return TangentialMotion(
-                slip_velocity_change=np.asarray(motion.slip_velocity_change)[open_],
-                friction_work=np.asarray(motion.friction_work)[open_],
-            )
-
-        finer = self._doubled(
-            normal.take(open_), law, scene.take(open_), 2 * count, (some(before[1]), some(last)), 0
-        )
-        merged = TangentialMotion.merged(((np.ones_like(open_), last), (open_, finer)), scene.shape)
+        if not shape or open_.all():
+            return self._doubled(normal, law, 2 * count, (before[1], last), tried + count)
+        middle, fine = (batch.taken(motion, shape, open_) for motion in (before[1], last))
+        finer = self._doubled(normal.take(open_), law, 2 * count, (middle, fine), 0)
+        merged = TangentialMotion.merged(((np.ones_like(open_), last), (open_, finer)), shape)
+        # The most steps that any impact took, and all evaluations.
+        evaluations = counters["evaluations"] + finer.counters["evaluations"]
         return attrs.evolve(
-            merged,
-            counters={
-                "steps": finer.counters["steps"],  # the most that any impact took
-                "evaluations": counters["evaluations"] + finer.counters["evaluations"],
-            },
+            merged, counters={"steps": finer.counters["steps"], "evaluations": evaluations}
         )
 
     def _allowed(self, scene: Scene) -> Any:
@@ -193,11 +166,7 @@ def _succeeded(motion: TangentialMotion) -> bool:
 
 
 def _march(
-    normal: NormalMotion,
-    law: SteppedTangentialLaw,
-    scene: Scene,
-    count: int,
-    observer: Observer | None = None,
+    normal: NormalMotion, law: SteppedTangentialLaw, count: int, observer: Observer | None = None
 ) -> TangentialMotion:
     """Return the motion in ``count`` steps, each sampled in its middle.
 
@@ -205,10 +174,9 @@ def _march(
     ----------
     normal : NormalMotion
     law : SteppedTangentialLaw
-    scene : Scene
     count : int
     observer : callable, optional
     """
     with faults.blaming(normal.law):
         steps = midpoints(normal, count)
-    return march(normal, law, scene, steps, observer)
+    return march(normal, law, steps, observer)

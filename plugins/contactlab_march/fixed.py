@@ -42,15 +42,16 @@ MOST_STEPS = 2_000_000
 RAISE = 1.25
 
 #: The march of impacts that all take the same number of steps.
-EvenMarch = Callable[[NormalMotion, Scene, int], TangentialMotion]
+EvenMarch = Callable[[NormalMotion, int], TangentialMotion]
 
 
-def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene) -> Any:
+def needed_steps(normal: NormalMotion, law: TangentialLaw) -> Any:
     """Return the least number of steps an impact that resolve omega = sqrt(stiffness/mass).
 
     A float, or an array of the batch shape; ``LEAST_STEPS`` for a law without stiffness.
     """
     assert isinstance(law, SteppedTangentialLaw)
+    scene = normal.scene
     omega = np.sqrt(law.stiffness(scene, normal) / scene.pair.tangential_mass)
     radians = omega * normal.duration
     steps = radians / LARGEST_PHASE_STEP
@@ -79,14 +80,13 @@ def refusal(steps: int, needed: float) -> str:
 
 
 def in_groups(
-    normal: NormalMotion, scene: Scene, steps: int, needed: Any, taken: Any, even: EvenMarch
+    normal: NormalMotion, steps: int, needed: Any, taken: Any, even: EvenMarch
 ) -> TangentialMotion:
     """Return the motion of impacts, each marched in the steps that it would take alone.
 
     Parameters
     ----------
     normal : NormalMotion
-    scene : Scene
     steps : int
         Asked for, for the refusal.
     needed, taken : float or array
@@ -94,10 +94,10 @@ def in_groups(
     even : callable
         Marches impacts that take the same number of steps.
     """
-    shape = scene.shape
+    shape = normal.scene.shape
     possible = (needed <= taken) & (taken <= MOST_STEPS)
     if np.all(possible) and np.min(taken) == np.max(taken):
-        return even(normal, scene, int(np.max(taken)))
+        return even(normal, int(np.max(taken)))
     if not shape:
         return TangentialMotion.nothing(shape, Status.TOO_FEW_STEPS, refusal(steps, needed))
     taken = np.broadcast_to(np.where(possible, taken, 0), shape)
@@ -106,7 +106,7 @@ def in_groups(
     for number in np.unique(taken).tolist():
         where = taken == number
         if number:
-            motion = even(normal.take(where), scene.take(where), int(number))
+            motion = even(normal.take(where), int(number))
         else:
             detail = [refusal(steps, least) for least in needed[where].tolist()]
             motion = TangentialMotion.nothing((len(detail),), Status.TOO_FEW_STEPS, detail)
@@ -138,23 +138,25 @@ class FixedSteps(Integrator):
     def divide(self, normal: NormalMotion, count: int) -> Steps:
         """Return ``count`` steps of a normal motion."""
 
+    def _taken(self, needed: Any) -> Any:
+        """Return how many steps each impact takes, more than ``steps`` where those are too few."""
+        return refined(self.steps, needed) if self.refine else float(self.steps)
+
     def resolution_for(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return how many steps each impact takes, more than ``steps`` where those are too few."""
-        if not self.refine:
-            return float(self.steps)
-        steps: Real = refined(self.steps, needed_steps(normal, tangential, scene))
+        steps: Real = self._taken(needed_steps(normal, tangential))
         return steps
 
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return what the tangential law declares for as many steps."""
-        steps: Any = self.resolution_for(normal, tangential, scene)
+        steps: Any = self._taken(needed_steps(normal, tangential))
         return tangential.psi2_error(scene, normal, steps)
 
     def remarks(
         self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
     ) -> tuple[str, ...]:
         """Return a sentence where the steps are too few: what is taken instead, or needed."""
-        needed = needed_steps(normal, tangential, scene)
+        needed = needed_steps(normal, tangential)
         most = float(np.nanmax(needed))
         if most <= self.steps:
             return ()
@@ -179,17 +181,16 @@ class FixedSteps(Integrator):
         law = tangential
         assert isinstance(law, SteppedTangentialLaw)
 
-        def even(normal: NormalMotion, scene: Scene, number: int) -> TangentialMotion:
+        def even(normal: NormalMotion, number: int) -> TangentialMotion:
             with faults.blaming(normal.law):
                 steps = self.divide(normal, number)
-            return march(normal, law, scene, steps, observer)
+            return march(normal, law, steps, observer)
 
         try:
             with faults.blaming(law):
-                needed = needed_steps(normal, law, scene)
+                needed = needed_steps(normal, law)
             if observer is not None:
                 needed = float(np.max(needed))
-            taken = refined(self.steps, needed) if self.refine else float(self.steps)
-            return in_groups(normal, scene, self.steps, needed, taken, even)
+            return in_groups(normal, self.steps, needed, self._taken(needed), even)
         except faults.LawFaultError as fault:
             return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)

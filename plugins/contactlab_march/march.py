@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from contactlab import faults
 from contactlab.batch import filled, locked, spread
-from contactlab.checks import Real
+from contactlab.checks import Real, shown
 from contactlab.contracts import (
     AllStepsResponse,
     AllStepsTangentialLaw,
@@ -29,11 +30,7 @@ from contactlab_march.division import one_by_one
 
 
 def march(
-    normal: NormalMotion,
-    law: SteppedTangentialLaw,
-    scene: Scene,
-    steps: Steps,
-    observer: Observer | None,
+    normal: NormalMotion, law: SteppedTangentialLaw, steps: Steps, observer: Observer | None
 ) -> TangentialMotion:
     """Return the tangential motion along ``steps``: all at once if the law can, else one by one.
 
@@ -41,31 +38,24 @@ def march(
     ----------
     normal : NormalMotion
     law : SteppedTangentialLaw
-    scene : Scene
     steps : Steps
+        Of the normal motion.
     observer : callable or None
     """
     if (complaint := _unsound(normal, steps)) is not None:
-        return _ended(scene, law, math.nan, math.nan, Status.NON_FINITE, complaint, 0)
+        return TangentialMotion.nothing(normal.scene.shape, Status.NON_FINITE, complaint)
     if observer is None and isinstance(law, AllStepsTangentialLaw):
-        motion = _all_at_once(normal, law, scene, steps)
+        motion = _all_at_once(normal, law, steps)
         if motion is not None:
             return motion
-    return _one_by_one(normal, law, scene, steps, observer)
+    return _one_by_one(normal, law, steps, observer)
 
 
 def _all_at_once(
-    normal: NormalMotion, law: AllStepsTangentialLaw, scene: Scene, steps: Steps
+    normal: NormalMotion, law: AllStepsTangentialLaw, steps: Steps
 ) -> TangentialMotion | None:
-    """Return the tangential motion from a law that takes all steps in one call, if it does.
-
-    Parameters
-    ----------
-    normal : NormalMotion
-    law : AllStepsTangentialLaw
-    scene : Scene
-    steps : Steps
-    """
+    """Return the tangential motion from a law that takes all steps in one call, if it does."""
+    scene = normal.scene
     try:
         with faults.blaming(law):
             response = law.advance_all(scene, normal, steps)
@@ -76,37 +66,34 @@ def _all_at_once(
             force, count = response.force, len(response.force)
             kick = steps.kick[:count] / scene.pair.tangential_mass
             change = -np.einsum("k...,k...->...", force, kick)  # makes no table of products
-    except faults.LawFaultError as fault:
-        return _ended(scene, law, math.nan, math.nan, fault.status, fault.detail, 0)
-    status, detail = Status.SUCCESS, ""
+    except faults.LawFaultError as found:
+        return TangentialMotion.nothing(scene.shape, found.status, found.detail)
+    fault = None
     if response.settled is not True and not np.all(response.settled):
-        status, detail = Status.UNSETTLED, faults.sentence(law, "no division found", count + 1)
+        detail = faults.sentence(law, "no division found", count + 1)
+        fault = faults.LawFaultError(Status.UNSETTLED, detail)
     elif not np.isfinite(change).all():
         step = int((~np.isfinite(force)).reshape(count, -1).any(axis=1).argmax())
-        detail = faults.sentence(law, f"force {faults.shown(force[step])}", step + 1)
-        status = Status.NON_FINITE
-    return _ended(scene, law, change, response.friction_work, status, detail, count)
+        detail = faults.sentence(law, f"force {shown(force[step])}", step + 1)
+        fault = faults.LawFaultError(Status.NON_FINITE, detail)
+    return _ended(normal, law, change, response.friction_work, count, fault)
 
 
 def _malformed(response: AllStepsResponse, scene: Scene, steps: int) -> str | None:
     """Return what is wrong with an answer to all steps: its kind, or its shape."""
     force, work, settled = response
     if not isinstance(force, np.ndarray) or not force.ndim or faults.malformed(force, force.shape):
-        return f"the forces {faults.shown(force)}"
+        return f"the forces {shown(force)}"
     count = len(force)
     missing = count > steps or (count < steps and np.all(settled))
     if missing or force.shape[1:] != scene.shape:
         given = f"for {steps} steps of a scene of shape {scene.shape}"
         return f"forces of shape {force.shape} {given}"
-    return f"friction work {faults.shown(work)}" if faults.malformed(work, scene.shape) else None
+    return f"friction work {shown(work)}" if faults.malformed(work, scene.shape) else None
 
 
 def _one_by_one(
-    normal: NormalMotion,
-    law: SteppedTangentialLaw,
-    scene: Scene,
-    steps: Steps,
-    observer: Observer | None,
+    normal: NormalMotion, law: SteppedTangentialLaw, steps: Steps, observer: Observer | None
 ) -> TangentialMotion:
     """Return the tangential motion, the law asked in every step.
 
@@ -117,17 +104,17 @@ def _one_by_one(
     ----------
     normal : NormalMotion
     law : SteppedTangentialLaw
-    scene : Scene
     steps : Steps
     observer : callable or None
     """
-    single, initial, mass = not scene.shape, scene.slip_velocity, scene.pair.tangential_mass
-    shape = scene.shape
-    change: Real = 0.0 if single else np.zeros(scene.shape)
-    work: Real = 0.0 if single else np.zeros(scene.shape)
+    scene = normal.scene
+    shape, initial, mass = scene.shape, scene.slip_velocity, scene.pair.tangential_mass
+    single = not shape
+    change: Real = 0.0 if single else np.zeros(shape)
+    work: Real = 0.0 if single else np.zeros(shape)
     nothing = 0.0 * change
     before = NormalContact(nothing, nothing, nothing, nothing)
-    status, what, count = Status.SUCCESS, "", 0
+    fault, count = None, 0
     velocity: Real = locked(initial)
     time: Real = 0.0
     try:
@@ -142,63 +129,64 @@ def _one_by_one(
             response, state = law.advance(state, increment, before, contact)
             force, lost = response.force, response.friction_work
             if not (single and isinstance(force, float) and isinstance(lost, float)):
-                status, what = _checked(shape, force, lost)
-                if status is not Status.SUCCESS:
-                    break
+                for answer in (force, lost):
+                    if faults.malformed(answer, shape):
+                        raise faults.LawFaultError(Status.MALFORMED, f"the answer {shown(answer)}")
             slowed = force * (step.kick / mass)
             change = change - slowed
             work = work + lost
             before = contact
             if observer is not None:
-                observer(_sample(step, velocity - 0.5 * slowed, force, law, state))
+                middle, fields = velocity - 0.5 * slowed, partial(law.fields, state)
+                moment = step.time, step.approach, step.rate
+                observer(Sample(*moment, contact, middle, force, fields))
             velocity = initial + change
             if response.settled is not True and not np.all(response.settled):
-                status, what = Status.UNSETTLED, "no division found"
-            elif not (math.isfinite(force) if single else np.isfinite(force).all()):
-                status, what = Status.NON_FINITE, f"force {faults.shown(force)}"
-            if status is not Status.SUCCESS:
-                break
+                raise faults.LawFaultError(Status.UNSETTLED, "no division found")
+            if not (math.isfinite(force) if single else np.isfinite(force).all()):
+                raise faults.LawFaultError(Status.NON_FINITE, f"force {shown(force)}")
     except KeyboardInterrupt:
         raise
+    except faults.LawFaultError as found:
+        sentence = faults.sentence(law, found.detail, count, time)
+        fault = faults.LawFaultError(found.status, sentence)
     except BaseException as error:  # a plug-in may not end the process
-        status, what = Status.LAW_RAISED, faults.raised(error)
-    if status is Status.SUCCESS:
-        return _ended(scene, law, change, work, status, "", count)
-    return _ended(scene, law, change, work, status, faults.sentence(law, what, count, time), count)
-
-
-def _checked(shape: tuple[int, ...], *answers: Real) -> tuple[Status, str]:
-    """Return what is wrong with a law's answers if they are not real numbers of the right shape."""
-    for answer in answers:
-        if faults.malformed(answer, shape):
-            return Status.MALFORMED, f"the answer {faults.shown(answer)}"
-    return Status.SUCCESS, ""
+        sentence = faults.sentence(law, faults.raised(error), count, time)
+        fault = faults.LawFaultError(Status.LAW_RAISED, sentence)
+    return _ended(normal, law, change, work, count, fault)
 
 
 def _ended(
-    scene: Scene, law: Law, change: Real, work: Real, status: Status, detail: str, count: int
+    normal: NormalMotion,
+    law: Law,
+    change: Real,
+    work: Real,
+    count: int,
+    fault: faults.LawFaultError | None,
 ) -> TangentialMotion:
     """Return the motion as it ended; friction work that is not finite is a failure too.
 
     Parameters
     ----------
-    scene : Scene
+    normal : NormalMotion
     law : Law
         Whose failure it is.
     change, work : float or array
         Change of slip velocity (m/s) and friction work (J).
-    status, detail : Status, str
     count : int
         Steps taken.
+    fault : LawFaultError or None
+        What ended it before separation.
     """
-    if status is Status.SUCCESS and not np.all(np.isfinite(work)):
-        status = Status.NON_FINITE
-        detail = faults.sentence(law, f"friction work {faults.shown(work)}", count)
+    if fault is None and not np.all(np.isfinite(work)):
+        detail = faults.sentence(law, f"friction work {shown(work)}", count)
+        fault = faults.LawFaultError(Status.NON_FINITE, detail)
+    shape = normal.scene.shape
     return TangentialMotion(
-        slip_velocity_change=spread(change, scene.shape),
-        friction_work=spread(work, scene.shape),
-        status=filled(status, scene.shape),
-        detail=detail,
+        slip_velocity_change=spread(change, shape),
+        friction_work=spread(work, shape),
+        status=filled(Status.SUCCESS if fault is None else fault.status, shape),
+        detail="" if fault is None else fault.detail,
         counters={"steps": count},
     )
 
@@ -213,32 +201,6 @@ def _unsound(normal: NormalMotion, steps: Steps) -> str | None:
         if not np.isfinite(column).all():
             bad = ~np.isfinite(column).reshape(len(column), -1).all(axis=1)
             count: int = int(bad.argmax())
-            what: Any = faults.shown(column[count])
+            what: Any = shown(column[count])
             return faults.sentence(normal.law, what, count + 1, steps.time[count])
     return None
-
-
-def _sample(
-    step: Steps, velocity: Real, force: Real, law: SteppedTangentialLaw, state: object
-) -> Sample:
-    """Return what an observer sees of a step.
-
-    Parameters
-    ----------
-    step : Steps
-        One of them.
-    velocity, force : float or array
-        Slip velocity (m/s) and tangential force (N) at the sample.
-    law : SteppedTangentialLaw
-    state : object
-        The law's, at the end of the step.
-    """
-    return Sample(
-        time=step.time,
-        approach=step.approach,
-        normal_velocity=step.rate,
-        contact=step.contact,
-        slip_velocity=velocity,
-        tangential_force=force,
-        fields=lambda: law.fields(state),
-    )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import checks, faults
+from contactlab import checks
 
 
 @pytest.mark.parametrize("value", [1, 7, np.int64(7), np.array(3)])
@@ -32,7 +32,7 @@ def test_a_word_that_is_no_choice_is_refused(word):
 
 
 def test_what_is_shown_of_an_answer_is_one_short_line():
-    assert faults.shown("x" * 58) == repr("x" * 58)
-    assert faults.shown("x" * 59) == "'" + "x" * 56 + "..."
-    assert faults.shown(np.zeros((3, 3))).count("\n") == 0
-    assert len(faults.shown(np.zeros(100))) == 60
+    assert checks.shown("x" * 78) == repr("x" * 78)
+    assert checks.shown("x" * 79) == "'" + "x" * 76 + "..."
+    assert checks.shown(np.zeros((3, 3))).count("\n") == 0
+    assert len(checks.shown(np.zeros(100))) == 80

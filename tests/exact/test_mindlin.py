@@ -154,7 +154,7 @@ def test_heavy_inertia_within_the_declared_error_from_the_first_steps_admitted(
     """
     law = contactlab.create("tangential.mindlin_cap")
     scene = Scene.nondimensional(psi1=psi1, chi=chi)
-    needed = int(needed_steps(Simulation().normal_motion(scene), law, scene))
+    needed = int(needed_steps(Simulation().normal_motion(scene), law))
 
     def fixed(steps):
         march = contactlab.create(f"integrator.{integrator}", steps=steps, refine=False)
