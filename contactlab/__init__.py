@@ -64,8 +64,8 @@ The modules, each of which imports from those above it only:
 ``labelled``          results with named axes: pandas, xarray
 ``quantities``        quantities of a result by name
 ``reading``           a result as titled tables
-``citations``         sources of laws, BibTeX
 ``options``           options of laws in words
+``citations``         sources of laws, BibTeX
 *around it*
 ``scene_file``        scenes in TOML
 ``analysis``          comparison, validation, stability, cost

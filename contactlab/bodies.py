@@ -14,6 +14,7 @@ from contactlab.checks import (
     POISSON,
     POSITIVE,
     Real,
+    instance,
     quantity,
     real,
     refuse,
@@ -103,16 +104,10 @@ class Material:
         return 2.0 * self.shear_modulus * (1.0 + self.poisson_ratio)
 
 
-def _is_material(_: object, attribute: attrs.Attribute[Material], value: object) -> None:
-    if not isinstance(value, Material):
-        remedy = "make one: Material(...)"
-        if isinstance(value, str):
-            remedy = f"by its name: Material.named({value!r})"
-        raise refuse(attribute.name, value, "must be a Material", remedy)
-
-
 def _material() -> Any:
-    return attrs.field(validator=_is_material)
+    return instance(
+        Material, remedy="make one, Material(...), or by its name: Material.named('steel')"
+    )
 
 
 @named_attributes

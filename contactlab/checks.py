@@ -243,46 +243,57 @@ def quantity(
     )
 
 
+def instance(*kinds: type, remedy: str = "", optional: bool = False, **field: Any) -> Any:
+    """Return an attrs field for an object of one of some classes; if optional, None too."""
+    rule = f"must be a {' or a '.join(kind.__name__ for kind in kinds)}"
+
+    def validate(_: object, field: attrs.Attribute[Any], value: object) -> None:
+        if not (isinstance(value, kinds) or (optional and value is None)):
+            raise refuse(field.name, value, rule, remedy)
+
+    return attrs.field(validator=validate, **field)
+
+
+def _option(checked: Callable[[str, object], Any], default: Any, **metadata: Any) -> Any:
+    """Return an attrs field whose value is ``checked(name, value)`` of what is given."""
+    return attrs.field(
+        default=default,
+        converter=attrs.Converter(
+            lambda value, field: checked(field.name, value), takes_field=True
+        ),
+        metadata={"unit": "", **metadata},
+    )
+
+
 def choice(*words: str, default: str) -> Any:
     """Return an attrs field for one of a few words."""
     rule = f"must be one of {', '.join(map(repr, words))}"
 
-    def checked(value: object, field: attrs.Attribute[Any]) -> str:
+    def checked(name: str, value: object) -> str:
         if not isinstance(value, str) or value not in words:
-            raise refuse(field.name, value, rule)
+            raise refuse(name, value, rule)
         return value
 
-    return attrs.field(
-        default=default,
-        converter=attrs.Converter(checked, takes_field=True),
-        metadata={"unit": "", "words": words, "range": rule},
-    )
+    return _option(checked, default, range=rule, words=words)
 
 
 def flag(*, default: bool) -> Any:
     """Return an attrs field for True or False."""
     rule = "must be True or False"
 
-    def checked(value: object, field: attrs.Attribute[Any]) -> bool:
+    def checked(name: str, value: object) -> bool:
         if not isinstance(value, bool):
-            raise refuse(field.name, value, rule)
+            raise refuse(name, value, rule)
         return value
 
-    return attrs.field(
-        default=default,
-        converter=attrs.Converter(checked, takes_field=True),
-        metadata={"unit": "", "range": rule},
-    )
+    return _option(checked, default, range=rule)
 
 
 def count(*, default: Any = attrs.NOTHING, least: int = 1, most: int = 10_000_000) -> Any:
     """Return an attrs field for a checked whole number."""
 
-    def checked(value: object, field: attrs.Attribute[Any]) -> int:
-        return whole(field.name, value, least=least, most=most)
+    def checked(name: str, value: object) -> int:
+        return whole(name, value, least=least, most=most)
 
-    return attrs.field(
-        default=default,
-        converter=attrs.Converter(checked, takes_field=True),
-        metadata={"unit": "1", "range": f"must be a whole number from {least} to {most}"},
-    )
+    rule = f"must be a whole number from {least} to {most}"
+    return _option(checked, default, range=rule, unit="1")

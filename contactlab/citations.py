@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import inspect
 import re
 from collections.abc import Iterable
 from importlib import metadata, resources
 from typing import Any
 
-#: The section of a NumPy docstring, to the next heading or the end.
-SECTION = re.compile(r"^References\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", re.MULTILINE | re.DOTALL)
+from contactlab.options import section
+
 DOI = re.compile(r"10\.\d{4,9}/[^\s,;}]+[^\s,;.}]")
 #: The year of a work, as sources in words have it.
 YEAR = re.compile(r"\b(?:19|20)\d\d(?=\))")
@@ -20,11 +19,8 @@ def references(law: Any) -> list[str]:
 
     The law may be given as its class.
     """
-    found = SECTION.search(inspect.getdoc(law if isinstance(law, type) else type(law)) or "")
-    if found is None:
-        return []
-    entries = re.split(r"\n\n+", found[1].strip())
-    return [" ".join(entry.split()) for entry in entries]
+    text = section(law if isinstance(law, type) else type(law), "References").strip()
+    return [" ".join(entry.split()) for entry in re.split(r"\n\n+", text) if entry]
 
 
 def software() -> str:

@@ -13,12 +13,13 @@ from contactlab import impulses
 from contactlab.attributes import named_attributes
 from contactlab.batch import filled
 from contactlab.bodies import Sphere
+from contactlab.calibration import RESTITUTION
 from contactlab.checks import Real, real, refuse
 from contactlab.collision_plan import by_rebound, collision_plan
 from contactlab.encounter import Encounter
 from contactlab.energy import EnergyLedger, books
 from contactlab.plan import Plan
-from contactlab.rebounds import RESTITUTION, damped
+from contactlab.rebounds import damped
 from contactlab.result import ImpactResult
 from contactlab.signatures import named_arguments
 from contactlab.simulation import Simulation

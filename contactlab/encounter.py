@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from contactlab import batch
 from contactlab.attributes import named_attributes
 from contactlab.bodies import HalfSpace, Pair, Sphere
-from contactlab.checks import NON_NEGATIVE, Real, quantity, refuse
-from contactlab.scene import Scene, is_sphere, is_target
+from contactlab.checks import NON_NEGATIVE, Real, instance, quantity, refuse
+from contactlab.scene import Scene
 from contactlab.signatures import named_arguments
-from contactlab.vectors import LEAST, components, difference, first_of, root, vector
+from contactlab.vectors import LEAST, components, difference, first_of, square_root, vector
 
 Array = NDArray[np.float64]
 
@@ -81,8 +81,8 @@ class Encounter:
         is not finite, a normal of length zero, the spin of a half-space.
     """
 
-    sphere: Sphere = attrs.field(validator=is_sphere)
-    target: Sphere | HalfSpace = attrs.field(validator=is_target)
+    sphere: Sphere = instance(Sphere, remedy="make one: Sphere(...)")
+    target: Sphere | HalfSpace = instance(HalfSpace, Sphere)
     friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE)
     normal: Array = vector("1")
     velocity: Array = vector("m/s")
@@ -93,9 +93,6 @@ class Encounter:
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
 
     def __attrs_post_init__(self) -> None:
-        for name, body in (("sphere", self.sphere), ("target", self.target)):
-            if body is None:
-                raise refuse(name, body, "must be given")
         shapes = {name: value.shape[:-1] for name, value in self._vectors().items()}
         shapes |= {name: getattr(value, "shape", ()) for name, value in self._numbers().items()}
         shape = batch.common_shape(
@@ -184,7 +181,7 @@ class Encounter:
         slip, each of three components; ``approach`` and ``slip``, speeds in m/s.
         """
         n1, n2, n3 = components(self.normal)
-        length = root(n1 * n1 + n2 * n2 + n3 * n3)
+        length = square_root(n1 * n1 + n2 * n2 + n3 * n3)
         n1, n2, n3 = n1 / length, n2 / length, n3 / length
         u1, u2, u3 = difference(self.velocity, self.target_velocity)
         approach = u1 * n1 + u2 * n2 + u3 * n3
@@ -192,7 +189,7 @@ class Encounter:
         u1 = u1 + (w2 * n3 - w3 * n2) - approach * n1
         u2 = u2 + (w3 * n1 - w1 * n3) - approach * n2
         u3 = u3 + (w1 * n2 - w2 * n1) - approach * n3
-        slip = root(u1 * u1 + u2 * u2 + u3 * u3)
+        slip = square_root(u1 * u1 + u2 * u2 + u3 * u3)
         one = 1.0 / (slip + (slip == 0.0))
         return Contact((n1, n2, n3), (u1 * one, u2 * one, u3 * one), approach, slip)
 

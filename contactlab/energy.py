@@ -102,17 +102,13 @@ def books(
         )
 
 
+@np.errstate(all="ignore")
 def balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
     """Return ``motion``, its status ``UNBALANCED`` where energy came from nothing, or went.
 
     That is where the books miss by more than ``bound``, over the energy at the start; and
     where the bodies part, or slip, faster than they met.
     """
-    with np.errstate(all="ignore"):
-        return _balanced(motion, scene, bound)
-
-
-def _balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
     fast: Any = np.abs(motion.normal_velocity) > LARGEST_RESTITUTION * scene.normal_speed
     if fast.any():
         rebound = np.abs(motion.normal_velocity) / scene.normal_speed

@@ -104,7 +104,7 @@ def write_json(result: ImpactResult, path: str | Path) -> None:
 def write_csv(result: ImpactResult, path: str | Path) -> None:
     """Write one row an impact, the unit in each heading."""
     table = columns(result)
-    headings = [heading(name, unit, result.scene) for name, unit, _ in table]
+    headings = [csv_heading(name, unit, result.scene) for name, unit, _ in table]
     cells = [_spread(values, result.scene.shape) for _, _, values in table]
     write_table(path, headings, list(zip(*cells, strict=True)))
 
@@ -121,7 +121,7 @@ def write_history_csv(result: ImpactResult, path: str | Path) -> None:
     if history is None or result.scene.shape:
         raise ValueError("result: has no history of a single impact; run(scene, history=True)")
     columns = history.columns()
-    headings = [heading(name, history.unit(name), result.scene) for name in columns]
+    headings = [csv_heading(name, history.unit(name), result.scene) for name in columns]
     write_table(path, headings, list(zip(*columns.values(), strict=True)))
 
 
@@ -153,7 +153,7 @@ def columns(result: ImpactResult) -> list[tuple[str, str, Any]]:
     return [(name, units[name], values) for name, values in varied.items()] + found
 
 
-def heading(name: str, unit: str, scene: Scene) -> str:
+def csv_heading(name: str, unit: str, scene: Scene) -> str:
     """Return the heading of a CSV column: its name, and its unit unless it holds words."""
     return f"{name} ({unit_in(unit, scene)})" if unit else name
 

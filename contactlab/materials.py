@@ -41,11 +41,7 @@ class Entry:
 
     def material(self) -> Material:
         """Return the material."""
-        return Material(
-            young_modulus=self.young_modulus,
-            poisson_ratio=self.poisson_ratio,
-            density=self.density,
-        )
+        return Material(**self.numbers())
 
     def numbers(self) -> dict[str, float]:
         """Return what a scene file says of a material, key to value."""

@@ -8,8 +8,6 @@ from typing import Any
 
 import attrs
 
-#: The section of a NumPy docstring, to the next heading or the end.
-SECTION = re.compile(r"^Parameters\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", re.MULTILINE | re.DOTALL)
 #: One name or several of the section, with what stands below.
 ENTRY = re.compile(r"^(\w+(?:, \w+)*)(?: : [^\n]*)?\n((?:(?: +[^\n]*)?\n)*)", re.MULTILINE)
 
@@ -48,14 +46,7 @@ class Option:
         default = None if needed else self.default
         if not isinstance(default, bool | int | float | str | None):
             default = repr(default)
-        return {
-            "name": self.name,
-            "default": default,
-            "needed": needed,
-            "unit": self.unit,
-            "rule": self.rule,
-            "meaning": self.meaning,
-        }
+        return {**attrs.asdict(self), "default": default, "needed": needed}
 
 
 def options(law: type) -> list[Option]:
@@ -83,11 +74,15 @@ def options(law: type) -> list[Option]:
 
 def meanings(law: type) -> dict[str, str]:
     """Return what the section Parameters of a class says of each name, as one line."""
-    section = SECTION.search((inspect.getdoc(law) or "") + "\n")
-    if section is None:
-        return {}
     return {
         name: " ".join(text.split())
-        for names, text in ENTRY.findall(section[1])
+        for names, text in ENTRY.findall(section(law, "Parameters"))
         for name in names.split(", ")
     }
+
+
+def section(law: type, title: str) -> str:
+    """Return what a section of a class's NumPy docstring says; nothing if there is none."""
+    text = (inspect.getdoc(law) or "") + "\n"
+    found = re.search(rf"^{title}\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", text, re.MULTILINE | re.DOTALL)
+    return found[1] if found else ""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.calibration import RESTITUTION
 from contactlab.checks import POSITIVE, Real, Rule, paired, real, refuse
 from contactlab.signatures import named_arguments
 
@@ -33,9 +34,6 @@ TABULATED_CHI, TABULATED = 2.5, 1e-9
 EXACT = 1e-9
 TOLERANCE = Rule(
     lambda value: (value >= 1e-9) & (value < 1.0), "must lie between 1e-9 and 1, of max(1, |psi1|)"
-)
-RESTITUTION = Rule(
-    lambda value: np.ndim(value) == 0 and 0.01 <= value <= 1.0, "must be one number from 0.01 to 1"
 )
 LARGEST_CHI = 1e4
 CHI = Rule(

@@ -12,7 +12,7 @@ import numpy as np
 from contactlab import batch
 from contactlab.attributes import named_attributes
 from contactlab.bodies import HalfSpace, Pair, Sphere
-from contactlab.checks import NON_NEGATIVE, POSITIVE, Real, Rule, quantity, real, refuse
+from contactlab.checks import NON_NEGATIVE, POSITIVE, Real, Rule, instance, quantity, real, refuse
 from contactlab.signatures import named_arguments
 
 if TYPE_CHECKING:
@@ -26,23 +26,6 @@ LEAST_IMPULSE = 1e-285
 OBLIQUE = Rule(
     lambda degrees: np.abs(degrees) < 90.0, "must lie between -90 and 90, measured from the normal"
 )
-
-
-def is_sphere(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
-    """Refuse what is neither a sphere nor None."""
-    if value is not None and not isinstance(value, Sphere):
-        raise refuse(attribute.name, value, "must be a Sphere", "make one: Sphere(...)")
-
-
-def is_target(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
-    """Refuse what is neither a target nor None."""
-    if value is not None and not isinstance(value, Sphere | HalfSpace):
-        raise refuse(attribute.name, value, "must be a HalfSpace or a Sphere")
-
-
-def _is_pair(_: object, attribute: attrs.Attribute[Any], value: object) -> None:
-    if value is not None and not isinstance(value, Pair):
-        raise refuse(attribute.name, value, "must be a Pair", "or leave it out")
 
 
 @named_attributes
@@ -77,14 +60,16 @@ class Scene:
         With the argument's name, if a number is not finite or out of range.
     """
 
-    sphere: Sphere | None = attrs.field(validator=is_sphere)
-    target: Sphere | HalfSpace | None = attrs.field(validator=is_target)
+    sphere: Sphere | None = instance(Sphere, remedy="make one: Sphere(...)", optional=True)
+    target: Sphere | HalfSpace | None = instance(HalfSpace, Sphere, optional=True)
     friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE)
     normal_speed: Real = quantity("m/s", rule=POSITIVE)
     tangential_velocity: Real = quantity("m/s", default=0.0)
     spin: Real = quantity("rad/s", default=0.0)
     # None only until the bodies are looked at, below.
-    pair: Pair = attrs.field(default=None, validator=_is_pair, kw_only=True, repr=False)
+    pair: Pair = instance(
+        Pair, remedy="or leave it out", optional=True, default=None, kw_only=True, repr=False
+    )
     #: Batch shape: () for one impact.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
 

@@ -89,7 +89,7 @@ def components(vectors: Array) -> tuple[Any, Any, Any]:
     return x, y, z
 
 
-def root(square: Any) -> Any:
+def square_root(square: Any) -> Any:
     """Return the square root of a plain number, as one, or of an array."""
     return math.sqrt(square) if isinstance(square, float) else np.sqrt(square)
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from contactlab.analysis.compare import Comparison
 from contactlab.analysis.scores import Score
-from contactlab.export import heading
+from contactlab.export import csv_heading
 from contactlab.json_values import json_value
 from contactlab.quantities import QUANTITIES
 from contactlab.scene_file.entries import entry_unit
@@ -76,7 +76,7 @@ def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO)
     """
     writer = csv.writer(stream, lineterminator="\n")
     others = dict(list(comparison.varied.items())[1:])
-    headings = [heading(name, entry_unit(name), comparison.scene) for name in others]
+    headings = [csv_heading(name, entry_unit(name), comparison.scene) for name in others]
     writer.writerow([*CSV_HEADINGS, *headings])
     for name in quantities:
         unit = QUANTITIES[name].unit_in(comparison.scene)

@@ -12,7 +12,7 @@ from contactlab.analysis.scores import Score
 from contactlab.cli.table import table
 from contactlab.export import COMPARISON_TABLE
 from contactlab.quantities import QUANTITIES
-from contactlab.reading import number, time
+from contactlab.reading import heading, number, time
 from contactlab.scene_file import SceneFile
 from contactlab.scene_file.entries import entry_unit
 
@@ -108,8 +108,7 @@ def _over_sweep(comparison: Comparison, quantity: str) -> str:
     columns += [comparison.values(quantity, law) for law in comparison.names]
     columns += [comparison.difference(quantity, law) for law in others]
     unit = QUANTITIES[quantity].unit_in(comparison.scene)
-    heading = f"{quantity} ({unit})" if unit != "1" else quantity
-    return f"{heading}:\n{table(headings, np.transpose(columns).tolist())}"
+    return f"{heading(quantity, unit)}:\n{table(headings, np.transpose(columns).tolist())}"
 
 
 def _points(agreement: Agreement) -> str:
@@ -120,9 +119,8 @@ def _points(agreement: Agreement) -> str:
     columns = [measured.x, measured.values, measured.error, *agreement.predicted.values()]
     columns += [agreement.difference(name) for name in names]
     rows = np.transpose(columns).tolist()
-    unit = QUANTITIES[measured.quantity].unit
-    heading = f"{measured.quantity} ({unit})" if unit != "1" else measured.quantity
-    return f"{heading}, measured: {measured.source}\n{table(headings, rows, digits=4)}"
+    title = heading(measured.quantity, QUANTITIES[measured.quantity].unit)
+    return f"{title}, measured: {measured.source}\n{table(headings, rows, digits=4)}"
 
 
 def _agreement(comparison: Comparison) -> str:

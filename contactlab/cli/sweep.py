@@ -24,7 +24,7 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.run import draw, report
 from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
 from contactlab.cli.table import table
-from contactlab.export import COLUMNS, WRITERS, heading
+from contactlab.export import COLUMNS, WRITERS, csv_heading
 from contactlab.reading import evenly, sweep_section
 from contactlab.result import ImpactResult
 from contactlab.scene import Scene
@@ -87,7 +87,7 @@ def execute(arguments: argparse.Namespace) -> int:
     varied = file.varied if file else {}
     if arguments.csv:
         units = {name: unit for name, unit, _ in COLUMNS}
-        print(",".join(heading(name, units[name], result.scene) for name in SHOWN))
+        print(",".join(csv_heading(name, units[name], result.scene) for name in SHOWN))
         for psi1, chi, psi2, status in _rows(result):
             print(f"{psi1!r},{chi!r},{psi2!r},{status}")
     elif not arguments.json:
