@@ -92,7 +92,8 @@ class Collision:
         if not isinstance(result, ImpactResult) or result.scene != encounter.scene:
             why = "must be the result of encounter.scene"
             raise refuse("result", result, why, "run that: simulation.run(encounter.scene)")
-        return _collision(encounter, _columns(encounter, result), known=result)
+        moved = impulses.moved(encounter, _columns(encounter, result))
+        return _collision(encounter, moved, known=result)
 
     def __repr__(self) -> str:
         """Return how many collided, and how it went."""
@@ -263,7 +264,9 @@ def collide(
         raise refuse("separating", separating, "must be 'refuse' or 'pass'")
     e = real("restitution", restitution, rule=RESTITUTION, remedy="leave it out for 1")
     if simulation is None:
-        return _collision(encounter, None, restitution=float(e), strict=separating == "refuse")
+        strict = separating == "refuse"
+        moved = impulses.moved(encounter, restitution=float(e), strict=strict)
+        return _collision(encounter, moved, restitution=float(e))
     if e != 1.0:
         remedy = "give it to the normal law: create('normal.tsuji', restitution=0.9)"
         raise refuse("restitution", restitution, "stands in place of a simulation", remedy)
@@ -271,10 +274,10 @@ def collide(
     if separating == "refuse" and not np.all(met):
         raise encounter.separate()
     if not np.any(met):
-        return _collision(encounter, None, simulation=simulation)
+        return _collision(encounter, impulses.moved(encounter), simulation=simulation)
     known = _run(simulation, (encounter if np.all(met) else encounter.take(met)).scene)
-    columns = _columns(encounter, known, met)
-    return _collision(encounter, columns, simulation=simulation, known=known)
+    moved = impulses.moved(encounter, _columns(encounter, known, met))
+    return _collision(encounter, moved, simulation=simulation, known=known)
 
 
 def _run(simulation: Simulation, scene: Any) -> ImpactResult:
@@ -291,30 +294,9 @@ def _columns(encounter: Encounter, result: ImpactResult, met: Any = True) -> Arr
     return found.reshape(3, -1)
 
 
-def _collision(
-    encounter: Encounter,
-    columns: Array | None,
-    *,
-    restitution: float = 1.0,
-    strict: bool = False,
-    **rest: Any,
-) -> Collision:
-    """Return the collision by these answers, or those of ``rebound``.
-
-    Parameters
-    ----------
-    encounter : Encounter
-    columns : array or None
-        Answers of a law, as ``impulses.moved`` takes them.
-    restitution : float
-        For ``rebound``.
-    strict : bool
-        Whether bodies that separate are refused.
-    **rest
-        The other entries of the collision.
-    """
-    made = impulses.moved(encounter, columns, restitution=restitution, strict=strict)
-    return Collision(encounter=encounter, restitution=restitution, **made._asdict(), **rest)
+def _collision(encounter: Encounter, moved: impulses.Moved, **rest: Any) -> Collision:
+    """Return the collision with both bodies after it; ``rest`` are its other entries."""
+    return Collision(encounter=encounter, **moved._asdict(), **rest)
 
 
 def _rim(body: Sphere, spin: Array, normal: Array) -> Array:

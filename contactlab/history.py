@@ -55,8 +55,7 @@ class History:
 
     def columns(self) -> dict[str, Array]:
         """Return the one-number-an-instant columns by name."""
-        names = [item.name for item in attrs.fields(History) if item.name != "fields"]
-        return {name: getattr(self, name) for name in names}
+        return {name: getattr(self, name) for name in _names()}
 
     def plot(self, *, axes: Axes | None = None, width: Width | None = None) -> Axes:
         """Draw the forces over time on ``axes``, or on a new figure of ``matplotlib.pyplot``.
@@ -71,6 +70,11 @@ class History:
     def unit(name: str) -> str:
         """Return the unit of a column."""
         return str(getattr(attrs.fields(History), name).metadata["unit"])
+
+
+def _names() -> list[str]:
+    """Return the names of the columns with one number an instant, in their order."""
+    return [item.name for item in attrs.fields(History) if item.name != "fields"]
 
 
 class Recorder:
@@ -92,26 +96,17 @@ class Recorder:
 
     def __call__(self, sample: Sample) -> None:
         """Keep one instant."""
-        self._rows.append(
-            (
-                sample.time,
-                sample.approach,
-                sample.normal_velocity,
-                sample.contact.force,
-                sample.contact.radius,
-                sample.slip_velocity,
-                sample.tangential_force,
-            )
-        )
+        time, approach, rate, contact, slip_velocity, force, _ = sample
+        row = (time, approach, rate, contact.force, contact.radius, slip_velocity, force)
+        self._rows.append(row)
         if self._with_fields:
             self._fields.append(dict(sample.fields()))
 
     def history(self) -> History:
         """Return what was recorded; no instants at all give arrays of length 0."""
-        names = [item.name for item in attrs.fields(History) if item.name != "fields"]
         columns = {}
-        for index, name in enumerate(names):
-            rows = [np.broadcast_to(np.asarray(row[index]), self._shape) for row in self._rows]
+        for index, name in enumerate(_names()):
+            rows = [np.broadcast_to(row[index], self._shape) for row in self._rows]
             columns[name] = np.array(rows, dtype=np.float64).reshape(len(rows), *self._shape)
         keys = self._fields[0] if self._fields else {}
         fields = {key: np.array([entry[key] for entry in self._fields]) for key in keys}

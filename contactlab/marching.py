@@ -12,35 +12,26 @@ from contactlab.batch import halves
 from contactlab.composition import Laws
 from contactlab.contracts.integrator import Observer, TangentialMotion
 from contactlab.contracts.motion import NormalMotion
-from contactlab.scene import Scene
 from contactlab.status import Status
 
 #: So many impacts of a batch that failed are tried one by one; more are halved first.
 FEW = 8
 
 
-def march(
-    laws: Laws, normal: NormalMotion, scene: Scene, observer: Observer | None = None
-) -> TangentialMotion:
+def march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) -> TangentialMotion:
     """Return the tangential motion; a failure within a batch costs the impacts that fail only.
 
-    Parameters
-    ----------
-    laws : Laws
-    normal : NormalMotion
-    scene : Scene
-    observer : callable, optional
-        Of a batch that is observed failures are not traced: it would be called again.
+    Of a batch that is observed failures are not traced: the observer would be called again.
     """
 
     def part(index: Any) -> TangentialMotion:
-        return march(laws, normal.take(index), scene.take(index))
+        return march(laws, normal.take(index))
 
-    shape = scene.shape
+    shape = normal.scene.shape
     size = math.prod(shape)
     if shape and size == 1 and observer is None:  # one impact is faster as plain numbers
         return TangentialMotion.joined([part((0,) * len(shape))], shape)
-    motion, raised = _attempt(laws, normal, scene, observer)
+    motion, raised = _attempt(laws, normal, observer)
     if not shape or observer or np.all(motion.status == Status.SUCCESS):
         return motion
     if laws.integrator.own_statuses and not raised:
@@ -50,17 +41,10 @@ def march(
 
 
 def _attempt(
-    laws: Laws, normal: NormalMotion, scene: Scene, observer: Observer | None
+    laws: Laws, normal: NormalMotion, observer: Observer | None
 ) -> tuple[TangentialMotion, bool]:
-    """Return the motion, and whether the integrator raised instead of returning one.
-
-    Parameters
-    ----------
-    laws : Laws
-    normal : NormalMotion
-    scene : Scene
-    observer : callable or None
-    """
+    """Return the motion, and whether the integrator raised instead of returning one."""
+    scene = normal.scene
     try:
         # Where a user has asked for errors of underflow: small numbers may vanish here.
         with np.errstate(under="ignore"):

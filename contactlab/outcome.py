@@ -73,7 +73,7 @@ def outcome(
         return Plan.nothing(shape), Motion.nothing(shape, fault.status, fault.detail)
     if isinstance(prepared.normal, FailedMotion) and math.prod(shape) > 1:
         return _by_halves(laws, scene)
-    tangential = _tangential(laws, scene, prepared, recorder)
+    tangential = _tangential(laws, prepared, recorder)
     motion = sound(Motion.along(prepared.normal, tangential))
     # What the books may miss by: the law's own bound, and the integrator's share.
     bound = laws.tangential.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
@@ -111,22 +111,12 @@ def _by_halves(laws: Laws, scene: Scene) -> tuple[Plan, Motion]:
     return Plan.joined(plans, shape), Motion.joined(motions, shape)
 
 
-def _tangential(
-    laws: Laws, scene: Scene, prepared: Prepared, recorder: Recorder | None
-) -> TangentialMotion:
-    """Return the tangential motion: what is known as a whole, and the rest marched.
-
-    Parameters
-    ----------
-    laws : Laws
-    scene : Scene
-    prepared : Prepared
-    recorder : Recorder or None
-    """
+def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> TangentialMotion:
+    """Return the tangential motion: what is known as a whole, and the rest marched."""
     normal, known, plan = prepared
-    shape, marched = scene.shape, plan.marched
+    shape, marched = normal.scene.shape, plan.marched
     if marched.all():
-        return march(laws, normal, scene, recorder)
+        return march(laws, normal, recorder)
     if recorder is not None and not marched.any():
         show(normal, known, recorder)
     if not shape:
@@ -142,7 +132,7 @@ def _tangential(
     parts: list[tuple[Any, TangentialMotion]] = [(np.ones(shape, dtype=bool), nothing)]
     parts += [(answer.where, _answered(answer, shape)) for answer in known]
     if marched.any():
-        parts.append((marched, march(laws, normal.take(marched), scene.take(marched))))
+        parts.append((marched, march(laws, normal.take(marched))))
     return TangentialMotion.merged(parts, shape)
 
 

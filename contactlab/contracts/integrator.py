@@ -6,7 +6,7 @@ import math
 from abc import abstractmethod
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
+from functools import cache
 from typing import Any, ClassVar, NamedTuple, Self, TypeAlias
 
 import attrs
@@ -89,11 +89,12 @@ class TangentialMotion:
             object.__setattr__(self, "detail", details)
 
     @classmethod
+    @cache
     def numbers(cls) -> tuple[str, ...]:
         """Return the names of the entries that are numbers."""
-        kind: Any = cls
-        names: tuple[str, ...] = _numbers(kind)
-        return names
+        fields: Any = attrs.fields(cls)
+        others = ("status", "detail", "counters")
+        return tuple(field.name for field in fields if field.name not in others)
 
     @classmethod
     def joined(cls, motions: Sequence[Self], shape: tuple[int, ...]) -> Self:
@@ -182,12 +183,6 @@ class TangentialMotion:
         return attrs.evolve(
             self, status=statuses, detail=np.where(fallen, detail, self.detail).astype(object)
         )
-
-
-@lru_cache
-def _numbers(kind: Any) -> tuple[str, ...]:
-    others = ("status", "detail", "counters")
-    return tuple(field.name for field in attrs.fields(kind) if field.name not in others)
 
 
 class Integrator(Law):
