@@ -65,7 +65,7 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
         if not one.shape:  # the impacts of the batch differ in their tangential motion only
             common = normal_motion(law, one)
             assert isinstance(common, SolvedMotion)
-            return common.of_batch(scene)
+            return SolvedMotion(law, scene, common.table)
     with np.errstate(all="ignore"):
         return _Solver(law, scene).solve()
 

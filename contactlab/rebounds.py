@@ -175,17 +175,14 @@ def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
 
 def _damped(psi1: Array, chi: Array, restitution: float) -> Array:
     """Return psi2, shape (impacts,), under Tsuji's law: from the table, elsewhere by springs."""
-    from contactlab.scene import Scene
-
     psi2, left = np.empty_like(psi1), np.ones(psi1.shape, dtype=bool)
     table = _table(DAMPED)
     if table is not None and restitution >= DAMPED_RESTITUTION:
         known = (chi >= DAMPED_CHI[0]) & (chi <= DAMPED_CHI[1])
         psi2[known], left = table(psi1[known], chi[known], restitution), ~known
     if left.any():
-        speed = np.minimum(np.abs(psi1[left]), LARGEST)  # as for the exact solution, below
-        result = damped(restitution).sweep(Scene.nondimensional(psi1=speed, chi=chi[left])).check()
-        psi2[left] = np.copysign(1.0, psi1[left]) * (np.abs(psi1[left]) + result.psi_change)
+        change = _change(damped(restitution), psi1[left], chi[left])
+        psi2[left] = np.copysign(1.0, psi1[left]) * (np.abs(psi1[left]) + change)
     return psi2
 
 
@@ -219,15 +216,20 @@ def _installed(name: str) -> Callable[..., Any] | None:
 def _exact(psi1: Array, chi: Array) -> Array:
     """Return psi2, shape (impacts,), without any table: the exact solution for abs(psi1)."""
     from contactlab.registry import REGISTRY  # no law before it is needed
-    from contactlab.scene import Scene
     from contactlab.simulation import Simulation
 
     integrator = REGISTRY.create("integrator.events", tolerance=EXACT)
-    exact = Simulation(tangential="fronts", integrator=integrator)
     speed = np.abs(psi1)
-    # Beyond, the energy of slip may not fit into a float.
-    scene = Scene.nondimensional(psi1=np.minimum(speed, LARGEST), chi=chi)
-    change = np.asarray(exact.sweep(scene).check().psi_change)
+    change = _change(Simulation(tangential="fronts", integrator=integrator), psi1, chi)
     # no impact gains energy, nor more impulse than full slip gives: not even by an error
     change = np.clip(change, np.maximum(-2.0 * speed, -4.0 * chi), 0.0)
     return np.asarray(np.copysign(1.0, psi1) * (speed + change))
+
+
+def _change(simulation: Simulation, psi1: Array, chi: Array) -> Array:
+    """Return psi2 - psi1 of impacts, shape (impacts,), for abs(psi1)."""
+    from contactlab.scene import Scene
+
+    # Beyond, the energy of slip may not fit into a float.
+    scene = Scene.nondimensional(psi1=np.minimum(np.abs(psi1), LARGEST), chi=chi)
+    return np.asarray(simulation.sweep(scene).check().psi_change)

@@ -139,10 +139,6 @@ class SolvedMotion(NormalMotion):
             table = table.take(np.arange(math.prod(table.shape)).reshape(table.shape)[part])
         return SolvedMotion(self.law, scene, table)
 
-    def of_batch(self, scene: Scene) -> SolvedMotion:
-        """Return the same motion for all impacts of ``scene``."""
-        return SolvedMotion(self.law, scene, self.table)
-
 
 def _radius(squared: Array) -> Array:
     """Return the contact radius; interpolation may leave its square below zero."""

@@ -35,7 +35,8 @@ def unit_slips(scene: Scene) -> list[str]:
             found += _of_sphere(name, body)
         modulus = body.material.shear_modulus
         if _least(modulus) < LEAST_MODULUS:
-            found.append(_told(f"{name}.material.shear_modulus", _least(modulus), "Pa", "GPa"))
+            told = f"{name}.material.shear_modulus = {_least(modulus):.4g} Pa"
+            found.append(f"unit: {told}: is it in GPa?")
         elif _most(modulus) > MOST_MODULUS:
             told = f"{name}.material.shear_modulus = {_most(modulus):.4g} Pa: stiffer than diamond"
             found.append(f"unit: {told}; moduli are in Pa")
@@ -48,10 +49,11 @@ def unit_slips(scene: Scene) -> list[str]:
 
 def _of_sphere(name: str, body: Sphere) -> list[str]:
     if _most(body.radius) >= LARGE_RADIUS:
-        return [_told(f"{name}.radius", _most(body.radius), "m", "mm")]
+        return [f"unit: {name}.radius = {_most(body.radius):.4g} m: is it in mm?"]
     density = body.material.density
     if density is not None and _least(density) < LEAST_DENSITY:
-        return [_told(f"{name}.material.density", _least(density), "kg/m³", "g/cm³")]
+        told = f"{name}.material.density = {_least(density):.4g} kg/m³"
+        return [f"unit: {told}: is it in g/cm³?"]
     with np.errstate(all="ignore"):
         mean = np.divide(body.mass, 4.0 / 3.0 * math.pi * np.power(body.radius, 3))
     if _most(mean) > MOST_DENSITY:
@@ -84,23 +86,6 @@ def _of_angle(scene: Scene) -> list[str]:
         return []
     told = f"angle of incidence {angle_deg:.6g}°: {round_one:g}° are as many radians"
     return [f"unit: {told}; angle_deg is in degrees"]
-
-
-def _told(name: str, value: float, unit: str, meant: str) -> str:
-    """Return the remark on a number that looks as if in another unit.
-
-    Parameters
-    ----------
-    name : str
-        Of the quantity.
-    value : float
-        The most suspect one, in ``unit``.
-    unit : str
-        What the number was taken for.
-    meant : str
-        What it looks like.
-    """
-    return f"unit: {name} = {value:.4g} {unit}: is it in {meant}?"
 
 
 def _least(value: Any) -> float:
