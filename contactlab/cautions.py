@@ -67,7 +67,7 @@ def coupling(scene: Scene) -> tuple[str, ...]:
     )
 
 
-def vectors(scene: Scene) -> tuple[str, ...]:
+def three_numbers(scene: Scene) -> tuple[str, ...]:
     """Return the caution of three numbers, all else being one, that may be meant for a vector."""
     if scene.shape != (3,) or scene.sphere is None:
         return ()

@@ -30,7 +30,7 @@ TRIES = 2
 MODULE_REMEDY = "define its class at the top of a module that can be imported"
 
 
-class Answer(NamedTuple):
+class Reply(NamedTuple):
     """What a worker sends back: a piece and whose it is, or why there is none."""
 
     piece: Piece | None
@@ -72,8 +72,8 @@ def pieces_of(
             "such as contactlab.workers.Workers(4), or client.get_executor() of dask",
         )
     laws, versions = _sent(simulation), _versions(simulation)
-    waiting: dict[Future[Answer], Chunk] = {}
-    finished: SimpleQueue[Future[Answer]] = SimpleQueue()
+    waiting: dict[Future[Reply], Chunk] = {}
+    finished: SimpleQueue[Future[Reply]] = SimpleQueue()
     lost: Counter[Chunk] = Counter()
     with contextlib.ExitStack() as stack:
         stack.callback(lambda: [future.cancel() for future in waiting])
@@ -82,13 +82,13 @@ def pieces_of(
             nonlocal executor
             part = pickle.dumps(scene.take(slice(*chunk)))
             try:
-                future = executor.submit(answer, laws, part, chunk, block)
+                future = executor.submit(reply, laws, part, chunk, block)
             except BrokenExecutor as error:
                 told = "the executor takes no more work; the rest goes through one process"
                 warnings.warn(f"{told} ({short(error)})", RuntimeWarning, stacklevel=5)
                 executor = Workers(1)
                 stack.callback(executor.shutdown, cancel_futures=True)
-                future = executor.submit(answer, laws, part, chunk, block)
+                future = executor.submit(reply, laws, part, chunk, block)
             waiting[future] = chunk
             future.add_done_callback(finished.put)
 
@@ -112,8 +112,8 @@ def pieces_of(
             yield _checked(found, versions, executor)
 
 
-def answer(laws: bytes, part: bytes, chunk: Chunk, block: int) -> Answer:
-    """Return a worker's answer to a chunk; this is what executors are given to call.
+def reply(laws: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
+    """Return a worker's reply to a chunk; this is what executors are given to call.
 
     Parameters
     ----------
@@ -125,16 +125,16 @@ def answer(laws: bytes, part: bytes, chunk: Chunk, block: int) -> Answer:
     try:
         simulation, scene = pickle.loads(laws), _locked(pickle.loads(part))
     except Exception as error:
-        return Answer(None, {}, short(error), None)
+        return Reply(None, {}, short(error), None)
     try:
         piece = solved(simulation, scene, chunk, block)
     except Exception as error:
-        return Answer(None, {}, "", error)
-    return Answer(piece, _versions(simulation), "", None)
+        return Reply(None, {}, "", error)
+    return Reply(piece, _versions(simulation), "", None)
 
 
-def _checked(found: Answer, versions: Mapping[str, str], executor: Executor) -> Piece:
-    """Return the piece of an answer by the same laws as here."""
+def _checked(found: Reply, versions: Mapping[str, str], executor: Executor) -> Piece:
+    """Return the piece of a reply by the same laws as here."""
     if found.unread:
         rule = f"its workers cannot load the laws: {found.unread}"
         raise refuse("executor", executor, rule, f"install them there too, and {MODULE_REMEDY}")

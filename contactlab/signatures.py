@@ -44,15 +44,15 @@ def _refusing(function: Callable[..., Any], name: str, example: str) -> Callable
         try:
             return function(*values, **named)
         except TypeError as error:
-            refusal = misfit(function, name, example, values, named)
-            if refusal is None:  # it fits; what is wrong is inside
+            refused = refusal(function, name, example, values, named)
+            if refused is None:  # it fits; what is wrong is inside
                 raise
-            raise refusal from error
+            raise refused from error
 
     return called
 
 
-def misfit(
+def refusal(
     function: Callable[..., Any],
     name: str,
     example: str,

@@ -12,7 +12,7 @@ import numpy as np
 
 from contactlab import composition
 from contactlab.attributes import named_attributes
-from contactlab.cautions import vectors
+from contactlab.cautions import three_numbers
 from contactlab.checks import refuse
 from contactlab.composition import Laws
 from contactlab.contracts.integrator import Integrator
@@ -215,7 +215,7 @@ class Simulation:
 
 def _complete(plan: Plan, scene: Scene) -> Plan:
     """Return a plan with what can be said of its scene as a whole only, not of a chunk."""
-    cautions = vectors(scene)
+    cautions = three_numbers(scene)
     if not cautions:
         return plan
     everywhere = np.ones(scene.shape, dtype=bool)
