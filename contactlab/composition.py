@@ -61,17 +61,14 @@ def compose(normal: object, tangential: object, integrator: object) -> Laws:
     """
     first = law("normal", DEFAULT_NORMAL if normal is None else normal)
     named = () if integrator is None else (law("integrator", integrator),)
-    second = _chosen("tangential", tangential, first, after=named)
-    third = named[0] if named else _chosen("integrator", None, first, second)
+    if tangential is None:
+        tangential = preferred("tangential", first, after=named)
+    second = law("tangential", tangential)
+    third = named[0] if named else law("integrator", preferred("integrator", first, second))
     laws = Laws(first, second, third)
     if (complaint := misfit(*laws)) is not None:
         raise ValueError(complaint + _would_fit(laws))
     return laws
-
-
-def _chosen(kind: str, value: object, *others: Law, after: tuple[Law, ...] = ()) -> Any:
-    """Return the law given, or the best that fits the others."""
-    return law(kind, preferred(kind, *others, after=after) if value is None else value)
 
 
 def preferred(kind: str, *others: Law, after: tuple[Law, ...] = ()) -> str:

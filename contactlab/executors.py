@@ -6,7 +6,7 @@ import contextlib
 import pickle
 import warnings
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from queue import SimpleQueue
 from typing import Any, NamedTuple
@@ -41,7 +41,7 @@ class Reply(NamedTuple):
 
 def pieces_of(
     simulation: Simulation, scene: Scene, chunks: Sequence[Chunk], block: int, executor: Executor
-) -> Iterator[Piece]:
+) -> Generator[Piece, None, None]:
     """Return the pieces of ``chunks`` as an executor finishes them.
 
     Of the executor only ``submit`` is used. A chunk that is lost with its process is handed in

@@ -6,7 +6,6 @@ that only where an answer is not a plain float.
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
 from typing import Any
 
 import numpy as np
@@ -23,8 +22,11 @@ class LawFaultError(Exception):
         self.status, self.detail = status, detail
 
 
-class _Blaming:
-    """What ``blaming`` returns; written out, for a generator costs each impact microseconds."""
+class blaming:  # noqa: N801 a context manager, named as those of contextlib are
+    """Turns whatever is raised within, but Ctrl-C, into a ``LawFaultError`` of a law.
+
+    Written out, for a generator costs each impact microseconds.
+    """
 
     __slots__ = ("law",)
 
@@ -39,16 +41,6 @@ class _Blaming:
             return
         # whatever else: a plug-in may not end the process
         raise LawFaultError(Status.LAW_RAISED, sentence(self.law, raised(error), 1)) from error
-
-
-def blaming(law: Law) -> AbstractContextManager[None]:
-    """Turn whatever is raised within, but Ctrl-C, into a fault of ``law``.
-
-    Raises
-    ------
-    LawFaultError
-    """
-    return _Blaming(law)
 
 
 def malformed(value: Any, shape: tuple[int, ...]) -> bool:

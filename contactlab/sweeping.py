@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -112,7 +112,12 @@ def swept(
     found = [] if kept is None else kept.pieces()
     done = sum(piece.chunk.stop - piece.chunk.first for piece in found)
     missing = _cut(_gaps(found, size), step)
-    pieces = _pieces(simulation, scene, missing, block, executor)
+    if executor is None:
+        pieces = (solved(simulation, scene.take(slice(*each)), each, block) for each in missing)
+    else:
+        from contactlab.executors import pieces_of  # only for those who share their work out
+
+        pieces = pieces_of(simulation, scene, list(missing), block, executor)
     try:
         for piece in pieces:
             if kept is not None:
@@ -128,33 +133,6 @@ def swept(
     found.sort(key=lambda piece: piece.chunk)
     plan = Plan.joined([piece.plan for piece in found])
     return plan, Motion.joined([piece.motion for piece in found], (size,))
-
-
-def _pieces(
-    simulation: Simulation,
-    scene: Scene,
-    chunks: Iterable[Chunk],
-    block: int,
-    executor: Executor | None,
-) -> Generator[Piece, None, None]:
-    """Return the pieces as they are finished, solved in this process or by an executor.
-
-    Parameters
-    ----------
-    simulation : Simulation
-    scene : Scene
-    chunks : iterable of Chunk
-        Those that are wanted.
-    block : int
-    executor : concurrent.futures.Executor, optional
-    """
-    if executor is not None:
-        from contactlab.executors import pieces_of  # only for those who share their work out
-
-        yield from pieces_of(simulation, scene, list(chunks), block, executor)
-        return
-    for chunk in chunks:
-        yield solved(simulation, scene.take(slice(*chunk)), chunk, block)
 
 
 def _gaps(pieces: Iterable[Piece], size: int) -> list[Chunk]:
