@@ -17,6 +17,8 @@ NOISE = 1e-12
 STILL = 10.0
 ROOT_CAP = 60
 ROOT_WIDTH = 1e-15
+#: An interpolated margin is known to no better than this part of its largest value.
+ROUNDING = 2.0**-52
 
 
 def first_event(phase: Phase, panel: SolvedPanel) -> tuple[int, float] | None:
@@ -84,7 +86,7 @@ def _root(
     if fa <= 0.0:
         return a
     side = 0
-    scale = ROOT_WIDTH * (fa - fb)
+    scale = max(ROOT_WIDTH * (fa - fb), ROUNDING * float(np.abs(values).max()))
     t = a
     for _ in range(ROOT_CAP):
         t = (fa * b - fb * a) / (fa - fb)
