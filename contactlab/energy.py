@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 
 from contactlab.attributes import named_attributes
+from contactlab.batch import some
 from contactlab.bodies import Pair
 from contactlab.checks import Real
 from contactlab.json_values import json_value
@@ -109,24 +110,29 @@ def balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
     That is where the books miss by more than ``bound``, over the energy at the start; and
     where the bodies part, or slip, faster than they met.
     """
-    fast: Any = np.abs(motion.normal_velocity) > LARGEST_RESTITUTION * scene.normal_speed
-    if fast.any():
-        rebound = np.abs(motion.normal_velocity) / scene.normal_speed
-        detail = _sentences("The bodies part {:.4g} times as fast as they met.", rebound)
+    speed: Any = abs(motion.normal_velocity)
+    fast = speed > LARGEST_RESTITUTION * scene.normal_speed
+    if some(fast):
+        detail = _sentences(
+            "The bodies part {:.4g} times as fast as they met.", speed / scene.normal_speed
+        )
         motion = motion.failing(fast, Status.UNBALANCED, detail)
     books = ledger(scene, motion)
-    missing: Any = np.abs(books.imbalance) > bound * books.start
-    if missing.any():
-        share = np.abs(books.relative_imbalance)
+    miss: Any = abs(books.imbalance)
+    missing = miss > bound * books.start
+    if some(missing):
+        share = abs(books.relative_imbalance)
         detail = _sentences(
             f"Off by {{:.2g}} of the energy at the start; declared: {bound:.2g}.", share
         )
         motion = motion.failing(missing, Status.UNBALANCED, detail)
-    before = np.abs(scene.slip_velocity)
-    after: Any = np.abs(scene.slip_velocity + motion.slip_velocity_change)
-    slips: Any = after > LARGEST_SLIP * before
-    if np.any(slips):
-        detail = _sentences("The contact slips {:.4g} times as fast as it met.", after / before)
+    before: Any = abs(scene.slip_velocity)
+    after: Any = abs(scene.slip_velocity + motion.slip_velocity_change)
+    slips = after > LARGEST_SLIP * before
+    if some(slips):
+        detail = _sentences(
+            "The contact slips {:.4g} times as fast as it met.", np.divide(after, before)
+        )
         motion = motion.failing(slips, Status.UNBALANCED, detail)
     return motion
 

@@ -82,6 +82,8 @@ class TangentialMotion:
     counters: Mapping[str, int] = attrs.field(factory=dict)
 
     def __attrs_post_init__(self) -> None:
+        if isinstance(self.status, Status):
+            return  # one impact: NumPy takes longer to say so
         if isinstance(self.detail, str) and np.ndim(self.status):
             details = filled("", np.shape(self.status))
             if self.detail:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.batch import chosen
 from contactlab.checks import Real
 from contactlab.contracts import (
     ClosedFormMotion,
@@ -61,10 +62,10 @@ class ScaledImpact(NamedTuple):
 
         A law is odd, and linear for small velocities.
         """
-        speed, factor = abs(self.velocity), np.where(np.less(self.velocity, 0.0), -1.0, 1.0)
+        speed, factor = abs(self.velocity), chosen(self.velocity < 0.0, -1.0, 1.0)
         slow = (speed > 0.0) & (speed < law.linear_below) & (self.inertia > LEAST_INERTIA)
-        part = np.where(slow, speed / (law.linear_below or 1.0), 1.0)
-        return np.where(slow, law.linear_below, speed), factor * part
+        part = chosen(slow, speed / (law.linear_below or 1.0), 1.0)
+        return chosen(slow, law.linear_below, speed), factor * part
 
     def answer(self, factor: Real, change: Real, work: Real) -> tuple[Real, Real]:
         """Return change of slip velocity and friction work in SI."""
@@ -73,7 +74,7 @@ class ScaledImpact(NamedTuple):
         with np.errstate(invalid="ignore", over="ignore"):
             done = velocity_unit * self.time_unit * force_unit * work
         # Without work there is none, however large its unit.
-        return velocity_unit * change, np.where(np.equal(work, 0.0), 0.0, done)
+        return velocity_unit * change, chosen(work == 0.0, 0.0, done)
 
     def solve(self, law: PhasedTangentialLaw, tolerance: float) -> SolvedImpact:
         """Return one impact solved; its motion is NaN where that failed."""

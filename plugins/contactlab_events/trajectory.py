@@ -139,7 +139,8 @@ def books_miss(velocity: Real, inertia: Real, change: Real, work: Real) -> Any:
         psi2 - psi1 and the scaled friction work.
     """
     # Over the velocity, as its square may be too large for a number.
-    scale = np.maximum(velocity, LEAST_AUDITED)
+    greater: Any = max if isinstance(velocity, float) else np.maximum
+    scale = greater(velocity, LEAST_AUDITED)
     lost = change * ((velocity + 0.5 * change) / scale)
     return abs(lost + inertia * (work / scale)) / (0.5 * scale)
 

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from contactlab.batch import chosen
 from contactlab.collocation import Array
 from contactlab.contracts import ClosedFormMotion, ClosedPhase, PhaseState, ScaledContact
 
@@ -43,28 +44,20 @@ class Slide(NamedTuple):
         """
         last = motion.scaled_at(np.pi).rate
         ratio = inertia * motion.scaled_mass
-        where: Any = np.where
-        least: Any = np.minimum
-        if isinstance(velocity, float):  # one impact in plain numbers, which is ten times as fast
-            where, least = _chosen, min
+        least: Any = min if isinstance(velocity, float) else np.minimum
         # below 1 the margin only grows
-        spread = where(ratio > 1.0, ratio - 1.0, np.inf)
+        spread = chosen(ratio > 1.0, ratio - 1.0, np.inf)
         stop = least((ratio * first.rate - share * velocity) / spread, first.rate)
         stops = (ratio > 1.0) & (stop > last)
-        rate = where(stops, stop, last)
+        rate = chosen(stops, stop, last)
         # to the end, V = -1: from the energy 1 - V², as the difference would cancel
         late = (rate == last) & (first.rate < 0.0)
         rest = first.approach * first.force / (1.0 - least(first.rate, 0.0))
-        fall = where(late, rest, first.rate - rate)
+        fall = chosen(late, rest, first.rate - rate)
         gained = -share * ratio * fall
         mean = share * (velocity + 0.5 * gained) - 0.5 * (first.rate + rate)
-        end = where(stops, np.maximum(motion.phase_at_rate(rate), first.phase), np.pi)
+        end = chosen(stops, np.maximum(motion.phase_at_rate(rate), first.phase), np.pi)
         return cls(stops, end, gained, motion.scaled_mass * fall * mean)
-
-
-def _chosen(condition: bool, one: float, other: float) -> float:
-    """Return what ``np.where`` does, of plain numbers."""
-    return one if condition else other
 
 
 class GrossMotion(ClosedPhase):

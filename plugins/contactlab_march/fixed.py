@@ -143,7 +143,7 @@ class FixedSteps(Integrator):
         return refined(self.steps, needed) if self.refine else float(self.steps)
 
     def resolution_for(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
-        """Return how many steps each impact takes, more than ``steps`` where those are too few."""
+        """Return how many steps each impact takes."""
         steps: Real = self._taken(needed_steps(normal, tangential))
         return steps
 

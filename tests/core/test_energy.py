@@ -1,9 +1,11 @@
 """The energy books where the normal motion loses energy of its own, and where it makes some."""
 
+import attrs
 import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
+from contactlab.energy import balanced
 from tests.normal_laws import Damped
 from tests.tangential_laws import Creator, Slinger
 
@@ -106,3 +108,13 @@ def test_of_a_batch_only_those_whose_books_miss_have_the_status():
     assert books.start[1] == pytest.approx(0.5 + 36.0 / (4.0 * 1.44))
     assert share == pytest.approx(abs(books.imbalance[1]) / books.start[1])
     assert f"Off by {share:.2g} of the energy at the start" in result[1].motion.detail
+
+
+def test_slip_out_of_none_is_energy_from_nothing():
+    """A factor of infinity, and no error, though one impact is in plain numbers."""
+    met = scene(slip=0.0)
+    motion = Simulation(tangential="coulomb").run(met).motion
+    slung = attrs.evolve(motion, slip_velocity_change=1e-3)
+    found = balanced(slung, met, np.inf)
+    assert found.status is Status.UNBALANCED
+    assert found.detail == "The contact slips inf times as fast as it met."
