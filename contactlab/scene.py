@@ -85,7 +85,11 @@ class Scene:
                 "or use Scene.nondimensional(psi1=, chi=)",
             )
         shape = batch.common_shape(
-            {name: np.shape(number) for name, number in self.numbers().items()},
+            {
+                name: number.shape
+                for name, number in self.numbers().items()
+                if isinstance(number, np.ndarray)
+            },
             what="Scene: the shapes",
             remedy="give numbers, or arrays of equal length",
         )
@@ -109,17 +113,20 @@ class Scene:
 
     def _check_scales(self) -> None:
         """Refuse scenes whose numbers a float cannot hold."""
+        friction: Any = self.friction_coefficient
+        speed: Any = self.normal_speed
         with np.errstate(all="ignore"):
-            energy: Any = 0.5 * self.pair.normal_mass * np.square(self.normal_speed)
-            unit: Any = self.friction_coefficient * self.normal_speed / self.pair.stiffness_ratio
-            slip: Any = np.abs(self.slip_velocity)
-            slip_energy: Any = 0.5 * self.pair.tangential_mass * np.square(slip)
-            tiny = (np.maximum(unit, slip) < LEAST_VELOCITY) & (unit > 0.0) & (slip > 0.0)
-            momentum: Any = self.friction_coefficient * self.pair.normal_mass * self.normal_speed
-            tiny |= (momentum < LEAST_IMPULSE) & (slip > 0.0) & (unit > 0.0) & (slip < 1e9 * unit)
-            vast = (unit > 0.0) & ~np.isfinite(np.divide(slip, unit + (unit == 0.0)))
-            lost = np.any((np.asarray(self.friction_coefficient) > 0.0) & (unit == 0.0))
-        if not np.all(np.isfinite(slip_energy)):
+            energy = 0.5 * self.pair.normal_mass * (speed * speed)
+            unit = friction * speed / self.pair.stiffness_ratio
+            slip: Any = abs(self.slip_velocity)
+            slip_energy = 0.5 * self.pair.tangential_mass * (slip * slip)
+            momentum = friction * self.pair.normal_mass * speed
+            tiny = (unit < LEAST_VELOCITY) & (slip < LEAST_VELOCITY)
+            tiny = tiny | (momentum < LEAST_IMPULSE) & (slip < 1e9 * unit)
+            vast = slip / (unit + (unit == 0.0)) == math.inf
+            unheld = (unit > 0.0) & (slip > 0.0) & (tiny | vast)
+            lost = (friction > 0.0) & (unit == 0.0)
+        if not batch.every(slip_energy < math.inf):
             si = self.sphere is not None
             raise refuse(
                 "tangential_velocity" if si else "psi1, chi",
@@ -127,7 +134,7 @@ class Scene:
                 "the kinetic energy of slip must be finite",
                 "give less; from 4 chi - 1 on psi1 falls by 4 chi",
             )
-        if not np.all((energy >= LEAST_ENERGY) & np.isfinite(energy)):
+        if not batch.every((energy >= LEAST_ENERGY) & (energy < math.inf)):
             raise refuse(
                 "normal_speed",
                 self.normal_speed,
@@ -135,7 +142,7 @@ class Scene:
                 "or digits are lost",
                 "give larger speeds and masses, or smaller ones, or other units",
             )
-        if np.any(tiny) or np.any(vast) or lost:
+        if batch.some(unheld | lost):
             raise refuse(
                 "friction_coefficient",
                 self.friction_coefficient,
