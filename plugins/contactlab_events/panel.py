@@ -8,7 +8,7 @@ from typing import NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.collocation import ON_NODE, Array, Nodes, rows
+from contactlab.collocation import ON_NODE, Array, Nodes, row, rows
 from contactlab.contracts import (
     ClosedFormMotion,
     Phase,
@@ -234,7 +234,7 @@ class Collocation:
 
 
 def _singular_event(phase: Phase, sample: PhaseSample, nodes: Nodes) -> tuple[int, float]:
-    """Return the first singular event in a panel, and its tau by linear interpolation, or 1."""
+    """Return the first singular event in a panel, and about its tau, or 1."""
     best = 0, 1.0
     for event, singular in enumerate(phase.singular_events):
         if not singular:
@@ -242,12 +242,26 @@ def _singular_event(phase: Phase, sample: PhaseSample, nodes: Nodes) -> tuple[in
         margin = phase.margin(event, sample)
         k = int((margin < 0.0).argmax())
         if k and margin[k] < 0.0:
-            before, after = margin[k - 1 : k + 1].tolist()
-            left, right = nodes.points[k - 1 : k + 1].tolist()
-            tau = left + (right - left) * before / (before - after)
+            tau = _crossing(nodes, margin, k)
             if tau < best[1]:
                 best = event, tau
     return best
+
+
+def _crossing(nodes: Nodes, margin: Array, k: int) -> float:
+    """Return about where a margin falls below zero between the nodes k - 1 and k.
+
+    The second secant, which knows the interpolant's curvature, saves a move of the panel's end.
+    """
+    left, right = nodes.points[k - 1 : k + 1].tolist()
+    before, after = margin[k - 1 : k + 1].tolist()
+    middle = left + (right - left) * before / (before - after)
+    value = float(row(nodes, middle).dot(margin))
+    if value >= 0.0:
+        left, before = middle, value
+    else:
+        right, after = middle, value
+    return float(left + (right - left) * before / (before - after))
 
 
 def _shift(margin: Array, spot: Array, length: float) -> float:
