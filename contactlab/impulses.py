@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.batch import locked
+from contactlab.batch import chosen, every, locked
 from contactlab.bodies import Pair, Sphere
 from contactlab.checks import Real, refuse
 from contactlab.encounter import Contact, Encounter
@@ -60,25 +60,25 @@ def rebounding(
         # m/s for each unit of psi, eq. (29)
         unit: Any = part.friction_coefficient * contact.approach / pair.stiffness_ratio
         psi1: Any = np.fmin(np.divide(contact.slip, unit), end)
-        psi1 = np.where(contact.approach >= LEAST, psi1, 0.0)
+        psi1 = chosen(contact.approach >= LEAST, psi1, 0.0)
         if not part.shape:
             psi1, chi = float(psi1), float(chi)
         psi2: Any = rebound(psi1, chi, restitution=restitution)
         change = (psi2 - psi1) * unit
         work = -pair.tangential_mass * change * (contact.slip + 0.5 * change)
-    return -restitution * contact.approach, change, np.maximum(work, 0.0)
+    return -restitution * contact.approach, change, chosen(work <= 0.0, 0.0, work)
 
 
 def _check(part: Encounter, impulse: Any, change: Any) -> None:
     """Refuse encounters whose numbers a float cannot hold; a scene does so for a simulation."""
-    if not np.min(impulse) >= LEAST_IMPULSE:
+    if not every(impulse >= LEAST_IMPULSE):
         raise refuse(
             "sphere, velocity",
             float(np.min(impulse)),
             f"mass times speed of approach must be at least {LEAST_IMPULSE:g} N s",
             "give larger masses and speeds, or other units",
         )
-    if not np.isfinite(np.sum(change)):
+    if not np.isfinite(change if isinstance(change, float) else np.sum(change)):
         raise refuse(
             "friction_coefficient",
             part.friction_coefficient,
@@ -114,15 +114,16 @@ def moved(
     columns, flags = numbers.reshape(3, -1), collided.reshape(-1)
     for where, part in encounter.parts():
         contact, pair = part.contact(), part.pair
-        meets = contact.approach >= LEAST
-        if strict and not np.all(meets):
+        meets: Any = contact.approach >= LEAST
+        met = every(meets)
+        if strict and not met:
             raise encounter.separate()
         if answers is None:
             after, change, work = rebounding(part, contact, pair, restitution)
-            _check(part, np.where(meets, pair.normal_mass * contact.approach, 1.0), change)
+            _check(part, chosen(meets, pair.normal_mass * contact.approach, 1.0), change)
         else:
             after, change, work = answers[:, where]
-        if not np.all(meets):
+        if not met:
             after = np.where(meets, after, contact.approach)
             change, work = np.where(meets, change, 0.0), np.where(meets, work, 0.0)
         columns[0, where], columns[1, where], columns[2, where] = after, change, work

@@ -54,8 +54,8 @@ def _of_sphere(name: str, body: Sphere) -> list[str]:
     if density is not None and _least(density) < LEAST_DENSITY:
         told = f"{name}.material.density = {_least(density):.4g} kg/m³"
         return [f"unit: {told}: is it in g/cm³?"]
-    with np.errstate(all="ignore"):
-        mean = np.divide(body.mass, 4.0 / 3.0 * math.pi * np.power(body.radius, 3))
+    with np.errstate(all="ignore"):  # one after another: the cube of a tiny radius is zero
+        mean = body.mass / body.radius / body.radius / body.radius / (4.0 / 3.0 * math.pi)
     if _most(mean) > MOST_DENSITY:
         told = f"{name}: mass and radius give a mean density of {_most(mean):.3g} kg/m³"
         return [f"unit: {told}, more than any solid has; mass is in kg, radius in m"]
@@ -64,8 +64,8 @@ def _of_sphere(name: str, body: Sphere) -> list[str]:
 
 def _of_spin(scene: Scene, sphere: Sphere) -> list[str]:
     """Return a sentence if the fastest spin is far beyond rolling at the greatest speed."""
-    spin, radius = float(_most(np.abs(scene.spin))), _most(sphere.radius)
-    along = float(_most(np.abs(scene.tangential_velocity)))
+    spin, radius = _most(abs(scene.spin)), _most(sphere.radius)
+    along = _most(abs(scene.tangential_velocity))
     speed = math.hypot(_most(scene.normal_speed), along)
     if spin < LEAST_SPIN or not radius * spin > MOST_RIM * speed:
         return []
@@ -76,7 +76,7 @@ def _of_spin(scene: Scene, sphere: Sphere) -> list[str]:
 def _of_angle(scene: Scene) -> list[str]:
     """Return a sentence if the greatest angle is a round number of degrees, read as radians."""
     with np.errstate(all="ignore"):
-        ratio = np.abs(np.divide(scene.tangential_velocity, scene.normal_speed))
+        ratio = abs(scene.tangential_velocity / scene.normal_speed)
     angle_deg = math.degrees(math.atan(_most(ratio)))
     if not 0.0 < angle_deg <= 0.5 * math.pi:
         return []

@@ -96,7 +96,7 @@ class Events(Integrator):
             known, motion = together(law, normal, self.tolerance)
             left, parts = ~known, [(known, motion)]
         solved = []
-        for place in map(tuple, np.argwhere(left).tolist()):
+        for place in map(tuple, np.argwhere(left).tolist() if shape else [()]):
             one = normal.take(place) if shape else normal
             assert isinstance(one, ClosedFormMotion)
             with faults.blaming(one.law):

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.collocation import ON_NODE, Array, Nodes, row, rows
+from contactlab.collocation import ON_NODE, Array, Nodes, rows, value_at
 from contactlab.contracts import (
     ClosedFormMotion,
     Phase,
@@ -256,7 +256,7 @@ def _crossing(nodes: Nodes, margin: Array, k: int) -> float:
     left, right = nodes.points[k - 1 : k + 1].tolist()
     before, after = margin[k - 1 : k + 1].tolist()
     middle = left + (right - left) * before / (before - after)
-    value = float(row(nodes, middle).dot(margin))
+    value = value_at(nodes, middle, margin)
     if value >= 0.0:
         left, before = middle, value
     else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlab.collocation import Array, Nodes, row
+from contactlab.collocation import Array, Nodes, value_at
 from contactlab.contracts import Phase
 from contactlab_events.panel import SolvedPanel
 
@@ -90,7 +90,7 @@ def _root(
     t = a
     for _ in range(ROOT_CAP):
         t = (fa * b - fb * a) / (fa - fb)
-        ft = float(row(nodes, t) @ values)
+        ft = value_at(nodes, t, values)
         if abs(ft) <= scale or b - a < ROOT_WIDTH:
             break
         if ft > 0.0:
