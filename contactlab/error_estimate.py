@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 
 from contactlab.checks import Real
+from contactlab.declared import psi_magnitude
 from contactlab.status import Status
 
 if TYPE_CHECKING:
@@ -27,8 +28,9 @@ def estimated(simulation: Simulation, result: ImpactResult) -> Real:
     Each impact is run again at half and at twice the resolution that it got, of integrator and
     tangential law together. If the change of psi2 falls by r from one doubling to the next the
     error that is left is the last change over 1 - 1/r, r = 2 for a method of first order and 4 for
-    one of second. The errors of the model are not in it. What has no resolution, and is known in
-    closed form, has the error that the plan declares.
+    one of second. Of an integrator with a tolerance that is the error in time, and the resolution
+    of the law alone is changed, if it has one. The errors of the model are not in it. What has no
+    resolution, and is known in closed form, has the error that the plan declares.
 
     Parameters
     ----------
@@ -91,6 +93,8 @@ def _left(simulation: Simulation, scene: Scene, resolution: float, change: Any) 
             ratio = np.clip(found, COUNT**LEAST_ORDER, COUNT**MOST_ORDER)
     with np.errstate(all="ignore"):
         error = np.abs(scene.psi(last / (1.0 - 1.0 / ratio)))
+    if fine.integrator == simulation.integrator and simulation.integrator.resolution:
+        error = error + resolution * psi_magnitude(scene)  # the tolerance that was kept
     return np.where(_successes(better), error, np.nan)
 
 
@@ -108,7 +112,8 @@ def _successes(result: ImpactResult) -> Any:
 def _at(simulation: Simulation, resolution: float, doublings: int) -> Simulation | None:
     """Return the simulation at twice, or half, the resolution; None if there is none.
 
-    ``resolution`` is what the integrator got; the law has that of its option.
+    ``resolution`` is what the integrator got; the law has that of its option. A tolerance is kept
+    where the law has a resolution.
     """
     changed: dict[str, Any] = {}
     for kind in ("tangential", "integrator"):
@@ -120,6 +125,8 @@ def _at(simulation: Simulation, resolution: float, doublings: int) -> Simulation
             value = type(value)(resolution)
         if isinstance(value, int):
             other: Any = max(round(value * float(COUNT) ** doublings), 1)
+        elif changed:
+            continue
         elif doublings < 0:
             return None  # a looser tolerance says nothing of the error at this one
         else:

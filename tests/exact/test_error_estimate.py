@@ -88,3 +88,16 @@ def test_a_batch_is_estimated_as_its_impacts_are_alone():
     together = Simulation(**laws).run(scene, estimate_error=True).psi2_error_estimate
     alone = [Simulation(**laws).run(one, estimate_error=True) for one in map(scene.take, range(4))]
     assert together == pytest.approx([one.psi2_error_estimate for one in alone], rel=1e-6)
+
+
+def test_of_an_integrator_with_a_tolerance_the_law_alone_is_refined():
+    """Annuli of a heavy inertia on an adhesive contact are off by a fifth of the range."""
+    laws = {"normal": "jkr", "tangential": "sharp_annulus", "integrator": "adaptive"}
+    scene = Scene.nondimensional(psi1=0.3, chi=1e3)
+    result = Simulation(**laws).run(scene, estimate_error=True).check()
+    springs = contactlab.create("tangential.springs", springs=400)
+    steps = contactlab.create("integrator.symplectic", steps=12_800)
+    fine = Simulation(normal="jkr", tangential=springs, integrator=steps).run(scene).check()
+    error = abs(result.psi2 - fine.psi2)
+    assert error > 0.1
+    assert error / 3.0 < result.psi2_error_estimate < 3.0 * error
