@@ -4,12 +4,15 @@ import json
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 
 from contactlab.analysis import work_precision
 from contactlab.analysis.bench_methods import Method, methods, scenes
 from contactlab.analysis.work_precision import Benchmark, Row, bench
 from contactlab.cli.bench import markdown
 from contactlab.cli.main import main
+from contactlab.figures.work_precision import work_precision as draw
 
 
 def row(method="a", error=1.0, time=1.0, failed=0, options="steps=10"):
@@ -125,3 +128,25 @@ def test_command_writes_table_csv_and_picture(tmp_path, capsys):
     assert len((tmp_path / "b.csv").read_text().splitlines()) == len(content["rows"]) + 1
     assert (tmp_path / "b.png").stat().st_size > 10_000
     assert main(["bench", "--budget", "-1"]) == 2
+
+
+@pytest.mark.parametrize("width", [3.4, 9.0])
+def test_the_picture_names_laws_and_integrators(width):
+    rows = tuple(
+        row(method=method, error=error, time=time)
+        for method, error, time in (
+            ("springs / symplectic", 1e-2, 1e-4), ("springs / adaptive", 1e-3, 1e-3),
+            ("walton", 1e-1, 1e-5),
+        )
+    )  # fmt: skip
+    figure = Figure(figsize=(width, 3.0))
+    axes = draw(figure.add_subplot(), Benchmark(rows=rows, orders={}, complete=True))
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    legends = [each for each in axes.get_children() if isinstance(each, Legend)]
+    named = {each.get_title().get_text(): [t.get_text() for t in each.texts] for each in legends}
+    assert named["law"] == ["springs", "walton"]
+    assert named["integrator"][:2] == ["symplectic", "adaptive"]
+    (laws,) = [each for each in legends if each.get_title().get_text() == "law"]
+    springs, walton = (line.get_marker() for line in laws.get_lines())
+    assert springs in ("None", "", None)  # its markers are those of the integrators
+    assert walton not in ("None", "", None)

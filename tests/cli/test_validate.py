@@ -134,3 +134,13 @@ def test_a_wrong_value_fails(run, monkeypatch):
     ran = run("validate")
     assert ran.status == 1
     assert "FAILS" in ran.out
+
+
+def test_laws_over_several_normal_laws_are_told_apart():
+    normals = {"hertz": {}, "tsuji": {"restitution": 0.9}, "jkr": {}}
+    found, left_out = evidence.simulations_over(normals)
+    assert found["springs"].normal.__class__.__name__ == "Hertz"
+    assert found["springs, tsuji restitution=0.9"].normal.restitution == 0.9
+    assert "springs, jkr" in found
+    assert "fronts, jkr" in left_out
+    assert "fronts" in found

@@ -255,3 +255,13 @@ def test_a_scene_without_bodies_has_options_of_laws_alone():
     assert found["normal.restitution"] == pytest.approx(0.7, abs=1e-5)
     with pytest.raises(ValueError, match="no such number"):
         fit({"psi2": psi2}, batch)
+
+
+def test_the_criterion_is_akaikes():
+    """n log(mean squared residual) + 2 (parameters + unknown scatter), up to a constant."""
+    data = table(scattered(restitution(0.1), 0.003))
+    one = fit(data, BODIES)
+    two = fit(data, BODIES, parameters=["friction_coefficient", "stiffness_ratio"])
+    numbers = one.counts["tangential_restitution"]
+    logs = [2.0 * numbers * np.log(each.rms["tangential_restitution"]) for each in (one, two)]
+    assert two.aic - one.aic == pytest.approx(logs[1] - logs[0] + 2.0, abs=1e-6)

@@ -5,7 +5,7 @@ import os
 import numpy as np
 import pytest
 
-from contactlab import Simulation, files
+from contactlab import Simulation, files, read_scene
 from contactlab.fitting import read_measurements
 from contactlab.quantities import QUANTITIES
 from tests.fitting.impacts import scene
@@ -72,3 +72,19 @@ def test_a_giant_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(files, "LARGEST", 10)
     with pytest.raises(ValueError, match=r"is too large: .* a table of impacts has at most"):
         read(tmp_path, PLAIN.encode())
+
+
+def test_series_over_different_entries_are_no_table(tmp_path):
+    path = tmp_path / "two.toml"
+    series = (
+        "[[measured]]\nquantity = 'psi2'\nsource = 'made up'\nagainst = '{}'\n"
+        "x = [{}]\nvalues = [0.5]\n"
+    )
+    path.write_text(
+        "[nondimensional]\n[sweep]\npsi1 = [1.0, 2.0]\nchi = [1.0, 1.5]\n"
+        + series.format("psi1", "2.0")
+        + series.format("chi", "1.5"),
+        encoding="utf-8",
+    )
+    with pytest.raises(ValueError, match="vary different entries"):
+        read_measurements(read_scene(path))
