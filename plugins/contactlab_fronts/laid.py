@@ -24,8 +24,10 @@ FREE_MOVES = 3
 SMALL_MOVE = 1e-12
 #: A front may leave its piece a little while a panel reaches beyond it, in parts of the piece.
 LEEWAY, LEAST_PART = 0.2, 1e-6
-#: A slope of the angle below this part of its mean is rounding error at the very end of the piece.
-STEEP_PART = 0.1
+#: A slope of the angle below this part of its mean may be rounding error at the very end of the
+#: piece. It is small too where the level is stationary just beyond an end: a front as near to that
+#: as this, in parts of the piece, is not found closer, and the force is off by the cube.
+STEEP_PART = 1e-4
 TINY = 1e-300
 
 

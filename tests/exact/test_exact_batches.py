@@ -92,6 +92,24 @@ def test_heavy_impacts(monkeypatch):
     compared(monkeypatch, draw.uniform(0.0, 1.0, 42) ** 2 * 4.0 * chi, chi)
 
 
+@pytest.mark.parametrize(
+    ("psi1", "chi"),
+    [
+        (1.0018500911813328, 43.34865308194917),
+        (1.0000013289143115, 34.227865254010226),
+        (0.9075518363460114, 89.5221721756772),
+    ],
+)
+def test_fronts_are_found_where_slip_began_just_beyond_their_piece(psi1, chi):
+    """The profile is nearly stationary at the end of such a piece, and Newton's method was slow."""
+    single = Simulation().run(Scene.nondimensional(psi1=psi1, chi=chi)).check().psi_change
+    law, normal = contactlab.create("tangential.fronts"), Simulation().normal_motion
+    motion = normal(Scene.nondimensional(psi1=[psi1], chi=[chi]))
+    found = law.impacts_together(np.array([psi1]), np.array([2.5 * chi]), motion, 1e-9)
+    assert found.solved.all()
+    assert found.change[0] == pytest.approx(single, abs=1e-11)
+
+
 def test_an_answer_does_not_depend_on_its_neighbours():
     psi1, chi = mixed(200, 3)
     whole = together(psi1, chi).psi2
