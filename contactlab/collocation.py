@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -119,3 +119,38 @@ def row(nodes: Nodes, tau: float) -> Array:
     """Return the row of the matrix for one tau, as a vector; faster."""
     basis = nodes.weights / ((tau - nodes.points) + ON_NODE)
     return np.asarray(basis / basis.dot(nodes.plain[1]))
+
+
+def dips(nodes: Nodes, values: Array, fine: Array, least: Any) -> tuple[Any, Any, Array]:
+    """Return minima below ``least`` that lie between the finer points.
+
+    A parabola through three neighbours tells where one may be; the polynomial decides.
+
+    Parameters
+    ----------
+    nodes : Nodes
+    values : array, shape (n, K)
+        Of K polynomials, at the nodes.
+    fine : array, shape (m, K)
+        At the finer points.
+    least : float or array, shape (K,)
+
+    Returns
+    -------
+    tuple of three arrays
+        The finer point next to each minimum, in ascending order, its column, and its tau.
+    """
+    step = fine[nodes.second :] - fine[nodes.second - 1 : -1]
+    index, column = np.nonzero((step[:-1] < 0.0) & (step[1:] >= 0.0))
+    fall, rise = step[index, column], step[index + 1, column]
+    index += nodes.second
+    bend, slope = rise - fall, 0.5 * (rise + fall)
+    least = np.broadcast_to(least, fine.shape[1:])[column]
+    low = np.flatnonzero(fine[index, column] - 0.5 * slope * (slope / bend) < least)
+    index, column = index[low], column[low]
+    if low.size:
+        angle = (index - (slope / bend)[low]) * (np.pi / (len(fine) - 1))
+        tau = 0.5 - 0.5 * np.cos(angle)
+        low = np.einsum("ij,ji->i", rows(nodes, tau), values[:, column]) < least[low]
+        return index[low], column[low], tau[low]
+    return index, column, np.zeros(0)

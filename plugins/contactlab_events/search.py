@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlab.collocation import Array, Nodes, value_at
+from contactlab.collocation import Array, Nodes, dips, row, value_at
 from contactlab.contracts import Phase
 from contactlab_events.panel import SolvedPanel
 
 #: A margin starts at zero if it is this small, or this part of its largest.
 ZERO = 1e-14
 ZERO_PART = 1e-9
+#: A minimum between the points looked at is deeper than this part of the margin's size, or
+#: without effect.
+SHALLOWEST = 1e-9
 #: A quotient of a margin that starts at zero is negative if below this part of its size.
 NOISE = 1e-12
 #: A margin that stays zero is no event: its size is taken to be at least this many velocities.
@@ -33,40 +36,45 @@ def first_event(phase: Phase, panel: SolvedPanel) -> tuple[int, float] | None:
     table = np.array([phase.margin(event, panel.sample) for event in events])
     finer = table @ nodes.to_fine
     lowest = finer.min(axis=1).tolist()
-    firsts, largest = table[:, 0].tolist(), np.abs(table).max(axis=1).tolist()
+    firsts, largest = table[:, 0].tolist(), np.abs(table).max(axis=1)
+    size = np.maximum(largest, STILL * np.abs(panel.sample.velocity).max())
+    hidden: dict[int, tuple[int, float]] = {}
+    for index, k, tau in zip(*dips(nodes, table.T, finer.T, -SHALLOWEST * size), strict=True):
+        hidden.setdefault(int(k), (int(index), float(tau)))
     best: tuple[int, float] | None = None
     for k, event in enumerate(events):
-        if firsts[k] > ZERO and lowest[k] > 0.0:
+        if firsts[k] > ZERO and lowest[k] > 0.0 and k not in hidden:
             continue
         margin, fine, noise, begin = table[k], finer[k], 0.0, 0
         if not (firsts[k] > ZERO and firsts[k] > ZERO_PART * largest[k]):
-            margin, noise, begin = _quotient(panel, margin)
+            margin, noise, begin = _quotient(nodes, margin, float(size[k]))
             fine = margin @ nodes.to_fine
         below = fine[begin:] < noise
-        end = int(below.argmax())
-        if not below[end]:
-            continue
-        end += begin
+        end = begin + int(below.argmax()) if below.any() else len(fine)
         if end == 0:
             return event, 0.0
-        bracket = slice(end - 1, end + 1)
-        left, right = nodes.fine[bracket].tolist()
+        dip, tau = hidden.get(k, (end, 1.0))
+        if dip < end:
+            end, right, after = dip, tau, float(row(nodes, tau) @ margin)
+        elif end < len(fine):
+            right, after = nodes.fine[end].item(), fine[end].item()
+        else:
+            continue
+        left, before = nodes.fine[end - 1].item(), fine[end - 1].item()
         if best is not None and left > best[1]:
             continue
-        root = _root(nodes, margin, ((left, right), fine[bracket].tolist()))
+        root = _root(nodes, margin, ((left, right), (before, after)))
         if best is None or root < best[1]:
             best = event, root
     return best
 
 
-def _quotient(panel: SolvedPanel, margin: Array) -> tuple[Array, float, int]:
+def _quotient(nodes: Nodes, margin: Array, size: float) -> tuple[Array, float, int]:
     """Return a margin that is zero at the start over tau, so that only its own sign counts.
 
     Besides it the level below which it is negative and not noise, and the first of the finer
     points to look at.
     """
-    nodes = panel.nodes
-    size = max(float(np.abs(margin).max()), STILL * float(np.abs(panel.sample.velocity).max()))
     quotient = np.empty_like(margin)
     quotient[1:] = (margin[1:] - margin[0]) / nodes.points[1:]
     quotient[0] = nodes.slope @ margin

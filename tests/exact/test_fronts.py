@@ -65,6 +65,23 @@ def test_chi_one_half_never_slips(psi1):
     )
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("psi1", "chi"),
+    [
+        (0.9987610244171012, 220.85085905811604),
+        (1.000124712663441, 369.2576334038081),
+        (1.0533194060090847, 183.78409170773173),
+    ],
+)
+def test_slip_too_short_to_show_at_the_points_looked_at_is_found(psi1, chi):
+    """The edge slips for a thousandth of x; found by chance, it made psi2 jump by up to 6e-9."""
+    near = psi1 + np.array([-1e-10, -1e-12, 0.0, 1e-12, 1e-10])
+    found = exact().run(scene(near, chi)).check().psi2
+    assert (np.abs(found - found[2]) < 2.0 * np.abs(near - psi1) + 1e-11).all()
+    assert found[2] == pytest.approx(psi2(psi1, chi, 1e-12), abs=1e-10)
+
+
 def test_no_homogeneous_sphere_reverses_completely():
     """At nu = 1/2, chi = 7/6 the reversal is at most 0.597, at psi1 = 1.89 (theory §2)."""
     rubber = Material(young_modulus=2.4e6, poisson_ratio=0.5, density=1100.0)
