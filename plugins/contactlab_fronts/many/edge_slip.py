@@ -22,7 +22,8 @@ LONGEST = 0.8
 BEYOND, LEAST_REACH = 1.1, 1e-4
 #: A locked piece that ends this near the centre (in parts of zeta) is left like a square root of x.
 NEAR_CENTRE = 0.1
-#: An unfitted panel may hold this part of its length beyond the piece it was solved in.
+#: The least part of an unfitted panel in a piece laid down that is to lie before its event. Beyond
+#: it the front may have a kink: at the other end of the piece, or where it is back at the edge.
 PART_INSIDE = 0.6
 #: Panels are refused this often in a row before an impact is given up, or an end is not fitted.
 MOST_ATTEMPTS, MOST_FITS = 40, 6
@@ -65,15 +66,15 @@ def advance(impacts: Impacts, who: Rows, tolerance: float) -> None:
 
     again = np.zeros_like(good)
     if not fitted:
-        leaves = panel.leaves
-        # singular ends are fitted; far beyond a kink a panel is not to be trusted
-        near = leaves * panel.length
-        to_fit = (leaves <= 1.0) & singular & (impacts.attempts[who] < MOST_FITS) & (near > 1e-9)
-        cut = (leaves <= 1.0) & ~to_fit & (near > PROGRESS)
-        cut &= ~good | (laid & (leaves < PART_INSIDE))
+        near, first = panel.leaves * panel.length, panel.tau * panel.length
+        # singular ends are fitted; far beyond an event a panel is not to be trusted
+        to_fit = (panel.leaves <= 1.0) & singular & (impacts.attempts[who] < MOST_FITS)
+        to_fit &= near > 1e-9
+        cut = (panel.tau <= 1.0) & ~to_fit & (first > PROGRESS)
+        cut &= ~good | (laid & (panel.tau < PART_INSIDE))
         impacts.fitted[who[to_fit]] = True
         impacts.longest[who[to_fit]] = near[to_fit]
-        part = np.minimum(1.02 * leaves, np.where(good, 1.0, shorter))
+        part = np.minimum(1.02 * panel.tau, np.where(good, 1.0, shorter))
         _refuse(impacts, who[cut], (part * panel.length)[cut])
         again = to_fit | cut
     refused = ~good & ~again
