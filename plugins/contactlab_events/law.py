@@ -95,18 +95,20 @@ class Events(Integrator):
         if left.size >= FEWEST and observer is None and self._together(law):
             known, motion = together(law, normal, self.tolerance)
             left, parts = ~known, [(known, motion)]
-        solved = []
+        solved, motions = [], []
         for place in map(tuple, np.argwhere(left).tolist() if shape else [()]):
             one = normal.take(place) if shape else normal
             assert isinstance(one, ClosedFormMotion)
             with faults.blaming(one.law):
                 impact = scaled(one)
-            solved.append(impact.solve(law, self.tolerance))
+            one_solved = impact.solve(law, self.tolerance)
+            motions.append(one_solved.motion)
+            if observer is not None:  # trajectories are long
+                solved.append(one_solved)
         if observer is not None:
             show(shape, solved, observer)
-        motions = [one.motion for one in solved]
         if not shape:
             return motions[0]
-        if solved:
+        if motions:
             parts.append((left, TangentialMotion.joined(motions, (len(motions),))))
         return TangentialMotion.merged(parts, shape)

@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlab.collocation import Array, lobatto, rows
 from contactlab_fronts.many.crossing import value
-from contactlab_fronts.many.impacts import DONE, UNSOLVED, Impacts
+from contactlab_fronts.many.impacts import DONE, Impacts
 from contactlab_fronts.many.panel import CAUGHT, LEAVES, NO_EVENT, NODES, STOPS, Panel, solve
 from contactlab_fronts.many.pieces import Rows
 from contactlab_fronts.phases import EdgeSlip
@@ -25,9 +25,9 @@ NEAR_CENTRE = 0.1
 #: The least part of an unfitted panel in a piece laid down that is to lie before its event. Beyond
 #: it the front may have a kink: at the other end of the piece, or where it is back at the edge.
 PART_INSIDE = 0.6
-#: Panels are refused this often in a row before an impact is given up, or an end is not fitted.
-MOST_ATTEMPTS, MOST_FITS = 40, 6
-#: An event with no more progress in x than this is counted as idle.
+#: Panels are refused this often in a row before an end is not fitted.
+MOST_FITS = 6
+#: An event with no more progress in x than this shortens no panel.
 PROGRESS = 1e-7
 #: psi1 below this is solved to the same absolute error.
 LEAST_SCALE = 1e-6
@@ -116,15 +116,14 @@ def _refuse(impacts: Impacts, who: Rows, length: Array) -> None:
     impacts.fitted[who] = False
     impacts.longest[who] = length
     impacts.attempts[who] += 1
-    impacts.regime[who[impacts.attempts[who] > MOST_ATTEMPTS]] = UNSOLVED
 
 
 def _accept(impacts: Impacts, panel: Panel, done: Rows) -> None:
     """Go to the event of some of the panels, or to their end, and on to the next phase."""
     who, event, tau = panel.who[done], panel.event[done], np.minimum(panel.tau[done], 1.0)
     weights = rows(lobatto(NODES), tau)
-    phase = panel.phase(done, tau)
-    progress = phase - impacts.phase[who]
+    spot = tau * (2.0 - tau) if panel.fitted else tau
+    phase = panel.start[done] + panel.length[done] * spot
     impacts.phase[who] = phase
     impacts.change[who] += value(weights, panel.change[:, done])
     impacts.work[who] += value(weights, panel.work[:, done])
@@ -133,7 +132,6 @@ def _accept(impacts: Impacts, panel: Panel, done: Rows) -> None:
     impacts.longest[who] = np.inf
     impacts.fitted[who] = False
     impacts.attempts[who] = 0
-    impacts.idle[who] = np.where(progress < PROGRESS, impacts.idle[who] + 1, 0)
 
     impacts.regime[who[(event == NO_EVENT) & (phase >= np.pi - 1e-12)]] = DONE
     stops = event == STOPS

@@ -14,10 +14,7 @@ from contactlab_fronts.gross import Slide
 from contactlab_fronts.many.pieces import NO_PIECE, PieceTable, Rows
 from contactlab_fronts.profile import Locked
 
-STUCK, EDGE_SLIP, GROSS_SLIP, DONE, UNSOLVED = range(5)
-
-#: Less than this of the normal velocity counts as maximum compression, which is a moment away.
-LEAST_RATE = 1e-7
+STUCK, EDGE_SLIP, GROSS_SLIP, DONE = range(4)
 
 
 class Impacts:
@@ -50,7 +47,6 @@ class Impacts:
         self.longest = np.full(count, np.inf)  # no longer than this
         self.estimated_length = np.full(count, np.inf)  # asked for by the last error estimate
         self.attempts = np.zeros(count, dtype=np.intp)  # refused in a row
-        self.idle = np.zeros(count, dtype=np.intp)  # events in a row without progress
 
     def velocity(self, who: Rows) -> Array:
         """Return psi."""
@@ -79,7 +75,7 @@ class Impacts:
         front = np.minimum(front, now.approach)
         locked = Locked.between(front, sign, now, self.slip[who], self.force[who])
         self.outermost[who] = self.pieces.add(self.outermost[who], locked)
-        loading = now.rate > LEAST_RATE
+        loading = now.rate > 0.0
         grows, shrinks = who[loading], who[~loading]
         self.regime[grows] = STUCK
         self.began[grows] = self.sign[grows]

@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.collocation import Array, lobatto
 from contactlab.contracts import PhaseSample, ScaledContact
@@ -19,12 +18,8 @@ from contactlab_fronts.many.impacts import Impacts
 from contactlab_fronts.many.pieces import Rows
 from contactlab_fronts.phases import EdgeSlip
 
-Flags = NDArray[np.bool_]
-
 NO_EVENT, STOPS, LEAVES, CAUGHT = range(4)
 NODES = 8
-#: Events this often in a row without progress are looked for later in the panel.
-MOST_IDLE = 4
 ITERATIONS = 12
 FEWEST_ITERATIONS = 4
 #: Moves of a fitted end in one iteration, in parts of the panel.
@@ -48,11 +43,6 @@ class Panel(NamedTuple):
     update: Array  # last move of the velocity, (impacts,)
     tail: Array  # what the nodes cannot resolve of the velocity, (impacts,)
     fitted: bool
-
-    def phase(self, columns: Rows, tau: Array) -> Array:
-        """Return the phase of some of the panels at their coordinates ``tau``."""
-        spot = tau * (2.0 - tau) if self.fitted else tau
-        return np.asarray(self.start[columns] + self.length[columns] * spot)
 
 
 def solve(
@@ -111,18 +101,16 @@ def solve(
     sample = PhaseSample(contact, slip, first + change, response)
     work = nodes.integral @ (time * slipping.friction_power(sample))
     margins = [slipping.margin(event, sample) for event in range(3)]
-    events = _events(margins, impacts.idle[who] > MOST_IDLE, fitted=fitted)
+    events = _events(margins, fitted=fitted)
     known = sample, change, work, margins[2], *events
     return Panel(who, start, length, *known, update, tail, fitted)
 
 
-def _events(margins: list[Array], idle: Flags, *, fitted: bool) -> tuple[Array, Rows, Array]:
+def _events(margins: list[Array], *, fitted: bool) -> tuple[Array, Rows, Array]:
     """Return ``Panel.tau``, ``event`` and ``leaves``; a fitted panel ends where its piece does."""
     nodes = lobatto(NODES)
     stops, caught = (first_crossing(nodes, margins[event]) for event in (0, 2))
     leaves = np.full(stops.shape, NEVER) if fitted else first_crossing(nodes, margins[1])
-    for found in (stops, caught):
-        found[idle & (found < nodes.points[1])] = NEVER
     tau = np.minimum(np.minimum(stops, caught), leaves)
     event = np.where(tau == stops, STOPS, np.where(tau == caught, CAUGHT, LEAVES))
     return tau, np.where(tau > 1.0, LEAVES if fitted else NO_EVENT, event), leaves

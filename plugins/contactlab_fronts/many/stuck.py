@@ -24,9 +24,8 @@ LONGEST_SWING = 4.0
 LONGEST = 1.2
 #: (dT/dx)² u is at most 1.6; this times inertia is the square of the fastest oscillation in x.
 FASTEST = 1.5 * 1.6
-#: Pieces thinner than this, in x or in q, hold no force worth knowing, only rounding.
-THINNEST = 1e-7
-THINNEST_RING = 1e-9
+#: Pieces thinner than this, in q, hold no force worth knowing, only rounding.
+THINNEST = 1e-9
 
 
 def advance(impacts: Impacts, who: Rows) -> None:
@@ -48,8 +47,7 @@ def advance(impacts: Impacts, who: Rows) -> None:
     weights = rows(nodes, np.minimum(tau, 1.0))
 
     end = start + length * np.minimum(tau, 1.0)
-    ring = np.sin(end) ** 2 - np.sin(start) ** 2
-    thick = (end - start > THINNEST) & (ring > THINNEST_RING)
+    thick = np.sin(end) ** 2 - np.sin(start) ** 2 > THINNEST
     laid, first, last = who[thick], start[thick], end[thick]
     output = impacts.pieces.output(first, length[thick], (slip[:, thick], force[:, thick]))
     ended = np.where(slips, sign, 0.0)[thick]
