@@ -41,6 +41,7 @@ def test_a_measured_sweep_has_its_residuals(reported, measured):
     assert "rms difference" in text
     assert '<td class="number">0.1</td>' in text  # measured 0.1 beside the rigid law
     assert "made up" in text
+    assert "legend_1" in text  # the laws over the sweep, above their differences
 
 
 def test_rows_of_a_long_sweep_are_spread_over_all_of_it(reported, tmp_path):
