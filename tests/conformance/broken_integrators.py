@@ -188,6 +188,12 @@ class NoContract(STEPS):
     tangential_contract: ClassVar[object] = "stepped"
 
 
+class RunsNumbers(STEPS):
+    """Says that it runs whole numbers."""
+
+    tangential_contract: ClassVar[object] = int
+
+
 #: Each with the check meant for it, and words of what the check says of it.
 BROKEN = [
     (AlwaysSucceeds, "faults_reported", "A fault in Hertz and FailingSpring reads as success"),
@@ -207,4 +213,5 @@ BROKEN = [
     (ReturnsATuple, "ends_well", "It returns a tuple"),
     (AsksTillItGives, "bounded", "Unyielding is asked without end"),
     (NoContract, "contract", "tangential_contract = 'stepped'"),
+    (RunsNumbers, "contract", "must be a class derived from TangentialLaw"),
 ]

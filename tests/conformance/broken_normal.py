@@ -54,6 +54,16 @@ class Narrows(Altered):
         return contact._replace(radius=contact.radius * (1.0 - 0.8 * (approach > 1e-5)))
 
 
+class LosesContact(Altered):
+    """No contact any more where it is deep."""
+
+    def alter(self, contact, approach, rate):
+        shallow = 1.0 * (approach <= 1e-5)
+        overlap = contact.overlap * (2.0 * shallow - 1.0)
+        held = NormalContact(*(part * shallow for part in contact))
+        return held._replace(overlap=overlap)
+
+
 class ReadsNanAsNoContact(Altered):
     def alter(self, contact, approach, rate):
         return NormalContact(*[np.nan_to_num(part)[()] for part in contact])
@@ -254,6 +264,7 @@ class MisstatesItsImpulse(HERTZ):
 #: Each with the check meant for it, and words of what the check says of it.
 BROKEN = [
     (NegativeLoad, "presses", "N is negative"),
+    (LosesContact, "presses", "At the deepest approach the overlap says that there is no"),
     (PullsFromAfar, "presses", "There is force out of contact"),
     (GivesMore, "normal_passive", "from nothing"),
     (PushesBothWays, "normal_passive", "A closed cycle at rates (0.05, 1.0) of v1 gives"),

@@ -48,6 +48,7 @@ class Likeness:
         (lambda: HalfSpace(STEEL, 3), "3 is one too many"),
         (lambda: Pair(radius=1.0), "effective_modulus, effective_shear_modulus, normal_mass, "),
         (lambda: contactlab.create("tangential.annulus", 50), "create: 50 is one too many"),
+        (lambda: contactlab.create("tangential.annulus", 50, annuli=60), "50 is one too many"),
         (lambda: contactlab.create(), "name is missing"),
         (lambda: contactlab.read_scene(), "path is missing"),
         (lambda: contactlab.rebound(1.2), "chi is missing"),

@@ -5,6 +5,7 @@ import pytest
 
 import contactlab
 from contactlab_damped_table.build import solve
+from contactlab_damped_table.coordinates import depth, restitution
 from contactlab_damped_table.function import rebound, shipped
 from contactlab_damped_table.table import read, write
 from tests.normal.test_dashpot import PSI2
@@ -92,3 +93,8 @@ def test_a_damaged_table_is_refused(tmp_path):
     path.write_bytes(content)
     with pytest.raises(ValueError, match=r"no table that can be trusted.*build"):
         read(path)
+
+
+def test_a_restitution_is_that_of_its_coordinate():
+    values = np.linspace(0.5, 1.0, 11)
+    assert restitution(depth(values)) == pytest.approx(values, abs=1e-15)

@@ -19,7 +19,7 @@ from contactlab_tabulated.exact import exact
 from contactlab_tabulated.fit import missing_powers
 from contactlab_tabulated.function import shipped
 from contactlab_tabulated.places import places
-from contactlab_tabulated.verify import draw, verify
+from contactlab_tabulated.verify import BESIDE_NAMES, draw, judge, verify
 from tests.reference import TABLE
 
 BOUND = 1e-9
@@ -285,3 +285,17 @@ def test_contactlab_rebound_uses_the_table_up_to_its_tolerance(monkeypatch):
     assert np.abs(contactlab.rebound(psi1, chi) - mixture).max() < 1e-5
     with pytest.raises(ValueError, match="derivatives"):
         contactlab.rebound(1.2, 1.44, derivatives=True)
+
+
+def test_each_fresh_impact_is_told_with_its_region_or_its_curve():
+    table = shipped()
+    draws = draw(3000, 5, table.cuts)
+    truth = evaluate.rebound(table, draws.psi1, draws.chi)
+    truth[draws.kind == 2] += 1e-6  # a curve of a table that is off there
+    found = {one.name: one for one in judge(table, draws, truth)}
+    everything = found.pop("all")
+    assert everything.draws == sum(one.draws for one in found.values()) == 3000
+    assert sum(found[name].draws for name in BESIDE_NAMES) == np.count_nonzero(draws.kind >= 0)
+    off = [name for name, one in found.items() if one.largest > 0.0]
+    assert off == [BESIDE_NAMES[2]]
+    assert everything.largest == pytest.approx(1e-6)
