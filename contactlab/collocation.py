@@ -141,7 +141,9 @@ def dips(nodes: Nodes, values: Array, fine: Array, least: Any) -> tuple[Any, Any
         The finer point next to each minimum, in ascending order, its column, and its tau.
     """
     step = fine[nodes.second :] - fine[nodes.second - 1 : -1]
-    index, column = np.nonzero((step[:-1] < 0.0) & (step[1:] >= 0.0))
+    index, column = ((step[:-1] < 0.0) & (step[1:] >= 0.0)).nonzero()
+    if not index.size:
+        return index, column, np.zeros(0)
     fall, rise = step[index, column], step[index + 1, column]
     index += nodes.second
     bend, slope = rise - fall, 0.5 * (rise + fall)
