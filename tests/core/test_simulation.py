@@ -19,6 +19,7 @@ from contactlab import (
     sweeping,
 )
 from contactlab.contracts import (
+    Integrator,
     SteppedTangentialLaw,
     TangentialResponse,
 )
@@ -236,3 +237,26 @@ def test_two_spheres_share_the_impulse():
     result = Simulation(**RIGID).run(Scene(ball, ball, 0.1, 2.0, 0.1))
     assert result.rebound_normal_velocity == pytest.approx(0.0, abs=1e-14)
     assert result.normal_restitution == pytest.approx(1.0, rel=1e-14)
+
+
+class GivesUpNeighbours(Integrator):
+    """Of a batch it gives up the impact before a fast one too."""
+
+    api_version: ClassVar[int] = 2
+    tangential_contract: ClassVar[object] = SteppedTangentialLaw
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        inner = contactlab.create("integrator.symplectic", steps=50)
+        motion = inner.integrate(normal, tangential, scene, observer)
+        fast = np.asarray(scene.psi1) > 2.0
+        if scene.shape:
+            fast = fast | np.roll(fast, -1)
+        return motion.failing(fast, Status.NON_FINITE, "Too fast.") if np.any(fast) else motion
+
+
+def test_an_impact_given_up_for_its_neighbour_is_followed_by_itself():
+    scene = Scene.nondimensional(psi1=np.array([1.0, 1.2, 2.5, 0.5]), chi=CHI)
+    result = Simulation(tangential="springs", integrator=GivesUpNeighbours()).run(scene)
+    assert [one.name for one in result.status] == ["SUCCESS", "SUCCESS", "NON_FINITE", "SUCCESS"]
+    alone = Simulation(tangential="springs", integrator=GivesUpNeighbours()).run(scene.take(1))
+    assert result.psi2[1] == pytest.approx(alone.psi2, abs=1e-12)
