@@ -3,6 +3,7 @@
 import itertools
 import pickle
 import re
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -18,6 +19,7 @@ from contactlab.closed_forms import hertz_scales
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from tests.guards import cost, without
 from tests.normal_laws import LinearSpring
+from tests.properties.spoiled import SpoiledMotion, spoiled_closed_form
 from tests.tangential_laws import Creator, Slinger
 
 
@@ -259,3 +261,31 @@ def test_the_benchmark_of_the_guards_leaves_the_environment_alone():
     """Else processes of later tests would count with one BLAS thread, and this one with more."""
     code = "import os; os.environ.clear(); import tests.guards; assert not os.environ"
     subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[2], check=True)
+
+
+class LateNan(SpoiledMotion):
+    """The radius is NaN from the middle of restitution on."""
+
+    def at(self, phase):
+        sample = self.motion.at(phase)
+        radius = np.where(np.asarray(phase) > 0.75 * np.pi, np.nan, sample.contact.radius)
+        return sample._replace(contact=sample.contact._replace(radius=radius))
+
+    def take(self, part):
+        return LateNan(self.motion.take(part), self.spoil, self.name)
+
+
+@pytest.mark.parametrize("psi1", [1.2, np.array([0.5, 1.2])])
+def test_the_step_is_named_where_a_normal_motion_ceases_to_be_finite(psi1):
+    law = spoiled_closed_form(contactlab.create("normal.hertz"), None, "")
+    body = {"motion": lambda self, scene: LateNan(law.motion(scene), None, "")}
+    spoiled = attrs.frozen(type("LateHertz", (type(law),), body))()
+    march = contactlab.create("integrator.symplectic", steps=100)
+    result = Simulation(normal=spoiled, tangential="springs", integrator=march).run(
+        Scene.nondimensional(psi1=psi1, chi=1.44)
+    )
+    told = result.failures[0]
+    assert "nan" in told
+    step = int(re.search(r"step (\d+)", told)[1])
+    rising = np.asarray(law.motion(Scene.nondimensional(psi1=1.2, chi=1.44)).phase(0.01 * step))
+    assert float(rising) == pytest.approx(0.75 * np.pi, abs=0.05)
