@@ -3,7 +3,6 @@
 import itertools
 import pickle
 import re
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -278,7 +277,7 @@ class LateNan(SpoiledMotion):
 @pytest.mark.parametrize("psi1", [1.2, np.array([0.5, 1.2])])
 def test_the_step_is_named_where_a_normal_motion_ceases_to_be_finite(psi1):
     law = spoiled_closed_form(contactlab.create("normal.hertz"), None, "")
-    body = {"motion": lambda self, scene: LateNan(law.motion(scene), None, "")}
+    body = {"motion": lambda _, scene: LateNan(law.motion(scene), None, "")}
     spoiled = attrs.frozen(type("LateHertz", (type(law),), body))()
     march = contactlab.create("integrator.symplectic", steps=100)
     result = Simulation(normal=spoiled, tangential="springs", integrator=march).run(
