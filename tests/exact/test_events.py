@@ -151,3 +151,14 @@ def test_a_normal_law_without_closed_form_does_not_fit():
         Simulation(
             normal=LinearSpring(), tangential=Turns(phases=0, closed=False), integrator="events"
         )
+
+
+@pytest.mark.parametrize(("psi1", "chi"), [(0.5, CHI), (1.2, CHI), (3.0, CHI), (1.2, 3.0)])
+def test_a_history_obeys_newton(psi1, chi):
+    """The velocity at each instant is what the force up to then leaves."""
+    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    course = Simulation().run(scene, history=True).check().history
+    means = 0.5 * (course.tangential_force[1:] + course.tangential_force[:-1])
+    impulse = np.concatenate(([0.0], np.cumsum(means * np.diff(course.time))))
+    velocity = course.slip_velocity[0] - impulse / scene.pair.tangential_mass
+    assert course.slip_velocity == pytest.approx(velocity, abs=1e-3 * np.ptp(velocity))
