@@ -272,6 +272,13 @@ def test_an_answer_that_is_not_sound_is_no_number(short_sweep):
         compare(3.0, {})
 
 
+def test_no_difference_is_largest_where_a_law_gave_no_answer(measured):
+    creator = {"creator": Simulation(tangential=Creator())}
+    (agreement,) = compare(read_scene(measured), creator).agreements
+    assert np.isnan(agreement.where_largest("creator"))
+    assert np.isnan(agreement.largest("creator"))
+
+
 def test_progress_counts_every_run(run, measured, monkeypatch):
     """Each law is run on the sweep and at the measured points."""
     monkeypatch.setattr(progress, "QUIET", 0.0)

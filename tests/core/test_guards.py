@@ -288,3 +288,24 @@ def test_the_step_is_named_where_a_normal_motion_ceases_to_be_finite(psi1):
     step = int(re.search(r"step (\d+)", told)[1])
     rising = np.asarray(law.motion(Scene.nondimensional(psi1=1.2, chi=1.44)).phase(0.01 * step))
     assert float(rising) == pytest.approx(0.75 * np.pi, abs=0.05)
+
+
+@attrs.frozen(kw_only=True)
+class AnswersInTuples(LinearSpring):
+    """A normal law that answers with plain tuples, or with nothing."""
+
+    answer: object = None
+
+    def respond(self, state, approach, rate):
+        return self.answer, state
+
+
+@pytest.mark.parametrize("answer", [None, (1.0, 1e-3, 1e-6, 1.0)])
+def test_a_normal_law_that_gives_no_contact_is_a_status(answer):
+    law = AnswersInTuples(answer=answer)
+    result = Simulation(normal=law, tangential="coulomb").run(
+        Scene.nondimensional(psi1=1.2, chi=1.44)
+    )
+    assert result.status is Status.LAW_RAISED
+    assert "not a NormalContact" in result.failures[0]
+    assert "AnswersInTuples" in result.failures[0]

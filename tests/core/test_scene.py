@@ -181,3 +181,11 @@ def test_stack_refuses_what_is_no_scene():
         Scene.stack([scene(), 3.0])
     with pytest.raises(ValueError, match="at least one"):
         Scene.stack([])
+
+
+def test_an_impact_of_a_grid_has_the_numbers_of_its_row_and_column():
+    grid = Scene.nondimensional(psi1=np.array([[0.5], [1.5]]), chi=np.array([[1.0, 2.0, 3.0]]))
+    one = grid.take((1, 2))
+    assert (one.psi1, one.chi) == (pytest.approx(1.5), pytest.approx(3.0))
+    some = grid.take(np.array([[False, True, False], [False, False, True]]))
+    assert some.chi == pytest.approx([2.0, 3.0])
