@@ -149,7 +149,7 @@ class FixedSteps(Integrator):
 
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return what the tangential law declares for as many steps."""
-        steps: Any = self._taken(needed_steps(normal, tangential))
+        steps: Any = self.resolution_for(normal, tangential, scene)
         return tangential.psi2_error(scene, normal, steps)
 
     def remarks(
