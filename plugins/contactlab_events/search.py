@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlab.collocation import Array, Nodes, dips, row, value_at
+from contactlab.collocation import Array, Nodes, dips, value_at
 from contactlab.contracts import Phase
 from contactlab_events.panel import SolvedPanel
 
@@ -55,7 +55,7 @@ def first_event(phase: Phase, panel: SolvedPanel) -> tuple[int, float] | None:
             return event, 0.0
         dip, tau = hidden.get(k, (end, 1.0))
         if dip < end:
-            end, right, after = dip, tau, float(row(nodes, tau) @ margin)
+            end, right, after = dip, tau, value_at(nodes, tau, margin)
         elif end < len(fine):
             right, after = nodes.fine[end].item(), fine[end].item()
         else:

@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 
 from contactlab import faults
+from contactlab.batch import chosen
 from contactlab.checks import Real
 from contactlab.collocation import Array, lobatto, row, rows
 from contactlab.contracts import (
@@ -139,8 +140,8 @@ def books_miss(velocity: Real, inertia: Real, change: Real, work: Real) -> Any:
         psi2 - psi1 and the scaled friction work.
     """
     # Over the velocity, as its square may be too large for a number.
-    greater: Any = max if isinstance(velocity, float) else np.maximum
-    scale = greater(velocity, LEAST_AUDITED)
+    small: Any = velocity < LEAST_AUDITED
+    scale = chosen(small, LEAST_AUDITED, velocity)
     lost = change * ((velocity + 0.5 * change) / scale)
     return abs(lost + inertia * (work / scale)) / (0.5 * scale)
 

@@ -44,15 +44,15 @@ class Slide(NamedTuple):
         """
         last = motion.scaled_at(np.pi).rate
         ratio = inertia * motion.scaled_mass
-        least: Any = min if isinstance(velocity, float) else np.minimum
         # below 1 the margin only grows
         spread = chosen(ratio > 1.0, ratio - 1.0, np.inf)
-        stop = least((ratio * first.rate - share * velocity) / spread, first.rate)
+        stop = (ratio * first.rate - share * velocity) / spread
+        stop = chosen(first.rate < stop, first.rate, stop)
         stops = (ratio > 1.0) & (stop > last)
         rate = chosen(stops, stop, last)
         # to the end, V = -1: from the energy 1 - V², as the difference would cancel
         late = (rate == last) & (first.rate < 0.0)
-        rest = first.approach * first.force / (1.0 - least(first.rate, 0.0))
+        rest = first.approach * first.force / (1.0 - chosen(first.rate < 0.0, first.rate, 0.0))
         fall = chosen(late, rest, first.rate - rate)
         gained = -share * ratio * fall
         mean = share * (velocity + 0.5 * gained) - 0.5 * (first.rate + rate)
