@@ -26,6 +26,17 @@ def reported(run, tmp_path):
     return call
 
 
+@pytest.fixture
+def damped(tmp_path):
+    path = tmp_path / "damped.toml"
+    path.write_text(
+        "[nondimensional]\npsi1 = 1.0\nchi = 1.0\n[simulation]\nnormal = 'tsuji'\n"
+        "tangential = 'springs'\n[simulation.options]\nnormal.restitution = 0.9\n",
+        encoding="utf-8",
+    )
+    return path
+
+
 def test_one_impact_in_one_file(reported, ball):
     text = reported(ball)
     for heading in ("scene", "answer", "laws compared", "plan", "Sources", "How this was made"):
@@ -57,14 +68,8 @@ def test_rows_of_a_long_sweep_are_spread_over_all_of_it(reported, tmp_path):
     assert all(f'<td class="number">{psi1}</td>' in text for psi1 in (0, 48, 96))
 
 
-def test_a_default_law_that_does_not_fit_the_normal_law_is_left_out(reported, tmp_path):
-    path = tmp_path / "damped.toml"
-    path.write_text(
-        "[nondimensional]\npsi1 = 1.0\nchi = 1.0\n[simulation]\nnormal = 'tsuji'\n"
-        "tangential = 'springs'\n[simulation.options]\nnormal.restitution = 0.9\n",
-        encoding="utf-8",
-    )
-    text = reported(path)
+def test_a_default_law_that_does_not_fit_the_normal_law_is_left_out(reported, damped):
+    text = reported(damped)
     assert "coulomb" in text
     assert "fronts" not in text
 
@@ -174,14 +179,8 @@ def test_a_law_without_references_has_none():
     assert len(references(create("normal.hertz"))) == 1
 
 
-def test_a_law_that_is_asked_for_and_does_not_fit_is_refused(run, tmp_path):
-    path = tmp_path / "damped.toml"
-    path.write_text(
-        "[nondimensional]\npsi1 = 1.0\nchi = 1.0\n[simulation]\nnormal = 'tsuji'\n"
-        "tangential = 'springs'\n[simulation.options]\nnormal.restitution = 0.9\n",
-        encoding="utf-8",
-    )
-    ran = run("report", path, "--tangential", "fronts", "--out", tmp_path / "report.html")
+def test_a_law_that_is_asked_for_and_does_not_fit_is_refused(run, damped, tmp_path):
+    ran = run("report", damped, "--tangential", "fronts", "--out", tmp_path / "report.html")
     assert (ran.status, ran.out) == (2, "")
     assert "Fronts: needs 'elastic_hertz'" in ran.err
     assert not (tmp_path / "report.html").exists()
