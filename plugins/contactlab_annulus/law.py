@@ -24,7 +24,7 @@ from contactlab.contracts import (
 from contactlab.declared import ErrorModel
 from contactlab.scene import Scene
 from contactlab_annulus import blocks, many, one
-from contactlab_annulus.tables import Tables, tables
+from contactlab_annulus.tables import Tables, load_carried, tables
 from contactlab_jaeger.all_steps import ScaledSteps
 from contactlab_jaeger.gross_slip import gross_slip
 from contactlab_jaeger.law import Scales
@@ -42,6 +42,7 @@ class State(NamedTuple):
     """Memory of a contact, and its scales. A value: never changed once made."""
 
     scales: Scales
+    hertz: bool  # whether the normal law is Hertz's
     memory: Any  # one.Memory or many.Memory
 
 
@@ -52,6 +53,10 @@ class Annulus(AllStepsTangentialLaw):
     Each step solves (33) where the surfaces stick and (34) where they slip, tests the
     division into stick and slip by (36) and (37), and repeats with all violators flipped
     until the tests pass. Annuli outside the contact are left out (16).
+
+    The pressures in the middles of (34) carry the load P but for about n^-1.5. Under Hertz's law
+    they are left as in the paper; under any other they are scaled to carry it, so that gross slip
+    is exact.
 
     Parameters
     ----------
@@ -104,7 +109,7 @@ class Annulus(AllStepsTangentialLaw):
         """Return a contact without traction."""
         shape = scene.shape
         memory = many.start(self.annuli, shape) if shape else one.start(self.annuli)
-        return State(Scales.of(scene, normal), memory)
+        return State(Scales.of(scene, normal), "elastic_hertz" in normal.offers, memory)
 
     def advance(
         self,
@@ -114,14 +119,14 @@ class Annulus(AllStepsTangentialLaw):
         after: NormalContact,
     ) -> tuple[TangentialResponse, State]:
         """Return the force (22) after the step."""
-        scales, memory = state
+        scales, hertz, memory = state
         radius: Any = after.radius / scales.radius
-        pressure = scales.pressure(radius, after.friction_load)
+        pressure = self._pressure(scales, radius, after.friction_load, hertz=hertz)
         solve = one.advance if isinstance(memory, one.Memory) else many.advance
         slip: Any = increment.displacement * scales.displacement
         force, work, settled, memory = solve(self._tables(), memory, slip, radius, pressure)
         response = TangentialResponse(force * scales.force, work * scales.work, settled)
-        return response, State(scales, memory)
+        return response, State(scales, hertz, memory)
 
     def advance_all(
         self, scene: Scene, normal: NormalMotion, steps: Steps
@@ -130,10 +135,10 @@ class Annulus(AllStepsTangentialLaw):
         if scene.shape:
             return None
         scales = Scales.of(scene, normal)
-        radius = steps.contact.radius / scales.radius
+        radius, load = steps.contact.radius / scales.radius, steps.contact.friction_load
         scaled = ScaledSteps(
             radius=radius,
-            pressure=scales.pressure(radius, steps.contact.friction_load),
+            pressure=self._pressure(scales, radius, load, hertz="elastic_hertz" in normal.offers),
             drift=steps.drift * scales.displacement,
             kick=steps.kick * scales.force / scene.pair.tangential_mass,
         )
@@ -141,6 +146,13 @@ class Annulus(AllStepsTangentialLaw):
         settled = march.march()
         work = march.friction_work() * float(scales.work)
         return AllStepsResponse(march.forces * scales.force, work, settled)
+
+    def _pressure(self, scales: Scales, radius: Any, load: Any, *, hertz: bool) -> Any:
+        """Return the ratio of the pressures of (34) to those of a Hertz contact of this radius."""
+        if hertz:
+            return scales.pressure(radius, load)
+        carried = load_carried(self._tables(), radius)
+        return load / (scales.normal_force * carried + (carried == 0.0))
 
     def _tables(self) -> Tables:
         return tables(self.annuli, self.displacement == "mean")
@@ -150,7 +162,7 @@ class Annulus(AllStepsTangentialLaw):
 
         ``slipping`` is the sign of the traction of a slipping annulus, 0 elsewhere.
         """
-        scales, memory = state
+        scales, _, memory = state
         table = self._tables()
         stuck, slipping = memory.division()
 

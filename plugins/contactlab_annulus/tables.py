@@ -13,7 +13,7 @@ so far: while an annulus sticks its lag is constant, and (33) says no more than 
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,19 @@ class Tables(NamedTuple):
     lower_inverse: Array  # L^-1 of B = L U, shape (n, n)
     upper_inverse: Array  # U^-1, shape (n, n)
     responses: list[Array]  # entry c: ``response`` with annuli 1..c stuck; empty for large n
+
+
+def load_carried(table: Tables, radius: Any) -> Any:
+    """Return P^ of a Hertz pressure taken in the middles, (34): beta³ but for about n^-1.5.
+
+    Parameters
+    ----------
+    table : Tables
+    radius : float or array
+        beta.
+    """
+    square = np.square(np.asarray(radius))[..., None]
+    return np.sqrt(np.maximum(square - table.radius_squared, 0.0)) @ table.weight
 
 
 def influence(annuli: int) -> Array:

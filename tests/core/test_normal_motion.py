@@ -182,7 +182,7 @@ def test_laws_of_partial_slip_agree_under_a_plastic_contact(law, slip):
 
 
 @pytest.mark.parametrize("law", [Plastic(), WidePlastic()])
-@pytest.mark.parametrize("tangential", ["springs", "coulomb"])
+@pytest.mark.parametrize("tangential", ["annulus", "springs", "sharp_annulus", "coulomb"])
 def test_gross_slip_under_a_plastic_contact(law, tangential):
     """Psi falls by 2 chi (1 + e), whatever the contact."""
     result = Simulation(normal=law, tangential=tangential).run(scene(30.0)).check()
