@@ -18,7 +18,7 @@ import numpy as np
 def locked(value: Any) -> Any:
     """Return ``value``, made read-only if it is an array, as whatever leaves the core is."""
     if isinstance(value, np.ndarray):
-        value.flags.writeable = False
+        value.setflags(write=False)
     return value
 
 

@@ -148,7 +148,18 @@ class Annulus(AllStepsTangentialLaw):
         return AllStepsResponse(march.forces * scales.force, work, settled)
 
     def _pressure(self, scales: Scales, radius: Any, load: Any, *, hertz: bool) -> Any:
-        """Return the ratio of the pressures of (34) to those of a Hertz contact of this radius."""
+        """Return the ratio of the pressures of (34) to those of a Hertz contact of this radius.
+
+        Parameters
+        ----------
+        scales : Scales
+        radius : float or array
+            beta.
+        load : float or array
+            Friction load, in N.
+        hertz : bool
+            Whether the normal law is Hertz's.
+        """
         if hertz:
             return scales.pressure(radius, load)
         carried = load_carried(self._tables(), radius)

@@ -80,9 +80,11 @@ def _steps(normal: NormalMotion, phases: Any, kick: Any, load_impulse: Any) -> S
 
 
 def one_by_one(steps: Steps) -> Iterator[Steps]:
-    """Iterate over the steps: floats for one impact (much faster), arrays for a batch."""
+    """Iterate over the steps: arrays for a batch, floats where all impacts have one (faster)."""
     columns = [*steps.contact, *steps[1:]]
-    lists = [column.tolist() if column.ndim == 1 else column for column in columns]
+    lists = [
+        column.ravel().tolist() if column.size == len(column) else column for column in columns
+    ]
     for row in zip(*lists, strict=True):
         yield Steps(NormalContact(*row[:4]), *row[4:])
 

@@ -7,7 +7,7 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation, Status
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
 from contactlab.contracts import (
     NormalContact,
     NormalLaw,
@@ -17,11 +17,22 @@ from contactlab.contracts import (
 from contactlab.normal_motion import normal_motion
 from tests.outside_laws import Tsuji
 
-PSI1 = (0.5, 1.2, 3.0)
+STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+
+
+SPEEDS, SLIPS = (1.0, 2.0, 4.0), (0.1, 0.5, 2.0)
+
+
+def scene_of(speed, slip):
+    return Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.2, speed, slip)
 
 
 def batch():
-    return Scene.nondimensional(psi1=np.array(PSI1), chi=1.44)
+    """Impacts of unlike normal motions: what all share is given to laws in plain numbers."""
+    return scene_of(np.array(SPEEDS), np.array(SLIPS))
+
+
+PSI1 = batch().psi1.tolist()
 
 
 @attrs.frozen(kw_only=True)
@@ -55,9 +66,9 @@ def test_a_law_that_writes_in_place_changes_nothing_of_anyone_elses(integrator, 
     """
     scene, sim = batch(), Simulation(tangential=Writer(what=what), integrator=integrator)
     result = sim.run(scene)
-    assert scene.psi1.tolist() == list(PSI1)
-    assert result.scene.psi1.tolist() == list(PSI1)
-    alone = [sim.run(Scene.nondimensional(psi1=psi1, chi=1.44)) for psi1 in PSI1]
+    assert scene.psi1.tolist() == PSI1
+    assert result.scene.psi1.tolist() == PSI1
+    alone = [sim.run(scene_of(*given)) for given in zip(SPEEDS, SLIPS, strict=True)]
     assert result.psi2.tolist() == [one.psi2 for one in alone]
     assert result.motion.friction_work.tolist() == [one.motion.friction_work for one in alone]
     # With a history the impacts stay together, and the law is named.
@@ -66,7 +77,7 @@ def test_a_law_that_writes_in_place_changes_nothing_of_anyone_elses(integrator, 
         assert {status.name for status in watched.status} == {"LAW_RAISED"}
         assert "Writer" in watched.failures[0]
         assert "read-only" in watched.failures[0]
-        assert watched.psi1.tolist() == list(PSI1)
+        assert watched.psi1.tolist() == PSI1
 
 
 @pytest.mark.parametrize("integrator", ["symplectic", "paper", "adaptive"])
@@ -75,7 +86,7 @@ def test_a_law_that_writes_into_the_scene_is_named(integrator):
     result = Simulation(tangential=Writer(what="scene"), integrator=integrator).run(scene)
     assert {status.name for status in result.status} == {"LAW_RAISED"}
     assert "Writer" in result.failures[0]
-    assert scene.psi1.tolist() == list(PSI1)
+    assert scene.psi1.tolist() == PSI1
 
 
 def test_a_normal_law_that_writes_in_place_is_named():
@@ -102,14 +113,14 @@ def test_results_are_read_only():
     for array in locked:
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1e9
-    assert result.psi1.tolist() == list(PSI1)
+    assert result.psi1.tolist() == PSI1
 
 
 def test_what_a_user_gives_is_not_what_a_scene_keeps():
     mine = np.array(PSI1)
     scene = Scene.nondimensional(psi1=mine, chi=1.44)
     mine[0] = 1e9  # is the user's own
-    assert scene.psi1.tolist() == list(PSI1)
+    assert scene.psi1.tolist() == PSI1
 
 
 class Own(BaseException):
