@@ -114,10 +114,8 @@ def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Refer
 
 def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
     """Run without the plan's short cuts: the integrator does the whole impact."""
-    normal, (_, law, integrator) = (
-        simulation.normal_motion(scene),
-        attrs.astuple(simulation, recurse=False),
-    )
+    law, integrator = simulation.tangential, simulation.integrator
+    normal = simulation.normal_motion(scene)
     tangential = integrator.integrate(normal, law, scene, None)
     plan = attrs.evolve(
         simulation.plan(scene),
@@ -154,7 +152,7 @@ def _judged(
     declared = float(result.plan.psi2_error) * unit
     bound = min(declared / width + ROUNDING, LARGEST_SHARE) if width > 0.0 else ROUNDING
     held = True
-    if np.isnan(bound):  # of a stranger's law nothing is declared: only the invariants are held
+    if np.isnan(bound):  # nothing is declared: under Hertz's law only the invariants are held
         bound = UNDECLARED
         held = case.normal != HERTZ
     elastic = "elastic_hertz" in simulation.normal.offers

@@ -26,10 +26,12 @@ from contactlab.testing.units import Units
 
 Array = NDArray[np.float64]
 
-#: A body so heavy that the machine, not friction, decides how it moves.
+#: chi of a body so heavy that the machine, not friction, decides how it moves.
 HEAVY = 1e-4
 #: Friction coefficient, where nothing else is said.
 FRICTION = 0.3
+#: Of a straight path.
+STEPS_TO_KNOT = 40
 
 
 def scene(
@@ -188,7 +190,7 @@ def _rows(column: Array) -> Any:
     return column.tolist() if column.ndim == 1 else column
 
 
-def straight(*knots: tuple[float, float], steps: int = 40) -> Path:
+def straight(*knots: tuple[float, float], steps: int = STEPS_TO_KNOT) -> Path:
     """Return the path from 0, 0 through ``knots`` (slip, zeta), ``steps`` to each."""
     points = np.array([(0.0, 0.0), *knots])
     parts = np.linspace(0.0, 1.0, steps + 1)[1:, None]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import NormalContact, SteppedTangentialLaw
-from contactlab.testing.bench import Bench, Path, drive, slack, straight, wandering
+from contactlab.testing.bench import STEPS_TO_KNOT, Bench, Path, drive, slack, straight, wandering
 from contactlab.testing.check import check, hold
 from contactlab.testing.units import ODD_UNITS, in_units
 
@@ -79,7 +79,8 @@ def normal_load_alone(law: Any) -> None:
     hold(np.all(force == 0.0), f"Pressing alone makes F = {_worst(force):.2g} mu P_max.")
     path = straight((0.0, 0.4), (0.3, 0.4), (0.3, 1.0))
     held = drive(law, bench, path).force
-    rise = _worst(held[80:]) - abs(held[79])
+    sheared = 2 * STEPS_TO_KNOT  # what comes from here on is pressed only
+    rise = _worst(held[sheared:]) - abs(held[sheared - 1])
     hold(
         rise <= slack(law),
         f"Pressing on a contact that is sheared adds {rise:.2g} mu P_max to its force.",
@@ -93,7 +94,7 @@ def gross_slip(law: Any) -> None:
     found = drive(law, Bench.of(), path)
     gap = abs(float(found.force[-1]) - 0.7**1.5)
     hold(gap <= slack(law), f"F = {found.force[-1]:.4g} mu P_max where mu P is {0.7**1.5:.4g}.")
-    work = float(np.sum(found.work[80:]))
+    work = float(np.sum(found.work[2 * STEPS_TO_KNOT :]))
     paid = 4.0 * float(found.force[-1])
     hold(
         abs(work - paid) <= max(slack(law), 1e-6) * paid,
