@@ -33,7 +33,7 @@ def broken_invariants(
     bound : float
         Declared error of psi2, over its range.
     passive : bool
-        False for a law whose model itself makes energy.
+        False for a law that says of its books that they do not close: its model makes energy.
     books_bound : float
         Declared imbalance of the books, over the energy at the start.
     load_impulse : float, optional

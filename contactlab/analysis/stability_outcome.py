@@ -11,7 +11,6 @@ import numpy as np
 from contactlab.analysis.stability_bounds import LARGEST_NORMAL, broken_invariants
 from contactlab.analysis.stability_cases import HERTZ, Case
 from contactlab.analysis.stability_references import (
-    ACTIVE,
     SETTLED,
     Reference,
     itself,
@@ -156,7 +155,7 @@ def _judged(
         bound = UNDECLARED
         held = case.normal != HERTZ
     elastic = "elastic_hertz" in simulation.normal.offers
-    passive = case.method.tangential not in ACTIVE
+    passive = "books" not in simulation.tangential.expected_failures
     books = simulation.tangential.books_bound
     wrong = broken_invariants(
         result,

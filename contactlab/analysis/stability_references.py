@@ -23,10 +23,6 @@ from contactlab.simulation import Simulation
 
 #: Laws that converge to the axisymmetric continuum as their resolution grows.
 CONTINUUM = frozenset({"annulus", "fronts", "springs", "sharp_annulus", "tabulated"})
-#: Laws whose model makes or loses energy by itself, and why; it is not called instability.
-ACTIVE = {
-    "mindlin_cap": "its stiffness changes with the contact, and the energy is in no books",
-}
 #: Closer than the default, so that the default can be judged.
 REFERENCE_TOLERANCES = (1e-11, 1e-9)
 #: Steps that a law's own reference begins with: this many times the stability limit, and no
