@@ -29,6 +29,10 @@ LONGEST_SWING = 9.0
 #: leaves is its square.
 FIT_MOVE, SHIFT_PART = 1e-10, 0.1
 TINY = 1e-300
+ROOT_CAP = 60
+ROOT_WIDTH = 1e-15
+#: An interpolated margin is known to no better than this part of its largest value.
+ROUNDING = 2.0**-52
 #: The square of a change beyond this is no number; a shorter panel changes less.
 LARGEST_CHANGE = 1e150
 
@@ -242,26 +246,48 @@ def _singular_event(phase: Phase, sample: PhaseSample, nodes: Nodes) -> tuple[in
         margin = phase.margin(event, sample)
         k = int((margin < 0.0).argmax())
         if k and margin[k] < 0.0:
-            tau = _crossing(nodes, margin, k)
+            ends, values = nodes.points[k - 1 : k + 1], margin[k - 1 : k + 1]
+            tau = root(nodes, margin, (tuple(ends.tolist()), tuple(values.tolist())), most=2)
             if tau < best[1]:
                 best = event, tau
     return best
 
 
-def _crossing(nodes: Nodes, margin: Array, k: int) -> float:
-    """Return about where a margin falls below zero between the nodes k - 1 and k.
+def root(
+    nodes: Nodes,
+    values: Array,
+    bracket: tuple[tuple[float, float], tuple[float, float]],
+    most: int = ROOT_CAP,
+) -> float:
+    """Return the root of the interpolant of ``values`` by the Illinois method.
 
-    The second secant, which knows the interpolant's curvature, saves a move of the panel's end.
+    Parameters
+    ----------
+    nodes : Nodes
+    values : array, shape (nodes,)
+    bracket : pair of pairs of float
+        Two points and the values there, the first of which is not negative.
+    most : int
+        Iterations; two, which know the interpolant's curvature, for a first guess.
     """
-    left, right = nodes.points[k - 1 : k + 1].tolist()
-    before, after = margin[k - 1 : k + 1].tolist()
-    middle = left + (right - left) * before / (before - after)
-    value = value_at(nodes, middle, margin)
-    if value >= 0.0:
-        left, before = middle, value
-    else:
-        right, after = middle, value
-    return float(left + (right - left) * before / (before - after))
+    (a, b), (fa, fb) = bracket
+    if fa <= 0.0:
+        return a
+    side = 0
+    scale = max(ROOT_WIDTH * (fa - fb), ROUNDING * float(np.abs(values).max()))
+    t = a
+    for _ in range(most):
+        t = (fa * b - fb * a) / (fa - fb)
+        ft = value_at(nodes, t, values)
+        if abs(ft) <= scale or b - a < ROOT_WIDTH:
+            break
+        if ft > 0.0:
+            a, fa, fb = t, ft, 0.5 * fb if side == 1 else fb
+            side = 1
+        else:
+            b, fb, fa = t, ft, 0.5 * fa if side == -1 else fa
+            side = -1
+    return t
 
 
 def _shift(margin: Array, spot: Array, length: float) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 
 from contactlab.collocation import Array, Nodes, dips, value_at
 from contactlab.contracts import Phase
-from contactlab_events.panel import SolvedPanel
+from contactlab_events.panel import SolvedPanel, root
 
 #: A margin starts at zero if it is this small, or this part of its largest.
 ZERO = 1e-14
@@ -18,10 +18,6 @@ SHALLOWEST = 1e-9
 NOISE = 1e-12
 #: A margin that stays zero is no event: its size is taken to be at least this many velocities.
 STILL = 10.0
-ROOT_CAP = 60
-ROOT_WIDTH = 1e-15
-#: An interpolated margin is known to no better than this part of its largest value.
-ROUNDING = 2.0**-52
 
 
 def first_event(phase: Phase, panel: SolvedPanel) -> tuple[int, float] | None:
@@ -63,9 +59,9 @@ def first_event(phase: Phase, panel: SolvedPanel) -> tuple[int, float] | None:
         left, before = nodes.fine[end - 1].item(), fine[end - 1].item()
         if best is not None and left > best[1]:
             continue
-        root = _root(nodes, margin, ((left, right), (before, after)))
-        if best is None or root < best[1]:
-            best = event, root
+        tau = root(nodes, margin, ((left, right), (before, after)))
+        if best is None or tau < best[1]:
+            best = event, tau
     return best
 
 
@@ -81,30 +77,3 @@ def _quotient(nodes: Nodes, margin: Array, size: float) -> tuple[Array, float, i
     # If the nodes say it begins inside the phase, the interpolant's first wiggle is noise.
     inside = quotient[1] > 0.0 or quotient[0] > 0.0
     return quotient, -NOISE * size, nodes.second if inside else 0
-
-
-def _root(
-    nodes: Nodes, values: Array, bracket: tuple[tuple[float, float], tuple[float, float]]
-) -> float:
-    """Return the root of the interpolant of ``values`` by the Illinois method.
-
-    ``bracket`` holds two points and the values there, the first of which is not negative.
-    """
-    (a, b), (fa, fb) = bracket
-    if fa <= 0.0:
-        return a
-    side = 0
-    scale = max(ROOT_WIDTH * (fa - fb), ROUNDING * float(np.abs(values).max()))
-    t = a
-    for _ in range(ROOT_CAP):
-        t = (fa * b - fb * a) / (fa - fb)
-        ft = value_at(nodes, t, values)
-        if abs(ft) <= scale or b - a < ROOT_WIDTH:
-            break
-        if ft > 0.0:
-            a, fa, fb = t, ft, 0.5 * fb if side == 1 else fb
-            side = 1
-        else:
-            b, fb, fa = t, ft, 0.5 * fa if side == -1 else fa
-            side = -1
-    return t
