@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from numpy.polynomial.chebyshev import chebval
 
 import contactlab
+from contactlab_damped_table import build
 from contactlab_damped_table.build import solve
-from contactlab_damped_table.coordinates import depth, restitution
-from contactlab_damped_table.function import rebound, shipped
+from contactlab_damped_table.coordinates import CHI as RANGE_OF_CHI
+from contactlab_damped_table.coordinates import depth, inner, restitution
+from contactlab_damped_table.function import _at, rebound, shipped
 from contactlab_damped_table.table import read, write
 from tests.normal.test_dashpot import PSI2
 
@@ -98,3 +101,13 @@ def test_a_damaged_table_is_refused(tmp_path):
 def test_a_restitution_is_that_of_its_coordinate():
     values = np.linspace(0.5, 1.0, 11)
     assert restitution(depth(values)) == pytest.approx(values, abs=1e-15)
+
+
+@pytest.mark.parametrize("e", [0.55, 0.8, 0.97])
+def test_the_cuts_are_found_again(e, monkeypatch):
+    """By fewer springs than the table's."""
+    monkeypatch.setattr(build, "SPRINGS", 40)
+    monkeypatch.setattr(build, "LOOKED", 13)
+    chi = np.array([0.9, 1.44, 1.7])
+    known = chebval(inner(chi, *RANGE_OF_CHI), _at(e)[0].T)
+    assert np.array(build.cuts_at(e, chi)) == pytest.approx(known, abs=2e-3)

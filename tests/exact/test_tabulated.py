@@ -2,21 +2,27 @@
 
 import numpy as np
 import pytest
-from numpy.polynomial.polynomial import polyval2d
+from numpy.polynomial.polynomial import polyder, polygrid2d, polyval, polyval2d
 
 import contactlab
 from contactlab import rebounds
-from contactlab_tabulated import evaluate, rebound
+from contactlab_tabulated import cuts, evaluate, rebound, start
 from contactlab_tabulated.coordinates import (
     CUT_END,
+    FIRST_POWER,
     LARGEST_CHI,
     NAMES,
     impact,
     polynomial,
 )
-from contactlab_tabulated.cuts import _bisect
 from contactlab_tabulated.exact import exact
-from contactlab_tabulated.fit import missing_powers
+from contactlab_tabulated.fit import (
+    Cell,
+    begins_at_one,
+    chebyshev_nodes,
+    fit,
+    missing_powers,
+)
 from contactlab_tabulated.function import shipped
 from contactlab_tabulated.places import places
 from contactlab_tabulated.verify import BESIDE_NAMES, draw, judge, verify
@@ -201,15 +207,37 @@ def test_places_and_impacts_are_each_others_inverse():
         assert np.abs(back[1] - chi[here.who[part]]).max() < 1e-14 * 10
 
 
-@pytest.mark.parametrize("psi1", [0.2, 0.8])
-def test_the_last_slip_changes_sign_at_the_cut(psi1):
-    cut = polynomial(shipped().cuts.stuck, np.array([psi1])).item()
-    assert _bisect(lambda psi1, _: psi1, psi1, (1.4, 1.9)) == pytest.approx(cut, abs=1e-5)
+def test_the_cuts_are_found_again(monkeypatch):
+    """Coarsely: by few points, chi to 1e-3."""
+    monkeypatch.setattr(cuts, "POINTS", 10)
+    monkeypatch.setattr(cuts, "HALVINGS", 8)
+    unit = np.linspace(0.0, 1.0, 21)
+    for end, found, known in zip((1.0, CUT_END), cuts.find(), shipped().cuts, strict=True):
+        assert polynomial(found, end * unit) == pytest.approx(
+            polynomial(known, end * unit), abs=3e-3
+        )
+
+
+@pytest.mark.parametrize("row", [(5, 2, 2, 0, 1), (5, 3, 2, 4, 1)], ids=["at psi1 = 1", "beyond"])
+def test_a_patch_is_made_again_from_exact_impacts(row):
+    """At once as good as the table's tolerance, and the same polynomial, slopes included."""
+    made, cell = shipped(), Cell(*row)
+    known = made.terms[made.cells.tolist().index(list(row))]
+    psi1, chi = cell.nodes(made.cuts)
+    slope = None
+    if begins_at_one(cell):
+        slope = start.slope(cell, made.cuts, exact)
+        width = CUT_END * 0.5**cell.level_a
+        of_table = polyval(chebyshev_nodes(), known[FIRST_POWER]) / width**FIRST_POWER
+        assert slope == pytest.approx(of_table, abs=1e-7)
+    patch = fit(cell, psi1, chi, exact(psi1.ravel(), chi.ravel()).reshape(psi1.shape), slope)
+    assert max(patch.error_a, patch.error_b) < made.provenance.tolerance
+    x = np.linspace(0.0, 1.0, 33)
+    for one, other in ((patch.terms, known), (polyder(patch.terms), polyder(known))):
+        assert polygrid2d(x, x, one) == pytest.approx(polygrid2d(x, x, other), abs=1e-8)
 
 
 def test_patches_cover_every_region_and_lack_the_powers_that_g_lacks():
-    from contactlab_tabulated.fit import Cell
-
     made = shipped()
     assert made.grid.min() == 0
     for row, terms in zip(made.cells.tolist(), made.terms, strict=True):
