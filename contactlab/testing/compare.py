@@ -50,8 +50,6 @@ def _same_arrays(left: Any, right: Any, depth: int) -> bool:
 
 def _attributes(value: object) -> Iterator[str]:
     """Iterate over the names of an object's own attributes, in a dictionary or in slots."""
-    if isinstance(value, type) or callable(value):
-        return
     yield from getattr(value, "__dict__", {})
     for owner in type(value).__mro__:
         slots = owner.__dict__.get("__slots__", ())

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 import attrs
+from scipy.interpolate import PchipInterpolator
 
 from contactlab.checks import POSITIVE, count, quantity
 from contactlab.contracts import TangentialLaw
@@ -73,6 +74,21 @@ class TwoRequired(Sound):
 
     stretch: float = quantity("m", rule=POSITIVE)
     count: int = count()
+
+
+def _curve():
+    """Stiffness over that of full stick, which depends on nothing."""
+    return PchipInterpolator([0.0, 1.0, 2.0], [0.7, 0.7, 0.7])
+
+
+@attrs.frozen(kw_only=True)
+class Interpolates(Sound):
+    """Sound, with an object that can be called among its attributes."""
+
+    curve: Any = attrs.field(init=False, factory=_curve, eq=False)
+
+    def stiffness(self, scene, normal):
+        return float(self.curve(1.0)) / self.ratio * super().stiffness(scene, normal)
 
 
 #: Each with the check meant for it, and words of what the check says of it.

@@ -167,6 +167,21 @@ class WholeStopsAnything(Whole):
         return attrs.evolve(known, slip_velocity_change=change)
 
 
+class WholeTooLong(Whole):
+    """Slips under a twentieth more of friction than there is, if it does not stop."""
+
+    def told(self, known, scene):
+        change = 1.05 * known.slip_velocity_change
+        return attrs.evolve(known, slip_velocity_change=change, course=None)
+
+
+class WholeOfOtherWork(Whole):
+    """One per cent more work than its course does."""
+
+    def told(self, known, scene):
+        return attrs.evolve(known, friction_work=1.01 * known.friction_work)
+
+
 class WholeWithoutBooks(Whole):
     def told(self, known, scene):
         return attrs.evolve(known, friction_work=0.5 * known.friction_work)
@@ -309,6 +324,8 @@ BROKEN = [
     (WholeInMetres, "impact_units", "(as whole impacts)"),
     (WholeTooStrong, "impact_bounds", "energy from nothing (as whole impacts)"),
     (WholeStopsAnything, "impact_bounds", "psi changes by -2, more than mu P can"),
+    (WholeTooLong, "impact_bounds", "psi changes by -1.68, more than mu P can"),
+    (WholeOfOtherWork, "whole_impact_form", "psi1 = 0.3, chi = 0.4, 'rigid': the force along its"),
     (WholeWithoutBooks, "impact_books", "of the energy is in no book (as whole impacts)"),
     (WholeBeyondCoulomb, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.74 of mu P_max"),
     (WholeBeyondCoulomb, "whole_impact_form", "the force along its course gives an impulse of"),

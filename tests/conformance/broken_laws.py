@@ -283,6 +283,16 @@ class UnderstatesStiffness(Sound):
         return state._replace(stiffness=2.0 * state.stiffness)
 
 
+class StatesNoStiffness(Sound):
+    """A spring that says it is a slider."""
+
+    def start(self, scene, normal):
+        return super().start(scene, normal)._replace(stiffness=super().stiffness(scene, normal))
+
+    def stiffness(self, scene, normal):
+        return 0.0
+
+
 class MeanOfTheBatch(Sound):
     """One displacement for all."""
 
@@ -395,6 +405,7 @@ BROKEN = [
         "stiffness",
         "1.58 times the stiffness it states, at zeta = 0.05 under SoftHertz",
     ),
+    (StatesNoStiffness, "stiffness", "states stiffness 0, and its force depends on displacement"),
     (StiffWhereLarge, "stiffness", "2 times the stiffness it states, at zeta = 1.0 under Hertz"),
     (
         LimitOfTheForce,

@@ -48,12 +48,13 @@ def failed(law):
     [
         laws.Sound(),
         declarations.TwoRequired(stretch=1e-3, count=3),
+        declarations.Interpolates(),
         impacts.AllAtOnce(),
         impacts.Knowing(),
         impacts.Whole(),
         normal.Stepwise(),
     ],
-    ids=["Sound", "TwoRequired", "AllAtOnce", "Knowing", "Whole", "Stepwise"],
+    ids=["Sound", "TwoRequired", "Interpolates", "AllAtOnce", "Knowing", "Whole", "Stepwise"],
 )
 def test_a_sound_law_passes_every_check(law):
     verdicts = {entry.verdict for entry in check_law(law)}
