@@ -245,7 +245,7 @@ def _singular_event(phase: Phase, sample: PhaseSample, nodes: Nodes) -> tuple[in
             continue
         margin = phase.margin(event, sample)
         k = int((margin < 0.0).argmax())
-        if k and margin[k] < 0.0:
+        if k:
             ends, values = nodes.points[k - 1 : k + 1], margin[k - 1 : k + 1]
             tau = root(nodes, margin, (tuple(ends.tolist()), tuple(values.tolist())), most=2)
             if tau < best[1]:

@@ -136,6 +136,14 @@ def test_figures_2_and_4_show_the_exact_curve_beside_law_and_rigid_theory(data):
         assert law.get_zorder() <= exact.get_zorder()
 
 
+def test_what_all_curves_of_a_figure_share_is_written_on_it(data):
+    """Figure 4 is over chi, of curves that differ in psi1."""
+    solid = r"$\chi$ = 1.4412"
+    for number, words in {1: solid, 2: solid, 3: r"$\psi_1$ = 1.2"}.items():
+        axes = paper.draw(Figure().subplots(), data[number])
+        assert words in {text.get_text() for text in axes.texts}, number
+
+
 def test_the_label_of_the_band_stands_beside_its_band(data):
     """It touches neither band nor curve, and is nearer than its own width."""
     figure = Figure()
@@ -238,3 +246,14 @@ def test_laws_are_compared_on_axes():
     axes = Figure().subplots()
     assert laws_over_sweep(axes, comparison, "psi2") is axes
     assert len(axes.lines) == 1
+
+
+def test_laws_within_the_line_of_the_reference_are_named_with_it():
+    file = read_scene(EXAMPLES / "kharaz2001.toml")
+    laws = {"exact": Simulation(), "springs": Simulation(tangential="springs"),
+            "coulomb": Simulation(tangential="coulomb")}  # fmt: skip
+    upper, lower = Figure().subplots(2)
+    all_laws(upper, lower, compare(file, laws), "psi2")
+    named = [line.get_label() for line in upper.lines]
+    assert "exact, the reference; on its line:\nsprings" in named
+    assert "coulomb" in named

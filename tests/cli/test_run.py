@@ -62,6 +62,8 @@ def test_options_reach_the_laws(run):
     content = json.loads(run("run", "--psi1", "1", "--chi", "1", *laws, "--json",
                              "--set", "integrator.steps=123").out)  # fmt: skip
     assert content["counters"]["steps"] == 123
+    told = run("run", "--psi1", "1", "--chi", "1", *laws, "--set", "integrator.steps=123").out
+    assert "123 steps" in told
 
 
 def test_laws_on_the_command_line_replace_those_of_the_file(run, ball):

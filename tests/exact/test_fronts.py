@@ -5,6 +5,9 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
+from contactlab.collocation import lobatto
+from contactlab_fronts.many.crossing import NEVER, first_crossing
+from contactlab_fronts.many.panel import NODES
 from tests.exact.bundle import extrapolated
 from tests.reference import TABLE
 
@@ -278,3 +281,11 @@ def test_a_wide_sample_against_a_tighter_tolerance():
         psi1 = float(rng.uniform(0.0, 1.0) ** 1.5 * max(4.0 * chi - 1.0, 1.0) * 1.03)
         difference = psi2(psi1, chi) - psi2(psi1, chi, 1e-11)
         assert abs(difference) <= 1e-9 * max(1.0, psi1), (psi1, chi)
+
+
+def test_a_margin_that_starts_at_nothing_may_dip_before_the_first_inner_node():
+    """By the error of its polynomial; beyond that node it crosses where it falls below zero."""
+    nodes = lobatto(NODES)
+    tau, first = nodes.points, nodes.points[1]
+    margins = np.stack([tau * (tau - 0.5 * first), tau * (0.4 - tau)], axis=1)
+    assert first_crossing(nodes, margins) == pytest.approx([NEVER, 0.4], abs=1e-9)

@@ -6,6 +6,7 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Simulation, Sphere, fit
+from contactlab.checks import POSITIVE, quantity
 from contactlab.fitting import rank
 from contactlab.fitting.model import Model, scene_of
 from contactlab.fitting.parameters import Setup, parameter_named
@@ -102,6 +103,23 @@ def test_an_option_of_somebody_s_law_is_fitted_by_its_name():
     found = fit(table(values, angles), BODIES, parameters=names, simulation=laws)
     assert found["tangential.beta"] == pytest.approx(0.37, abs=1e-6)
     assert found["friction_coefficient"] == pytest.approx(0.2, abs=1e-6)
+
+
+@attrs.frozen(kw_only=True)
+class InPascals(Walton):
+    """Walton's law, its restitution by way of a pressure."""
+
+    pressure: float = quantity("Pa", rule=POSITIVE, default=2e9)
+
+    def whole_impacts(self, scene, normal):
+        return Walton(beta=self.pressure / 1e10).whole_impacts(scene, normal)
+
+
+def test_a_parameter_may_be_of_any_size():
+    values = restitution(0.2, ANGLES[:5], laws=Simulation(tangential=Walton(beta=0.37)))
+    laws = Simulation(tangential=InPascals())
+    found = fit(table(values, ANGLES[:5]), BODIES, parameters=["pressure"], simulation=laws)
+    assert found["tangential.pressure"] == pytest.approx(3.7e9, rel=1e-6)
 
 
 def test_many_points_are_predicted_as_one_by_one():

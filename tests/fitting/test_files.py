@@ -69,9 +69,10 @@ def test_a_pipe_is_refused_as_it_is_for_a_scene(tmp_path):
 
 
 def test_a_giant_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(files, "LARGEST", 10)
-    with pytest.raises(ValueError, match=r"is too large: .* a table of impacts has at most"):
-        read(tmp_path, PLAIN.encode())
+    monkeypatch.setattr(files, "LARGEST", 12_000_000)
+    told = "is too large: 15 MB, a table of impacts has at most 12"
+    with pytest.raises(ValueError, match=told):
+        read(tmp_path, PLAIN.encode() + 15_000_000 * b" ")
 
 
 def test_series_over_different_entries_are_no_table(tmp_path):

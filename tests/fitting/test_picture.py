@@ -1,10 +1,12 @@
 """The picture of a fit."""
 
+import attrs
 import numpy as np
 from matplotlib.figure import Figure
 
-from contactlab import fit
+from contactlab import Simulation, fit
 from contactlab.figures.fitting import measured_and_laws
+from contactlab.figures.style import label
 from tests.fitting.impacts import ANGLES, BODIES, restitution, table
 
 
@@ -17,3 +19,15 @@ def test_impacts_at_one_angle_are_no_step_of_the_curve():
     np.testing.assert_array_equal(curve.get_xdata(), ANGLES)
     np.testing.assert_allclose(curve.get_ydata(), restitution(0.12), atol=1e-6)
     assert sorted(points.get_xdata()) == sorted(angles)
+
+
+def test_measurements_without_an_angle_are_drawn_against_what_varied():
+    """At the normal speed of the scene, and with a column that is the same throughout."""
+    slip = np.array([0.1, 0.2, 0.3, 0.4])
+    rebounds = Simulation().sweep(attrs.evolve(BODIES, tangential_velocity=slip)).check()
+    measured = {"spin (rad/s)": np.zeros(4), "tangential_velocity (m/s)": slip,
+                "tangential_restitution": rebounds.tangential_restitution}  # fmt: skip
+    found = fit(measured, BODIES)
+    axes = measured_and_laws(Figure().add_subplot(), {"exact": found}, "tangential_restitution")
+    assert axes.get_xlabel() == label("tangential_velocity", "m/s")
+    assert sorted(axes.lines[1].get_xdata()) == slip.tolist()
