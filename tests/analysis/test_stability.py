@@ -10,10 +10,18 @@ import contactlab
 from contactlab import Scene, Simulation
 from contactlab.analysis import stability_references
 from contactlab.analysis.bench_methods import Method, methods
-from contactlab.analysis.stability import stability
+from contactlab.analysis.stability import Stability, stability
 from contactlab.analysis.stability_bounds import broken_invariants
 from contactlab.analysis.stability_cases import Case, cases
-from contactlab.analysis.stability_outcome import ANSWERED, REFUSED, WRONG, judge, judge_run
+from contactlab.analysis.stability_outcome import (
+    ANSWERED,
+    REFUSED,
+    SKIPPED,
+    WRONG,
+    Outcome,
+    judge,
+    judge_run,
+)
 from contactlab.analysis.stability_references import continuum, itself, reference_for, rigid
 from contactlab.analysis.stability_scenes import Extreme, extreme_scenes
 from contactlab.contracts import NormalContact, NormalLaw, SteppedTangentialLaw, TangentialResponse
@@ -188,6 +196,20 @@ def test_the_report_counts_what_is_wrong():
     found = stability([method], quick=True, judged=wrong)
     assert found.silently_wrong() == len(found.failures()) == found.tried()
     assert sum(region.tried for region in found.regions) > 0
+
+
+def test_answers_that_are_coarse_and_cases_left_out_are_counted_apart():
+    def one(outcome, **told):
+        return Outcome(method="a / b", family="speed", case="", outcome=outcome, **told)
+
+    outcomes = (
+        one(ANSWERED, error=1e-3, bound=2e-3), one(ANSWERED, error=2e-3, bound=5e-3),
+        one(ANSWERED, error=0.2, bound=0.9), one(SKIPPED), one(REFUSED),
+    )  # fmt: skip
+    found = Stability(outcomes=outcomes, regions=(), complete=True)
+    assert (found.tried(), found.skipped()) == (4, 1)
+    assert found.counts("a / b") == {ANSWERED: 3, "coarse": 1, SKIPPED: 1, REFUSED: 1}
+    assert found.worst("a / b", "speed") == 2e-3
 
 
 def test_a_budget_ends_the_report_early():

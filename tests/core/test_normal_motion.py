@@ -86,6 +86,12 @@ def test_restitution_is_the_closed_form(law, damping):
         assert e == pytest.approx(Tsuji.restitution(damping), rel=1e-7)
 
 
+def test_an_impact_of_many_is_solved_as_closely_as_one_of_few():
+    speeds = np.geomspace(0.01, 20.0, 200)
+    motion = normal_motion(Tsuji(damping=0.1), scene(speed=speeds))
+    assert -motion.final_rate / speeds == pytest.approx(Tsuji.restitution(0.1), rel=1e-9)
+
+
 @pytest.mark.parametrize("law", [Plastic, WidePlastic])
 @pytest.mark.parametrize("restitution", [0.3, 0.8, 1.0])
 def test_plastic_restitution_alone_and_in_a_batch(law, restitution):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from contactlab_tabulated import build, evaluate, rebound, table
+from contactlab_tabulated.__main__ import main
 from contactlab_tabulated.function import shipped
 from tests.exact.test_tabulated import BOUND, mixed
 
@@ -49,7 +50,10 @@ def test_nothing_is_loaded_before_it_is_called():
 
 
 def test_a_build_goes_on_where_it_was_interrupted(tmp_path, monkeypatch):
-    """With the table itself in place of exact impacts: two ways to the same coarse table."""
+    """With the table itself in place of exact impacts: two ways to the same coarse table.
+
+    At once it is built by the command.
+    """
     made = shipped()
     calls = []
 
@@ -63,7 +67,9 @@ def test_a_build_goes_on_where_it_was_interrupted(tmp_path, monkeypatch):
     monkeypatch.setattr(build, "BATCH", 4)
     monkeypatch.setattr(build.curves, "find", lambda: made.cuts)
     interrupted = 0
-    build.build(tmp_path / "whole.npz", tolerance=1e-6)
+    asked = ["build", "--tolerance", "1e-6", "--file", str(tmp_path / "whole.npz")]
+    monkeypatch.setattr(sys, "argv", ["contactlab_tabulated", *asked])
+    assert main() == 0
     whole, of_whole = table.read(tmp_path / "whole.npz"), len(calls)
     calls.clear()
     interrupted = of_whole // 2
