@@ -257,3 +257,14 @@ def test_laws_within_the_line_of_the_reference_are_named_with_it():
     named = [line.get_label() for line in upper.lines]
     assert "exact, the reference; on its line:\nsprings" in named
     assert "coulomb" in named
+
+
+def test_measured_values_are_drawn_beside_all_laws():
+    """Of the quantity that is drawn, and of no other."""
+    file = read_scene(EXAMPLES / "kharaz2001.toml")
+    comparison = compare(file, {"exact": Simulation(), "coulomb": Simulation(tangential="coulomb")})
+    first, other = file.measured
+    upper, _ = all_laws(*Figure().subplots(2), comparison, first.quantity)
+    drawn = {tuple(line.get_ydata()) for line in upper.lines}
+    assert tuple(first.values) in drawn
+    assert tuple(other.values) not in drawn

@@ -212,6 +212,20 @@ def test_answers_that_are_coarse_and_cases_left_out_are_counted_apart():
     assert found.worst("a / b", "speed") == 2e-3
 
 
+def test_progress_of_the_report_counts_every_case():
+    seen = []
+    method = Method(tangential="coulomb", integrator="events")
+
+    def refused(case):
+        return Outcome(method="a / b", family=case.family, case="", outcome=REFUSED)
+
+    stability([method], quick=True, judged=refused, progress=lambda *count: seen.append(count))
+    done, totals = zip(*seen, strict=True)
+    assert done == tuple(sorted(set(done)))
+    assert (done[0], done[-1]) == (1, totals[0])
+    assert len(set(totals)) == 1
+
+
 def test_a_budget_ends_the_report_early():
     found = stability(methods(), quick=True, budget=1e-9)
     assert not found.complete

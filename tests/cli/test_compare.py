@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scene
 from contactlab.analysis.compare import compare
+from contactlab.cli import compare as command
 from contactlab.cli import progress
 from contactlab.figures.comparison import differences, laws_over_sweep
 from contactlab.figures.files import save_figure
@@ -235,6 +236,15 @@ def test_bad_input(run, short_sweep, arguments, words):
     assert ran.out == ""
     assert len(ran.err.splitlines()) == 1
     assert words in ran.err
+
+
+def test_a_quantity_that_there_is_not_is_refused_before_anything_is_run(
+    run, short_sweep, monkeypatch
+):
+    monkeypatch.setattr(command, "compare", None)
+    ran = run("compare", short_sweep, *BOTH, "--quantity", "psi3")
+    assert ran.status == 2
+    assert "--quantity" in ran.err
 
 
 def test_failed_law_is_a_gap_and_status_1(run, tmp_path):

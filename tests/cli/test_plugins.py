@@ -33,6 +33,11 @@ def test_show(run):
     assert "contactlab_annulus" in run("plugins", "show", "tangential.annulus").out
 
 
+def test_what_a_law_does_not_need_is_none(run):
+    shown = run("plugins", "show", "tangential.coulomb").out.splitlines()
+    assert "needs         none" in shown
+
+
 def test_check_of_a_law_that_keeps_its_contract(run):
     ran = run("plugins", "check", "normal.hertz")
     assert ran.status == 0

@@ -2,6 +2,7 @@
 
 import json
 
+import attrs
 import numpy as np
 import pytest
 
@@ -122,6 +123,18 @@ def test_a_folder_that_cannot_be(run, tmp_path):
     ran = run("validate", "--figures", tmp_path / "no" / "pictures")
     assert (ran.status, ran.out) == (2, "")
     assert "there is no folder" in ran.err
+
+
+def test_a_law_that_misses_an_experiment_fails(run, short, monkeypatch):
+    (source,) = evidence.SOURCES
+    quantity = source.read().measured[0].quantity
+    bounds = {(quantity, law): 1e-2 for law in ("mindlin_cap", "coulomb")}
+    monkeypatch.setattr(evidence, "SOURCES", (attrs.evolve(source, bounds=bounds),))
+    ran = run("validate", "--json")
+    told = {row["what"]: row["ok"] for row in json.loads(ran.out)["checks"]}
+    assert ran.status == 1
+    assert told[f"mindlin_cap: {quantity}, rms"]
+    assert not told[f"coulomb: {quantity}, rms"]
 
 
 def test_a_wrong_value_fails(run, monkeypatch):

@@ -182,6 +182,13 @@ class WholeOfOtherWork(Whole):
         return attrs.evolve(known, friction_work=1.01 * known.friction_work)
 
 
+class WholeOfNan(Whole):
+    """Does not know the work."""
+
+    def told(self, known, scene):
+        return attrs.evolve(known, friction_work=np.nan * known.friction_work)
+
+
 class WholeWithoutBooks(Whole):
     def told(self, known, scene):
         return attrs.evolve(known, friction_work=0.5 * known.friction_work)
@@ -326,6 +333,7 @@ BROKEN = [
     (WholeStopsAnything, "impact_bounds", "psi changes by -2, more than mu P can"),
     (WholeTooLong, "impact_bounds", "psi changes by -1.68, more than mu P can"),
     (WholeOfOtherWork, "whole_impact_form", "psi1 = 0.3, chi = 0.4, 'rigid': the force along its"),
+    (WholeOfNan, "whole_impact_form", "'rigid': friction_work = "),
     (WholeWithoutBooks, "impact_books", "of the energy is in no book (as whole impacts)"),
     (WholeBeyondCoulomb, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.74 of mu P_max"),
     (WholeBeyondCoulomb, "whole_impact_form", "the force along its course gives an impulse of"),

@@ -106,6 +106,12 @@ def test_what_cannot_be_run_is_not_passed():
     assert set(tried.values()) <= {Verdict.NOT_APPLICABLE, Verdict.NOT_CLAIMED}
 
 
+def test_a_force_that_is_not_told_is_not_judged():
+    law = impacts.WholeTooLong()
+    check = next(check for check in checks_for(law) if check.name == "impact_coulomb_limit")
+    assert outcome(law, check).verdict is Verdict.NOT_APPLICABLE
+
+
 def test_a_refusal_names_law_check_and_fault():
     with pytest.raises(ConformanceError, match=r"WrongSign.*\n(.*\n)*opposes_slip: failed: "):
         check_law(laws.WrongSign())

@@ -10,7 +10,7 @@ from contactlab_damped_table.build import solve
 from contactlab_damped_table.coordinates import CHI as RANGE_OF_CHI
 from contactlab_damped_table.coordinates import depth, inner, restitution
 from contactlab_damped_table.function import _at, rebound, shipped
-from contactlab_damped_table.table import read, write
+from contactlab_damped_table.table import SHIPPED, read, write
 from tests.normal.test_dashpot import PSI2
 
 CHI = 49 / 34
@@ -95,6 +95,12 @@ def test_a_damaged_table_is_refused(tmp_path):
     content[len(content) // 2] ^= 1
     path.write_bytes(content)
     with pytest.raises(ValueError, match=r"no table that can be trusted.*build"):
+        read(path)
+    with np.load(SHIPPED) as file:
+        other = {name: file[name] for name in file.files}
+    other["terms"] = np.nextafter(other["terms"], 1.0)
+    np.savez(path, **other)
+    with pytest.raises(ValueError, match="the checksum does not fit"):
         read(path)
 
 

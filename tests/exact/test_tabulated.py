@@ -327,3 +327,12 @@ def test_each_fresh_impact_is_told_with_its_region_or_its_curve():
     off = [name for name, one in found.items() if one.largest > 0.0]
     assert off == [BESIDE_NAMES[2]]
     assert everything.largest == pytest.approx(1e-6)
+
+
+def test_impacts_are_drawn_on_curves_and_on_both_sides_of_them():
+    psi1, chi, kind = draw(3000, 5, shipped().cuts)
+    for off in (psi1[kind == 0] - 1.0, chi[kind == 2] - 0.5):
+        assert set(np.sign(off)) == {-1.0, 0.0, 1.0}
+    # Elsewhere no further than a little beyond the beginning of full slip, which is known.
+    rest = kind < 0
+    assert (psi1[rest] <= np.maximum(1.5, 1.05 * (4.0 * chi[rest] - 1.0))).all()
