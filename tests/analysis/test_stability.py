@@ -23,7 +23,7 @@ from contactlab.analysis.stability_outcome import (
     judge_run,
 )
 from contactlab.analysis.stability_references import continuum, itself, reference_for, rigid
-from contactlab.analysis.stability_scenes import Extreme, extreme_scenes
+from contactlab.analysis.stability_scenes import Extreme, extreme_scenes, normal_scenes
 from contactlab.contracts import NormalContact, NormalLaw, SteppedTangentialLaw, TangentialResponse
 from contactlab.declared import range_of
 from contactlab.registry import REGISTRY
@@ -245,6 +245,8 @@ def test_a_rigid_body_is_judged_by_its_own_theory():
     for psi1, change in ((1.0, -1.0), (-3.0, 3.0), (5.0, -4.0), (1e16, -4.0)):
         scene = Scene.nondimensional(psi1=psi1, chi=1.0)
         assert rigid(scene, None) == pytest.approx(change, rel=1e-12)
+    nothing = attrs.evolve(scene, friction_coefficient=0.0, tangential_velocity=0.0)
+    assert rigid(nothing, None) == 0.0
 
 
 @pytest.mark.slow
@@ -294,6 +296,8 @@ def test_every_family_of_the_issue_is_there():
     assert families >= {
         "psi1", "regimes", "chi", "friction", "poisson", "speed", "radius", "mass", "types",
     }  # fmt: skip
+    of_sizes = {one.label for one in extreme_scenes(quick=True) if one.family in ("radius", "mass")}
+    assert of_sizes <= {one.label for one in normal_scenes()}
     method = Method(tangential="annulus", integrator="symplectic")
     listed = {case.family for case in cases(method)}
     assert listed >= {"steps", "parts"}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
 import pytest
 
 from contactlab import create
@@ -45,6 +46,29 @@ def test_one_impact_in_one_file(reported, ball):
     assert "2 m/s" in text
     assert "Wear 38" in text
     assert "estimated" in text
+
+
+def test_arrows_of_the_drawing_point_along_the_motion_of_the_sphere(reported, ball):
+    """It comes down on the surface, to the right, and leaves upwards; 1.9 radii of 60 at most."""
+    pattern = (
+        r"<line x1='(\S+)' y1='(\S+)' x2='(\S+)' y2='(\S+)' [^>]*'2.5'/>"
+        r"<polygon points='(\S+),(\S+) (\S+),(\S+) (\S+),(\S+)'"
+    )
+    lines = re.findall(pattern, reported(ball))
+    arriving, leaving = np.array(lines, dtype=float).reshape(2, 5, 2)
+    for (begin, stem, tip, *barbs), downwards in ((arriving, 1.0), (leaving, -1.0)):
+        way = tip - begin
+        assert way[0] > 0.0
+        assert way[1] * downwards > 0.0
+        assert np.hypot(*way) < 1.9 * 60.0 + 0.1
+        for end in (stem, *barbs):  # the tip is the foremost
+            assert 0.0 < (tip - end) @ way < way @ way
+        assert np.mean(barbs, axis=0) == pytest.approx(stem, abs=0.1)
+        assert (stem - begin) / np.hypot(*(stem - begin)) == pytest.approx(
+            way / np.hypot(*way), abs=2e-3
+        )
+    before = np.arctan2(*(arriving[2] - arriving[0]))
+    assert np.degrees(before) == pytest.approx(15.0, abs=0.2)  # as the file says
 
 
 def test_a_measured_sweep_has_its_residuals(reported, measured):

@@ -3,10 +3,12 @@
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from contactlab_damped_table.table import read as read_damped
 from contactlab_tabulated import build, evaluate, rebound, table
 from contactlab_tabulated.__main__ import main
 from contactlab_tabulated.function import shipped
@@ -28,6 +30,26 @@ def test_a_damaged_file_is_refused(tmp_path):
     path.write_bytes(path.read_bytes()[:-1000])
     with pytest.raises(ValueError, match="no table that can be trusted"):
         table.read(path)
+
+
+class Trap:
+    """What makes a file if it is unpickled."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __reduce__(self):
+        return Path.touch, (self.path,)
+
+
+@pytest.mark.parametrize("read", [table.read, read_damped])
+def test_nothing_in_a_file_is_run(read, tmp_path):
+    names = ("checksum", "format", "cuts", "terms", "stuck", "slip", "cells")
+    trap = np.array([Trap(tmp_path / "sprung")], dtype=object)
+    np.savez(tmp_path / "table.npz", **dict.fromkeys(names, trap))
+    with pytest.raises(ValueError, match="no table that can be trusted"):
+        read(tmp_path / "table.npz")
+    assert not (tmp_path / "sprung").exists()
 
 
 def test_file_is_small_and_tells_where_it_came_from():

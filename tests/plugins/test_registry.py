@@ -181,7 +181,7 @@ def test_a_distribution_without_its_papers(registry, install, law_source, tmp_pa
     install("bare", "bare_law", law_source, MINE)
     papers = tmp_path / "bare-1.5.dist-info" / "METADATA"
     papers.write_bytes(b"Name: \xff\n")
-    assert registry.info(MINE).distribution == "unknown"
+    assert (registry.info(MINE).distribution, registry.info(MINE).version) == ("unknown", "unknown")
     papers.unlink()
     assert registry.create(MINE) is not None
 
