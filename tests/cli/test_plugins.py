@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 
@@ -43,6 +44,8 @@ def test_check_of_a_law_that_keeps_its_contract(run):
     assert ran.status == 0
     assert ran.out.splitlines()[0].split() == ["check", "outcome", "sentence"]
     assert 'never "no contact"' in ran.out
+    passed = re.findall(r"^\w+ +passed ", ran.out, re.MULTILINE)
+    assert ran.out.splitlines()[-1] == f"{len(passed)} passed"
 
 
 def test_check_as_json_names_expected_failures_and_reasons(run):

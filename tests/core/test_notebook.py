@@ -53,6 +53,8 @@ def test_a_batch_shows_its_first_impacts(ball):
     words = words_of(Simulation(tangential="coulomb").sweep(ball))
     assert words.count("SUCCESS") == 10
     assert "10 of 12 impacts are shown." in words
+    (told,) = (word for word in words if word.startswith("largest energy imbalance"))
+    assert float(told.rpartition(" ")[2]) < 1e-9
 
 
 def test_a_grid_of_two_axes_shows_a_line():
