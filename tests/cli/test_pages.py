@@ -7,10 +7,13 @@ import re
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
 from PIL import Image
 
 import contactlab
 from contactlab.figures import animation
+from contactlab.figures.stick_slip import STATES
 from contactlab.pages.explore import CHI, PSI1
 
 
@@ -91,6 +94,34 @@ def test_a_soft_ball_moves_and_turns_while_it_touches(superball):
     assert slope[0] == pytest.approx(100.0, rel=0.01)
     assert slope[-1] == pytest.approx(superball.rebound_spin, rel=0.01)
     assert superball.rebound_spin < 0.0
+
+
+def test_the_ball_flies_along_its_dotted_paths(superball):
+    axes = Figure().subplots()
+    ball = animation.Ball(axes, superball)
+    arriving, leaving = (line.get_xydata() for line in axes.lines if line.get_linestyle() == ":")
+    for flight, path, instant in ((-1.0, arriving, 0), (1.0, leaving, -1)):
+        ball.show(animation.Frame("", flight * animation.FLIGHT, instant))
+        assert ball.circle.center == pytest.approx(tuple(path[1]))
+
+
+def test_what_sticks_and_what_slips_either_way_has_its_colour(superball):
+    disc, fields = animation.Disc(Figure().subplots(), superball), superball.history.fields
+    signs = np.where(
+        fields["stuck"], 0, np.where(fields["slipping"] == 0, np.nan, fields["slipping"])
+    )
+    ever = set()
+    for row in range(0, len(signs), 10):
+        disc.show(animation.Frame("", 0.0, row))
+        dots = disc.image.get_array().reshape(-1, 3)
+        shown = {
+            sign
+            for sign, colour in zip((-1, 0, 1), STATES.values(), strict=True)
+            if (dots == np.round(255.0 * np.array(to_rgb(colour)))).all(axis=1).any()
+        }
+        assert shown <= set(signs[row])
+        ever |= shown
+    assert ever == {-1, 0, 1}
 
 
 def test_the_legend_lies_within_the_picture(superball, monkeypatch):

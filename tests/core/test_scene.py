@@ -163,6 +163,7 @@ def test_scenes_that_are_equal_have_one_hash():
     batch = Scene.nondimensional(psi1=np.array([1.0, 0.0]), chi=1.0)
     assert batch == Scene.nondimensional(psi1=np.array([1.0, -0.0]), chi=1.0)
     assert len({batch, Scene.nondimensional(psi1=np.array([1.0, 2.0]), chi=1.0)}) == 2
+    assert len({batch, Scene.nondimensional(psi1=np.array([1.0, 1e-200]), chi=1.0)}) == 2
 
 
 def test_masked_entries_are_refused():

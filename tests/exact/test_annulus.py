@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from contactlab import Scene
+from contactlab import HalfSpace, Material, Scene, Sphere
+from contactlab_march.division import endpoints
 from tests.exact.laws import CHI, grid, marched_change, order, rms, simulation
 from tests.paper import plain
 
@@ -40,6 +41,30 @@ def test_the_papers_own_march_of_the_normal_motion_is_as_near(psi1, chi):
         apart.append(abs(impact(psi1, chi, 20, steps).psi2 - psi2))
     assert apart[-1] < 1e-4
     assert order((100, 200, 400), apart) > 1.5
+
+
+def test_a_force_at_a_sample_acts_from_half_way_to_its_neighbours():
+    """The first from first touch, the last to separation: of the same length, loads apart."""
+    count = 12
+    normal = simulation("annulus", steps=count).normal_motion(Scene.nondimensional(psi1=1.0, chi=1.0))
+    steps = endpoints(normal, count)
+    between = normal.at(normal.phase((np.arange(1, count) + 0.5) / count)).load_impulse
+    assert np.cumsum(steps.friction_load * steps.kick)[:-1] == pytest.approx(between, rel=1e-9)
+
+
+def test_tractions_over_the_contact_add_up_to_the_force():
+    """In SI; as sums over annuli, whose means are not told, to a few per cent."""
+    steel = Material.named("steel")
+    scene = Scene(Sphere(0.01, steel), HalfSpace(steel), 0.2, 1.0, 0.3)
+    result = simulation("annulus", steps=60, annuli=80).run(scene, history="fields").check()
+    fields, history = result.history.fields, result.history
+    radius = np.asarray(fields["radius"])
+    edges = 0.5 * (radius[:, 1:] + radius[:, :-1])
+    last = 2.0 * radius[:, -1:] - edges[:, -1:]
+    areas = np.pi * np.diff(np.hstack([0.0 * last, edges, last]) ** 2, axis=1)
+    found = (fields["traction"] * areas).sum(axis=1)
+    largest = np.abs(history.tangential_force).max()
+    assert found == pytest.approx(history.tangential_force, abs=0.03 * largest)
 
 
 @pytest.mark.parametrize("annuli", [1, 2, 200])

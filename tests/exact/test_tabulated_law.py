@@ -39,6 +39,11 @@ def test_the_plan_says_where_the_work_comes_from():
     assert f"the rebound is tabulated; {words}" in told
     assert f"chi > 2.5, solved; {words}" in told
     assert not tabulated().plan(grid()).marched.any()
+    alone = {
+        chi: str(tabulated().plan(Scene.nondimensional(psi1=1.3, chi=chi))) for chi in (1.44, 4.0)
+    }
+    assert ["is tabulated" in alone[1.44], "solved" in alone[1.44]] == [True, False]
+    assert ["is tabulated" in alone[4.0], "solved" in alone[4.0]] == [False, True]
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.3, np.array([0.0, 0.1, 0.3])])
