@@ -137,9 +137,8 @@ def test_figures_2_and_4_show_the_exact_curve_beside_law_and_rigid_theory(data):
 
 
 def test_what_all_curves_of_a_figure_share_is_written_on_it(data):
-    """Figure 4 is over chi, of curves that differ in psi1."""
-    solid = r"$\chi$ = 1.4412"
-    for number, words in {1: solid, 2: solid, 3: r"$\psi_1$ = 1.2"}.items():
+    solid, oblique = r"$\chi$ = 1.4412", r"$\psi_1$ = 1.2"
+    for number, words in {1: solid, 2: solid, 3: oblique, 4: oblique}.items():
         axes = paper.draw(Figure().subplots(), data[number])
         assert words in {text.get_text() for text in axes.texts}, number
 
