@@ -283,6 +283,20 @@ def test_exact_answers_break_no_invariant():
         assert broken_invariants(result, 1e-9) == []
 
 
+def test_a_law_whose_model_makes_energy_may_do_so_as_far_as_friction_goes():
+    """Up to 4 chi, whatever |psi2|; of any other law both are broken."""
+
+    def broken(psi1, change, **kind):
+        result = Simulation().run(Scene.nondimensional(psi1=psi1, chi=CHI)).check()
+        motion = attrs.evolve(result.motion, slip_velocity_change=change)
+        return broken_invariants(attrs.evolve(result, motion=motion), 1e-9, **kind)
+
+    assert broken(0.5, -1.5) == ["|psi2| > |psi1|", "energy books do not close"]
+    assert broken(0.5, -1.5, passive=False) == []
+    beyond = "|psi2 - psi1| beyond what mu times the load can do"
+    assert broken(9.0, -4.1 * CHI, passive=False) == [beyond]
+
+
 def test_bad_input_is_a_refusal():
     method = Method(tangential="coulomb", integrator="symplectic")
     scene = Extreme("test", "", lambda: Scene.nondimensional(psi1=np.nan, chi=1.0))

@@ -43,7 +43,10 @@ def test_no_scene_is_answered_in_closed_form():
 
 
 def test_errors_fall_with_the_steps_and_the_order_is_seen():
-    found = bench([Method(tangential="springs", integrator="symplectic")], quick=True)
+    seen = []
+    method = Method(tangential="springs", integrator="symplectic")
+    found = bench([method], quick=True, progress=lambda *count: seen.append(count))
+    assert seen == [(done, len(found.rows)) for done in range(1, len(found.rows) + 1)]
     errors = [entry.error_rms for entry in found.rows]
     assert errors[0] > 10 * errors[-1] > 0
     assert found.orders["springs / symplectic"] == pytest.approx(2.0, abs=0.4)

@@ -46,7 +46,9 @@ def test_the_papers_own_march_of_the_normal_motion_is_as_near(psi1, chi):
 def test_a_force_at_a_sample_acts_from_half_way_to_its_neighbours():
     """The first from first touch, the last to separation: of the same length, loads apart."""
     count = 12
-    normal = simulation("annulus", steps=count).normal_motion(Scene.nondimensional(psi1=1.0, chi=1.0))
+    normal = simulation("annulus", steps=count).normal_motion(
+        Scene.nondimensional(psi1=1.0, chi=1.0)
+    )
     steps = endpoints(normal, count)
     between = normal.at(normal.phase((np.arange(1, count) + 0.5) / count)).load_impulse
     assert np.cumsum(steps.friction_load * steps.kick)[:-1] == pytest.approx(between, rel=1e-9)
