@@ -28,9 +28,10 @@ def estimated(simulation: Simulation, result: ImpactResult) -> Real:
     Each impact is run again at half and at twice the resolution that it got, of integrator and
     tangential law together. If the change of psi2 falls by r from one doubling to the next the
     error that is left is the last change over 1 - 1/r, r = 2 for a method of first order and 4 for
-    one of second. Of an integrator with a tolerance that is the error in time, and the resolution
-    of the law alone is changed, if it has one. The errors of the model are not in it. What has no
-    resolution, and is known in closed form, has the error that the plan declares.
+    one of second; 2 too where the second change turns back, and no order shows. Of an integrator
+    with a tolerance that is the error in time, and the resolution of the law alone is changed, if
+    it has one. The errors of the model are not in it. What has no resolution, and is known in
+    closed form, has the error that the plan declares.
 
     Parameters
     ----------
@@ -80,15 +81,15 @@ def _left(simulation: Simulation, scene: Scene, resolution: float, change: Any) 
     if fine is None:
         return np.zeros(change.shape)
     better = fine.run(scene)
-    last = np.abs(np.asarray(better.motion.slip_velocity_change) - change)
+    last = np.asarray(better.motion.slip_velocity_change) - change
     ratio: Any = COUNT**MOST_ORDER
     if coarse is not None:
         ratio = COUNT**LEAST_ORDER
         if _gets_what_it_asks(coarse, scene):
             worse = coarse.run(scene)
-            first = np.abs(change - np.asarray(worse.motion.slip_velocity_change))
+            first = change - np.asarray(worse.motion.slip_velocity_change)
             with np.errstate(all="ignore"):
-                found = np.where(last > 0.0, first / last, COUNT**MOST_ORDER)
+                found = np.where(last != 0.0, first / last, COUNT**MOST_ORDER)
             found = np.where(_successes(worse), found, COUNT**LEAST_ORDER)
             ratio = np.clip(found, COUNT**LEAST_ORDER, COUNT**MOST_ORDER)
     with np.errstate(all="ignore"):

@@ -1,11 +1,14 @@
 """``run(estimate_error=True)``: an estimate of the error, for laws that declare none too."""
 
+from typing import ClassVar
+
 import attrs
 import numpy as np
 import pytest
 
 import contactlab
 from contactlab import Scene, Simulation
+from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from tests.outside_laws import RescaledSpring
 
 pytestmark = pytest.mark.slow
@@ -101,3 +104,31 @@ def test_of_an_integrator_with_a_tolerance_the_law_alone_is_refined():
     error = abs(result.psi2 - fine.psi2)
     assert error > 0.1
     assert error / 3.0 < result.psi2_error_estimate < 3.0 * error
+
+
+@attrs.frozen(kw_only=True)
+class Wanders(SteppedTangentialLaw):
+    """Brakes by about half of what friction could; how much more depends on its parts."""
+
+    api_version: ClassVar[int] = 2
+    resolution: ClassVar[str] = "parts"
+    parts: int = 50
+    turns: bool = True
+
+    def start(self, scene, normal):
+        return scene.friction_coefficient
+
+    def advance(self, state, increment, before, after):
+        off = {25: 0.0, 50: 0.4, 100: 0.3 if self.turns else 0.5}[self.parts]
+        force = (0.5 + 0.1 * off) * state * increment.friction_load
+        return TangentialResponse(force, force * increment.displacement), state
+
+
+def test_answers_that_turn_back_show_no_order():
+    """Changes of 4 and then of -1 leave twice the last; of 4 and then of 1, four thirds of it."""
+    scene = Scene.nondimensional(psi1=5.0, chi=1.0)
+    left = {}
+    for turns in (True, False):
+        sim = Simulation(tangential=Wanders(turns=turns), integrator="symplectic")
+        left[turns] = sim.run(scene, estimate_error=True).check().psi2_error_estimate
+    assert left[True] == pytest.approx(1.5 * left[False], rel=1e-6)
