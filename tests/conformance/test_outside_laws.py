@@ -6,6 +6,7 @@ import pytest
 import contactlab
 from contactlab import Scene, Simulation
 from contactlab.testing import parametrize_with_checks
+from tests.law_files import EXAMPLES, of_file
 from tests.outside_laws import (
     Adhesive,
     Heun,
@@ -20,7 +21,8 @@ pytestmark = pytest.mark.slow
 
 NORMAL = [Tsuji(), Tsuji(damping=0.5), Plastic(), Adhesive(), LinearDashpot()]
 NORMAL += [Adhesive(pull=100.0, reach=1e-6)]
-LAWS = [*NORMAL, RescaledSpring(), Walton(), Heun()]
+EXAMPLE = of_file(EXAMPLES / "custom_law.py", "MindlinCap")()
+LAWS = [*NORMAL, RescaledSpring(), Walton(), Heun(), EXAMPLE]
 PSI1 = np.array([0.3, 0.9, 1.5, 3.0])
 
 

@@ -1,10 +1,8 @@
 """`integrator.adaptive`: as many steps as keep psi2 within a tolerance, over any laws."""
 
-import importlib.util
 import math
 import re
 from functools import cache
-from pathlib import Path
 from typing import ClassVar
 
 import attrs
@@ -15,27 +13,22 @@ import contactlab
 from contactlab import Scene, Simulation, Status
 from contactlab.closed_forms import rigid_body_rebound
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
+from tests.law_files import EXAMPLES, of_file
 from tests.normal_laws import LinearSpring
 from tests.outside_laws import RescaledSpring
 
 pytestmark = pytest.mark.slow
 
 CHI = 49.0 / 34.0
-ROOT = Path(__file__).parents[2]
 PSI1, CHIS = (0.5, 0.9, 2.0, 3.0), (CHI, 3.0)
-
-
-def of_file(path, name):
-    spec = importlib.util.spec_from_file_location(f"adaptive_{path.stem}", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return getattr(module, name)
 
 
 @cache
 def of_readme(name):
     """Return the class of that name from the README's code."""
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.S)
+    blocks = re.findall(
+        r"```python\n(.*?)```", (EXAMPLES.parent / "README.md").read_text("utf-8"), re.S
+    )
     (code,) = [block for block in blocks if f"class {name}(" in block]
     namespace = {"__name__": "README"}
     exec(compile(code, "README.md", "exec"), namespace)
@@ -53,9 +46,9 @@ LAWS = {
     "displacement": mindlin("displacement"),
     "increment": mindlin("increment"),
     "increment_rescaled": mindlin("increment_rescaled"),
-    "custom": lambda: of_file(ROOT / "examples/custom_law.py", "MindlinCap")(),
+    "custom": lambda: of_file(EXAMPLES / "custom_law.py", "MindlinCap")(),
     "cundall": lambda: of_file(
-        ROOT / "examples/third_party_plugin/contactlab_cundall/law.py", "CundallStrack"
+        EXAMPLES / "third_party_plugin/contactlab_cundall/law.py", "CundallStrack"
     )(),
     "rescaled": RescaledSpring,
     "smoothed": lambda: of_readme("Smoothed")(),
