@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from contactlab_annulus import one
-from contactlab_annulus.tables import Array, Tables, response
+from contactlab_annulus.tables import Array, Tables, hertz_pressure, response
 from contactlab_jaeger.all_steps import ScaledSteps
 
 #: Steps in a block: it grows while no test fails.
@@ -38,8 +38,7 @@ class BlockMarch:
 
     def __init__(self, table: Tables, steps: ScaledSteps, velocity: float) -> None:
         count, size = len(steps.radius), len(table.weight)
-        limits = np.square(steps.radius)[:, None] - table.radius_squared
-        np.sqrt(np.maximum(limits, 0.0, out=limits), out=limits)
+        limits = hertz_pressure(table, steps.radius)
         limits *= steps.pressure[:, None]
         self.table, self.steps, self.velocity, self.limits = table, steps, velocity, limits
         self.touching_at = np.count_nonzero(limits, axis=1).tolist()

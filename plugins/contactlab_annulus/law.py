@@ -24,7 +24,7 @@ from contactlab.contracts import (
 from contactlab.declared import ErrorModel
 from contactlab.scene import Scene
 from contactlab_annulus import blocks, many, one
-from contactlab_annulus.tables import Tables, load_carried, tables
+from contactlab_annulus.tables import Tables, hertz_pressure, tables
 from contactlab_jaeger.all_steps import ScaledSteps
 from contactlab_jaeger.gross_slip import gross_slip
 from contactlab_jaeger.law import Scales
@@ -162,7 +162,8 @@ class Annulus(AllStepsTangentialLaw):
         """
         if hertz:
             return scales.pressure(radius, load)
-        carried = load_carried(self._tables(), radius)
+        table = self._tables()
+        carried: Any = hertz_pressure(table, radius) @ table.weight  # beta³ but for about n^-1.5
         return load / (scales.normal_force * carried + (carried == 0.0))
 
     def _tables(self) -> Tables:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from contactlab.checks import Real
 from contactlab_annulus.one import TIE
-from contactlab_annulus.tables import Array, Tables
+from contactlab_annulus.tables import Array, Tables, hertz_pressure
 
 #: Passes of the division into stick and slip; measured never above 14 (theory §6).
 MOST_PASSES = 200
@@ -51,8 +51,7 @@ def advance(
     lag, old = memory.lag.reshape(-1, size), memory.traction.reshape(-1, size)
     moved = np.broadcast_to(displacement, shape)[..., None]
     total = (memory.total + moved).reshape(-1, 1)
-    limit_squared = np.square(np.asarray(radius))[..., None] - table.radius_squared
-    limit = np.asarray(pressure)[..., None] * np.sqrt(np.maximum(limit_squared, 0.0))
+    limit = np.asarray(pressure)[..., None] * hertz_pressure(table, radius)
     limit = np.broadcast_to(limit, (*shape, size)).reshape(-1, size)
     contact = limit > 0.0
     signs = np.where(contact, memory.signs.reshape(-1, size), 0.0)

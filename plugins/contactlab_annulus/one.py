@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab_annulus.tables import Array, Tables, response
+from contactlab_annulus.tables import Array, Tables, hertz_pressure, response
 
 #: Passes of the division into stick and slip; measured never above 14 (theory §6).
 MOST_PASSES = 200
@@ -67,10 +67,10 @@ def advance(
     pressure : float
         Ratio of the pressure to that of a Hertz contact of this radius.
     """
-    total, square = memory.total + displacement, radius * radius
-    if not math.isfinite(total * square * pressure):
+    total = memory.total + displacement
+    if not math.isfinite(total * (radius * radius) * pressure):
         return math.nan, math.nan, True, memory
-    limit = pressure * np.sqrt(np.maximum(square - table.radius_squared, 0.0))
+    limit = pressure * hertz_pressure(table, radius)
     inside = limit > 0.0
     touching, lag = int(np.count_nonzero(inside)), memory.lag
     signs = extended(memory.signs, memory.touching, touching)

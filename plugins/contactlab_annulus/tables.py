@@ -36,17 +36,21 @@ class Tables(NamedTuple):
     responses: list[Array]  # entry c: ``response`` with annuli 1..c stuck; empty for large n
 
 
-def load_carried(table: Tables, radius: Any) -> Any:
-    """Return P^ of a Hertz pressure taken in the middles, (34): beta³ but for about n^-1.5.
+def hertz_pressure(table: Tables, radius: Any) -> Array:
+    """Return sqrt(beta² - r_j²), the limits (34) of a Hertz pressure; 0 outside the contact.
 
     Parameters
     ----------
     table : Tables
     radius : float or array
         beta.
+
+    Returns
+    -------
+    array, shape (..., n)
     """
-    square = np.square(np.asarray(radius))[..., None]
-    return np.sqrt(np.maximum(square - table.radius_squared, 0.0)) @ table.weight
+    limits = np.square(np.asarray(radius))[..., None] - table.radius_squared
+    return np.asarray(np.sqrt(np.maximum(limits, 0.0, out=limits), out=limits))
 
 
 def influence(annuli: int) -> Array:

@@ -201,25 +201,22 @@ class MindlinCap(SteppedTangentialLaw):
         stiffness: Any = state.modulus * after.radius
         cap = state.friction_coefficient * after.friction_load
         compliance = (stiffness > 0.0) / (stiffness + (stiffness == 0.0))
-        kept, entered, mean = state.held, increment.displacement, stiffness
-        displaced = self.form.startswith("displacement")
-        if not displaced:
-            mean = state.modulus * _mean_radius(before.radius, after.radius)
-        if self.form.endswith("rescaled"):
+        kept, moved = state.held, increment.displacement
+        rescaled = self.form.endswith("rescaled")
+        if rescaled:
             shrinks, wide = after.radius < before.radius, before.radius + (before.radius == 0.0)
             kept = kept * np.where(shrinks, after.radius / wide, 1.0)
-            if displaced:  # u/b grows by the mean of 1/b times dD, b² changing evenly
-                entered = entered * np.where(
-                    shrinks, 2.0 * after.radius / (wide + after.radius), 1.0
-                )
-            else:  # F/b grows by 2 G* dD: exact
-                mean = np.where(shrinks, stiffness, mean)
-        if displaced:
-            trial = kept + entered
+        if self.form.startswith("displacement"):
+            if rescaled:  # u/b grows by the mean of 1/b times dD, b² changing evenly
+                moved = moved * np.where(shrinks, 2.0 * after.radius / (wide + after.radius), 1.0)
+            trial = kept + moved
             held = cut(trial, cap * compliance)
             spring, slip = stiffness * held, trial - held
         else:
-            trial = kept + mean * entered
+            mean = state.modulus * _mean_radius(before.radius, after.radius)
+            if rescaled:  # F/b grows by 2 G* dD: exact
+                mean = np.where(shrinks, stiffness, mean)
+            trial = kept + mean * moved
             spring = held = cut(trial, cap)
             slip = (trial - held) * compliance
         force, work = spring, 0.5 * (spring + state.spring) * slip
