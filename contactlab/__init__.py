@@ -3,78 +3,24 @@
 A scene meets three interchangeable laws, and the answer comes back with its error, its
 cost, its energy books and a list of what was left out.
 
-The modules, each of which imports from those above it only:
+The rooms, each of which imports from those above it only:
 
-===================== ==========================================================================
-*numbers and files*
-``status``            how a run ended
-``checks``            checked numbers, refusals
-``attributes``        refusals of unknown attributes
-``signatures``        refusals of unknown arguments
-``vectors``           checked vectors of three numbers, and their components
-``batch``             trees of numbers stacked, taken apart and joined
-``collocation``       nodes and matrices of Lobatto collocation
-``json_values``       values as JSON takes them
-``files``             output files that are whole or not there
-*the problem*
-``bodies``            materials, spheres, half-spaces, pairs
-``materials``         materials by name, with sources
-``scene``             one oblique impact, or a batch
-``grid``              batches of every combination of some entries
-``encounter``         two bodies in space, by vectors
-``unit_slips``        numbers that look as if in another unit
-``closed_forms``      Hertz's scales, gross slip, the rigid body
-``calibration``       one constant of a law from a restitution
-``adhesion``          which theory of adhesion holds
-``cautions``          what a model leaves out, in sentences
-``declared``          measured numerical errors, and the range of psi2
-*the laws*
-``contracts``         what a law promises: normal, tangential, integrator
-``hookspecs``         the hook of a plug-in
-``installed``         entry points that are installed
-``loading``           the loading of one plug-in
-``registry``          laws by name
-``faults``            what is said of a law that fails
-``composition``       which laws fit together
-*one run*
-``solved_motion``     a normal motion as a table
-``scaled_normal_law`` a normal law as an equation of motion
-``normal_motion``     the normal motion of any law
-``answers``           whole impacts that a law knows without a march
-``plan``              what is computed, left out and doubtful
-``planning``          how a plan is made
-``history``           the course of an impact
-``motion``            normal and tangential motion together
-``energy``            energy books
-``marching``          the march, and failures within a batch
-``outcome``           plan and motion of a scene under three laws
-``sweeping``          a batch in blocks
-``kept``              pieces of a sweep on disk
-*the answer*
-``result``            velocities, books, cost
-``error_estimate``    the numerical error, estimated by other resolutions
-``simulation``        three laws composed: plan, run, sweep
-``workers``           processes of this machine
-``executors``         a sweep on any executor
-``rebounds``          psi2 of arrays of psi1 and chi
-``impulses``          velocities and spins from an impulse
-``collision_plan``    what its plan says besides that of its scenes
-``collision``         what any law makes of an encounter
-``export``            results as files
-``labelled``          results with named axes: pandas, xarray
-``quantities``        quantities of a result by name
-``reading``           a result as titled tables
-``options``           options of laws in words
-``citations``         sources of laws, BibTeX
-*around it*
-``scene_file``        scenes in TOML
-``analysis``          comparison, validation, stability, cost
-``fitting``           parameters from measured impacts
-``figures``           one function a figure
-``pages``             pages that stand alone, notebooks
-``testing``           the conformance kit
-``cli``               the commands
-===================== ==========================================================================
+============== ===========================================================================
+``numeric``    checked numbers, vectors, batches, nodes of collocation
+``impact``     materials, bodies, scenes, encounters, Hertz's closed forms, adhesion
+``contracts``  what a law promises: normal, tangential, whole impact, integrator; statuses
+``outcome``    motion, plan, energy books, history, results and the forms they are read in
+``compose``    laws found by name and fitted together: run, sweep, rebound, collide
+``scene_file`` scenes and sweeps in TOML
+``testing``    the conformance kit for laws
+``study``      comparison, cost against error, stability, validation, the paper's figures
+``fitting``    parameters from measured impacts
+``figures``    one function a figure
+``pages``      pages that stand alone, notebooks
+``cli``        the commands
+============== ===========================================================================
+
+The pages of the guide lie in ``guide/``, which holds no code.
 """
 
 from __future__ import annotations
@@ -82,22 +28,22 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from contactlab.bodies import HalfSpace, Material, Pair, Sphere
-from contactlab.collision import Collision, collide
-from contactlab.encounter import Encounter
-from contactlab.energy import EnergyLedger
-from contactlab.hookspecs import hookimpl
-from contactlab.rebounds import rebound
-from contactlab.registry import REGISTRY, PluginError
-from contactlab.result import ImpactError, ImpactResult
-from contactlab.scene import Scene
+from contactlab.compose.collision import Collision, collide
+from contactlab.compose.hookspecs import hookimpl
+from contactlab.compose.rebound import rebound
+from contactlab.compose.registry import REGISTRY, PluginError
+from contactlab.compose.simulation import Simulation
+from contactlab.contracts.status import Status
+from contactlab.impact.bodies import HalfSpace, Material, Pair, Sphere
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.scene import Scene
+from contactlab.outcome.energy import EnergyLedger
+from contactlab.outcome.result import ImpactError, ImpactResult
 from contactlab.signatures import named_arguments
-from contactlab.simulation import Simulation
-from contactlab.status import Status
 
 if TYPE_CHECKING:
-    from contactlab import materials
     from contactlab.fitting import fit
+    from contactlab.impact import materials
     from contactlab.scene_file import SceneFile
 
 __version__ = "0.1.0"
@@ -174,5 +120,5 @@ def __getattr__(name: str) -> Any:
     if name == "fit":
         return importlib.import_module("contactlab.fitting").fit
     if name == "materials":
-        return importlib.import_module("contactlab.materials")
+        return importlib.import_module("contactlab.impact.materials")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

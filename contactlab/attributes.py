@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, TypeVar
 
-from contactlab.checks import SYMBOLS
+from contactlab.numeric.checks import SYMBOLS
 
 Class = TypeVar("Class", bound=type)
 

@@ -6,7 +6,7 @@ import functools
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
-from contactlab.checks import nearest, shown
+from contactlab.numeric.checks import nearest, shown
 
 Named = TypeVar("Named", bound=Callable[..., Any])
 

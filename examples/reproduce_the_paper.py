@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from contactlab import Scene, Simulation, create, rebound
-from contactlab.analysis.paper_figures import SOLID_CHI, figures
 from contactlab.figures.files import save
 from contactlab.figures.paper import draw
+from contactlab.study.paper_figures import SOLID_CHI, figures
 
 paper = Simulation(
     tangential=create("tangential.annulus", annuli=20),

@@ -13,8 +13,9 @@ import time
 from unittest import mock
 
 import contactlab
-from contactlab import Scene, Simulation, outcome
-from contactlab_march import march
+from contactlab import Scene, Simulation
+from contactlab.compose import solve as outcome
+from contactlab_laws.march import march
 
 REPEATS = 150
 SCHEMES = {"paper": 500, "symplectic": 200}

@@ -5,8 +5,8 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
-from contactlab.checks import quantity
 from contactlab.contracts import NormalContact, NormalLaw
+from contactlab.numeric.checks import quantity
 
 
 @attrs.frozen(kw_only=True)

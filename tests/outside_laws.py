@@ -5,7 +5,6 @@ from typing import ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.checks import NON_NEGATIVE, POSITIVE, Rule, count, quantity
 from contactlab.contracts import (
     Increment,
     Integrator,
@@ -18,6 +17,7 @@ from contactlab.contracts import (
     WholeImpact,
     WholeImpactTangentialLaw,
 )
+from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Rule, count, quantity
 
 RESTITUTION = Rule(lambda value: (value > 0.0) & (value <= 1.0), "must lie in (0, 1]")
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from contactlab.registry import REGISTRY
+from contactlab.compose.registry import REGISTRY
 from contactlab.testing import CHECKS, Verdict, check_law
 
 TEXT = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")

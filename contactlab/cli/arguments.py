@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from contactlab.cli.progress import progress as progress  # the subcommands' own
-from contactlab.files import distinct, unwritable
-from contactlab.registry import KINDS
+from contactlab.compose.registry import KINDS
+from contactlab.outcome.files import distinct, unwritable
 
 #: Exit statuses; the last two are what a shell reports of a program ended by a signal.
 OK, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141

@@ -18,13 +18,13 @@ from typing import Any
 
 import attrs
 
-from contactlab.analysis.bench_methods import methods
-from contactlab.analysis.work_precision import Benchmark, Row, bench
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
-from contactlab.files import write_table
-from contactlab.json_values import json_value
-from contactlab.reading import time
+from contactlab.outcome.files import write_table
+from contactlab.outcome.json_values import json_value
+from contactlab.outcome.tables import time
+from contactlab.study.bench_methods import methods
+from contactlab.study.work_precision import Benchmark, Row, bench
 
 #: Why a report may not be complete.
 BUDGET = "the budget ran out"

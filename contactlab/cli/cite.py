@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import argparse
 
-from contactlab.citations import bibtex, references, software
 from contactlab.cli import arguments as shared
 from contactlab.cli.compare import simulations
+from contactlab.compose.citations import bibtex, references, software
 from contactlab.scene_file import LawChoice, read_scene
 
 

@@ -25,18 +25,18 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.analysis.compare import Comparison, compare
-from contactlab.analysis.compare_export import plain_score, to_dict, write_csv
-from contactlab.analysis.scores import DEFAULT_SCENE, candidates, scores
-from contactlab.checks import nearest
 from contactlab.cli import arguments as shared
 from contactlab.cli import side_by_side
 from contactlab.cli.scene import add_ranges, check_alone
-from contactlab.quantities import quantity_named
-from contactlab.registry import KINDS, REGISTRY
-from contactlab.scene import Scene
+from contactlab.compose.registry import KINDS, REGISTRY
+from contactlab.compose.simulation import Simulation
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import nearest
+from contactlab.outcome.quantities import quantity_named
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
-from contactlab.simulation import Simulation
+from contactlab.study.compare import Comparison, compare
+from contactlab.study.compare_export import plain_score, to_dict, write_csv
+from contactlab.study.scores import DEFAULT_SCENE, candidates, scores
 
 #: Compared where nothing else is asked for: the paper's elastic law and the rigid one.
 DEFAULT_LAWS = ["annulus", "coulomb"]

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from contactlab.analysis.compare import Comparison
 from contactlab.figures.comparison import (
     all_laws,
     differences,
@@ -14,6 +13,7 @@ from contactlab.figures.comparison import (
     laws_over_sweep,
 )
 from contactlab.figures.files import save
+from contactlab.study.compare import Comparison
 
 
 def draw_comparison(

@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 
 from contactlab.cli import arguments as shared
-from contactlab.files import written
+from contactlab.outcome.files import written
 from contactlab.pages.explore import CHI, PSI1, explore_page
 
 

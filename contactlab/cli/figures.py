@@ -13,11 +13,11 @@ import argparse
 import functools
 from pathlib import Path
 
-from contactlab.analysis.paper_figures import FigureData, figures
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import composed
-from contactlab.files import unwritable, write_table
+from contactlab.outcome.files import unwritable, write_table
 from contactlab.scene_file import LawChoice
+from contactlab.study.paper_figures import FigureData, figures
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -15,15 +15,15 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from contactlab.checks import whole
 from contactlab.cli import arguments as shared
 from contactlab.cli.fit_report import describe, ranking, write_residuals
-from contactlab.composition import DEFAULT_NORMAL
-from contactlab.files import distinct
+from contactlab.compose.composition import DEFAULT_NORMAL
+from contactlab.compose.simulation import Simulation
 from contactlab.fitting import Fit, Ranked, fit, in_order, rank, read_measurements
 from contactlab.fitting.model import SOME_FRICTION
+from contactlab.numeric.checks import whole
+from contactlab.outcome.files import distinct
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
-from contactlab.simulation import Simulation
 
 #: The name of the exact elastic laws by their table, which are no law that is installed.
 EXACT = "exact"

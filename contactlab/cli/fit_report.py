@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from contactlab.cli.table import table
-from contactlab.files import write_table
 from contactlab.fitting import Fit, Ranked
-from contactlab.quantities import QUANTITIES
-from contactlab.reading import heading
+from contactlab.outcome.files import write_table
+from contactlab.outcome.quantities import QUANTITIES
+from contactlab.outcome.tables import heading
 from contactlab.scene_file.entries import entry_unit
 
 

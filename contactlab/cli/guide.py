@@ -14,7 +14,7 @@ import argparse
 import difflib
 import re
 
-from contactlab.checks import refuse
+from contactlab.numeric.checks import refuse
 
 #: Topics in the order in which a newcomer reads them; each is a file of ``contactlab/guide``.
 TOPICS = (

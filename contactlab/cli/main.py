@@ -23,8 +23,8 @@ from contactlab.cli.arguments import (
     check_outputs,
 )
 from contactlab.cli.terminal import fitted
-from contactlab.installed import PluginWarning
-from contactlab.status import Status
+from contactlab.compose.installed import PluginWarning
+from contactlab.contracts.status import Status
 
 if TYPE_CHECKING:
     from _typeshed import SupportsWrite

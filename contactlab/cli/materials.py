@@ -14,9 +14,9 @@ import json
 
 import attrs
 
-from contactlab import materials
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
+from contactlab.impact import materials
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -16,13 +16,13 @@ import textwrap
 from collections import Counter
 from typing import Any
 
-from contactlab.citations import references
 from contactlab.cli.arguments import FAILED, OK, add_progress, progress
 from contactlab.cli.table import WIDTH, table
-from contactlab.composition import WAYS
+from contactlab.compose.citations import references
+from contactlab.compose.composition import WAYS
+from contactlab.compose.options import Option, options
+from contactlab.compose.registry import REGISTRY, PluginInfo
 from contactlab.contracts import Integrator, TangentialLaw
-from contactlab.options import Option, options
-from contactlab.registry import REGISTRY, PluginInfo
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -13,10 +13,10 @@ import argparse
 import contextlib
 import sys
 
-from contactlab.analysis.compare import compare
 from contactlab.cli import arguments as shared
-from contactlab.files import written
+from contactlab.outcome.files import written
 from contactlab.scene_file import read_scene
+from contactlab.study.compare import compare
 
 #: Compared with the file's own law where nothing else is asked for.
 DEFAULT_LAWS = ("fronts", "coulomb")

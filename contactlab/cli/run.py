@@ -22,15 +22,15 @@ from typing import Any
 
 import numpy as np
 
-from contactlab import export
 from contactlab.cli import arguments as shared
 from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, given
-from contactlab.collision import Collision
-from contactlab.export import WRITERS
-from contactlab.json_values import json_value
-from contactlab.result import ImpactResult
-from contactlab.status import Status
+from contactlab.compose.collision import Collision
+from contactlab.contracts.status import Status
+from contactlab.outcome import export
+from contactlab.outcome.export import WRITERS
+from contactlab.outcome.json_values import json_value
+from contactlab.outcome.result import ImpactResult
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

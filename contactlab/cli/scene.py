@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.scene import Scene
+from contactlab.compose.simulation import Simulation
+from contactlab.impact.scene import Scene
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
-from contactlab.simulation import Simulation
 
 #: Most impacts of a range: a slip of the finger should not fill the memory.
 MOST_IMPACTS = 1_000_000

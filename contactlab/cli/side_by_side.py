@@ -7,14 +7,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from contactlab.analysis.compare import Agreement, Comparison
-from contactlab.analysis.scores import Score
 from contactlab.cli.table import table
-from contactlab.export import COMPARISON_TABLE
-from contactlab.quantities import QUANTITIES
-from contactlab.reading import heading, number, time
+from contactlab.outcome.export import COMPARISON_TABLE
+from contactlab.outcome.quantities import QUANTITIES
+from contactlab.outcome.tables import heading, number, time
 from contactlab.scene_file import SceneFile
 from contactlab.scene_file.entries import entry_unit
+from contactlab.study.compare import Agreement, Comparison
+from contactlab.study.scores import Score
 
 #: What a row of scores shows as 0: rounding.
 ZERO = 1e-12

@@ -18,16 +18,16 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.analysis.bench_methods import methods
-from contactlab.analysis.model_error import ModelError
-from contactlab.analysis.stability import Stability, stability
-from contactlab.analysis.stability_cases import Case
-from contactlab.analysis.stability_map import Region
-from contactlab.analysis.stability_outcome import RAISED, WRONG, Outcome, judge
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
-from contactlab.files import write_table
-from contactlab.json_values import json_value
+from contactlab.outcome.files import write_table
+from contactlab.outcome.json_values import json_value
+from contactlab.study.bench_methods import methods
+from contactlab.study.model_error import ModelError
+from contactlab.study.stability import Stability, stability
+from contactlab.study.stability_cases import Case
+from contactlab.study.stability_map import Region
+from contactlab.study.stability_outcome import RAISED, WRONG, Outcome, judge
 
 #: Failures listed one by one under the table; all of them are in the CSV and the JSON.
 LISTED = 40

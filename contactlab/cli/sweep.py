@@ -19,15 +19,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contactlab.checks import refuse
 from contactlab.cli import arguments as shared
 from contactlab.cli.run import draw, report
 from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
 from contactlab.cli.table import table
-from contactlab.export import COLUMNS, WRITERS, csv_heading
-from contactlab.reading import evenly, sweep_section
-from contactlab.result import ImpactResult
-from contactlab.scene import Scene
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.export import COLUMNS, WRITERS, csv_heading
+from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.tables import evenly, sweep_section
 from contactlab.scene_file import LawChoice, read_scene
 from contactlab.scene_file.entries import entry_unit
 
@@ -114,7 +114,7 @@ def _executor(count: int | None) -> Iterator[Executor | None]:
     if count is None:
         yield None
         return
-    from contactlab.workers import Workers  # only for those who ask for some
+    from contactlab.compose.workers import Workers  # only for those who ask for some
 
     executor = Workers(count)
     try:
@@ -132,14 +132,14 @@ def _folder(out: Path | None) -> Path:
 
 def _done(folder: Path) -> int:
     """Return how many impacts are there from before."""
-    from contactlab.kept import count
+    from contactlab.compose.kept import count
 
     return count(folder)
 
 
 def _clear(folder: Path, result: ImpactResult) -> None:
     """Delete what was kept of a sweep that is done; what is to be tried again needs the rest."""
-    from contactlab.kept import TRIED_AGAIN, remove
+    from contactlab.compose.kept import TRIED_AGAIN, remove
 
     if not any(status in TRIED_AGAIN for status in result.status):
         remove(folder)

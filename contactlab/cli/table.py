@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any
 
-from contactlab.reading import number
+from contactlab.outcome.tables import number
 
 #: Columns of a terminal that a table keeps to, if it can, and the least for a text.
 WIDTH, LEAST_TEXT = 100, 30

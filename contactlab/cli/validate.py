@@ -17,13 +17,13 @@ from typing import Any
 
 import attrs
 
-from contactlab.analysis.evidence import Evidence, gather
-from contactlab.analysis.validation import Finding, judged, validate
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import WIDTH, table
-from contactlab.json_values import json_value
-from contactlab.quantities import QUANTITIES
-from contactlab.reading import heading
+from contactlab.outcome.json_values import json_value
+from contactlab.outcome.quantities import QUANTITIES
+from contactlab.outcome.tables import heading
+from contactlab.study.evidence import Evidence, gather
+from contactlab.study.validation import Finding, judged, validate
 
 #: Laws that a picture shows, as far as they are installed: a reader tells no more apart.
 DRAWN = ("fronts", "springs, tsuji restitution=0.98", "mindlin_cap", "coulomb")

@@ -12,14 +12,14 @@ from typing import Any, ClassVar, NamedTuple, Self, TypeAlias
 import attrs
 import numpy as np
 
-from contactlab.batch import filled, merged, spread
-from contactlab.checks import Mask, Real
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalContact, NormalLaw
+from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw
-from contactlab.scene import Scene
-from contactlab.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import filled, merged, spread
+from contactlab.numeric.checks import Mask, Real
 
 #: Impacts of a sweep handed over together, unless the integrator says otherwise.
 CHUNK = 1000

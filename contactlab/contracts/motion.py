@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import Real
-from contactlab.status import Status
+from contactlab.contracts.status import Status
+from contactlab.numeric.checks import Real
 
 if TYPE_CHECKING:
     from contactlab.contracts.normal import NormalContact, NormalLaw
-    from contactlab.scene import Scene
+    from contactlab.impact.scene import Scene
 
 
 class NormalSample(NamedTuple):
@@ -107,7 +107,7 @@ class NormalMotion(ABC):
 
     @abstractmethod
     def take(self, part: Any) -> NormalMotion:
-        """Return the motion of some impacts of a batch, as ``contactlab.batch.taken``.
+        """Return the motion of some impacts of a batch, as ``contactlab.numeric.arrays.taken``.
 
         Parameters
         ----------

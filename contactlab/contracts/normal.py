@@ -7,10 +7,10 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from contactlab.checks import Real
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import ClosedFormMotion, NormalMotion
-from contactlab.scene import Scene
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
 
 #: Above this ratio of contact radius to R the picture of half-spaces is doubtful (theory §8).
 DOUBTFUL_SIZE_RATIO = 0.1
@@ -89,7 +89,8 @@ class NormalLaw(Law):
        of the batch shape; arithmetic that serves both keeps one code path.
     4. NaN in gives NaN out, never "no contact".
     5. The motion from first touch to separation is made from ``respond``, before any friction,
-       to ``contactlab.normal_motion.TOLERANCE``; see ``ClosedFormNormalLaw`` for the exception.
+       to ``contactlab.compose.normal_motion.TOLERANCE``; see ``ClosedFormNormalLaw`` for the
+       exception.
     6. ``cautions`` says where the model itself is doubtful.
     """
 

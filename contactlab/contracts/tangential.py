@@ -10,13 +10,13 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.cautions import coupling
-from contactlab.checks import Mask, Real
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalContact
 from contactlab.contracts.whole_impact import WholeImpact, no_force
-from contactlab.scene import Scene
+from contactlab.impact.coupling import coupling
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Mask, Real
 
 Array = NDArray[np.float64]
 

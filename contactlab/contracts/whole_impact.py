@@ -8,9 +8,9 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.checks import Mask, Real
 from contactlab.contracts.motion import NormalMotion
-from contactlab.scene import Scene
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Mask, Real
 
 
 @attrs.frozen(kw_only=True, eq=False)

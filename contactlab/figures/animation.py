@@ -14,8 +14,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch
 from numpy.typing import NDArray
 
-from contactlab.analysis.paper_figures import scaled_forces
-from contactlab.checks import refuse
 from contactlab.figures.stick_slip import NO_CONTACT, STATES
 from contactlab.figures.style import (
     LAW_COLOURS,
@@ -25,8 +23,10 @@ from contactlab.figures.style import (
     styled,
     zero_line,
 )
-from contactlab.files import written
-from contactlab.result import ImpactResult
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.files import written
+from contactlab.outcome.result import ImpactResult
+from contactlab.study.paper_figures import scaled_forces
 
 #: Frames before, during and after contact, and how long each is shown, in ms.
 ARRIVING, IN_CONTACT, LEAVING = 14, 72, 22

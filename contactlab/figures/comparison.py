@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from contactlab.analysis.compare import Agreement, Comparison
-from contactlab.analysis.paper_figures import scaled_forces
 from contactlab.figures.style import (
     BELOW,
     LAW_COLOURS,
@@ -24,9 +22,11 @@ from contactlab.figures.style import (
     verbatim,
     zero_line,
 )
-from contactlab.grid import Grid
-from contactlab.quantities import QUANTITIES
+from contactlab.impact.grid import Grid
+from contactlab.outcome.quantities import QUANTITIES
 from contactlab.scene_file.entries import entry_unit
+from contactlab.study.compare import Agreement, Comparison
+from contactlab.study.paper_figures import scaled_forces
 
 POINTS: dict[str, Any] = {
     "color": MEASURED_COLOUR, "linestyle": "none", "marker": "o", "markersize": 4.5,
@@ -138,7 +138,7 @@ def laws_over_sweep(
     comparison : Comparison
         Of a sweep.
     quantity : str
-        By its name in ``contactlab.quantities``.
+        By its name in ``contactlab.outcome.quantities``.
     agreement : Agreement, optional
         With measured values, drawn too.
     """
@@ -180,7 +180,7 @@ def differences(
     comparison : Comparison
         Of a sweep.
     quantity : str
-        By its name in ``contactlab.quantities``.
+        By its name in ``contactlab.outcome.quantities``.
     agreement : Agreement, optional
         With measured values, drawn too.
     """

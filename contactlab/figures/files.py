@@ -12,9 +12,9 @@ import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from contactlab.checks import refuse
 from contactlab.figures.style import NARROW, RESOLUTION, Look, Width, figure_size, styled
-from contactlab.files import written
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.files import written
 
 #: Form of picture by the end of the file's name.
 FORMATS = {".png": "png", ".pdf": "pdf", ".svg": "svg"}

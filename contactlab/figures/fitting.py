@@ -13,7 +13,7 @@ from contactlab.figures.comparison import POINTS
 from contactlab.figures.files import save
 from contactlab.figures.style import label, law_style, verbatim, zero_line
 from contactlab.fitting.outcome import Fit
-from contactlab.quantities import QUANTITIES
+from contactlab.outcome.quantities import QUANTITIES
 from contactlab.scene_file.entries import entry_unit
 
 MARKERS = "os^Dv<"

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from contactlab.analysis.paper_figures import FIXED_PSI1, SOLID_CHI, FigureData, chi_of_gyration
 from contactlab.figures.style import (
     ASIDE,
     LAW_COLOURS,
@@ -20,6 +19,7 @@ from contactlab.figures.style import (
     ordered_colours,
     zero_line,
 )
+from contactlab.study.paper_figures import FIXED_PSI1, SOLID_CHI, FigureData, chi_of_gyration
 
 SOLID_CHI_RANGE = (3.5 / 3.0, 3.5 / 2.0)  # nu = 0.5 and nu = 0 in eq. (38)
 

@@ -9,9 +9,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from contactlab.analysis.paper_figures import scaled_forces
-from contactlab.checks import refuse
-from contactlab.export import unit_in
 from contactlab.figures.style import (
     LAW_COLOURS,
     Width,
@@ -23,9 +20,12 @@ from contactlab.figures.style import (
     styled,
     zero_line,
 )
-from contactlab.history import History
-from contactlab.quantities import quantity_named
-from contactlab.result import ImpactResult
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.export import unit_in
+from contactlab.outcome.history import History
+from contactlab.outcome.quantities import quantity_named
+from contactlab.outcome.result import ImpactResult
+from contactlab.study.paper_figures import scaled_forces
 
 
 def draw_result(

@@ -22,16 +22,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from contactlab.analysis.model_error import ModelError
-from contactlab.analysis.stability import Stability
-from contactlab.analysis.stability_cases import LIMIT
-from contactlab.analysis.stability_map import (
-    ALL_ANSWERED,
-    ONE_RAISED,
-    ONE_REFUSED,
-    ONE_WRONG,
-    Region,
-)
 from contactlab.figures.files import save_figure
 from contactlab.figures.style import (
     ORDERED_MAP,
@@ -42,6 +32,16 @@ from contactlab.figures.style import (
     label,
     law_style,
     styled,
+)
+from contactlab.study.model_error import ModelError
+from contactlab.study.stability import Stability
+from contactlab.study.stability_cases import LIMIT
+from contactlab.study.stability_map import (
+    ALL_ANSWERED,
+    ONE_RAISED,
+    ONE_REFUSED,
+    ONE_WRONG,
+    Region,
 )
 
 #: Errors over the range at which the colour changes: whole decades.

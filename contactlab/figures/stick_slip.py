@@ -8,9 +8,9 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from contactlab.checks import refuse
 from contactlab.figures.style import LAW_COLOURS, TIME_LABEL
-from contactlab.result import ImpactResult
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.result import ImpactResult
 
 #: What an annulus may do, its colour and its number in the map.
 STATES = {"slip, backward": LAW_COLOURS[1], "stick": "#C4C4C4", "slip, forward": LAW_COLOURS[0]}

@@ -10,7 +10,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 
-from contactlab.checks import refuse
+from contactlab.numeric.checks import refuse
 
 Look = Literal["print", "slides"]
 Width = Literal["one", "two"]

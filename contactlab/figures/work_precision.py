@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from contactlab.analysis.work_precision import Benchmark
 from contactlab.figures.style import ASIDE, LAW_COLOURS, NARROW, QUIET, figure_width
+from contactlab.study.work_precision import Benchmark
 
 MARKERS = {"paper": "o", "symplectic": "s", "adaptive": "D", "events": "*"}
 #: Said of laws that answer whole impacts.

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from contactlab.fitting.model import Model
 from contactlab.fitting.parameters import Parameter
-from contactlab.scene import Scene
+from contactlab.impact.scene import Scene
 
 Array = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ import csv
 from pathlib import Path
 from typing import NamedTuple
 
-from contactlab.files import content
 from contactlab.fitting.headings import read_heading
+from contactlab.outcome.files import content
 
 #: Encodings that are tried: that of today with or without a mark, and that of older spreadsheets.
 ENCODINGS = ("utf-8-sig", "cp1252")

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import refuse, whole
+from contactlab.compose.simulation import Simulation
 from contactlab.fitting import determinacy
 from contactlab.fitting.bootstrap import bootstrapped
 from contactlab.fitting.measurements import Measurements, read_measurements
@@ -19,10 +19,10 @@ from contactlab.fitting.outcome import Estimate, Fit
 from contactlab.fitting.parameters import Setup, parameter_named
 from contactlab.fitting.problem import Problem, solved, starting
 from contactlab.fitting.suspects import suspects
-from contactlab.scene import Scene
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse, whole
 from contactlab.scene_file import SceneFile
 from contactlab.signatures import named_arguments
-from contactlab.simulation import Simulation
 
 Array = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ import math
 import re
 from typing import NamedTuple
 
-from contactlab.checks import nearest
-from contactlab.quantities import QUANTITIES
+from contactlab.numeric.checks import nearest
+from contactlab.outcome.quantities import QUANTITIES
 from contactlab.scene_file.entries import ENTRIES, entry_unit
 
 #: What can be measured of a rebound; everything else of a result follows from these and a law.

@@ -10,9 +10,9 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import real, refuse
 from contactlab.fitting.csv_rows import read_rows
 from contactlab.fitting.headings import ERROR, Heading, read_heading
+from contactlab.numeric.checks import real, refuse
 from contactlab.scene_file import SceneFile
 
 Array = NDArray[np.float64]

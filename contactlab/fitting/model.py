@@ -9,19 +9,19 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.analysis.interrupts import uninterrupted
-from contactlab.checks import refuse
-from contactlab.closed_forms import hertz_scales
+from contactlab.compose.rebound import rebound
+from contactlab.compose.simulation import Simulation
+from contactlab.contracts.status import Status
 from contactlab.fitting.parameters import Parameter, Setup
-from contactlab.motion import Motion
-from contactlab.plan import Plan
-from contactlab.quantities import QUANTITIES
-from contactlab.rebounds import rebound
-from contactlab.result import ImpactResult
-from contactlab.scene import Scene
+from contactlab.impact.hertz import hertz_scales
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.motion import Motion
+from contactlab.outcome.plan import Plan
+from contactlab.outcome.quantities import QUANTITIES
+from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import SceneFile, read_scene
-from contactlab.simulation import Simulation
-from contactlab.status import Status
+from contactlab.study.interrupts import uninterrupted
 
 Array = NDArray[np.float64]
 

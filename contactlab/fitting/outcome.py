@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.attributes import named_attributes
-from contactlab.checks import refuse
 from contactlab.fitting.measurements import Measurements
-from contactlab.json_values import json_value
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.json_values import json_value
 
 Array = NDArray[np.float64]
 Interval = tuple[float, float]

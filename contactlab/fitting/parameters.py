@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.bodies import HalfSpace, Material, Sphere
-from contactlab.checks import Real, Rule, nearest
-from contactlab.registry import KINDS, REGISTRY, PluginError
-from contactlab.scene import Scene
-from contactlab.simulation import Simulation
+from contactlab.compose.registry import KINDS, REGISTRY, PluginError
+from contactlab.compose.simulation import Simulation
+from contactlab.impact.bodies import HalfSpace, Material, Sphere
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real, Rule, nearest
 
 #: Range in which a coefficient of friction is looked for, and where the search begins.
 FRICTION, FRICTION_STARTS = (1e-6, 10.0), tuple(np.geomspace(0.004, 4.0, 25).tolist())

@@ -7,11 +7,11 @@ from typing import Any
 
 import attrs
 
+from contactlab.compose.simulation import Simulation
 from contactlab.fitting.estimation import fit
 from contactlab.fitting.measurements import read_measurements
 from contactlab.fitting.outcome import Fit
-from contactlab.result import ImpactError
-from contactlab.simulation import Simulation
+from contactlab.outcome.result import ImpactError
 
 
 @attrs.frozen(kw_only=True)

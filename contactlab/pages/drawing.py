@@ -7,9 +7,9 @@ from html import escape
 
 import numpy as np
 
-from contactlab.bodies import Sphere
-from contactlab.reading import number
-from contactlab.result import ImpactResult
+from contactlab.impact.bodies import Sphere
+from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.tables import number
 
 #: Half the width, the height above the surface and below it, in radii of the sphere.
 WIDTH, HEIGHT, DEPTH = 4.2, 4.4, 0.9

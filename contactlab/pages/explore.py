@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlab
-from contactlab.checks import refuse
+from contactlab.numeric.checks import refuse
 
 #: Digits of psi2 after the point, as they are shown.
 DIGITS = 4

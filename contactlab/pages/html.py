@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
 
-from contactlab.plan import Plan
-from contactlab.reading import answer, closing, number, sections
-from contactlab.result import ImpactResult
+from contactlab.outcome.plan import Plan
+from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.tables import answer, closing, number, sections
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[Any]], *, digits: int = 6) -> str:

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contactlab.citations import references
+from contactlab.compose.citations import references
+from contactlab.outcome.tables import closing, largest_imbalance, scene_section, sweep_section
 from contactlab.pages import html
-from contactlab.reading import closing, largest_imbalance, scene_section, sweep_section
 
 if TYPE_CHECKING:
     from contactlab.contracts.law import Law
-    from contactlab.plan import Plan
-    from contactlab.result import ImpactResult
-    from contactlab.scene import Scene
+    from contactlab.impact.scene import Scene
+    from contactlab.outcome.plan import Plan
+    from contactlab.outcome.result import ImpactResult
 
 #: Impacts of a batch that are shown.
 ROWS = 10

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from contactlab.bodies import HalfSpace, Material, Sphere
-from contactlab.checks import refuse, unit_remedy
-from contactlab.encounter import Encounter
-from contactlab.scene import Scene
+from contactlab.impact.bodies import HalfSpace, Material, Sphere
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse, unit_remedy
 from contactlab.scene_file.entries import (
     BODY_SECTIONS,
     IMPACT_KEYS,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from contactlab import materials
-from contactlab.checks import nearest
+from contactlab.impact import materials
+from contactlab.numeric.checks import nearest
 
 MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density")
 SPHERE_KEYS = ("radius", "mass", "gyration_ratio", "material")

@@ -7,10 +7,10 @@ from typing import Any
 
 import attrs
 
-from contactlab import composition
-from contactlab.registry import KINDS, REGISTRY
+from contactlab.compose import composition
+from contactlab.compose.registry import KINDS, REGISTRY
+from contactlab.compose.simulation import Simulation
 from contactlab.scene_file.table import Table, flattened, nearest_of
-from contactlab.simulation import Simulation
 
 OPTION_REMEDY = "write tangential.annuli = 50, or tangential.annulus.annuli = 50 for one law only"
 

@@ -8,8 +8,8 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import refuse
-from contactlab.quantities import quantity_named
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.quantities import quantity_named
 from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table
 

@@ -12,11 +12,11 @@ from typing import Any
 import attrs
 
 from contactlab.attributes import named_attributes
-from contactlab.checks import Real, real, refuse
-from contactlab.encounter import Encounter
-from contactlab.files import content
-from contactlab.grid import over
-from contactlab.scene import Scene
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.grid import over
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real, real, refuse
+from contactlab.outcome.files import content
 from contactlab.scene_file.build import build_scene
 from contactlab.scene_file.entries import (
     entry_path,

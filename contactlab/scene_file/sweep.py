@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab.checks import Real, refuse, whole
-from contactlab.grid import product
+from contactlab.impact.grid import product
+from contactlab.numeric.checks import Real, refuse, whole
 from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table, flattened, number_list
 

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from contactlab.checks import FINITE, Real, Rule, nearest, real, refuse
+from contactlab.numeric.checks import FINITE, Real, Rule, nearest, real, refuse
 
 Made = TypeVar("Made")
 

@@ -7,9 +7,9 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.simulation import Simulation
 from contactlab.contracts import ClosedFormNormalLaw, Integrator
-from contactlab.normal_motion import normal_motion
-from contactlab.simulation import Simulation
 from contactlab.testing.bench import scene
 from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.integrators import CHI, fitting, marched, marched_impact

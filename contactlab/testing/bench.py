@@ -14,13 +14,13 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.batch import locked
-from contactlab.bodies import Pair
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import Increment, NormalContact, NormalMotion, SteppedTangentialLaw
 from contactlab.contracts.tangential import TangentialLaw
-from contactlab.normal_motion import normal_motion
-from contactlab.registry import REGISTRY
-from contactlab.scene import Scene
+from contactlab.impact.bodies import Pair
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import locked
 from contactlab.testing.check import hold
 from contactlab.testing.units import Units
 

@@ -11,7 +11,8 @@ from typing import Any
 
 import attrs
 
-from contactlab.composition import WAYS
+from contactlab.compose.composition import WAYS
+from contactlab.compose.registry import KINDS
 from contactlab.contracts import (
     API_VERSION,
     ClosedFormNormalLaw,
@@ -20,7 +21,6 @@ from contactlab.contracts import (
     NormalLaw,
     TangentialLaw,
 )
-from contactlab.registry import KINDS
 from contactlab.testing.check import CHECKS, check, hold
 from contactlab.testing.compare import same
 

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.checks import Real
+from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import (
     ClosedFormMotion,
     ClosedFormNormalLaw,
@@ -26,8 +26,8 @@ from contactlab.contracts import (
     SteppedTangentialLaw,
     TangentialResponse,
 )
-from contactlab.registry import REGISTRY
-from contactlab.scene import Scene
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
 
 #: What a law may be asked for in one impact before it calls a halt.
 MOST_CALLS = 3_000_000

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import AllStepsTangentialLaw, TangentialLaw
-from contactlab.history import Recorder
+from contactlab.outcome.history import Recorder
 from contactlab.testing.bench import FRICTION, bodies, scene
 from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.compare import same

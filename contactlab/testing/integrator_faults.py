@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from contactlab.compose.simulation import Simulation
 from contactlab.contracts import Integrator
-from contactlab.simulation import Simulation
 from contactlab.testing.bench import scene
 from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.faulty_laws import (

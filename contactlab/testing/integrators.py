@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from contactlab import composition
+from contactlab.compose import composition
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.registry import REGISTRY
+from contactlab.compose.simulation import Simulation
 from contactlab.contracts import Integrator, TangentialMotion
-from contactlab.history import Recorder
-from contactlab.normal_motion import normal_motion
-from contactlab.registry import REGISTRY
-from contactlab.simulation import Simulation
-from contactlab.status import Status
+from contactlab.contracts.status import Status
+from contactlab.outcome.history import Recorder
 from contactlab.testing.bench import bodies, scene
 from contactlab.testing.check import check, hold
 from contactlab.testing.compare import same

@@ -8,7 +8,6 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.checks import Real
 from contactlab.contracts import (
     ClosedFormMotion,
     Increment,
@@ -23,7 +22,8 @@ from contactlab.contracts import (
     SteppedTangentialLaw,
     TangentialResponse,
 )
-from contactlab.scene import Scene
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
 
 
 class Stretch(NamedTuple):

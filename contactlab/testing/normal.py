@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.batch import locked
-from contactlab.closed_forms import hertz_scales
 from contactlab.contracts import NormalContact, NormalLaw
-from contactlab.scene import Scene
+from contactlab.impact.hertz import hertz_scales
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import locked
 from contactlab.testing.bench import bodies, scene
 from contactlab.testing.check import check, hold
 from contactlab.testing.compare import same, well_formed

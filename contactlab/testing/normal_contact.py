@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.closed_forms import hertz_scales
+from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalLaw
-from contactlab.normal_motion import normal_motion
+from contactlab.impact.hertz import hertz_scales
 from contactlab.testing.check import check, hold
 from contactlab.testing.normal import ROUNDING, STEPS, respond, strokes
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from scipy.integrate import trapezoid
 
+from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
-from contactlab.normal_motion import normal_motion
-from contactlab.status import Status
+from contactlab.contracts.status import Status
 from contactlab.testing.bench import bodies, scene
 from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.normal import respond, strokes

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.batch import locked
 from contactlab.contracts import SteppedTangentialLaw
+from contactlab.numeric.arrays import locked
 from contactlab.testing.bench import Bench, Path, continue_from, drive, straight, wandering
 from contactlab.testing.check import check, hold
 from contactlab.testing.compare import same, well_formed

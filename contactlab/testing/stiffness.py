@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab.normal_motion import normal_motion
-from contactlab.registry import REGISTRY
 from contactlab.testing.bench import (
     HEAVY,
     Bench,

@@ -31,7 +31,7 @@ _TOKEN = re.compile(r"([A-Za-z]+|1)(?:\^(-?\d+(?:\.\d+)?))?")
 def in_units(law: Any, units: Units) -> Any:
     """Return ``law`` with its numbers in ``units``.
 
-    Units are those of the fields' metadata, as ``contactlab.checks.quantity`` writes them:
+    Units are those of the fields' metadata, as ``contactlab.numeric.checks.quantity`` writes them:
     products by a space, one quotient, powers by ^, as in "N s/m", "m/s" or "N/m^1.5".
 
     Raises

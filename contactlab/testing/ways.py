@@ -6,6 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.registry import REGISTRY
+from contactlab.compose.simulation import Simulation
 from contactlab.contracts import (
     Integrator,
     NormalLaw,
@@ -16,12 +19,9 @@ from contactlab.contracts import (
     TangentialMotion,
     WholeImpactTangentialLaw,
 )
-from contactlab.history import History, Recorder
-from contactlab.normal_motion import normal_motion
-from contactlab.registry import REGISTRY
-from contactlab.scene import Scene
-from contactlab.simulation import Simulation
-from contactlab.status import Status
+from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.outcome.history import History, Recorder
 from contactlab.testing.bench import scene, slack
 from contactlab.testing.check import apply_if, hold
 from contactlab.testing.units import Units

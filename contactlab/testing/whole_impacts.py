@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.integrate import trapezoid
 
-from contactlab.answers import answers
-from contactlab.batch import spread
+from contactlab.compose.answers import answers
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalLaw, NormalMotion, TangentialLaw, WholeImpact
-from contactlab.normal_motion import normal_motion
-from contactlab.registry import REGISTRY
-from contactlab.scene import Scene
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import spread
 from contactlab.testing.bench import scene, slack
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold
 from contactlab.testing.compare import well_formed

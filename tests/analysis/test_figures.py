@@ -18,12 +18,12 @@ from matplotlib.text import Text
 
 import contactlab.figures
 from contactlab import Scene, Simulation, create
-from contactlab.analysis import paper_figures
-from contactlab.analysis.compare import compare
 from contactlab.figures import paper, results, style
 from contactlab.figures.comparison import all_laws, laws_over_sweep
 from contactlab.figures.files import save
 from contactlab.scene_file import read_scene
+from contactlab.study import paper_figures
+from contactlab.study.compare import compare
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 WIDTHS = (None, "one", "two")

@@ -9,15 +9,7 @@ from matplotlib.figure import Figure
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab.analysis.bench_methods import Method
-from contactlab.analysis.model_error import ModelError, model_error
-from contactlab.analysis.stability import Stability
-from contactlab.analysis.stability_cases import Case
-from contactlab.analysis.stability_map import ALL_ANSWERED, Region, region
-from contactlab.analysis.stability_outcome import ANSWERED, UNDECLARED, judge_run
-from contactlab.analysis.stability_scenes import Extreme
-from contactlab.closed_forms import rigid_body_rebound
-from contactlab.declared import range_of
+from contactlab.contracts.error_model import range_of
 from contactlab.figures.stability import (
     DECADES,
     draw_stability,
@@ -25,6 +17,14 @@ from contactlab.figures.stability import (
     model_errors,
     usable_region,
 )
+from contactlab.impact.hertz import rigid_body_rebound
+from contactlab.study.bench_methods import Method
+from contactlab.study.model_error import ModelError, model_error
+from contactlab.study.stability import Stability
+from contactlab.study.stability_cases import Case
+from contactlab.study.stability_map import ALL_ANSWERED, Region, region
+from contactlab.study.stability_outcome import ANSWERED, UNDECLARED, judge_run
+from contactlab.study.stability_scenes import Extreme
 
 CHI = 49 / 34
 

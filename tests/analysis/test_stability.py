@@ -8,12 +8,15 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab.analysis import stability_references
-from contactlab.analysis.bench_methods import Method, methods
-from contactlab.analysis.stability import Stability, stability
-from contactlab.analysis.stability_bounds import broken_invariants
-from contactlab.analysis.stability_cases import Case, cases
-from contactlab.analysis.stability_outcome import (
+from contactlab.compose.registry import REGISTRY
+from contactlab.contracts import NormalContact, NormalLaw, SteppedTangentialLaw, TangentialResponse
+from contactlab.contracts.error_model import range_of
+from contactlab.study import stability_references
+from contactlab.study.bench_methods import Method, methods
+from contactlab.study.stability import Stability, stability
+from contactlab.study.stability_bounds import broken_invariants
+from contactlab.study.stability_cases import Case, cases
+from contactlab.study.stability_outcome import (
     ANSWERED,
     REFUSED,
     SKIPPED,
@@ -22,11 +25,8 @@ from contactlab.analysis.stability_outcome import (
     judge,
     judge_run,
 )
-from contactlab.analysis.stability_references import continuum, itself, reference_for, rigid
-from contactlab.analysis.stability_scenes import Extreme, extreme_scenes, normal_scenes
-from contactlab.contracts import NormalContact, NormalLaw, SteppedTangentialLaw, TangentialResponse
-from contactlab.declared import range_of
-from contactlab.registry import REGISTRY
+from contactlab.study.stability_references import continuum, itself, reference_for, rigid
+from contactlab.study.stability_scenes import Extreme, extreme_scenes, normal_scenes
 from tests.outside_laws import RescaledSpring
 
 CHI = 49 / 34

@@ -7,12 +7,12 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 
-from contactlab.analysis import work_precision
-from contactlab.analysis.bench_methods import Method, methods, scenes
-from contactlab.analysis.work_precision import Benchmark, Row, bench
 from contactlab.cli.bench import markdown
 from contactlab.cli.main import main
 from contactlab.figures.work_precision import work_precision as draw
+from contactlab.study import work_precision
+from contactlab.study.bench_methods import Method, methods, scenes
+from contactlab.study.work_precision import Benchmark, Row, bench
 
 
 def row(method="a", error=1.0, time=1.0, failed=0, options="steps=10"):

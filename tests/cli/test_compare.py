@@ -12,11 +12,11 @@ import pytest
 from matplotlib.figure import Figure
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scene
-from contactlab.analysis.compare import compare
 from contactlab.cli import compare as command
 from contactlab.cli import progress
 from contactlab.figures.comparison import differences, laws_over_sweep
 from contactlab.figures.files import save_figure
+from contactlab.study.compare import compare
 from tests.tangential_laws import Creator
 
 BOTH = ("--tangential", "coulomb,frictionless")

@@ -9,11 +9,11 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation, read_scene
-from contactlab.analysis.compare import compare
-from contactlab.analysis.scores import DEFAULT_SCENE, candidates, pressed_force
-from contactlab.closed_forms import rigid_body_rebound
-from contactlab.registry import REGISTRY
+from contactlab.compose.registry import REGISTRY
+from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.scene_file import LawChoice
+from contactlab.study.compare import compare
+from contactlab.study.scores import DEFAULT_SCENE, candidates, pressed_force
 from tests.normal_laws import Damped
 
 pytestmark = pytest.mark.slow
@@ -77,7 +77,7 @@ def test_a_normal_law_leaves_out_what_does_not_fit():
     assert next(iter(found.simulations)) == "fronts"
     assert found.left_out == {}
     law = Damped()
-    assert contactlab.composition.preferred("tangential", law) == "springs"
+    assert contactlab.compose.composition.preferred("tangential", law) == "springs"
 
 
 def test_without_a_scene_it_is_that_of_the_codes(run):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from contactlab import Simulation, create
-from contactlab.analysis import paper_figures
-from contactlab.analysis.paper_figures import (
+from contactlab.study import paper_figures
+from contactlab.study.paper_figures import (
     Curve,
     FigureData,
     figure_1,

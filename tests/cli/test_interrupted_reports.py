@@ -7,10 +7,10 @@ import json
 
 import pytest
 
-from contactlab.analysis import paper_figures, validation, work_precision
-from contactlab.analysis.bench_methods import Method
 from contactlab.cli import bench, stability
-from contactlab.simulation import Simulation
+from contactlab.compose.simulation import Simulation
+from contactlab.study import paper_figures, validation, work_precision
+from contactlab.study.bench_methods import Method
 from tests.cli.conftest import interrupting
 
 pytestmark = pytest.mark.slow

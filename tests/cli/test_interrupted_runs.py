@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from contactlab.analysis import compare, evidence, validation
 from contactlab.cli import fit as fit_command
 from contactlab.figures import animation
 from contactlab.fitting import bootstrap
+from contactlab.study import compare, evidence, validation
 from tests.cli.conftest import EXAMPLES, interrupting
 
 KHARAZ = EXAMPLES / "kharaz2001.toml"

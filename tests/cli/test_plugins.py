@@ -10,7 +10,7 @@ import sys
 import pytest
 
 import contactlab
-from contactlab.registry import REGISTRY, PluginInfo
+from contactlab.compose.registry import REGISTRY, PluginInfo
 
 
 def test_list_as_json(run):
@@ -30,8 +30,8 @@ def test_list_as_table(run):
 
 def test_show(run):
     shown = json.loads(run("plugins", "show", "tangential.annulus", "--json").out)
-    assert shown["module"] == "contactlab_annulus"
-    assert "contactlab_annulus" in run("plugins", "show", "tangential.annulus").out
+    assert shown["module"] == "contactlab_laws.annulus"
+    assert "contactlab_laws.annulus" in run("plugins", "show", "tangential.annulus").out
 
 
 def test_what_a_law_does_not_need_is_none(run):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from contactlab import create
-from contactlab.citations import DOI, YEAR, bibtex, references
-from contactlab.registry import REGISTRY
+from contactlab.compose.citations import DOI, YEAR, bibtex, references
+from contactlab.compose.registry import REGISTRY
 from tests.cli.conftest import EXAMPLES
 from tests.core.test_notebook import Balanced
 

@@ -9,8 +9,8 @@ import json
 import numpy as np
 import pytest
 
-from contactlab import export
 from contactlab.cli import progress
+from contactlab.outcome import export
 
 RIGID = ("--tangential", "coulomb", "--integrator", "symplectic")
 PSI = ("--psi1", "6", "--chi", "1", *RIGID)

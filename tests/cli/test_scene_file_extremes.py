@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import files
-from contactlab.checks import refuse, whole
+from contactlab.numeric.checks import refuse, whole
+from contactlab.outcome import files
 from contactlab.scene_file.table import number_list
 
 

@@ -11,10 +11,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from contactlab.analysis import stability_map
-from contactlab.analysis.bench_methods import Method
-from contactlab.analysis.stability import Stability
-from contactlab.analysis.stability_map import (
+from contactlab.cli import stability
+from contactlab.compose.registry import REGISTRY
+from contactlab.figures import stability as drawing
+from contactlab.study import stability_map
+from contactlab.study.bench_methods import Method
+from contactlab.study.stability import Stability
+from contactlab.study.stability_map import (
     ALL_ANSWERED,
     NOT_TRIED,
     ONE_RAISED,
@@ -23,10 +26,7 @@ from contactlab.analysis.stability_map import (
     Region,
     region,
 )
-from contactlab.analysis.stability_outcome import RAISED, WRONG, Outcome
-from contactlab.cli import stability
-from contactlab.figures import stability as drawing
-from contactlab.registry import REGISTRY
+from contactlab.study.stability_outcome import RAISED, WRONG, Outcome
 
 pytestmark = pytest.mark.slow
 

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from contactlab.closed_forms import rigid_body_rebound
+from contactlab.impact.hertz import rigid_body_rebound
 
 LAWS = ("--tangential", "coulomb", "--integrator", "symplectic")
 

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from contactlab.simulation import Simulation
+from contactlab.compose.simulation import Simulation
 
 SWEEP = ("sweep", "--psi1", "0:9:3000", "--chi", "1.4412", "--tangential", "springs")
 

@@ -6,8 +6,8 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab.analysis import evidence, validation
 from contactlab.scene_file import read_scene
+from contactlab.study import evidence, validation
 from tests.cli.conftest import EXAMPLES
 
 pytestmark = pytest.mark.slow

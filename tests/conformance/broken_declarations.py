@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 import attrs
 from scipy.interpolate import PchipInterpolator
 
-from contactlab.checks import POSITIVE, count, quantity
 from contactlab.contracts import TangentialLaw
+from contactlab.numeric.checks import POSITIVE, count, quantity
 from tests.conformance.broken_laws import Sound
 
 

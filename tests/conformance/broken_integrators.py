@@ -18,7 +18,7 @@ from contactlab.contracts import (
 )
 from contactlab.testing.faulty_laws import Unyielding
 
-STEPS = contactlab.registry.REGISTRY.law_class("integrator.symplectic")
+STEPS = contactlab.compose.registry.REGISTRY.law_class("integrator.symplectic")
 
 
 class Steps(STEPS):

@@ -7,9 +7,9 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.checks import POSITIVE, quantity
-from contactlab.closed_forms import hertz_scales
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
+from contactlab.impact.hertz import hertz_scales
+from contactlab.numeric.checks import POSITIVE, quantity
 
 
 class Spring(NamedTuple):

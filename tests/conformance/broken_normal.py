@@ -12,7 +12,7 @@ from contactlab import Scene
 from contactlab.contracts import NormalContact, NormalLaw
 from tests.outside_laws import Plastic
 
-HERTZ = contactlab.registry.REGISTRY.law_class("normal.hertz")
+HERTZ = contactlab.compose.registry.REGISTRY.law_class("normal.hertz")
 MOTION = type(HERTZ().motion(Scene.nondimensional(psi1=0.0, chi=1.0)))
 
 

@@ -272,7 +272,7 @@ def test_plug_in_and_distribution_are_named():
         normal=Press(answer=NORMAL["raises"][0]), tangential=soft, integrator="symplectic"
     ).run(SCENE)
     assert "Press (not registered)" in told(result)
-    from contactlab import faults
+    from contactlab.contracts import faults
 
     assert f"coulomb (contactlab {contactlab.__version__})" in faults.sentence(soft, "NaN", 3, 1e-6)
 

@@ -5,8 +5,8 @@ from typing import ClassVar
 import attrs
 import pytest
 
-from contactlab.checks import POSITIVE, quantity
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
+from contactlab.numeric.checks import POSITIVE, quantity
 from contactlab.testing import CheckFailedError, Verdict, check_law, checks_for, outcome
 from contactlab.testing.units import ODD_UNITS, Units, factor, in_units
 from tests.normal_laws import Damped

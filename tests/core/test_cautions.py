@@ -10,7 +10,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab.cautions import coupling_shift
+from contactlab.impact.coupling import coupling_shift
 
 GUIDE = Path(contactlab.__file__).parent / "guide" / "theory.md"
 CHI = 49.0 / 34.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import checks
+from contactlab.numeric import checks
 
 
 @pytest.mark.parametrize("value", [1, 7, np.int64(7), np.array(3)])

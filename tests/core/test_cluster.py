@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation
-from contactlab.collocation import lobatto
-from contactlab_fronts.many import march, panel, stuck
+from contactlab.numeric.lobatto import lobatto
+from contactlab_laws.fronts.many import march, panel, stuck
 from tests.core.test_sweep import CHI, assert_same, blocks_of, scene
 from tests.ending_laws import Ending, Raising
 

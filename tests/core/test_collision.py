@@ -254,7 +254,7 @@ def test_parts_of_a_large_batch_are_the_whole(monkeypatch):
         target=BALL, velocity=rng.normal((0, 0, -9), size=(6, 7, 3)), spin=np.ones((7, 3))
     )
     whole = collide(met)
-    monkeypatch.setattr("contactlab.encounter.TOGETHER", 5)
+    monkeypatch.setattr("contactlab.impact.encounter.TOGETHER", 5)
     parts = collide(met)
     assert parts.velocity.shape == (6, 7, 3)
     assert np.allclose(parts.velocity, whole.velocity, rtol=0.0, atol=1e-9)

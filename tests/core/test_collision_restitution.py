@@ -4,10 +4,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import (
-    Simulation,
-    collide,
-)
+from contactlab import Simulation, collide
 from tests.core.test_collision import BALL, meeting
 
 

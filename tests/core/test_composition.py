@@ -7,12 +7,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import (
-    HalfSpace,
-    Scene,
-    Simulation,
-    Sphere,
-)
+from contactlab import HalfSpace, Scene, Simulation, Sphere
 from contactlab.contracts import (
     TangentialLaw,
 )

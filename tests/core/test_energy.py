@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
-from contactlab.energy import balanced
+from contactlab.outcome.energy import balanced
 from tests.normal_laws import Damped
 from tests.tangential_laws import Creator, Slinger
 

@@ -6,8 +6,9 @@ import json
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation, export, quantities
-from contactlab.export import (
+from contactlab import Scene, Simulation
+from contactlab.outcome import export, quantities
+from contactlab.outcome.export import (
     COMPARISON_TABLE,
     SWEEP_TABLE,
     to_dict,
@@ -16,7 +17,7 @@ from contactlab.export import (
     write_json,
     write_npz,
 )
-from contactlab.quantities import QUANTITIES
+from contactlab.outcome.quantities import QUANTITIES
 
 SIM = Simulation(tangential="coulomb", integrator="symplectic")
 SINGLE = Scene.nondimensional(psi1=2.0, chi=1.4411764706)

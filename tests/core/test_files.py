@@ -12,8 +12,8 @@ import textwrap
 
 import pytest
 
-from contactlab import files
-from contactlab.files import distinct, unwritable, written
+from contactlab.outcome import files
+from contactlab.outcome.files import distinct, unwritable, written
 
 OLD = "old and whole\n"
 
@@ -77,7 +77,7 @@ def test_killed_in_the_middle_leaves_the_old_file(old):
 
 
 def python(code):
-    head = "import os\nfrom contactlab.files import written\n"
+    head = "import os\nfrom contactlab.outcome.files import written\n"
     program = head + textwrap.dedent(code)
     return subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=False

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scene
-from contactlab.closed_forms import rigid_body_rebound
-from contactlab.export import COLUMNS, to_dict, write_csv, write_npz
-from contactlab.grid import MOST_IMPACTS, Grid
+from contactlab.impact.grid import MOST_IMPACTS, Grid
+from contactlab.impact.hertz import rigid_body_rebound
+from contactlab.outcome.export import COLUMNS, to_dict, write_csv, write_npz
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 CHI, PSI1 = [1.0, 1.2, 1.4412], [0.0, 2.0, 6.0, 8.0]

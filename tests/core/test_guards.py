@@ -14,14 +14,14 @@ import pytest
 
 import contactlab
 from contactlab import ImpactError, Scene, Simulation, Status
-from contactlab.closed_forms import hertz_scales
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
+from contactlab.impact.hertz import hertz_scales
 from tests.guards import cost, without
 from tests.normal_laws import LinearSpring
 from tests.properties.spoiled import SpoiledMotion
 from tests.tangential_laws import Creator, Slinger
 
-HERTZ = contactlab.registry.REGISTRY.law_class("normal.hertz")
+HERTZ = contactlab.compose.registry.REGISTRY.law_class("normal.hertz")
 
 
 def annulus(integrator, **options):

@@ -11,22 +11,15 @@ import attrs
 import pytest
 
 import contactlab
-from contactlab import (
-    Status,
-    bodies,
-    cautions,
-    closed_forms,
-    contracts,
-    declared,
-    energy,
-    history,
-    motion,
-    normal_motion,
-    plan,
-    result,
-)
-from contactlab.analysis.validation import REFERENCE_PSI2
+from contactlab import Status, contracts
 from contactlab.cli.guide import SECTION, TOPICS, sections, summary, text
+from contactlab.compose import normal_motion
+from contactlab.contracts import error_model as declared
+from contactlab.impact import bodies
+from contactlab.impact import coupling as cautions
+from contactlab.impact import hertz as closed_forms
+from contactlab.outcome import energy, history, motion, plan, result
+from contactlab.study.validation import REFERENCE_PSI2
 from contactlab.testing import Verdict, check_law
 
 ROOT = Path(__file__).parents[2]

@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Scene, Simulation, kept, sweeping
+from contactlab import Scene, Simulation
+from contactlab.compose import kept
+from contactlab.compose import sweep as sweeping
 from tests.core.test_sweep import CHI, RIGID, assert_same, blocks_of, scene
 from tests.ending_laws import Ending
 
@@ -122,7 +124,7 @@ def test_impacts_whose_worker_died_are_tried_again(tmp_path):
     (ends := tmp_path / "ends").mkdir()
     law = Ending(folder=str(ends), above=7.4, times=2)
     simulation = Simulation(tangential=law, integrator="symplectic")
-    with contactlab.workers.Workers(1) as one:
+    with contactlab.compose.workers.Workers(1) as one:
         first = simulation.sweep(scene(), executor=one, keep=tmp_path / "kept")
         assert "WORKER_DIED" in {status.name for status in first.status}
         assert simulation.sweep(scene(), executor=one, keep=tmp_path / "kept").check()

@@ -7,7 +7,7 @@ import tracemalloc
 from collections import deque
 
 from contactlab import Scene, Simulation
-from contactlab_march.division import midpoints, one_by_one
+from contactlab_laws.march.division import midpoints, one_by_one
 
 PROBE = """
 import json, sys
@@ -33,7 +33,7 @@ def test_listing_the_laws_imports_none():
     heavy, laws = loaded(
         PROBE.replace(
             "import contactlab\n",
-            "import contactlab\nassert contactlab.registry.REGISTRY.names()\n",
+            "import contactlab\nassert contactlab.compose.registry.REGISTRY.names()\n",
         )
     )
     assert heavy == []
@@ -48,7 +48,7 @@ def test_choosing_an_integrator_imports_no_other_law():
         )
     )
     needed = {"hertz", "springs", "jaeger", "events", "march"}
-    assert {name.split(".")[0] for name in laws} == {f"contactlab_{name}" for name in needed}
+    assert {name.split(".")[1] for name in laws if "." in name} == needed
 
 
 def test_only_the_named_law_is_imported():
@@ -57,7 +57,7 @@ def test_only_the_named_law_is_imported():
             "import contactlab\n", "import contactlab\ncontactlab.create('tangential.coulomb')\n"
         )
     )
-    assert {name.split(".")[0] for name in laws} == {"contactlab_coulomb"}
+    assert {name.split(".")[1] for name in laws if "." in name} == {"coulomb"}
 
 
 def test_a_long_march_makes_plain_numbers_of_a_part_at_a_time():

@@ -4,7 +4,8 @@ import re
 
 import pytest
 
-from contactlab import HalfSpace, Material, Sphere, materials, read_scene
+from contactlab import HalfSpace, Material, Sphere, read_scene
+from contactlab.impact import materials
 
 
 def test_there_are_some_twenty_and_the_usual_ones():

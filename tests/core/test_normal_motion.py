@@ -8,8 +8,8 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
+from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalContact, NormalLaw
-from contactlab.normal_motion import normal_motion
 from tests.exact.laws import order
 from tests.normal_laws import Damped, ForceFree, LinearSpring
 from tests.outside_laws import Adhesive, LinearDashpot, Plastic, RescaledSpring, Tsuji

@@ -7,9 +7,9 @@ import attrs
 import pytest
 
 import contactlab
-from contactlab.checks import choice, count, flag, quantity
-from contactlab.options import meanings, options
-from contactlab.registry import REGISTRY
+from contactlab.compose.options import meanings, options
+from contactlab.compose.registry import REGISTRY
+from contactlab.numeric.checks import choice, count, flag, quantity
 
 LAWS = [info.name for info in REGISTRY.installed() if info.distribution == "contactlab"]
 

@@ -16,8 +16,8 @@ from contactlab.contracts import (
     TangentialResponse,
     WholeImpactTangentialLaw,
 )
+from contactlab.contracts.error_model import psi2_range, range_of
 from contactlab.contracts.whole_impact import no_force
-from contactlab.declared import psi2_range, range_of
 from tests.normal_laws import Damped, ForceFree, LinearSpring
 
 CHI = 1.4411764706

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
+from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import (
     NormalContact,
     NormalLaw,
     SteppedTangentialLaw,
     TangentialResponse,
 )
-from contactlab.normal_motion import normal_motion
 from tests.outside_laws import Tsuji
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)

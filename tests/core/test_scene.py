@@ -6,8 +6,9 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import HalfSpace, Material, Scene, Sphere, closed_forms
-from contactlab.closed_forms import hertz_scales
+from contactlab import HalfSpace, Material, Scene, Sphere
+from contactlab.impact import hertz as closed_forms
+from contactlab.impact.hertz import hertz_scales
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 BALL = Sphere(0.01, STEEL)

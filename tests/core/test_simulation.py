@@ -8,16 +8,8 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import (
-    HalfSpace,
-    ImpactError,
-    Material,
-    Scene,
-    Simulation,
-    Sphere,
-    Status,
-    sweeping,
-)
+from contactlab import HalfSpace, ImpactError, Material, Scene, Simulation, Sphere, Status
+from contactlab.compose import sweep as sweeping
 from contactlab.contracts import (
     Integrator,
     SteppedTangentialLaw,

@@ -12,11 +12,13 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Scene, Simulation, Status, executors, sweeping
+from contactlab import Scene, Simulation, Status
+from contactlab.compose import executors
+from contactlab.compose import sweep as sweeping
+from contactlab.compose.registry import REGISTRY
+from contactlab.compose.workers import WorkerDiedError, Workers
 from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.contracts.whole_impact import no_force
-from contactlab.registry import REGISTRY
-from contactlab.workers import WorkerDiedError, Workers
 from tests.ending_laws import Ending, Raising
 
 CHI = 1.4411764706

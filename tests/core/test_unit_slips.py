@@ -6,17 +6,9 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import (
-    Encounter,
-    HalfSpace,
-    Material,
-    Scene,
-    Simulation,
-    Sphere,
-    collide,
-    materials,
-)
-from contactlab.unit_slips import unit_slips
+from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere, collide
+from contactlab.impact import materials
+from contactlab.impact.unit_slips import unit_slips
 
 STEEL = Material.named("steel")
 BALL = Scene(Sphere(6.35e-3, STEEL), HalfSpace(STEEL), 0.15, 1.0, 0.5)

@@ -5,8 +5,8 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation, Status
-from contactlab.closed_forms import rigid_body_rebound
-from contactlab_annulus import many
+from contactlab.impact.hertz import rigid_body_rebound
+from contactlab_laws.annulus import many
 from tests.ending_laws import Raising
 from tests.outside_laws import Plastic, Tsuji, Walton
 

@@ -11,8 +11,8 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation, Status
-from contactlab.closed_forms import rigid_body_rebound
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
+from contactlab.impact.hertz import rigid_body_rebound
 from tests.law_files import EXAMPLES, of_file
 from tests.normal_laws import LinearSpring
 from tests.outside_laws import RescaledSpring
@@ -235,7 +235,7 @@ def test_a_batch_has_one_time_axis():
 
 
 def test_what_cannot_be_resolved_is_a_status(monkeypatch):
-    monkeypatch.setattr("contactlab_march.adaptive.MOST_STEPS", 500)
+    monkeypatch.setattr("contactlab_laws.march.adaptive.MOST_STEPS", 500)
     result = Simulation(tangential="springs", integrator=adaptive(1e-8)).run(
         Scene.nondimensional(psi1=np.array([0.5, 1e-300]), chi=CHI)
     )

@@ -6,12 +6,12 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation, Status
+from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import AllStepsResponse, AllStepsTangentialLaw, TangentialResponse
-from contactlab.normal_motion import normal_motion
 from contactlab.testing.impacts import all_steps
-from contactlab_jaeger import step
-from contactlab_jaeger.all_steps import ScaledSteps, advance_all, advance_batch
-from contactlab_march.division import midpoints
+from contactlab_laws.jaeger import step
+from contactlab_laws.jaeger.all_steps import ScaledSteps, advance_all, advance_batch
+from contactlab_laws.march.division import midpoints
 from tests.conformance.broken_impacts import AllAtOnce
 from tests.exact.test_springs import BOTH
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Sphere
-from contactlab_march.division import endpoints
+from contactlab_laws.march.division import endpoints
 from tests.exact.laws import CHI, grid, marched_change, order, rms, simulation
 from tests.paper import plain
 

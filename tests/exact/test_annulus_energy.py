@@ -5,7 +5,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab_annulus.tables import tables
+from contactlab_laws.annulus.tables import tables
 
 CHI = 1.4411764706
 

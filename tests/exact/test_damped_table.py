@@ -5,12 +5,12 @@ import pytest
 from numpy.polynomial.chebyshev import chebval
 
 import contactlab
-from contactlab_damped_table import build
-from contactlab_damped_table.build import solve
-from contactlab_damped_table.coordinates import CHI as RANGE_OF_CHI
-from contactlab_damped_table.coordinates import depth, inner, restitution
-from contactlab_damped_table.function import _at, rebound, shipped
-from contactlab_damped_table.table import SHIPPED, read, write
+from contactlab_laws.damped_table import build
+from contactlab_laws.damped_table.build import solve
+from contactlab_laws.damped_table.coordinates import CHI as RANGE_OF_CHI
+from contactlab_laws.damped_table.coordinates import depth, inner, restitution
+from contactlab_laws.damped_table.function import _at, rebound, shipped
+from contactlab_laws.damped_table.table import SHIPPED, read, write
 from tests.normal.test_dashpot import PSI2
 
 CHI = 49 / 34
@@ -18,7 +18,7 @@ CHI = 49 / 34
 
 @pytest.mark.parametrize("e", [0.5, 0.63, 0.9, 0.97, 0.9999])
 def test_table_is_springs_to_its_error(e):
-    """At random impacts; ``python -m contactlab_damped_table verify`` draws more."""
+    """At random impacts; ``python -m contactlab_laws.damped_table verify`` draws more."""
     draw = np.random.default_rng(round(1e4 * e))
     psi1, chi = draw.uniform(0.0, 9.0, 40), draw.uniform(0.8, 1.8, 40)
     assert rebound(psi1, chi, e) == pytest.approx(solve(psi1, chi, e), abs=2e-4)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation, Status
-from contactlab.closed_forms import rigid_body_rebound
 from contactlab.contracts import ClosedPhase, Phase, PhasedTangentialLaw, PhaseResponse
+from contactlab.impact.hertz import rigid_body_rebound
 from tests.normal_laws import LinearSpring
 
 CHI = 1.4411764706

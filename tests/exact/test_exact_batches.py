@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import contactlab
-import contactlab_events.law as events
+import contactlab_laws.events.law as events
 from contactlab import Scene, Simulation, Status, rebound
-from contactlab_events.scaled import ScaledImpact
+from contactlab_laws.events.scaled import ScaledImpact
 
 pytestmark = pytest.mark.slow
 

@@ -8,7 +8,7 @@ import pytest
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
 from contactlab.contracts import WholeImpactTangentialLaw
-from contactlab.motion import Motion, sound
+from contactlab.outcome.motion import Motion, sound
 
 pytestmark = pytest.mark.slow
 

@@ -5,9 +5,9 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
-from contactlab.collocation import lobatto
-from contactlab_fronts.many.crossing import NEVER, first_crossing
-from contactlab_fronts.many.panel import NODES
+from contactlab.numeric.lobatto import lobatto
+from contactlab_laws.fronts.many.crossing import NEVER, first_crossing
+from contactlab_laws.fronts.many.panel import NODES
 from tests.exact.bundle import extrapolated
 from tests.reference import TABLE
 

@@ -5,12 +5,12 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation, Status
-from contactlab.analysis.scores import DEFAULT_SCENE
-from contactlab.analysis.stability_references import itself
 from contactlab.contracts import Increment, NormalContact
-from contactlab.declared import range_of
+from contactlab.contracts.error_model import range_of
 from contactlab.scene_file import read_scene
-from contactlab_march.fixed import needed_steps
+from contactlab.study.scores import DEFAULT_SCENE
+from contactlab.study.stability_references import itself
+from contactlab_laws.march.fixed import needed_steps
 from tests.exact.laws import CHI, order, rms, simulation
 
 pytestmark = pytest.mark.slow

@@ -8,7 +8,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation, rebound
-from contactlab_fronts.many import march
+from contactlab_laws.fronts.many import march
 from tests.reference import PSI1, PSI2, TABLE
 
 TOLERANCE = 1e-5

@@ -151,7 +151,7 @@ def test_all_steps_at_once_are_step_by_step(law, name, psi1, forced, monkeypatch
     scene = Scene.nondimensional(psi1=psi1, chi=CHI)
     at_once = sim.run(scene).check()
     if forced == "size":
-        monkeypatch.setattr("contactlab_jaeger.law.LARGEST_RUN", 10)
+        monkeypatch.setattr("contactlab_laws.jaeger.law.LARGEST_RUN", 10)
     stepped = sim.run(scene, history=forced == "observer").check()
     assert at_once.psi2 == pytest.approx(stepped.psi2, abs=1e-13)
     works = at_once.motion.friction_work, stepped.motion.friction_work

@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab_stronge.lumped import rebound
-from contactlab_stronge.roots import first_zero
+from contactlab_laws.stronge.lumped import rebound
+from contactlab_laws.stronge.roots import first_zero
 from tests.exact.laws import order
 from tests.normal_laws import LinearSpring
 

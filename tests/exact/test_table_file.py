@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contactlab_damped_table.table import read as read_damped
-from contactlab_tabulated import build, evaluate, rebound, table
-from contactlab_tabulated.__main__ import main
-from contactlab_tabulated.function import shipped
+from contactlab_laws.damped_table.table import read as read_damped
+from contactlab_laws.tabulated import build, evaluate, rebound, table
+from contactlab_laws.tabulated.__main__ import main
+from contactlab_laws.tabulated.function import shipped
 from tests.exact.test_tabulated import BOUND, mixed
 
 
@@ -65,8 +65,8 @@ def test_nothing_is_loaded_before_it_is_called():
         "import sys, contactlab; contactlab.rebound; "
         "assert not [m for m in sys.modules if m.startswith(('contactlab_', 'scipy'))]; "
         "contactlab.rebound(1.2, 1.44); "
-        "assert 'contactlab_tabulated' in sys.modules; "
-        "assert not [m for m in sys.modules if m.startswith(('contactlab_fronts', 'scipy'))]"
+        "assert 'contactlab_laws.tabulated' in sys.modules; "
+        "assert not [m for m in sys.modules if m.startswith(('contactlab_laws.fronts', 'scipy'))]"
     )
     subprocess.run([sys.executable, "-c", probe], check=True)
 
@@ -90,7 +90,7 @@ def test_a_build_goes_on_where_it_was_interrupted(tmp_path, monkeypatch):
     monkeypatch.setattr(build.curves, "find", lambda: made.cuts)
     interrupted = 0
     asked = ["build", "--tolerance", "1e-6", "--file", str(tmp_path / "whole.npz")]
-    monkeypatch.setattr(sys, "argv", ["contactlab_tabulated", *asked])
+    monkeypatch.setattr(sys, "argv", ["contactlab_laws.tabulated", *asked])
     assert main() == 0
     whole, of_whole = table.read(tmp_path / "whole.npz"), len(calls)
     calls.clear()

@@ -5,9 +5,9 @@ import pytest
 from numpy.polynomial.polynomial import polyder, polygrid2d, polyval, polyval2d
 
 import contactlab
-from contactlab import rebounds
-from contactlab_tabulated import cuts, evaluate, rebound, start
-from contactlab_tabulated.coordinates import (
+from contactlab.compose import rebound as rebounds
+from contactlab_laws.tabulated import cuts, evaluate, rebound, start
+from contactlab_laws.tabulated.coordinates import (
     CUT_END,
     FIRST_POWER,
     LARGEST_CHI,
@@ -15,17 +15,17 @@ from contactlab_tabulated.coordinates import (
     impact,
     polynomial,
 )
-from contactlab_tabulated.exact import exact
-from contactlab_tabulated.fit import (
+from contactlab_laws.tabulated.exact import exact
+from contactlab_laws.tabulated.fit import (
     Cell,
     begins_at_one,
     chebyshev_nodes,
     fit,
     missing_powers,
 )
-from contactlab_tabulated.function import shipped
-from contactlab_tabulated.places import places
-from contactlab_tabulated.verify import BESIDE_NAMES, draw, judge, verify
+from contactlab_laws.tabulated.function import shipped
+from contactlab_laws.tabulated.places import places
+from contactlab_laws.tabulated.verify import BESIDE_NAMES, draw, judge, verify
 from tests.reference import TABLE
 
 BOUND = 1e-9

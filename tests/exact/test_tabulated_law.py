@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
-from contactlab.sweeping import WHOLE_IMPACTS
+from contactlab.compose.sweep import WHOLE_IMPACTS
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 GLASS = Material(young_modulus=70e9, poisson_ratio=0.2, density=2500.0)

@@ -6,10 +6,10 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Simulation, Sphere, fit
-from contactlab.checks import POSITIVE, quantity
 from contactlab.fitting import rank
 from contactlab.fitting.model import Model, scene_of
 from contactlab.fitting.parameters import Setup, parameter_named
+from contactlab.numeric.checks import POSITIVE, quantity
 from tests.fitting.impacts import ANGLES, BODIES, STEEL, restitution, scene, table
 from tests.outside_laws import Walton
 

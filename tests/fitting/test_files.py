@@ -5,9 +5,10 @@ import os
 import numpy as np
 import pytest
 
-from contactlab import Simulation, files, read_scene
+from contactlab import Simulation, read_scene
 from contactlab.fitting import read_measurements
-from contactlab.quantities import QUANTITIES
+from contactlab.outcome import files
+from contactlab.outcome.quantities import QUANTITIES
 from tests.fitting.impacts import scene
 
 PLAIN = "angle_deg,speed (m/s),rebound_angle_deg,rebound_spin (rpm)\n10,3.9,7.4,-1200\n20,3.9,12,\n"

@@ -224,7 +224,7 @@ def test_no_file_and_no_scene(tmp_path):
 
 
 def test_columns_of_an_export_are_read_and_those_without_use_named(tmp_path):
-    from contactlab.export import write_csv
+    from contactlab.outcome.export import write_csv
     from tests.fitting.impacts import scene
 
     path = tmp_path / "export.csv"

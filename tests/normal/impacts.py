@@ -4,7 +4,7 @@ import numpy as np
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab.normal_motion import normal_motion
+from contactlab.compose.normal_motion import normal_motion
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
 #: Restitutions over the range that laws are calibrated in.

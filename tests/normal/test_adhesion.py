@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab.normal_motion import normal_motion
+from contactlab.compose.normal_motion import normal_motion
 from tests.normal.impacts import restitution, scene
 
 GAMMA = 0.2

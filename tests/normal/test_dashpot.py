@@ -5,8 +5,8 @@ import pytest
 
 import contactlab
 from contactlab import Simulation
-from contactlab.normal_motion import normal_motion
-from contactlab_dashpot.oscillator import damping_of
+from contactlab.compose.normal_motion import normal_motion
+from contactlab_laws.dashpot.oscillator import damping_of
 from tests.normal.by_hand import rebound
 from tests.normal.impacts import psi2, scene
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab.closed_forms import hertz_scales
-from contactlab.normal_motion import normal_motion
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.impact.hertz import hertz_scales
 from tests.normal.impacts import CALIBRATED, psi2, restitution, scene
 
 CHI = 49 / 34

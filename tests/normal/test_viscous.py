@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab.closed_forms import hertz_scales
-from contactlab_kuwabara_kono.law import viscosity_number
+from contactlab.impact.hertz import hertz_scales
+from contactlab_laws.kuwabara_kono.law import viscosity_number
 from tests.exact.laws import order
 from tests.normal.by_hand import rebound
 from tests.normal.impacts import CALIBRATED, psi2, restitution, scene

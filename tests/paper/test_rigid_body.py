@@ -7,7 +7,7 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab.closed_forms import rigid_body_rebound
+from contactlab.impact.hertz import rigid_body_rebound
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 

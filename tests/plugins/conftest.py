@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from contactlab.registry import Registry
+from contactlab.compose.registry import Registry
 
 LAW = """
 from typing import ClassVar

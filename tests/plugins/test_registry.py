@@ -8,7 +8,7 @@ import pytest
 
 import contactlab
 from contactlab import PluginError
-from contactlab.installed import PluginWarning
+from contactlab.compose.installed import PluginWarning
 
 MINE = "tangential.mine"
 
@@ -65,7 +65,7 @@ def test_a_third_party_law_is_made_like_any_other(registry, install, law_source)
 
 
 def test_where_a_law_comes_from_does_not_hang_on_how_it_was_made(registry):
-    from contactlab_springs.law import Springs
+    from contactlab_laws.springs.law import Springs
 
     origin = registry.describe(Springs())
     assert origin.startswith("springs (contactlab ")

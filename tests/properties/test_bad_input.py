@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 
 import contactlab
 from contactlab import HalfSpace, Material, PluginError, Scene, Simulation, Sphere
-from contactlab.analysis.bench_methods import methods
-from contactlab.registry import REGISTRY
+from contactlab.compose.registry import REGISTRY
+from contactlab.study.bench_methods import methods
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 #: chi above which the oscillations of one impact are counted in the hundreds.

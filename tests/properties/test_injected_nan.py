@@ -14,8 +14,8 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, ImpactError, Material, Scene, Simulation, Sphere
-from contactlab.analysis.bench_methods import methods
-from contactlab.registry import REGISTRY
+from contactlab.compose.registry import REGISTRY
+from contactlab.study.bench_methods import methods
 from tests.properties.spoiled import (
     Spoiler,
     spoiled_closed_form,

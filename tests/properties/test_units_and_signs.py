@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab.analysis.bench_methods import methods
-from contactlab.registry import REGISTRY
+from contactlab.compose.registry import REGISTRY
+from contactlab.study.bench_methods import methods
 
 COARSE = {"annuli": 8, "springs": 8, "steps": 40, "tolerance": 1e-3}
 #: The exact solution and the fixed steps; adaptive steps follow rounding, and are slow.

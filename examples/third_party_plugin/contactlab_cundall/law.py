@@ -7,7 +7,6 @@ from typing import ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.checks import POSITIVE, Real, quantity
 from contactlab.contracts import (
     Increment,
     NormalContact,
@@ -15,7 +14,8 @@ from contactlab.contracts import (
     SteppedTangentialLaw,
     TangentialResponse,
 )
-from contactlab.scene import Scene
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import POSITIVE, Real, quantity
 
 
 class Spring(NamedTuple):

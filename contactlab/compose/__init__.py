@@ -1,0 +1,1 @@
+"""Laws found, fitted together and run."""

@@ -1,0 +1,70 @@
+"""What the plan of a collision says besides that of its scenes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.compose.rebound import DAMPED_ERROR
+from contactlab.impact.encounter import Encounter
+from contactlab.numeric.vectors import components
+from contactlab.outcome.plan import Plan, Sentence
+
+PARTED = "collision: the bodies separate, they pass through untouched"
+TURNS = "spin about the normal: friction makes no moment about it, it passes through unchanged"
+#: Spin about the normal over the whole spin below which it is rounding.
+TURNING = 1e-12
+
+
+def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
+    """Return the plan with what the bodies do that no scene knows.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of the scenes of those that collided.
+    met : Encounter or None
+        Those that collided, if any did.
+    passed : array of bool
+        Encounters of the whole batch whose bodies separate.
+    """
+    left_out = list(plan.left_out)
+    if met is not None:
+        turning = np.array(np.broadcast_to(_turns(met), met.shape))
+        if turning.any():
+            left_out.append(Sentence(TURNS, turning))
+    if passed.any():
+        left_out.append(Sentence(PARTED, passed))
+    return attrs.evolve(plan, left_out=tuple(left_out))
+
+
+def by_rebound(plan: Plan, restitution: float) -> Plan:
+    """Return the plan with ``rebound`` in place of the laws that stand for it in ``result``."""
+    unknown = np.isnan(plan.psi2_error)
+    heads = {
+        "tangential motion": f"contactlab.rebound with restitution={restitution:g}",
+        "numerical error of psi2": f"at most {DAMPED_ERROR:g}, of contactlab.rebound",
+    }
+    computed = []
+    for text, where in plan.computed:
+        head = text.partition(": ")[0]
+        said = head in heads and np.any(where & unknown)
+        computed.append(Sentence(f"{head}: {heads[head]}" if said else text, where))
+    error = np.where(unknown, DAMPED_ERROR, plan.psi2_error)
+    return attrs.evolve(
+        plan, computed=tuple(computed), psi2_error=error if error.ndim else float(error)
+    )
+
+
+def _turns(encounter: Encounter) -> Any:
+    """Return whether either body spins about the normal."""
+    found: Any = False
+    normal = encounter.contact().normal
+    for spin in (encounter.spin, encounter.target_spin):
+        parts = components(spin)
+        about = sum(one * n for one, n in zip(parts, normal, strict=True))
+        whole = np.sqrt(sum(one * one for one in parts))
+        found = found | (np.abs(about) > TURNING * whole)
+    return found

@@ -1,0 +1,165 @@
+"""Which laws fit together, and how a name becomes a law."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from contactlab.compose.loading import outdated
+from contactlab.compose.registry import REGISTRY, PluginError
+from contactlab.contracts.integrator import Integrator
+from contactlab.contracts.law import Law
+from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+from contactlab.contracts.phases import PhasedTangentialLaw
+from contactlab.contracts.tangential import (
+    SteppedTangentialLaw,
+    TangentialLaw,
+    WholeImpactTangentialLaw,
+)
+from contactlab.numeric.checks import refuse
+
+#: Taken where none is named, the first that is installed and fits: exact, then of second order,
+#: then for any normal law. A default has to be a name; that is all the privilege there is.
+DEFAULT_NORMAL = "hertz"
+PREFERRED = {
+    "tangential": ("fronts", "springs", "coulomb"),
+    "integrator": ("events", "symplectic"),
+}
+#: The ways in which a tangential law can be run: one of them it must be.
+WAYS = (SteppedTangentialLaw, PhasedTangentialLaw, WholeImpactTangentialLaw)
+
+
+class Laws(NamedTuple):
+    """Three laws that fit together."""
+
+    normal: NormalLaw
+    tangential: TangentialLaw
+    integrator: Integrator
+
+
+def law(kind: str, value: object) -> Any:
+    """Return the law of ``kind`` that ``value`` names or already is."""
+    if isinstance(value, str):
+        return REGISTRY.create(value if value.startswith(f"{kind}.") else f"{kind}.{value}")
+    if isinstance(value, Law) and value.kind == kind:
+        if (complaint := outdated(type(value))) is not None:
+            raise ValueError(f"{kind} = {complaint}")
+        return value
+    remedy = f"installed: {', '.join(REGISTRY.names(kind))}"
+    if isinstance(value, type) and issubclass(value, Law):
+        remedy = f"this is the class; make one: {value.__name__}()"
+    raise refuse(kind, value, f"must be a name or a {kind} law", remedy)
+
+
+def compose(normal: object, tangential: object, integrator: object) -> Laws:
+    """Return three laws that fit, from names, laws, or None for the best that fits.
+
+    Raises
+    ------
+    ValueError
+        If a name is not installed, or the laws do not fit together (naming what would).
+    """
+    first = law("normal", DEFAULT_NORMAL if normal is None else normal)
+    named = () if integrator is None else (law("integrator", integrator),)
+    if tangential is None:
+        tangential = preferred("tangential", first, after=named)
+    second = law("tangential", tangential)
+    third = named[0] if named else law("integrator", preferred("integrator", first, second))
+    laws = Laws(first, second, third)
+    if (complaint := misfit(*laws)) is not None:
+        raise ValueError(complaint + _would_fit(laws))
+    return laws
+
+
+def preferred(kind: str, *others: Law, after: tuple[Law, ...] = ()) -> str:
+    """Return the name of the first law in ``PREFERRED`` that fits the others, or else the first.
+
+    Parameters
+    ----------
+    kind : str
+        ``"tangential"``, for a normal law, or ``"integrator"``, for both.
+    others : Law
+    after : tuple of Law
+        The integrator that a tangential law has to fit, if one was named.
+    """
+    installed = []
+    for name in PREFERRED[kind]:
+        try:
+            found = law(kind, name)
+        except ValueError:  # blocked, or not installed
+            continue
+        installed.append(name)
+        if _fits(*others, found, *after):
+            return name
+    if not installed:
+        names = ", ".join(REGISTRY.names(kind))
+        why = "must be given: none of the defaults is installed"
+        raise refuse(kind, None, why, f"installed: {names}")
+    return installed[0]
+
+
+def _fits(*parts: Law) -> bool:
+    return misfit(*parts) is None
+
+
+def misfit(normal: Any, tangential: Any = None, integrator: Any = None) -> str | None:
+    """Return why laws do not fit, naming both parties; None if they do."""
+    if "elastic_hertz" in normal.offers and not isinstance(normal, ClosedFormNormalLaw):
+        return (
+            f"normal = {_name(normal)}: offers 'elastic_hertz', and is no ClosedFormNormalLaw; "
+            "derive it from that class, or do not offer the word"
+        )
+    if not isinstance(tangential, WAYS):
+        ways = ", ".join(way.__name__ for way in WAYS)
+        return f"tangential = {_name(tangential)}: must be derived from one of {ways}"
+    if missing := sorted(tangential.needs - normal.offers):
+        word = missing[0]
+        return (
+            f"tangential = {_name(tangential)}: needs {word!r} of the normal law, which "
+            f"{_name(normal)} does not offer"
+        )
+    if integrator is None or isinstance(tangential, WholeImpactTangentialLaw):
+        return None
+    if not isinstance(tangential, integrator.tangential_contract):
+        return (
+            f"integrator = {_name(integrator)}: runs a {integrator.tangential_contract.__name__}, "
+            f"and tangential = {_name(tangential)} is none"
+        )
+    if not isinstance(normal, integrator.normal_contract):
+        return (
+            f"integrator = {_name(integrator)}: needs a {integrator.normal_contract.__name__}, "
+            f"and normal = {_name(normal)} is none"
+        )
+    return None
+
+
+def _would_fit(laws: Laws) -> str:
+    """Return which laws would fit in the place of one, of those that need no new import."""
+    found: list[str] = []
+    for kind in laws._fields:
+        fits = (name for name, other in _candidates(kind) if _fits(*laws._replace(**{kind: other})))
+        found += fits
+    return f"; these would fit: {', '.join(found)}" if found else "; no law at hand fits"
+
+
+def _candidates(kind: str) -> Iterator[tuple[str, Any]]:
+    """Iterate over laws made with their defaults: those of this distribution, or loaded before.
+
+    Other people's plug-ins are not imported for the sake of a message.
+    """
+    for info in REGISTRY.installed():
+        if info.kind != kind or info.blocked or not REGISTRY.at_hand(info):
+            continue
+        try:
+            yield info.name, REGISTRY.create(info.name)
+        except (PluginError, ValueError):
+            continue
+
+
+def _name(law: Law) -> str:
+    return type(law).__name__
+
+
+def versions(*laws: Law) -> dict[str, str]:
+    """Return each law's kind with its name and version, for the record."""
+    return {law.kind: REGISTRY.describe(law) for law in laws}

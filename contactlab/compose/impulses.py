@@ -1,0 +1,175 @@
+"""Impulses on two bodies in space, and what they make of velocities and spins."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.compose.rebound import rebound
+from contactlab.impact.bodies import Pair, Sphere
+from contactlab.impact.encounter import Contact, Encounter
+from contactlab.impact.scene import LEAST_IMPULSE
+from contactlab.numeric.arrays import chosen, every, locked
+from contactlab.numeric.checks import Real, refuse
+from contactlab.numeric.vectors import LEAST, components
+
+Array = NDArray[np.float64]
+
+#: Beyond this psi1 the change of psi under a restitution is its limit to 1e-4.
+END_OF_DAMPED = 1e4
+#: Velocities and spins of both bodies.
+VECTORS = ("velocity", "spin", "target_velocity", "target_spin")
+
+
+class Moved(NamedTuple):
+    """Both bodies after an encounter; see ``Collision``."""
+
+    velocity: Array
+    spin: Array
+    target_velocity: Array
+    target_spin: Array
+    normal_velocity: Real
+    slip_velocity_change: Real
+    friction_work: Real
+    collided: Any
+
+
+def rebounding(
+    part: Encounter, contact: Contact, pair: Pair, restitution: float
+) -> tuple[Any, Any, Any]:
+    """Return rate of approach, change of slip velocity and friction work by ``rebound``.
+
+    Slip throughout, eq. (46), is the same for elastic bodies from psi1 = 4 chi + 1 on, so that
+    psi1 is cut there: whatever slip and friction are, it is finite and keeps its digits. With a
+    restitution the change of psi tends to -2 chi (1 + e) as 1/psi1.
+
+    Parameters
+    ----------
+    part : Encounter
+    contact : Contact
+    pair : Pair
+        Of the two bodies.
+    restitution : float
+        e of the normal motion.
+    """
+    chi = pair.inertia_ratio
+    end: Any = 4.0 * chi + 1.0 if restitution == 1.0 else END_OF_DAMPED
+    with np.errstate(all="ignore"):
+        # m/s for each unit of psi, eq. (29)
+        unit: Any = part.friction_coefficient * contact.approach / pair.stiffness_ratio
+        psi1: Any = np.fmin(np.divide(contact.slip, unit), end)
+        psi1 = chosen(contact.approach >= LEAST, psi1, 0.0)
+        if not part.shape:
+            psi1, chi = float(psi1), float(chi)
+        psi2: Any = rebound(psi1, chi, restitution=restitution)
+        change = (psi2 - psi1) * unit
+        work = -pair.tangential_mass * change * (contact.slip + 0.5 * change)
+    return -restitution * contact.approach, change, chosen(work <= 0.0, 0.0, work)
+
+
+def _check(part: Encounter, impulse: Any, change: Any) -> None:
+    """Refuse encounters whose numbers a float cannot hold; a scene does so for a simulation."""
+    if not every(impulse >= LEAST_IMPULSE):
+        raise refuse(
+            "sphere, velocity",
+            float(np.min(impulse)),
+            f"mass times speed of approach must be at least {LEAST_IMPULSE:g} N s",
+            "give larger masses and speeds, or other units",
+        )
+    if not np.isfinite(change if isinstance(change, float) else np.sum(change)):
+        raise refuse(
+            "friction_coefficient",
+            part.friction_coefficient,
+            "with these velocities psi1 of eq. (29) cannot be held in floating point",
+            "give 0 for no friction, or less",
+        )
+
+
+def moved(
+    encounter: Encounter,
+    answers: Array | None = None,
+    *,
+    restitution: float = 1.0,
+    strict: bool = False,
+) -> Moved:
+    """Return both bodies after an encounter; those that separate move on, or are refused.
+
+    Parameters
+    ----------
+    encounter : Encounter
+    answers : array, optional
+        Of a law, shape (3, encounters): rate of approach after the impact, change of the slip
+        velocity (m/s), friction work (J). By default those of ``contactlab.rebound``.
+    restitution : float
+        For ``rebound``.
+    strict : bool
+        Whether bodies that separate are refused.
+    """
+    shape = encounter.shape
+    vectors = [np.empty((*shape, 3)) for _ in VECTORS]
+    flat = [array.reshape(-1, 3) for array in vectors]
+    numbers, collided = np.empty((3, *shape)), np.empty(shape, dtype=bool)
+    columns, flags = numbers.reshape(3, -1), collided.reshape(-1)
+    for where, part in encounter.parts():
+        contact, pair = part.contact(), part.pair
+        meets: Any = contact.approach >= LEAST
+        met = every(meets)
+        if strict and not met:
+            raise encounter.separate()
+        if answers is None:
+            after, change, work = rebounding(part, contact, pair, restitution)
+            _check(part, chosen(meets, pair.normal_mass * contact.approach, 1.0), change)
+        else:
+            after, change, work = answers[:, where]
+        if not met:
+            after = np.where(meets, after, contact.approach)
+            change, work = np.where(meets, change, 0.0), np.where(meets, work, 0.0)
+        columns[0, where], columns[1, where], columns[2, where] = after, change, work
+        flags[where] = meets
+        push, drag = pair.normal_mass * (after - contact.approach), pair.tangential_mass * change
+        _push([array[where] for array in flat], part, contact, push, drag)
+    after, change, work = (locked(each) if shape else float(each) for each in numbers)
+    velocity, spin, target_velocity, target_spin = map(locked, vectors)
+    return Moved(
+        velocity,
+        spin,
+        target_velocity,
+        target_spin,
+        normal_velocity=after,
+        slip_velocity_change=change,
+        friction_work=work,
+        collided=locked(collided) if shape else bool(collided),
+    )
+
+
+def _push(moved: list[Array], part: Encounter, contact: Contact, push: Any, drag: Any) -> None:
+    """Write velocities and spins after impulses along the normal and along the slip.
+
+    Parameters
+    ----------
+    moved : list of arrays
+        ``VECTORS``, to be written, each of shape (encounters, 3).
+    part : Encounter
+    contact : Contact
+    push, drag : array
+        Impulses on the sphere, in N s.
+    """
+    (n1, n2, n3), (t1, t2, t3) = contact.normal, contact.along
+    across = (n2 * t3 - n3 * t2, n3 * t1 - n1 * t3, n1 * t2 - n2 * t1)
+    bodies: tuple[Any, ...] = (
+        (part.sphere, part.velocity, part.spin, 1.0),
+        (part.target, part.target_velocity, part.target_spin, -1.0),
+    )
+    pairs = ((moved[0], moved[1]), (moved[2], moved[3]))
+    for (body, velocity, spin, sense), (to, turned) in zip(bodies, pairs, strict=True):
+        if not isinstance(body, Sphere):
+            to[:], turned[:] = velocity, spin
+            continue
+        ahead, aside = sense * push / body.mass, sense * drag / body.mass
+        # one after another: the moment of inertia of a tiny body is no float
+        turn = drag / body.mass / (body.gyration_ratio * body.gyration_ratio * body.radius)
+        for k, (v, w) in enumerate(zip(components(velocity), components(spin), strict=True)):
+            to[:, k] = v + (ahead * contact.normal[k] + aside * contact.along[k])
+            turned[:, k] = w + turn * across[k]

@@ -1,0 +1,215 @@
+"""Pieces of a sweep in a folder, so that a sweep that was ended goes on where it stopped."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+import pickle
+import zipfile
+from collections.abc import Mapping
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from contactlab.compose.registry import KINDS, REGISTRY
+from contactlab.compose.sweep import Chunk, Piece
+from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.files import written
+from contactlab.outcome.motion import Motion
+from contactlab.outcome.plan import Plan, Sentence
+
+if TYPE_CHECKING:
+    from contactlab.compose.simulation import Simulation
+
+ABOUT, PIECES = "sweep.json", "impacts-*.npz"
+KINDS_OF_SENTENCES = ("computed", "left_out", "cautions")
+#: Impacts with these were not computed: a sweep that goes on tries them again.
+TRIED_AGAIN = (Status.INTERRUPTED, Status.WORKER_DIED)
+
+
+class Kept:
+    """A folder with the finished pieces of one sweep, each written beside and renamed.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Made if it is not there.
+    simulation : Simulation
+    scene : Scene
+        Of the whole sweep.
+    block : int
+        Impacts solved in one call.
+
+    Raises
+    ------
+    ValueError
+        If the folder holds another sweep, or something else: another scene, law, option or
+        version.
+    """
+
+    def __init__(
+        self, folder: str | Path, simulation: Simulation, scene: Scene, block: int
+    ) -> None:
+        if not isinstance(folder, str | os.PathLike):
+            raise refuse("keep", folder, "must be the path of a folder")
+        if os.path.exists(folder) and not os.path.isdir(folder):
+            raise refuse("keep", str(folder), "is a file", "name a folder")
+        self.folder = Path(folder)
+        laws = {kind: getattr(simulation, kind) for kind in KINDS}
+        about = {
+            **{kind: f"{REGISTRY.describe(law)}: {law!r}" for kind, law in laws.items()},
+            "impacts": scene.shape[0],
+            "scene": fingerprint(scene),
+            "options": fingerprint(laws),
+            "block": block,
+        }
+        self._check(about)
+
+    def _check(self, about: Mapping[str, Any]) -> None:
+        """Begin a new folder, or refuse one that is of another sweep."""
+        remedy = "delete the folder, or keep this sweep in another"
+        path = self.folder / ABOUT
+        if not path.exists():
+            if self.folder.exists() and any(self.folder.glob("[!.]*")):
+                rule = "holds something else than a sweep"
+                raise refuse("keep", str(self.folder), rule, "name a new folder")
+            self.folder.mkdir(exist_ok=True)
+            with written(path) as stream:
+                stream.write(json.dumps(about, indent=2) + "\n")
+            return
+        try:
+            before = json.loads(path.read_text(encoding="utf-8"))
+            changed = next((name for name in about if before[name] != about[name]), None)
+        except (ValueError, KeyError, TypeError) as error:
+            rule = f"{ABOUT} in it cannot be read: {error}"
+            raise refuse("keep", str(self.folder), rule, remedy) from error
+        if changed is not None:
+            rule = f"holds another sweep: {changed} was {before[changed]}, is {about[changed]}"
+            raise refuse("keep", str(self.folder), rule, remedy)
+
+    def keep(self, piece: Piece) -> None:
+        """Write a piece, unless there is something in it to be tried again."""
+        if any(status in TRIED_AGAIN for status in piece.motion.status):
+            return
+        first, stop = piece.chunk
+        with written(self.folder / PIECES.replace("*", f"{first}-{stop}"), binary=True) as stream:
+            np.savez(stream, **_arrays(piece))
+
+    def pieces(self) -> list[Piece]:
+        """Return the pieces that are there, no impact in two of them.
+
+        Two runs at a time, with chunks of their own, may have written some impacts twice.
+
+        Raises
+        ------
+        ValueError
+            If a file is damaged.
+        """
+        found: list[Piece] = []
+        for path in sorted(self.folder.glob(PIECES), key=_first):
+            if found and _first(path) < found[-1].chunk.stop:
+                continue
+            try:
+                with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as content:
+                    found.append(_piece(path, content))
+            except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
+                rule = f"is damaged: {error}"
+                raise refuse("keep", str(path), rule, "delete this file") from error
+        return found
+
+
+def count(folder: Path) -> int:
+    """Return the number of impacts in the pieces of a sweep; zero if nothing is there."""
+    ends = (path.stem.split("-")[1:] for path in folder.glob(PIECES))
+    return sum(
+        int(end[1]) - int(end[0]) for end in ends if len(end) == 2 and all(map(str.isdigit, end))
+    )
+
+
+def remove(folder: Path) -> None:
+    """Delete the pieces of a sweep, and their folder if nothing else is in it."""
+    for pattern in (PIECES, ".contactlab-*.part", ABOUT):
+        for path in folder.glob(pattern):
+            path.unlink(missing_ok=True)
+    with contextlib.suppress(OSError):
+        folder.rmdir()
+
+
+def fingerprint(tree: Any) -> str:
+    """Return a text that differs where any number, text or class in a tree does."""
+    digest = hashlib.sha256()
+    _feed(tree, digest.update)
+    return digest.hexdigest()[:16]
+
+
+def _feed(tree: Any, update: Any) -> None:
+    update(type(tree).__qualname__.encode())
+    if attrs.has(type(tree)):
+        for field in attrs.fields(type(tree)):
+            update(field.name.encode())
+            _feed(getattr(tree, field.name), update)
+    elif isinstance(tree, np.ndarray) and tree.dtype != object:
+        update(f"{tree.dtype.str}{tree.shape}".encode())
+        update(np.ascontiguousarray(tree).tobytes())
+    elif isinstance(tree, Mapping):
+        for name, value in tree.items():
+            _feed(name, update)
+            _feed(value, update)
+    elif isinstance(tree, list | tuple):
+        for value in tree:
+            _feed(value, update)
+    elif tree is None or isinstance(tree, int | float | str | bytes | Enum):
+        update(repr(tree).encode())
+    else:
+        update(pickle.dumps(tree))
+
+
+def _arrays(piece: Piece) -> dict[str, Any]:
+    """Return what a piece is made of as arrays of numbers and text."""
+    _, plan, motion = piece
+    arrays: dict[str, Any] = {name: getattr(motion, name) for name in motion.numbers()}
+    arrays["status"] = np.array([status.name for status in motion.status])
+    arrays["detail"] = np.array(list(motion.detail), dtype=np.str_)
+    arrays["counters"] = np.array(json.dumps(dict(motion.counters)))
+    arrays |= {"marched": plan.marched, "psi2_error": plan.psi2_error}
+    for kind in KINDS_OF_SENTENCES:
+        sentences = getattr(plan, kind)
+        arrays[kind] = np.array([sentence.text for sentence in sentences], dtype=np.str_)
+        masks = [sentence.where for sentence in sentences]
+        arrays[f"{kind}_where"] = np.array(masks, dtype=bool)
+    return arrays
+
+
+def _first(path: Path) -> int:
+    """Return the first impact of a piece by the name of its file; 0 if it is not one of ours."""
+    first = path.stem.split("-")[1]
+    return int(first) if first.isdigit() else 0
+
+
+def _piece(path: Path, content: Mapping[str, Any]) -> Piece:
+    """Return the piece that arrays were made of."""
+    first, stop = map(int, path.stem.split("-")[1:])
+    kinds = {
+        kind: tuple(
+            Sentence(str(text), where)
+            for text, where in zip(content[kind], content[f"{kind}_where"], strict=True)
+        )
+        for kind in KINDS_OF_SENTENCES
+    }
+    motion = Motion(
+        **{name: content[name] for name in Motion.numbers()},
+        status=np.array([Status[name] for name in content["status"]], dtype=object),
+        detail=np.array(content["detail"].tolist(), dtype=object),
+        counters=json.loads(str(content["counters"])),
+    )
+    if motion.status.shape != (stop - first,):
+        raise ValueError(f"{stop - first} impacts by its name, {motion.status.size} in it")
+    plan = Plan(**kinds, marched=content["marched"], psi2_error=content["psi2_error"])
+    return Piece(Chunk(first, stop), plan, motion)

@@ -1,0 +1,136 @@
+"""The loading of a plug-in: its module imported, its hook called, its law checked."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Iterator
+from functools import cached_property
+from types import ModuleType
+
+import attrs
+import numpy as np
+import pluggy
+
+from contactlab.compose import hookspecs
+from contactlab.compose.installed import GROUP, short
+from contactlab.contracts.law import API_VERSION, Law
+
+KINDS = ("normal", "tangential", "integrator")
+
+
+class PluginError(RuntimeError):
+    """A plug-in is broken or at odds with another; names plug-in and distribution."""
+
+
+@attrs.frozen
+class PluginInfo:
+    """One installed law, as the listing shows it; nothing has been imported."""
+
+    name: str
+    distribution: str
+    version: str
+    module: str
+    blocked: bool
+
+    @property
+    def kind(self) -> str:
+        """The part of the name before the dot."""
+        return self.name.partition(".")[0]
+
+    @property
+    def malformed(self) -> bool:
+        """Whether the name is not a kind, a dot and a name; no such law can be made."""
+        return self.kind not in KINDS or not self.name.partition(".")[2]
+
+
+class Loader:
+    """The plug-ins imported so far, under the one manager of their hooks."""
+
+    @cached_property
+    def _manager(self) -> pluggy.PluginManager:
+        manager = pluggy.PluginManager(hookspecs.PROJECT)
+        manager.add_hookspecs(hookspecs)
+        return manager
+
+    def law_class(self, info: PluginInfo) -> type[Law]:
+        """Return the class of an installed law.
+
+        Raises
+        ------
+        PluginError
+            If the plug-in cannot be imported, has no hook, or its law is at odds with the contract.
+        """
+        source = f"{info.name!r} of {info.distribution} {info.version}"
+        from importlib import metadata
+
+        with _guarded(f"{source} could not be imported"):
+            module = metadata.EntryPoint(info.name, info.module, GROUP).load()
+        self._register(module, info, source)
+        others = [plugin for plugin in self._manager.get_plugins() if plugin is not module]
+        ask = self._manager.subset_hook_caller("contactlab_law", others)
+        with _guarded(f"{source} raised when asked for its law"):
+            law = ask(name=info.name)
+        return _checked(law, info, source)
+
+    def _register(self, module: ModuleType, info: PluginInfo, source: str) -> None:
+        """Enter a module whose hooks fit those of the project."""
+        if self._manager.is_registered(module):
+            return
+        try:
+            self._manager.register(module, name=info.module)
+            self._manager.check_pending()
+        except Exception as error:
+            # pluggy leaves a plug-in that failed validation registered.
+            if self._manager.is_registered(module):
+                self._manager.unregister(module)
+            raise PluginError(f"{source} does not fit the hooks: {short(error)}") from error
+        if not self._manager.get_hookcallers(module):
+            self._manager.unregister(module)
+            raise PluginError(
+                f"{source} has no hook: define @contactlab.hookimpl def contactlab_law(name)"
+            )
+
+
+@contextlib.contextmanager
+def _guarded(failed: str) -> Iterator[None]:
+    """Keep a plug-in's code from ending the program, writing among data or changing settings.
+
+    Whatever it raises but an interruption becomes a ``PluginError``; what it prints goes to
+    stderr, for stdout may be read by a program; numpy's handling of errors is put back.
+    """
+    try:
+        with np.errstate(), contextlib.redirect_stdout(sys.stderr):
+            yield
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        raise PluginError(f"{failed}: {short(error)}") from error
+
+
+def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
+    """Return ``law`` if it is the class of a law of the right kind and version."""
+    if not (isinstance(law, type) and issubclass(law, Law)):
+        raise PluginError(f"{source} returned {law!r}, which is not the class of a law")
+    if law.kind != info.kind:
+        raise PluginError(
+            f"{source} returned {law.__name__}, a {law.kind} law; "
+            "each entry point needs a module of its own with a function contactlab_law"
+        )
+    if law.__abstractmethods__:
+        missing = ", ".join(sorted(law.__abstractmethods__))
+        raise PluginError(f"{source}: {law.__name__} does not define {missing}")
+    if (complaint := outdated(law)) is not None:
+        raise PluginError(f"{source}: {complaint}")
+    return law
+
+
+def outdated(law: type[Law]) -> str | None:
+    """Return what is wrong with the version of the contracts that a law was written for, if any."""
+    version = getattr(law, "api_version", None)
+    if version == API_VERSION:
+        return None
+    return (
+        f"{law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}; if the law "
+        f"keeps to these contracts, write api_version: ClassVar[int] = {API_VERSION} in its class"
+    )

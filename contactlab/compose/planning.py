@@ -1,0 +1,182 @@
+"""The making of a plan, from the scene, its normal motion and what the laws say of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from contactlab.compose.answers import NONE, ONE, Answer, Mask
+from contactlab.compose.composition import Laws
+from contactlab.contracts.error_model import COARSE, psi_magnitude, range_of
+from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import ClosedFormNormalLaw
+from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.impact.unit_slips import unit_slips
+from contactlab.numeric.arrays import every, for_share, some, spread
+from contactlab.outcome.plan import Plan, Sentence
+
+#: Error of what is known in closed form, over max(1, |psi1|).
+CLOSED_FORM = 1e-12
+
+
+def make_plan(
+    scene: Scene,
+    normal: NormalMotion,
+    laws: Laws,
+    known: Sequence[Answer],
+    *,
+    history: bool | str = False,
+) -> Plan:
+    """Return what ``scene`` needs of the three laws.
+
+    Parameters
+    ----------
+    scene : Scene
+    normal : NormalMotion
+        Already made: it comes first.
+    laws : Laws
+    known : sequence of Answer
+        What need not be marched.
+    history : bool or "fields"
+        What is asked for.
+    """
+    everywhere = np.ones(scene.shape, dtype=bool) if scene.shape else ONE
+    separated, marched = _separated_and_marched(scene, normal, known)
+    error = _error(scene, normal, laws, known, marched)
+    how = "integrated from first touch to separation"
+    if isinstance(normal.law, ClosedFormNormalLaw):
+        how = "in closed form"
+    computed = [Sentence(f"normal motion: {type(normal.law).__name__}, {how}", everywhere)]
+    cautions = unit_slips(scene)
+    if some(separated):
+        cautions += normal.law.cautions(scene, normal)
+        cautions += laws.tangential.cautions(scene, normal)
+    if some(marched):
+        text = f"tangential motion: {laws.integrator!r} over {laws.tangential!r}"
+        computed.append(Sentence(text, marched))
+        part = (normal, scene)
+        if not every(marched):
+            part = normal.take(marched), scene.take(marched)
+        cautions += laws.integrator.remarks(part[0], laws.tangential, part[1])
+        cautions += _coarse(scene, error, marched, laws)
+    left_out = _not_marched(known, separated)
+    if reason := _no_history(history, marched):
+        left_out.append(Sentence(reason, everywhere))
+    return Plan(
+        computed=(*computed, *_error_sentences(error, separated)),
+        left_out=tuple(left_out),
+        cautions=tuple(Sentence(text, everywhere) for text in cautions),
+        marched=marched,
+        psi2_error=error,
+    )
+
+
+def _separated_and_marched(
+    scene: Scene, normal: NormalMotion, known: Sequence[Answer]
+) -> tuple[Mask, Mask]:
+    """Return the impacts that the normal motion ends, and those of them not known as a whole."""
+    if not scene.shape:
+        if normal.status is not Status.SUCCESS:
+            return NONE, NONE
+        return ONE, NONE if known else ONE
+    separated = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
+    separated = np.array(np.broadcast_to(separated, scene.shape))
+    marched = np.array(separated)
+    for answer in known:
+        marched &= ~answer.where
+    return separated, marched
+
+
+def _not_marched(known: Sequence[Answer], separated: Mask) -> list[Sentence]:
+    """Return why impacts are not marched."""
+    march = "march of the tangential motion"
+    found = [Sentence(f"{march}: {answer.known.reason}", answer.where) for answer in known]
+    if not every(separated):
+        found.append(Sentence(f"{march}: the normal motion came to no end", ~separated))
+    return found
+
+
+def _no_history(history: bool | str, marched: Mask) -> str | None:
+    """Return what a history leaves out, and why."""
+    if not history:
+        return "history: not asked for"
+    if history != "fields":
+        return "traction and stick/slip fields: not asked for (history='fields')"
+    if not some(marched):
+        return "traction and stick/slip fields: there is no march to take them from"
+    return None
+
+
+def _error(
+    scene: Scene, normal: NormalMotion, laws: Laws, known: Sequence[Answer], marched: Mask
+) -> Any:
+    """Return the declared numerical error of psi2: of one impact a float, of a batch an array.
+
+    Parameters
+    ----------
+    scene : Scene
+    normal : NormalMotion
+    laws : Laws
+    known : sequence of Answer
+    marched : array of bool
+        Impacts that no whole-impact answer is for.
+    """
+    rounding = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
+    error: Any = spread(rounding, scene.shape)
+    for answer in known:
+        error = error + np.where(answer.where, answer.known.psi2_error, 0.0)
+    if some(marched):
+        with np.errstate(all="ignore"):
+            declared = laws.integrator.psi2_error(normal, laws.tangential, scene)
+            error = np.where(marched, declared, error) if scene.shape else declared
+    return error if scene.shape else float(error)
+
+
+def _error_sentences(error: Any, separated: Mask) -> list[Sentence]:
+    """Return what a plan says of the numerical error."""
+    if separated.ndim:
+        undeclared = separated & np.isnan(error)
+        declared = separated & ~undeclared
+    elif math.isnan(error):
+        undeclared, declared = separated, NONE
+    else:
+        undeclared, declared = NONE, separated
+    found = []
+    if some(declared):
+        most = float(np.max(error[declared])) if declared.ndim else error
+        found.append(Sentence(f"numerical error of psi2: at most {most:.2g}, declared", declared))
+    if some(undeclared):
+        text = "numerical error of psi2: none is declared for these laws"
+        found.append(Sentence(text, undeclared))
+    return found
+
+
+def _coarse(scene: Scene, error: Any, marched: Mask, laws: Laws) -> list[str]:
+    """Return the caution of steps or annuli so coarse that no digit is sure.
+
+    Parameters
+    ----------
+    scene : Scene
+    error : float or array
+        Declared, of psi2.
+    marched : array of bool
+    laws : Laws
+    """
+    unit, width, _ = range_of(scene)
+    if not scene.shape and width > 0.0 and error * (unit / width) <= COARSE:
+        return []  # one impact, as it should be: plain numbers are ten times as fast
+    with np.errstate(all="ignore"):
+        share = np.where(marched, error * np.divide(unit, width), 0.0)
+    coarse = share > COARSE
+    if not coarse.any():
+        return []
+    finer = " and ".join(law.resolution for law in laws[1:] if law.resolution)
+    return [
+        f"coarse{for_share(coarse)}: the declared numerical error is "
+        f"{float(np.nanmax(share)):.2g} of the range of psi2, so that no digit is sure; finer "
+        f"{finer} would help"
+    ]

@@ -1,0 +1,242 @@
+"""A simulation: three laws composed, ready to plan, run and sweep."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import attrs
+import numpy as np
+
+from contactlab.attributes import named_attributes
+from contactlab.compose import composition
+from contactlab.compose.composition import Laws
+from contactlab.compose.error_estimate import estimated
+from contactlab.compose.solve import normal_or_failed, outcome, prepare
+from contactlab.compose.sweep import swept
+from contactlab.contracts.integrator import Integrator
+from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.tangential import TangentialLaw
+from contactlab.impact.coupling import three_numbers
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.history import Recorder
+from contactlab.outcome.motion import Motion
+from contactlab.outcome.plan import Plan, Sentence
+from contactlab.outcome.result import ImpactResult
+from contactlab.signatures import named_arguments
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+
+@named_attributes
+@named_arguments("Simulation(tangential='annulus', integrator='symplectic')")
+@attrs.frozen(kw_only=True, init=False)
+class Simulation:
+    """A normal law, a tangential law and an integrator, composed.
+
+    Parameters
+    ----------
+    normal, tangential, integrator : str or law, optional
+        A name (``"hertz"``), or an object made by ``contactlab.create`` or by your own class.
+        The default is exact: Hertz's closed form and the slip front followed event by event.
+        Where one is left out the best is taken that fits those given: see
+        ``contactlab.compose.composition.PREFERRED``.
+
+    Raises
+    ------
+    ValueError
+        If a name is not installed, or the laws do not fit together (naming what would).
+    """
+
+    normal: NormalLaw
+    tangential: TangentialLaw
+    integrator: Integrator
+
+    def __init__(
+        self,
+        *,
+        normal: str | NormalLaw | None = None,
+        tangential: str | TangentialLaw | None = None,
+        integrator: str | Integrator | None = None,
+    ) -> None:
+        laws = composition.compose(normal, tangential, integrator)
+        self.__attrs_init__(**laws._asdict())
+
+    @named_arguments("Simulation().plan(scene)")
+    def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
+        """Return what ``run`` would compute for ``scene``, what it would leave out and why.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        history : bool or "fields"
+            As of ``run``.
+        """
+        return _complete(prepare(self._laws, _scene(scene), _history(history)).plan, scene)
+
+    @named_arguments("Simulation().run(scene, history=True)")
+    def run(
+        self, scene: Scene, *, history: bool | str = False, estimate_error: bool = False
+    ) -> ImpactResult:
+        """Run one impact, or a batch scene at once.
+
+        Parameters
+        ----------
+        scene : Scene
+        history : bool or "fields"
+            Keep the course of the impact; ``"fields"`` keeps traction and stick/slip too.
+        estimate_error : bool
+            Estimate the numerical error of psi2, of any laws, by running the scene again at half
+            and at twice the resolution: ``ImpactResult.psi2_error_estimate``. About four times the
+            work.
+
+        Returns
+        -------
+        ImpactResult
+            A numerical failure is a status, with the history so far; ``.check()`` raises it.
+
+        Raises
+        ------
+        ValueError
+            If ``scene`` is no scene, ``history`` none of its three values, or a history is asked
+            of a batch whose impacts have instants of their own.
+        """
+        started = time.perf_counter()
+        recorder = Recorder(_scene(scene).shape, with_fields=history == "fields")
+        plan, motion = self._outcome(scene, _history(history), recorder if history else None)
+        result = ImpactResult(
+            scene=scene,
+            plan=_complete(plan, scene),
+            motion=motion,
+            laws=composition.versions(*self._laws),
+            history=recorder.history() if history else None,
+            run_time=time.perf_counter() - started,
+        )
+        if not estimate_error:
+            return result
+        return attrs.evolve(result, psi2_error_estimate=estimated(self, result))
+
+    @named_arguments("Simulation().sweep(scenes)")
+    def sweep(
+        self,
+        scenes: Scene | Sequence[Scene],
+        *,
+        progress: Callable[[int, int], object] | None = None,
+        chunk: int | None = None,
+        executor: Executor | None = None,
+        keep: str | Path | None = None,
+    ) -> ImpactResult:
+        """Run many impacts, vectorised, a block at a time.
+
+        Impacts are solved in blocks of as many as the integrator asks for, counted from the first
+        impact: 4000 of the exact solution, 20 where they are followed one by one, 1000 of most;
+        16384 where nothing is marched. What is solved together depends on neither ``chunk`` nor
+        ``executor``, and so does no bit of an answer, of one installation on one kind of
+        processor and one number of BLAS threads (which with NumPy 2 matters to laws that multiply
+        large matrices only).
+
+        Parameters
+        ----------
+        scenes : sequence of Scene, or a batch scene
+        progress : callable, optional
+            Called as ``progress(done, total)`` after each chunk.
+        chunk : int, optional
+            Impacts between two calls of ``progress``, handed to ``executor`` and kept together,
+            rounded up to whole blocks; one block by default. An interruption loses the chunks
+            that are not done.
+        executor : concurrent.futures.Executor, optional
+            Where chunks are solved, by its ``submit`` alone:
+            ``contactlab.compose.workers.Workers(4)`` (processes of this machine), dask's
+            ``client.get_executor()``, an ``MPIPoolExecutor``. Laws are found there by the
+            modules of their classes. A worker that dies costs its chunk a second try, then the
+            status ``WORKER_DIED``. None: this process.
+        keep : str or Path, optional
+            A folder where each chunk is kept as soon as it is done. The same sweep with the same
+            folder goes on where it stopped; another scene or law is refused.
+
+        Returns
+        -------
+        ImpactResult
+            A batch. Interrupting (Ctrl-C) keeps what is done; the rest has the status
+            ``INTERRUPTED``, which ``.check()`` raises.
+
+        Raises
+        ------
+        ValueError
+            If the scenes are none, not alike (bodies beside psi1 and chi) or no scenes; if a law
+            cannot be sent to ``executor``; if ``keep`` holds another sweep.
+        """
+        started = time.perf_counter()
+        batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
+        if len(batch.shape) != 1:
+            raise refuse(
+                "scenes",
+                batch.shape,
+                "must be a sequence, or a one-dimensional batch",
+                "for one impact use run",
+            )
+        plan, motion = swept(
+            self, batch, progress=progress, chunk=chunk, executor=executor, keep=keep
+        )
+        return ImpactResult(
+            scene=batch,
+            plan=_complete(plan, batch),
+            motion=motion,
+            laws=composition.versions(*self._laws),
+            run_time=time.perf_counter() - started,
+        )
+
+    def normal_motion(self, scene: Scene) -> NormalMotion:
+        """Return the normal motion of ``scene``; of a law that fails, NaN throughout.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        """
+        return normal_or_failed(self._laws, scene)
+
+    @property
+    def _laws(self) -> Laws:
+        return Laws(self.normal, self.tangential, self.integrator)
+
+    def _outcome(
+        self, scene: Scene, history: bool | str, recorder: Recorder | None
+    ) -> tuple[Plan, Motion]:
+        """Return plan and motion; ``recorder`` keeps the history."""
+        return outcome(self._laws, scene, history, recorder)
+
+
+def _complete(plan: Plan, scene: Scene) -> Plan:
+    """Return a plan with what can be said of its scene as a whole only, not of a chunk."""
+    cautions = three_numbers(scene)
+    if not cautions:
+        return plan
+    everywhere = np.ones(scene.shape, dtype=bool)
+    more = tuple(Sentence(text, everywhere) for text in cautions)
+    return attrs.evolve(plan, cautions=plan.cautions + more)
+
+
+def _scene(scene: object) -> Scene:
+    """Return ``scene``, or refuse what is none."""
+    if not isinstance(scene, Scene):
+        remedy = "make one: Scene(...)"
+        if isinstance(scene, str | Path):
+            remedy = "of a file: read_scene(path) has the scene, and run() runs it"
+        elif type(scene).__name__ == "Encounter":
+            remedy = "of bodies in space: collide(encounter, simulation), or encounter.scene"
+        raise refuse("scene", scene, "must be a Scene", remedy)
+    return scene
+
+
+def _history(history: bool | str) -> bool | str:
+    """Return ``history``, or refuse what is none of its three values."""
+    if history in (True, False, "fields"):
+        return history
+    raise refuse("history", history, "must be True, False or 'fields'")

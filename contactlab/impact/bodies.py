@@ -1,0 +1,261 @@
+"""Materials, bodies, and the reduction of a pair of bodies to what the laws need."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.attributes import named_attributes
+from contactlab.numeric.checks import (
+    GYRATION,
+    POISSON,
+    POSITIVE,
+    Real,
+    instance,
+    quantity,
+    real,
+    refuse,
+)
+from contactlab.signatures import named_arguments
+
+#: K of a solid homogeneous sphere: K² = 2/5.
+SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)
+
+
+@named_attributes
+@named_arguments("Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)")
+@attrs.frozen(init=False, kw_only=True)
+class Material:
+    """A linear elastic, isotropic material.
+
+    Parameters
+    ----------
+    shear_modulus, young_modulus : float
+        Exactly one of the two, in Pa. They are related by E = 2 G (1 + nu).
+    poisson_ratio : float
+        In [-1, 0.5].
+    density : float, optional
+        In kg/m³; needed only by a sphere whose mass is not given.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range, or both moduli or neither are given.
+    """
+
+    shear_modulus: Real = quantity("Pa", rule=POSITIVE)
+    poisson_ratio: Real = quantity("1", rule=POISSON)
+    density: Real | None = quantity("kg/m³", rule=POSITIVE, default=None)
+
+    def __init__(
+        self,
+        *,
+        shear_modulus: object = None,
+        young_modulus: object = None,
+        poisson_ratio: object,
+        density: Any = None,
+    ) -> None:
+        if (shear_modulus is None) == (young_modulus is None):
+            raise refuse(
+                "shear_modulus, young_modulus",
+                (shear_modulus, young_modulus),
+                "exactly one of the two must be given",
+                "leave one out; the other follows from E = 2 G (1 + nu)",
+            )
+        ratio = real("poisson_ratio", poisson_ratio, rule=POISSON, remedy="it has no unit")
+        if shear_modulus is None:
+            young = real("young_modulus", young_modulus, rule=POSITIVE, remedy="give it in Pa")
+            if np.any(np.asarray(ratio) == -1.0):
+                raise refuse(
+                    "young_modulus",
+                    young_modulus,
+                    "does not determine the shear modulus at poisson_ratio = -1",
+                    "give shear_modulus instead",
+                )
+            shear_modulus = young / (2.0 * (1.0 + ratio))
+        shear = real("shear_modulus", shear_modulus, rule=POSITIVE, remedy="give it in Pa")
+        self.__attrs_init__(shear_modulus=shear, poisson_ratio=ratio, density=density)
+
+    @classmethod
+    @named_arguments("Material.named('steel')")
+    def named(cls, name: str) -> Material:
+        """Return a material of the collection by name: see ``contactlab.impact.materials``.
+
+        Parameters
+        ----------
+        name : str
+            Such as ``"steel"``; ``contactlab materials`` lists them.
+
+        Raises
+        ------
+        ValueError
+            If there is no such material, with the nearest name.
+        """
+        from contactlab.impact import materials  # only for those who ask by name
+
+        return materials.entry(name).material()
+
+    @property
+    def young_modulus(self) -> Real:
+        """E = 2 G (1 + nu), in Pa."""
+        return 2.0 * self.shear_modulus * (1.0 + self.poisson_ratio)
+
+
+def _material() -> Any:
+    return instance(
+        Material, remedy="make one, Material(...), or by its name: Material.named('steel')"
+    )
+
+
+@named_attributes
+@named_arguments("Sphere(0.0127, steel)")
+@attrs.frozen
+class Sphere:
+    """An elastic sphere.
+
+    Parameters
+    ----------
+    radius : float
+        R, in m.
+    material : Material
+    mass : float, optional
+        M, in kg; by default that of a solid homogeneous sphere of the material's density.
+    gyration_ratio : float, optional
+        K = sqrt(I / (M R²)), by default that of a solid homogeneous sphere, K² = 2/5.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range, or neither mass nor density is given.
+    """
+
+    radius: Real = quantity("m", rule=POSITIVE)
+    material: Material = _material()
+    mass: Real = quantity("kg", rule=POSITIVE, default=None, kw_only=True)
+    gyration_ratio: Real = quantity(
+        "1", rule=GYRATION, default=SOLID_SPHERE_GYRATION_RATIO, kw_only=True
+    )
+
+    def __attrs_post_init__(self) -> None:
+        if self.mass is not None:
+            return
+        density = self.material.density
+        if density is None:
+            raise refuse(
+                "mass",
+                None,
+                "is needed where the material has no density",
+                "give Sphere(mass=...) in kg or Material(density=...) in kg/m³",
+            )
+        solid = 4.0 / 3.0 * math.pi * self.radius * self.radius * self.radius * density
+        object.__setattr__(self, "mass", real("mass", solid, rule=POSITIVE))
+
+
+@named_attributes
+@named_arguments("HalfSpace(steel)")
+@attrs.frozen
+class HalfSpace:
+    """An elastic body with a plane surface, so large that no impact changes its motion.
+
+    Parameters
+    ----------
+    material : Material
+        Its density does not count.
+    """
+
+    material: Material = _material()
+
+
+@named_attributes
+@named_arguments("Pair.of(Sphere(0.0127, steel), HalfSpace(glass))")
+@attrs.frozen(kw_only=True)
+class Pair:
+    """What the laws need to know of two bodies in contact: theory §1.
+
+    For like bodies ``stiffness_ratio`` and ``inertia_ratio`` are the paper's
+    2(1-nu)/(2-nu) of eq. (29) and chi of eq. (38).
+
+    Parameters
+    ----------
+    radius : float or array
+        R in m, 1/R = 1/R1 + 1/R2.
+    effective_modulus : float or array
+        E* in Pa.
+    effective_shear_modulus : float or array
+        G* in Pa.
+    normal_mass : float or array
+        M_n in kg, of the approach of the centres.
+    tangential_mass : float or array
+        M_t in kg, of the slip of the contact point.
+    dundurs_beta : float or array
+        Dundurs' beta, by which pressure and shear are coupled; 0 for like bodies.
+    """
+
+    radius: Real = quantity("m", rule=POSITIVE)
+    effective_modulus: Real = quantity("Pa", rule=POSITIVE)
+    effective_shear_modulus: Real = quantity("Pa", rule=POSITIVE)
+    normal_mass: Real = quantity("kg", rule=POSITIVE)
+    tangential_mass: Real = quantity("kg", rule=POSITIVE)
+    dundurs_beta: Real = quantity("1", default=0.0)
+
+    @property
+    def stiffness_ratio(self) -> Real:
+        """Kappa = G*/E*: initial tangential over normal contact stiffness."""
+        return self.effective_shear_modulus / self.effective_modulus
+
+    @property
+    def inertia_ratio(self) -> Real:
+        """Chi = (kappa/2) M_n/M_t, eq. (38) generalised to unlike bodies."""
+        return 0.5 * self.stiffness_ratio * (self.normal_mass / self.tangential_mass)
+
+    @classmethod
+    def of(cls, sphere: Sphere, target: Sphere | HalfSpace) -> Pair:
+        """Reduce a sphere and its target, elastic coupling neglected: theory §1.
+
+        Parameters
+        ----------
+        sphere : Sphere
+        target : Sphere or HalfSpace
+        """
+        compliance_n = _normal_compliance(sphere.material) + _normal_compliance(target.material)
+        compliance_t = _shear_compliance(sphere.material) + _shear_compliance(target.material)
+        curvature = 1.0 / sphere.radius
+        inverse_normal = 1.0 / sphere.mass
+        inverse_tangential = _inverse_tangential_mass(sphere)
+        if isinstance(target, Sphere):
+            curvature = curvature + 1.0 / target.radius
+            inverse_normal = inverse_normal + 1.0 / target.mass
+            inverse_tangential = inverse_tangential + _inverse_tangential_mass(target)
+        return cls(
+            radius=1.0 / curvature,
+            effective_modulus=1.0 / compliance_n,
+            effective_shear_modulus=1.0 / compliance_t,
+            normal_mass=1.0 / inverse_normal,
+            tangential_mass=1.0 / inverse_tangential,
+            dundurs_beta=_coupling_compliance(sphere.material, target.material) / compliance_n,
+        )
+
+
+def _normal_compliance(material: Material) -> Real:
+    """(1-nu)/(2G) = (1-nu²)/E: one body's part of 1/E*."""
+    return (1.0 - material.poisson_ratio) / (2.0 * material.shear_modulus)
+
+
+def _coupling_compliance(one: Material, other: Material) -> Real:
+    """Return half the difference of (1-2nu)/(2G): over 1/E* it is Dundurs' beta."""
+    first = (1.0 - 2.0 * one.poisson_ratio) / (2.0 * one.shear_modulus)
+    second = (1.0 - 2.0 * other.poisson_ratio) / (2.0 * other.shear_modulus)
+    return 0.5 * (first - second)
+
+
+def _shear_compliance(material: Material) -> Real:
+    """(2-nu)/(4G): one body's part of 1/G*."""
+    return (2.0 - material.poisson_ratio) / (4.0 * material.shear_modulus)
+
+
+def _inverse_tangential_mass(sphere: Sphere) -> Real:
+    """(1 + 1/K²)/m: how readily a force at the contact moves the contact point, eq. (21)."""
+    return (1.0 + 1.0 / sphere.gyration_ratio**2) / sphere.mass

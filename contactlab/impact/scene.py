@@ -1,0 +1,357 @@
+"""A scene: two bodies, the friction between them, and how they meet."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from contactlab.attributes import named_attributes
+from contactlab.impact.bodies import HalfSpace, Pair, Sphere
+from contactlab.numeric import arrays as batch
+from contactlab.numeric.checks import (
+    NON_NEGATIVE,
+    POSITIVE,
+    Real,
+    Rule,
+    instance,
+    quantity,
+    real,
+    refuse,
+)
+from contactlab.signatures import named_arguments
+
+if TYPE_CHECKING:
+    from contactlab.impact.grid import Grid
+
+#: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s: numbers
+#: formed from smaller ones are no longer held to sixteen digits.
+LEAST_ENERGY = LEAST_VELOCITY = 1e-290
+#: Least momentum that friction can take, mu times that of the normal motion, in N s.
+LEAST_IMPULSE = 1e-285
+OBLIQUE = Rule(
+    lambda degrees: np.abs(degrees) < 90.0, "must lie between -90 and 90, measured from the normal"
+)
+
+
+@named_attributes
+@named_arguments("Scene(ball, plate, friction_coefficient=0.2, normal_speed=1.0)")
+@attrs.frozen
+class Scene:
+    """One oblique impact, or a batch of them, in SI units.
+
+    The sphere moves towards the target, which is at rest and does not spin. Every
+    number may be an array; the scene is then a batch of the broadcast ``shape``.
+
+    Parameters
+    ----------
+    sphere : Sphere
+    target : HalfSpace or Sphere
+    friction_coefficient : float or array
+        Coulomb's mu, at least 0.
+    normal_speed : float or array
+        v1, the speed of approach along the normal, in m/s, positive.
+    tangential_velocity : float or array
+        v, the tangential velocity of the sphere's centre, in m/s.
+    spin : float or array
+        omega, in rad/s, positive where it adds to the tangential velocity at the
+        contact: v_x = v + omega R, eq. (20).
+    pair : Pair
+        What the laws need of the two bodies, formed from them; to be given only where a
+        body is not known, as in ``nondimensional``.
+
+    Raises
+    ------
+    ValueError
+        With the argument's name, if a number is not finite or out of range.
+    """
+
+    sphere: Sphere | None = instance(Sphere, remedy="make one: Sphere(...)", optional=True)
+    target: Sphere | HalfSpace | None = instance(HalfSpace, Sphere, optional=True)
+    friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE)
+    normal_speed: Real = quantity("m/s", rule=POSITIVE)
+    tangential_velocity: Real = quantity("m/s", default=0.0)
+    spin: Real = quantity("rad/s", default=0.0)
+    # None only until the bodies are looked at, below.
+    pair: Pair = instance(
+        Pair, remedy="or leave it out", optional=True, default=None, kw_only=True, repr=False
+    )
+    #: Batch shape: () for one impact.
+    shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
+
+    def __attrs_post_init__(self) -> None:
+        if self.sphere is not None and self.target is not None:
+            # A pair that is handed over, as by attrs.evolve, may be that of other bodies.
+            object.__setattr__(self, "pair", Pair.of(self.sphere, self.target))
+        elif self.pair is None:
+            raise refuse(
+                "sphere, target",
+                (self.sphere, self.target),
+                "both bodies must be given",
+                "or use Scene.nondimensional(psi1=, chi=)",
+            )
+        shape = batch.common_shape(
+            {
+                name: number.shape
+                for name, number in self.numbers().items()
+                if isinstance(number, np.ndarray)
+            },
+            what="Scene: the shapes",
+            remedy="give numbers, or arrays of equal length",
+        )
+        object.__setattr__(self, "shape", shape)
+        real("tangential_velocity + spin * radius", self.slip_velocity)
+        self._check_scales()
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows: the bodies and how they meet."""
+        from contactlab.pages.notebook import scene_html  # only in notebooks
+
+        return scene_html(self)
+
+    def numbers(self) -> dict[str, Real]:
+        """Return every number of the scene and of its pair, by name."""
+        numbers = {field.name: getattr(self.pair, field.name) for field in attrs.fields(Pair)}
+        for field in attrs.fields(Scene):
+            if "unit" in field.metadata:
+                numbers[field.name] = getattr(self, field.name)
+        return numbers
+
+    def _check_scales(self) -> None:
+        """Refuse scenes whose numbers a float cannot hold."""
+        friction: Any = self.friction_coefficient
+        speed: Any = self.normal_speed
+        with np.errstate(all="ignore"):
+            energy = 0.5 * self.pair.normal_mass * (speed * speed)
+            unit = friction * speed / self.pair.stiffness_ratio
+            slip: Any = abs(self.slip_velocity)
+            slip_energy = 0.5 * self.pair.tangential_mass * (slip * slip)
+            momentum = friction * self.pair.normal_mass * speed
+            tiny = (unit < LEAST_VELOCITY) & (slip < LEAST_VELOCITY)
+            tiny = tiny | (momentum < LEAST_IMPULSE) & (slip < 1e9 * unit)
+            vast = slip / (unit + (unit == 0.0)) == math.inf
+            unheld = (unit > 0.0) & (slip > 0.0) & (tiny | vast)
+            lost = (friction > 0.0) & (unit == 0.0)
+        if not batch.every(slip_energy < math.inf):
+            si = self.sphere is not None
+            raise refuse(
+                "tangential_velocity" if si else "psi1, chi",
+                self.tangential_velocity if si else (self.psi1, self.chi),
+                "the kinetic energy of slip must be finite",
+                "give less; from 4 chi - 1 on psi1 falls by 4 chi",
+            )
+        if not batch.every((energy >= LEAST_ENERGY) & (energy < math.inf)):
+            raise refuse(
+                "normal_speed",
+                self.normal_speed,
+                f"the kinetic energy of the impact must be at least {LEAST_ENERGY:g} J and finite, "
+                "or digits are lost",
+                "give larger speeds and masses, or smaller ones, or other units",
+            )
+        if batch.some(unheld | lost):
+            raise refuse(
+                "friction_coefficient",
+                self.friction_coefficient,
+                "with these velocities psi1 of eq. (29) cannot be held in floating point",
+                "give 0 for no friction, or larger velocities",
+            )
+
+    @classmethod
+    @named_arguments("Scene.at_angle(ball, plate, 0.2, speed=3.9, angle_deg=30)")
+    def at_angle(
+        cls,
+        sphere: Sphere,
+        target: Sphere | HalfSpace,
+        friction_coefficient: Real,
+        *,
+        speed: Any,
+        angle_deg: Any,
+        spin: Real = 0.0,
+    ) -> Scene:
+        """Return the scene of a centre that moves at an angle from the normal.
+
+        Parameters
+        ----------
+        sphere, target, friction_coefficient, spin
+            As of the class.
+        speed : float or array
+            Of the centre, in m/s, positive.
+        angle_deg : float or array
+            From the normal, in degrees, between -90 and 90.
+
+        Raises
+        ------
+        ValueError
+            With the argument's name.
+        """
+        remedy = "give speed in m/s and angle_deg in degrees from the normal"
+        fast = real("speed", speed, rule=POSITIVE, remedy=remedy)
+        angle = np.radians(real("angle_deg", angle_deg, rule=OBLIQUE, remedy=remedy))
+        batch.common_shape(
+            {"speed": np.shape(fast), "angle_deg": np.shape(angle)},
+            what="Scene.at_angle: the shapes",
+            remedy="give arrays of equal length, or every combination by "
+            "Scene.grid(ball, plate, friction_coefficient=0.2, speed=[1, 2], angle_deg=[10, 20])",
+        )
+        ahead, aside = np.cos(angle), np.sin(angle)
+        return cls(sphere, target, friction_coefficient, fast * ahead, fast * aside, spin)
+
+    @classmethod
+    @named_arguments("Scene.nondimensional(psi1=1.2, chi=1.4412)")
+    def nondimensional(cls, *, psi1: Any, chi: Any) -> Scene:
+        """Return the scene of the paper's own two parameters, eqs (29) and (38).
+
+        Units are such that mu = kappa = v1 = R = C = M = 1: velocities come out as
+        the paper's V and psi. It has no sphere, so spin and the centre's velocity
+        are not defined.
+
+        Parameters
+        ----------
+        psi1 : float or array
+            Angle of incidence (29); no unit.
+        chi : float or array
+            Inertia ratio (38), positive; no unit. 1.4412 for a solid sphere of nu = 0.3.
+
+        Raises
+        ------
+        ValueError
+            If psi1 is not finite, or chi is not positive and finite.
+        """
+        incidence = real("psi1", psi1, remedy="give the non-dimensional angle of incidence (29)")
+        inertia = real(
+            "chi", chi, rule=POSITIVE, remedy="chi of eq. (38); 1.4412 for a solid sphere, nu = 0.3"
+        )
+        modulus = 15.0 / 16.0  # makes C = 1 in eq. (9)
+        pair = Pair(
+            radius=1.0,
+            effective_modulus=modulus,
+            effective_shear_modulus=modulus,
+            normal_mass=1.0,
+            tangential_mass=0.5 / inertia,
+        )
+        return cls(None, None, 1.0, 1.0, incidence, pair=pair)
+
+    @classmethod
+    def grid(cls, *bodies: Any, **entries: Any) -> Grid:
+        """Return the batch of every combination of some entries, the last varying fastest.
+
+        ``Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25))``, or bodies first and the
+        entries of ``Scene`` or of ``Scene.at_angle`` by name: lists for those that vary, numbers
+        for the others. A sweep of it gives tables and arrays with named dimensions:
+        ``ImpactResult.to_xarray``.
+
+        Parameters
+        ----------
+        *bodies : Sphere, HalfSpace, optional
+            Sphere and target; none with psi1 and chi.
+        **entries : float or list
+            Of ``Scene`` or, with speed and angle_deg, of ``Scene.at_angle``, in their units; or
+            psi1 and chi.
+
+        Raises
+        ------
+        ValueError
+            If nothing varies, a list has more than one dimension, or the scene is refused.
+        """
+        from contactlab.impact.grid import grid  # a kind of scene itself
+
+        return grid(*bodies, **entries)
+
+    @classmethod
+    @named_arguments("Scene.stack([one, other])")
+    def stack(cls, scenes: Sequence[Scene]) -> Scene:
+        """Return one batch scene of shape (len(scenes),) from scalar scenes.
+
+        Parameters
+        ----------
+        scenes : sequence of Scene
+            Single impacts, all with bodies or all without.
+        """
+        if not isinstance(scenes, Iterable):
+            raise refuse("scenes", scenes, "must be a sequence of Scene")
+        scenes = list(scenes)
+        if not scenes:
+            raise refuse("scenes", scenes, "must hold at least one Scene")
+        for position, scene in enumerate(scenes):
+            if not isinstance(scene, cls):
+                raise refuse(f"scenes[{position}]", scene, "must be a Scene")
+            if scene.shape:
+                raise refuse(f"scenes[{position}]", scene.shape, "must be a single impact")
+            if (scene.sphere is None) != (scenes[0].sphere is None):
+                raise refuse(
+                    f"scenes[{position}]",
+                    scene,
+                    "must have bodies if, and only if, scenes[0] has: else spin would be lost",
+                    "give all in SI, or all by psi1 and chi",
+                )
+        stacked = batch.stacked(scenes)
+        assert isinstance(stacked, cls)
+        if stacked.shape:
+            return stacked
+        return attrs.evolve(stacked, normal_speed=np.full(len(scenes), stacked.normal_speed))
+
+    def take(self, part: Any) -> Scene:
+        """Return the scene of some of the impacts: a slice, mask or indices, or the index of one.
+
+        What all impacts share stays a plain number: laws are faster then.
+
+        Parameters
+        ----------
+        part : slice, array of bool or int, int or tuple of int
+            As numpy indexes an array of the batch shape.
+        """
+        if isinstance(part, slice) and self.shape and part == slice(0, self.shape[0]):
+            return self
+        taken: Scene = batch.taken(self, self.shape, part)
+        numbers = taken.numbers().values()
+        object.__setattr__(taken, "shape", np.broadcast_shapes(*map(np.shape, numbers)))
+        if taken.shape or isinstance(part, int | tuple):
+            return taken
+        count = np.shape(np.broadcast_to(0.0, self.shape)[part])
+        return attrs.evolve(taken, normal_speed=np.full(count, taken.normal_speed))
+
+    @property
+    def slip_velocity(self) -> Real:
+        """v_x = v + omega R, the local tangential velocity at the contact (20), in m/s."""
+        if self.sphere is None:
+            return self.tangential_velocity
+        return self.tangential_velocity + self.spin * self.sphere.radius
+
+    @property
+    def chi(self) -> Real:
+        """Inertia ratio, eq. (38)."""
+        return self.pair.inertia_ratio
+
+    @property
+    def psi_scale(self) -> Real:
+        """Psi per m/s of slip velocity, kappa/(mu v1), eq. (29); infinite without friction."""
+        if not self.shape:  # one impact in plain numbers, which is ten times as fast
+            unit = float(self.friction_coefficient * self.normal_speed)
+            return float(self.pair.stiffness_ratio) / unit if unit else math.inf
+        with np.errstate(divide="ignore", over="ignore"):
+            scale = np.divide(
+                self.pair.stiffness_ratio, self.friction_coefficient * self.normal_speed
+            )
+        return float(scale) if np.ndim(scale) == 0 else scale
+
+    def psi(self, velocity: Real) -> Real:
+        """Return the non-dimensional local tangential velocity of ``velocity`` (m/s), eq. (29).
+
+        Parameters
+        ----------
+        velocity : float or array
+            In m/s, positive as ``slip_velocity``.
+        """
+        if isinstance(velocity, float) and not self.shape:
+            return 0.0 if velocity == 0.0 else float(velocity) * self.psi_scale
+        with np.errstate(invalid="ignore", over="ignore"):
+            value = np.where(np.asarray(velocity) == 0.0, 0.0, velocity * self.psi_scale)
+        return float(value) if value.ndim == 0 else value
+
+    @property
+    def psi1(self) -> Real:
+        """Non-dimensional local angle of incidence, from the local velocity (20), (29)."""
+        return self.psi(self.slip_velocity)

@@ -1,0 +1,1 @@
+"""Numbers: checked, in batches, at nodes."""

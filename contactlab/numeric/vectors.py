@@ -1,0 +1,103 @@
+"""Vectors of three numbers, or arrays of them: checked, and taken apart."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.numeric.checks import Rule, key, real, refuse
+
+Array = NDArray[np.float64]
+
+#: Largest number in a vector, and least length of a normal and speed of approach: their squares
+#: are held in floating point.
+LARGEST, LEAST = 1e100, 1e-100
+RANGE = Rule(lambda value: np.abs(value) <= LARGEST, f"must be finite, at most {LARGEST:g}")
+
+
+def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
+    """Return an attrs field for checked vectors."""
+    return attrs.field(
+        default=default,
+        kw_only=True,
+        converter=attrs.Converter(_checked, takes_field=True),
+        eq=key,
+        metadata={"vector": True, "unit": unit},
+    )
+
+
+def _checked(value: object, field: attrs.Attribute[Any]) -> Array:
+    """Return vectors, shape (..., 3), as a read-only copy."""
+    vectors = _alone(value)
+    if vectors is None:
+        vectors = _many(value, field)
+    vectors.flags.writeable = False
+    return vectors
+
+
+def _alone(value: Any) -> Array | None:
+    """Return one vector of three plain numbers without a detour, as loops give it; else None."""
+    numbers = value.tolist() if type(value) is np.ndarray and value.shape == (3,) else value
+    if type(numbers) not in (list, tuple) or len(numbers) != 3:
+        return None
+    for each in numbers:
+        plain = isinstance(each, float) or type(each) is int
+        if not (plain and -LARGEST <= each <= LARGEST):
+            return None
+    return np.array(numbers, dtype=np.float64)
+
+
+def _many(value: Any, field: attrs.Attribute[Any]) -> Array:
+    """Return a copy of vectors, or refuse them."""
+    remedy = f"give three numbers in {field.metadata['unit']}, or an array of shape (..., 3)"
+    if field.metadata["unit"] == "1":
+        remedy = "give three numbers, or an array of shape (..., 3)"
+    floats = type(value) is np.ndarray and value.dtype.kind == "f" and value.size
+    # no temporary arrays: a million vectors are common; NaN fails both comparisons
+    if floats and value.min() >= -LARGEST and value.max() <= LARGEST:
+        vectors: Array = value.astype(np.float64, order="C")
+    else:
+        if floats and value.ndim > 1:
+            where = np.argwhere(~(np.abs(value) <= LARGEST).all(axis=-1))
+            first = value[tuple(where[0])].tolist()
+            raise refuse(field.name, first, RANGE.sentence + first_of(where), remedy)
+        vectors = np.array(real(field.name, value, rule=RANGE, remedy=remedy))
+    if vectors.shape[-1:] == (3,):
+        return vectors
+    if vectors.ndim < 2:
+        raise refuse(field.name, value, "must be a vector of three numbers", remedy)
+    if vectors.shape[0] == 3:
+        remedy = "x, y and z belong on the last axis: np.moveaxis(vectors, 0, -1)"
+    raise refuse(f"{field.name}.shape", vectors.shape, "must end with 3", remedy)
+
+
+def first_of(where: Any) -> str:
+    """Return the index of the first of those at ``where``, in words; nothing of one encounter."""
+    return f" (the first of {len(where)} has index {where[0].tolist()})" if where.shape[1] else ""
+
+
+def components(vectors: Array) -> tuple[Any, Any, Any]:
+    """Return x, y and z of vectors, each contiguous, or a number of one vector."""
+    if vectors.ndim == 1:  # plain numbers, as one collision after another wants them
+        x, y, z = vectors.tolist()
+        return x, y, z
+    x, y, z = np.ascontiguousarray(np.moveaxis(vectors, -1, 0))
+    return x, y, z
+
+
+def square_root(square: Any) -> Any:
+    """Return the square root of a plain number, as one, or of an array."""
+    return math.sqrt(square) if isinstance(square, float) else np.sqrt(square)
+
+
+def difference(one: Array, other: Array) -> tuple[Any, Any, Any]:
+    """Return the components of a difference of vectors."""
+    x, y, z = components(one)
+    if not other.any():
+        return x, y, z
+    a, b, c = components(other)
+    return x - a, y - b, z - c

@@ -1,0 +1,92 @@
+"""Results as labelled tables of pandas and labelled arrays of xarray, both of them optional."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlab.impact.grid import Grid
+from contactlab.outcome import export
+from contactlab.outcome.result import ImpactResult
+
+
+class Labelled(NamedTuple):
+    """The columns of a result that are defined for its scene, and their axes.
+
+    Attributes
+    ----------
+    columns : dict of str to array, shape of the scene
+        Without those that are axes; statuses by their names.
+    axes : dict of str to array, shape (n_i,)
+        Of a grid; empty for any other batch, and for one impact.
+    units : dict of str to str
+        Of both; empty for words.
+    """
+
+    columns: dict[str, Any]
+    axes: dict[str, Any]
+    units: dict[str, str]
+
+
+def to_dataframe(result: ImpactResult) -> Any:
+    """Return a ``pandas.DataFrame`` of one row an impact; see ``ImpactResult.to_dataframe``."""
+    pandas = _needed("pandas", "to_dataframe")
+    columns, axes, units = _labelled(result)
+    if axes:
+        index = pandas.MultiIndex.from_product(list(axes.values()), names=list(axes))
+    else:
+        index = pandas.RangeIndex(np.size(result.status), name="impact")
+    frame = pandas.DataFrame({name: values.ravel() for name, values in columns.items()}, index)
+    frame.attrs |= {"units": units, **result.laws}
+    return frame
+
+
+def to_xarray(result: ImpactResult) -> Any:
+    """Return an ``xarray.Dataset`` with a dimension for each axis; see ``ImpactResult.to_xarray``.
+
+    A batch that is no grid has the dimension ``impact``, or ``impact_0``, ``impact_1``, ...
+    """
+    xarray = _needed("xarray", "to_xarray")
+    columns, axes, units = _labelled(result)
+    dimensions, shape = tuple(axes), tuple(map(np.size, axes.values()))
+    if not axes:
+        shape = result.scene.shape
+        numbered = tuple(f"impact_{number}" for number in range(len(shape)))
+        dimensions = numbered if len(shape) > 1 else ("impact",) * len(shape)
+    attributes = {name: {"units": unit} if unit else {} for name, unit in units.items()}
+    return xarray.Dataset(
+        {
+            name: (dimensions, values.reshape(shape), attributes[name])
+            for name, values in columns.items()
+        },
+        {name: (name, values, attributes[name]) for name, values in axes.items()},
+        dict(result.laws),
+    )
+
+
+def _labelled(result: ImpactResult) -> Labelled:
+    scene = result.scene
+    axes = dict(scene.axes) if isinstance(scene, Grid) else {}
+    columns, units = {}, {}
+    for name, unit, values in export.columns(result):
+        if values is None:  # not defined for a scene without bodies
+            continue
+        units[name] = export.unit_in(unit, scene) if unit else ""
+        if name in axes:
+            continue
+        if name == "status":
+            values = np.reshape([status.name for status in np.ravel(np.array(values))], scene.shape)
+        columns[name] = np.broadcast_to(values, scene.shape)
+    return Labelled(columns, axes, units)
+
+
+def _needed(module: str, method: str) -> Any:
+    """Return an optional module, or say how to get it."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise ImportError(
+            f'{method} needs {module}, which is not installed: pip install "contactlab[{module}]"'
+        ) from error

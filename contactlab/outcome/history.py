@@ -1,0 +1,140 @@
+"""The history of an impact: recorded only when asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.attributes import named_attributes
+from contactlab.compose.answers import Answer
+from contactlab.contracts.integrator import Observer, Sample
+from contactlab.contracts.motion import NormalMotion
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from contactlab.figures.style import Width
+
+Array = NDArray[np.float64]
+
+#: Instants in the history of impacts that are not marched.
+INSTANTS = 201
+
+
+def _column(unit: str) -> Any:
+    return attrs.field(metadata={"unit": unit})
+
+
+@named_attributes
+@attrs.frozen(kw_only=True, eq=False, repr=False)
+class History:
+    """Arrays over the instants of an impact, shape (K, ...): instants first, then the batch.
+
+    Signs: ``tangential_force`` is positive where it opposes positive slip velocity.
+    """
+
+    time: Array = _column("s")
+    approach: Array = _column("m")
+    normal_velocity: Array = _column("m/s")
+    normal_force: Array = _column("N")
+    contact_radius: Array = _column("m")
+    slip_velocity: Array = _column("m/s")
+    tangential_force: Array = _column("N")
+    fields: dict[str, NDArray[Any]] = attrs.field(factory=dict)
+
+    def __repr__(self) -> str:
+        """Return how many instants there are, and the fields."""
+        if not self.time.size:
+            return "History(no instants)"
+        fields = ", ".join(self.fields) or "no fields"
+        return f"History({len(self.time)} instants to {np.max(self.time):.4g} s; {fields})"
+
+    def columns(self) -> dict[str, Array]:
+        """Return the one-number-an-instant columns by name."""
+        return {name: getattr(self, name) for name in _names()}
+
+    def plot(self, *, axes: Axes | None = None, width: Width | None = None) -> Axes:
+        """Draw the forces over time on ``axes``, or on a new figure of ``matplotlib.pyplot``.
+
+        The ``width``, ``"one"`` or ``"two"`` columns of a page, is that of a new figure.
+        """
+        from contactlab.figures.results import draw_history  # matplotlib only when drawing
+
+        return draw_history(axes, self, width=width)
+
+    @staticmethod
+    def unit(name: str) -> str:
+        """Return the unit of a column."""
+        return str(getattr(attrs.fields(History), name).metadata["unit"])
+
+
+def _names() -> list[str]:
+    """Return the names of the columns with one number an instant, in their order."""
+    return [item.name for item in attrs.fields(History) if item.name != "fields"]
+
+
+class Recorder:
+    """An observer that keeps what it is shown.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        Batch shape.
+    with_fields : bool
+        Whether the law's fields (traction, stuck, ...) are asked for at every instant.
+    """
+
+    def __init__(self, shape: tuple[int, ...], *, with_fields: bool) -> None:
+        self._shape = shape
+        self._with_fields = with_fields
+        self._rows: list[tuple[Any, ...]] = []
+        self._fields: list[dict[str, Any]] = []
+
+    def __call__(self, sample: Sample) -> None:
+        """Keep one instant."""
+        time, approach, rate, contact, slip_velocity, force, _ = sample
+        row = (time, approach, rate, contact.force, contact.radius, slip_velocity, force)
+        self._rows.append(row)
+        if self._with_fields:
+            self._fields.append(dict(sample.fields()))
+
+    def history(self) -> History:
+        """Return what was recorded; no instants at all give arrays of length 0."""
+        columns = {}
+        for index, name in enumerate(_names()):
+            rows = [np.broadcast_to(row[index], self._shape) for row in self._rows]
+            columns[name] = np.array(rows, dtype=np.float64).reshape(len(rows), *self._shape)
+        keys = self._fields[0] if self._fields else {}
+        fields = {key: np.array([entry[key] for entry in self._fields]) for key in keys}
+        return History(**columns, fields=fields)
+
+
+def show(normal: NormalMotion, known: Sequence[Answer], observer: Observer) -> None:
+    """Call ``observer`` at instants of impacts that have whole-impact answers.
+
+    NaN stands for slip velocity and force where an answer has no ``course``.
+    """
+    scene = normal.scene
+    for phase in np.linspace(0.0, np.pi, INSTANTS).tolist():
+        time, approach, rate, contact, impulse = normal.at(phase)
+        change: Any = np.full(scene.shape, np.nan)
+        force: Any = np.full(scene.shape, np.nan)
+        for where, answer in known:
+            if answer.course is not None:
+                gained, acting = answer.course(impulse, contact.friction_load)
+                change, force = np.where(where, gained, change), np.where(where, acting, force)
+        observer(
+            Sample(
+                time=time,
+                approach=approach,
+                normal_velocity=rate,
+                contact=contact,
+                slip_velocity=scene.slip_velocity + change,
+                tangential_force=force,
+                fields=dict,
+            )
+        )

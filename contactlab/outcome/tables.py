@@ -1,0 +1,223 @@
+"""A result as titled tables, for reading: on a terminal, in a notebook, on a page."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlab.contracts.status import Status
+from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.scene import Scene
+from contactlab.outcome.export import SWEEP_TABLE
+from contactlab.outcome.quantities import QUANTITIES
+from contactlab.outcome.result import ImpactResult
+
+#: Different sentences about failed impacts that are shown.
+SENTENCES = 3
+
+Row = list[Any]
+
+
+class Section(NamedTuple):
+    """A table: rows of numbers and text under their headings."""
+
+    headings: Sequence[str]
+    rows: Sequence[Row]
+
+
+def number(value: Any, *, digits: int = 6) -> str:
+    """Return a number for reading: ``digits`` significant, a dash where undefined."""
+    if value is None or (isinstance(value, float | np.floating) and np.isnan(value)):
+        return "-"
+    if isinstance(value, float | np.floating):
+        text = f"{float(value):.{digits}g}"
+        return "0" if text == "-0" else text
+    return str(value)
+
+
+def time(seconds: float) -> str:
+    """Return a time with a unit that suits it."""
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
+        if seconds >= size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds / 1e-9:.3g} ns"
+
+
+def answer(result: ImpactResult) -> list[tuple[str, str]]:
+    """Return the answer of one impact, its numerical error and its run time: names and words."""
+    estimate, declared = result.psi2_error_estimate, float(np.asarray(result.plan.psi2_error))
+    known = []
+    if estimate is not None and np.isfinite(estimate) and float(estimate) != declared:
+        known.append(f"about {float(estimate):.1g}, estimated")
+    if np.isfinite(declared):
+        known.append(f"at most {declared:.1g}, declared")
+    return [
+        ("psi2", number(result.psi2, digits=10)),
+        ("numerical error of psi2", "; ".join(known) or "not known"),
+        ("run time", time(result.run_time)),
+    ]
+
+
+def scene_section(scene: Scene) -> Section:
+    """Return bodies, friction and velocities of a scene; of a batch from least to greatest."""
+    rows: list[Row] = []
+    if scene.sphere is not None:
+        assert scene.target is not None
+        struck = isinstance(scene.target, Sphere)
+        rows += _body("sphere", scene.sphere)
+        rows += _body("struck sphere" if struck else "half-space", scene.target)
+    si = scene.sphere is not None
+    for name, unit in (
+        ("friction_coefficient", "1"),
+        ("normal_speed", "m/s"),
+        ("tangential_velocity", "m/s"),
+        ("spin", "rad/s"),
+    ):
+        rows.append([name.replace("_", " "), _range(getattr(scene, name)), unit if si else "1"])
+    rows += [["psi1", _range(scene.psi1), "1"], ["chi", _range(scene.chi), "1"]]
+    return Section(["", "value", "unit"], rows)
+
+
+def _body(name: str, body: Sphere | HalfSpace) -> list[Row]:
+    rows: list[Row] = []
+    if isinstance(body, Sphere):
+        rows += [[f"{name}: radius", _range(body.radius), "m"]]
+        rows += [[f"{name}: mass", _range(body.mass), "kg"]]
+    material = body.material
+    return [
+        *rows,
+        [f"{name}: Young's modulus", _range(material.young_modulus), "Pa"],
+        [f"{name}: Poisson's ratio", _range(material.poisson_ratio), "1"],
+    ]
+
+
+def _range(value: Any) -> str:
+    low, high = float(np.min(value)), float(np.max(value))
+    return number(low) if low == high else f"{number(low)} to {number(high)}"
+
+
+def sections(result: ImpactResult) -> list[Section]:
+    """Return velocities, contact and energy of one impact, without what is undefined."""
+    return [
+        _defined(result, ["", "before", "after", "unit"], _velocities(result)),
+        _defined(result, ["contact", "value", "unit"], _contact(result)),
+        _defined(result, ["energy", "value", "unit"], _energy(result)),
+    ]
+
+
+def sweep_section(
+    result: ImpactResult, varied: Mapping[str, tuple[str, Any]], *, most: int | None = None
+) -> Section:
+    """Return a row an impact: what varies, by name with its unit, and what came of it.
+
+    With ``most`` there are at most so many rows, evenly spread, both ends among them.
+    """
+    columns = {heading(name, unit): values for name, (unit, values) in varied.items()}
+    for name in SWEEP_TABLE:
+        values = QUANTITIES[name].of(result)
+        if name not in varied and not np.isnan(values).all():
+            columns[heading(name, QUANTITIES[name].unit_in(result.scene))] = values
+    statuses = np.array(result.status, dtype=object)
+    rows = [
+        [*(float(values[index]) for values in columns.values()), statuses[index].name]
+        for index in evenly(len(result), most)
+    ]
+    return Section([*columns, "status"], rows)
+
+
+def evenly(count: int, most: int | None) -> list[int]:
+    """Return indices of ``count`` rows, or of ``most`` evenly spread, both ends among them."""
+    shown = count if most is None else min(count, most)
+    return [int(index) for index in np.round(np.linspace(0, count - 1, shown))]
+
+
+def largest_imbalance(result: ImpactResult) -> str:
+    """Return the largest imbalance of the energy books of a batch, in words."""
+    imbalance = float(np.max(np.abs(result.energy.relative_imbalance)))
+    return f"largest energy imbalance / start: {number(imbalance, digits=3)}"
+
+
+def closing(result: ImpactResult) -> list[tuple[str, str]]:
+    """Return laws, counters and statuses: names and words."""
+    laws = [f"{name} [{kind}]" for kind, name in result.laws.items()]
+    counters = ", ".join(f"{count} {key}" for key, count in result.counters.items()) or "none"
+    lines = [("laws", ", ".join(laws)), ("counters", counters)]
+    if result.scene.shape:
+        lines.append(("run time", f"{time(result.run_time)} for {len(result)} impacts"))
+    failures = Counter(result.failures.values())
+    if failures.total() < np.size(result.status):
+        lines.append(("status", Status.SUCCESS.value))
+    for sentence, count in failures.most_common(SENTENCES):
+        lines.append(("status", sentence + (f" ({count} impacts)" if count > 1 else "")))
+    if len(failures) > SENTENCES:
+        lines.append(("status", f"... and {len(failures) - SENTENCES} more sentences"))
+    return lines
+
+
+def heading(name: str, unit: str) -> str:
+    """Return a heading with its unit, if it has one."""
+    return name if unit == "1" else f"{name} ({unit})"
+
+
+def _defined(result: ImpactResult, headings: list[str], rows: list[Row]) -> Section:
+    """Return a section without the rows that are undefined; the paper's scenes have no units."""
+    shown = []
+    for *cells, unit in rows:
+        if None not in cells:
+            unit = "1" if result.scene.sphere is None else unit
+            shown.append([c if isinstance(c, str) else float(c) for c in cells] + [unit])
+    return Section(headings, shown)
+
+
+def _velocities(result: ImpactResult) -> list[Row]:
+    scene, bodies = result.scene, result.scene.sphere is not None
+    after = QUANTITIES["rebound_angle_deg"].read(result)
+    rows: list[Row] = [
+        ["local angle psi", scene.psi1, result.psi2, "1"],
+        ["local tangential velocity", scene.slip_velocity, result.rebound_slip_velocity, "m/s"],
+        ["normal velocity", scene.normal_speed, result.rebound_normal_velocity, "m/s"],
+        [
+            "tangential velocity",
+            scene.tangential_velocity,
+            result.rebound_tangential_velocity,
+            "m/s",
+        ],
+        ["spin", scene.spin, result.rebound_spin, "rad/s"],
+        ["angle of the path", np.degrees(result.incidence_angle), after, "deg"],
+    ]
+    if isinstance(scene.target, Sphere):
+        rows += [
+            ["target: normal velocity", 0.0, result.target_rebound_normal_velocity, "m/s"],
+            ["target: tangential velocity", 0.0, result.target_rebound_tangential_velocity, "m/s"],
+            ["target: spin", 0.0, result.target_rebound_spin, "rad/s"],
+        ]
+    return rows if bodies else rows[:3]
+
+
+def _contact(result: ImpactResult) -> list[Row]:
+    scene, motion = result.scene, result.motion
+    rows: list[Row] = [
+        ["chi", scene.chi, "1"],
+        ["normal restitution e", result.normal_restitution, "1"],
+        ["tangential restitution e_t", result.tangential_restitution, "1"],
+        ["contact time", motion.duration, "s"],
+        ["largest contact radius", motion.maximum_radius, "m"],
+        ["largest contact radius over R, C (9)", motion.maximum_radius / scene.pair.radius, "1"],
+        ["largest normal force", motion.maximum_force, "N"],
+    ]
+    return rows if scene.sphere is not None else rows[:4]
+
+
+def _energy(result: ImpactResult) -> list[Row]:
+    energy = result.energy
+    return [
+        ["start", energy.start, "J"],
+        ["end", energy.end, "J"],
+        ["loss of the normal motion", energy.normal_loss, "J"],
+        ["friction work, added up", energy.friction_work, "J"],
+        ["imbalance", energy.imbalance, "J"],
+        ["imbalance / start", energy.relative_imbalance, "1"],
+    ]

@@ -1,0 +1,78 @@
+"""What a law leaves out: how far its own exact answer is from that of the elastic continuum.
+
+This is no numerical error. No resolution makes it smaller, and the stability report, which judges
+each law by its own exact answer, does not show it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.compose.registry import REGISTRY
+from contactlab.compose.simulation import Simulation
+from contactlab.contracts import TangentialLaw, WholeImpactTangentialLaw
+from contactlab.contracts.error_model import range_of
+from contactlab.impact.scene import Scene
+from contactlab.study.stability_references import CONTINUUM, continuum, reference_for
+
+Array = NDArray[np.float64]
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class ModelError:
+    """Model error of a friction law between elastic spheres under Hertz's normal law.
+
+    Attributes
+    ----------
+    law : str
+        Name without the kind.
+    chis : tuple of float
+    error : array, shape (chis,)
+        Worst difference of psi2 over the incidences, over its possible range, of those where the
+        law's own exact answer is known; NaN where it is known for none.
+    """
+
+    law: str
+    chis: tuple[float, ...]
+    error: Array
+
+
+def model_error(law: str, chis: Sequence[float], incidences: Sequence[float]) -> ModelError | None:
+    """Return the model error of a law; None for one that converges to the continuum.
+
+    Parameters
+    ----------
+    law : str
+        Name without the kind, of a law with a default for every option.
+    chis, incidences : sequence of float
+        chi, and the psi1 of which the worst is taken at each.
+    """
+    if law in CONTINUUM:
+        return None
+    tangential = REGISTRY.create(f"tangential.{law}")
+    off = [[_off(law, tangential, psi1, chi) for psi1 in incidences] for chi in chis]
+    return ModelError(law=law, chis=tuple(chis), error=np.fmax.reduce(off, axis=1))
+
+
+def _off(name: str, law: TangentialLaw, psi1: float, chi: float) -> float:
+    """Return the model error of one impact, over the range of psi2; NaN if it is not known.
+
+    Parameters
+    ----------
+    name : str
+    law : TangentialLaw
+        The law of that name.
+    psi1, chi : float
+    """
+    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    exact, own = continuum(scene, law), reference_for(name)(scene, law)
+    if own is None and isinstance(law, WholeImpactTangentialLaw):
+        result = Simulation(tangential=law).run(scene)
+        own = float(result.motion.slip_velocity_change) if result.status else None
+    if own is None or exact is None:
+        return np.nan
+    return abs(own - exact) / float(range_of(scene).width)

@@ -1,0 +1,188 @@
+"""The numbers behind Figs 1-4 of the paper.
+
+To add a figure is a function ``figure_5`` here, which returns the numbers: the command finds it by
+its name, writes its table and draws its curves. One that wants more than curves and a legend has a
+function of the same name in ``contactlab.figures.paper``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.compose.rebound import rebound
+from contactlab.compose.simulation import Simulation
+from contactlab.impact.hertz import rigid_body_rebound
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
+from contactlab.outcome.result import ImpactResult
+
+Array = NDArray[np.float64]
+
+#: chi of a solid homogeneous sphere of Poisson's ratio 0.3, eq. (38): the paper's 1.4412.
+SOLID_CHI = 0.7 / 1.7 * 3.5
+#: The paper does not list the angles of its Fig. 1; these span sticking to nearly full slip.
+FIGURE_1_PSI1 = (0.4, 0.8, 1.2, 2.0, 3.0, 4.0)
+#: Radii of gyration over radius in Fig. 3: all mass at the surface, solid, and denser cores.
+FIGURE_3_GYRATION = (1.0, 0.4**0.5, 0.4, 0.25)
+#: psi1 of Figs 3 and 4.
+FIXED_PSI1 = 1.2
+#: Ranges of Figs 2 and 4, wide enough for the change of regime and every sign of psi2. Between
+#: points a straight line is within the width of a drawn one. psi2 oscillates in the root of chi,
+#: and chi is drawn by its logarithm: points are evenly spaced in a power of chi between the two,
+#: closer where psi2 turns sharply, with one where the rigid-body theory has its corner.
+FIGURE_2_PSI1 = np.linspace(0.0, 7.0, 141)
+FIGURE_4_POWER = 0.35
+FIGURE_4_TURNS = (0.565, 4.33, 11.17)
+FIGURE_4_CHI = np.unique(
+    np.concatenate(
+        [
+            np.linspace(0.25**FIGURE_4_POWER, 16.0**FIGURE_4_POWER, 141) ** (1.0 / FIGURE_4_POWER),
+            *(turn * np.linspace(0.94, 1.06, 9) for turn in FIGURE_4_TURNS),
+            [FIXED_PSI1 / 4.0],
+        ]
+    )
+)
+
+
+class Curve(NamedTuple):
+    """A named curve: ``parameter`` is what tells it from the others, NaN if nothing does."""
+
+    name: str
+    parameter: float
+    x: Array
+    y: Array
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class FigureData:
+    """What one figure shows.
+
+    Attributes
+    ----------
+    number : int
+        Of the paper's figure.
+    x, y, parameter : str
+        Headings of the quantities, for tables.
+    curves : tuple of Curve
+    """
+
+    number: int
+    x: str
+    y: str
+    parameter: str
+    curves: tuple[Curve, ...]
+
+    def rows(self) -> list[tuple[str, float, float, float]]:
+        """Return (curve, parameter, x, y) for every point."""
+        return [
+            (curve.name, curve.parameter, x, y)
+            for curve in self.curves
+            for x, y in zip(curve.x.tolist(), curve.y.tolist(), strict=True)
+        ]
+
+
+def figure_1(simulation: Simulation) -> FigureData:
+    """Return the forces over the contact for several psi1, chi = 1.4412."""
+    scenes = {psi1: Scene.nondimensional(psi1=psi1, chi=SOLID_CHI) for psi1 in FIGURE_1_PSI1}
+    return _forces(1, simulation, scenes, "psi1")
+
+
+def figure_2(simulation: Simulation) -> FigureData:
+    """Return psi2(psi1) for chi = 1.4412, elastic and rigid-body."""
+    return _reflexion(2, simulation, psi1=FIGURE_2_PSI1, chi=SOLID_CHI)
+
+
+def figure_3(simulation: Simulation) -> FigureData:
+    """Return the forces over the contact at psi1 = 1.2 for several radii of gyration."""
+    scenes = {
+        ratio: Scene.nondimensional(psi1=FIXED_PSI1, chi=chi_of_gyration(ratio))
+        for ratio in FIGURE_3_GYRATION
+    }
+    return _forces(3, simulation, scenes, "gyration_ratio")
+
+
+def figure_4(simulation: Simulation) -> FigureData:
+    """Return psi2(chi) at psi1 = 1.2, elastic and rigid-body."""
+    return _reflexion(4, simulation, psi1=FIXED_PSI1, chi=FIGURE_4_CHI)
+
+
+def figures() -> dict[int, Callable[[Simulation], FigureData]]:
+    """Return the functions of this module that make the numbers of a figure, by its number."""
+    prefix = "figure_"
+    found = {
+        int(name.removeprefix(prefix)): function
+        for name, function in globals().items()
+        if name.startswith(prefix)
+    }
+    return dict(sorted(found.items()))
+
+
+def chi_of_gyration(gyration_ratio: float) -> float:
+    """Return chi (38) for Poisson's ratio 0.3."""
+    return 0.7 / 1.7 * (1.0 + gyration_ratio**-2)
+
+
+def scaled_forces(result: ImpactResult) -> tuple[Array, Array, Array]:
+    """Return (t/duration, F/(mu P_max), P/P_max), from first touch to separation."""
+    scene, history = result.scene, result.history
+    assert history is not None
+    peak = float(result.motion.maximum_force)
+    time = np.concatenate([[0.0], history.time / result.motion.duration])
+    tangential = history.tangential_force / (scene.friction_coefficient * peak)
+    normal = history.normal_force / peak
+    return time, np.concatenate([[0.0], tangential]), np.concatenate([[0.0], normal])
+
+
+def _forces(
+    number: int, simulation: Simulation, scenes: Mapping[float, Scene], parameter: str
+) -> FigureData:
+    """Return the forces over the contact in several impacts, and the normal force of one.
+
+    Parameters
+    ----------
+    number : int
+        Of the figure.
+    simulation : Simulation
+    scenes : mapping of float to Scene
+        By the parameter that tells their curves apart.
+    parameter : str
+        Its name.
+    """
+    curves: list[Curve] = []
+    for value, scene in scenes.items():
+        result = simulation.run(scene, history=True).check()
+        time, tangential, normal = scaled_forces(result)
+        if not curves:  # the normal force is the same for all
+            curves.append(Curve("P/P_max", np.nan, time, normal))
+        curves.append(Curve("F/(mu P_max)", value, time, tangential))
+    return FigureData(
+        number=number, x="t/duration", y="force", parameter=parameter, curves=tuple(curves)
+    )
+
+
+def _reflexion(number: int, simulation: Simulation, *, psi1: Real, chi: Real) -> FigureData:
+    """Return psi2 of a law, of rigid bodies, and exact, over psi1 or chi, whichever is an array.
+
+    Parameters
+    ----------
+    number : int
+        Of the figure.
+    simulation : Simulation
+    psi1, chi : float or array
+    """
+    varied = {"psi1": psi1, "chi": chi}
+    name = next(name for name, value in varied.items() if np.ndim(value))
+    x = np.asarray(varied[name])
+    result = simulation.sweep(Scene.nondimensional(psi1=psi1, chi=chi)).check()
+    law = result.laws["tangential"].partition(" ")[0]
+    curves = (
+        Curve(law, np.nan, x, np.asarray(result.psi2)),
+        Curve("rigid-body theory", np.nan, x, np.asarray(rigid_body_rebound(psi1, chi))),
+        Curve("exact solution", np.nan, x, np.asarray(rebound(psi1, chi))),
+    )
+    return FigureData(number=number, x=name, y="psi2", parameter="", curves=curves)

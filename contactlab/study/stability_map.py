@@ -1,0 +1,180 @@
+"""Where a method's usable region ends: its resolution against chi."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.compose.registry import REGISTRY
+from contactlab.impact.scene import Scene
+from contactlab.study.bench_methods import Method
+from contactlab.study.stability_cases import Case
+from contactlab.study.stability_outcome import ANSWERED, RAISED, WRONG, Outcome, judge
+from contactlab.study.stability_references import CONTINUUM
+from contactlab.study.stability_scenes import Extreme
+
+Array = NDArray[np.float64]
+
+#: States of a cell. Of its impacts the worst counts.
+ALL_ANSWERED, ONE_REFUSED, ONE_RAISED, ONE_WRONG, NOT_TRIED = range(5)
+STATES = {ANSWERED: ALL_ANSWERED, RAISED: ONE_RAISED, WRONG: ONE_WRONG}
+#: Under a tolerance steps grow with chi, and as its inverse root: cells beyond this product of
+#: the two are not tried.
+MOST_STEPS = 3e4
+#: psi1 of the impacts in each cell; the worst is shown.
+INCIDENCES = (0.3, 0.95, 1.2)
+CHIS = tuple(np.geomspace(0.05, 1e4, 17).tolist())
+STEPS = (1, 2, 3, 4, 6, 9, 14, 21, 32, 48, 72, 108, 162, 243, 365, 547, 820, 1230, 1845, 2768, 4152)
+TOLERANCES = tuple((10.0 ** -np.arange(0.0, 6.1, 1.0)).tolist())
+QUICK_CHIS = (0.05, 0.5, 3.0, 30.0)
+QUICK_STEPS = (1, 5, 9, 30)
+QUICK_TOLERANCES = (0.1, 1e-3)
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class Region:
+    """Worst numerical error over the range at each resolution (rows) and chi (columns).
+
+    Attributes
+    ----------
+    converges : bool
+        Whether the law converges to the elastic continuum. The errors of one that does not are
+        from its own exact answer, which is off by the law's model error.
+    word : str
+        ``steps`` or ``tolerance``.
+    error : array, shape (rows, columns)
+        NaN where every impact was refused.
+    state : array of int
+        ``ALL_ANSWERED``; ``ONE_REFUSED``, ``ONE_RAISED`` or ``ONE_WRONG`` where at least one
+        impact was refused, raised or is silently wrong; ``NOT_TRIED``: more work than
+        ``MOST_STEPS``, or the time was up.
+    failures : tuple of Outcome
+        The impacts that are silently wrong, or raised.
+    complete : bool
+        False if the time was up.
+    """
+
+    method: str
+    word: str
+    resolutions: tuple[float, ...]
+    chis: tuple[float, ...]
+    error: Array
+    state: NDArray[np.int8]
+    tried: int
+    converges: bool = True
+    failures: tuple[Outcome, ...] = ()
+    complete: bool = True
+
+    def count(self, outcome: str) -> int:
+        """Return how many impacts were ``WRONG``, or ``RAISED``."""
+        return sum(item.outcome == outcome for item in self.failures)
+
+
+def region_cells(method: Method, *, quick: bool = False) -> list[tuple[float, float]]:
+    """Return (resolution, chi) of every cell; none for a method without steps or tolerance."""
+    word = _word(method)
+    if word is None:
+        return []
+    if word == "steps":
+        resolutions: tuple[float, ...] = QUICK_STEPS if quick else STEPS
+    else:
+        resolutions = QUICK_TOLERANCES if quick else TOLERANCES
+    return [(fine, chi) for fine in resolutions for chi in map_chis(quick=quick)]
+
+
+def map_chis(*, quick: bool = False) -> tuple[float, ...]:
+    """Return the values of chi of the map."""
+    return QUICK_CHIS if quick else CHIS
+
+
+def region(
+    method: Method,
+    cells: list[tuple[float, float]],
+    *,
+    until: float = np.inf,
+    judged: Callable[[Case], Outcome] = judge,
+) -> Region:
+    """Return how a method does in its cells, those of one resolution run in order of chi.
+
+    Parameters
+    ----------
+    method : Method
+    cells : list of tuple (resolution, chi)
+    until : float
+        Time (``time.perf_counter``) after which no cell is begun.
+    judged : callable
+        What runs a case.
+    """
+    word = _word(method)
+    assert word is not None
+    resolutions = tuple(dict.fromkeys(fine for fine, _ in cells))
+    chis = tuple(dict.fromkeys(chi for _, chi in cells))
+    error = np.full((len(resolutions), len(chis)), np.nan)
+    state = np.full(error.shape, ALL_ANSWERED, dtype=np.int8)
+    failures: list[Outcome] = []
+    tried = 0
+    complete = True
+    for fine, chi in cells:
+        place = resolutions.index(fine), chis.index(chi)
+        began = time.perf_counter()
+        complete = began < until
+        if not complete or (word == "tolerance" and (1.0 + chi) ** 0.5 / fine**0.5 > MOST_STEPS):
+            state[place] = NOT_TRIED
+            continue
+        for psi1 in INCIDENCES:
+            outcome = judged(_case(method, word, fine, psi1, chi))
+            tried += 1
+            state[place] = max(state[place], STATES.get(outcome.outcome, ONE_REFUSED))
+            if outcome.outcome in (WRONG, RAISED):
+                failures.append(outcome)
+            error[place] = np.fmax(error[place], outcome.error)
+    return Region(
+        method=method.name,
+        word=word,
+        resolutions=resolutions,
+        chis=chis,
+        error=error,
+        state=state,
+        tried=tried,
+        converges=method.tangential in CONTINUUM,
+        failures=tuple(failures),
+        complete=complete,
+    )
+
+
+def _word(method: Method) -> str | None:
+    if method.whole:
+        return None
+    found: str | None = REGISTRY.law_class(f"integrator.{method.integrator}").resolution
+    return found
+
+
+def _case(method: Method, word: str, fine: float, psi1: float, chi: float) -> Case:
+    """Return the case of one impact in a cell.
+
+    Parameters
+    ----------
+    method : Method
+    word : str
+        Name of the integrator's resolution.
+    fine : float
+        Its value.
+    psi1, chi : float
+    """
+    options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {word: fine}}
+    if hasattr(REGISTRY.law_class(f"integrator.{method.integrator}"), "refine"):
+        options["integrator"]["refine"] = False  # what the steps asked for are worth
+    scene = Extreme("map", "", lambda: Scene.nondimensional(psi1=psi1, chi=chi))
+    return Case(
+        family="map",
+        label=f"psi1={psi1:g} chi={chi:.4g} {word}={fine:g}",
+        method=method,
+        options=options,
+        scene=scene,
+        planned=False,
+    )

@@ -1,0 +1,198 @@
+"""What came of one case: an error, a refusal, or an answer that is silently wrong."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.compose.error_estimate import estimated
+from contactlab.compose.registry import PluginError
+from contactlab.compose.simulation import Simulation
+from contactlab.compose.solved_motion import ACCURACY
+from contactlab.contracts import ClosedFormNormalLaw
+from contactlab.contracts.error_model import LARGEST_SHARE, range_of
+from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.outcome.motion import Motion, sound
+from contactlab.outcome.result import ImpactResult
+from contactlab.study.stability_bounds import LARGEST_NORMAL, broken_invariants
+from contactlab.study.stability_cases import HERTZ, Case
+from contactlab.study.stability_references import (
+    SETTLED,
+    Reference,
+    itself,
+    load_impulse,
+    reference_for,
+)
+
+#: Outcomes. Only the last two are failures of the program.
+ANSWERED, REFUSED, SKIPPED = "answered", "refused", "skipped"
+WRONG, RAISED = "silently wrong", "raised"
+#: Rounding, over the range of psi2.
+ROUNDING = 1e-9
+#: What a law that declares no error may break the invariants by, over the range.
+UNDECLARED = 0.05
+#: Such a law may be off by this many times the error that ``estimate_error=True`` tells, if that
+#: is more: estimates are within a factor of three.
+ESTIMATED = 3.0
+
+
+@attrs.frozen(kw_only=True)
+class Outcome:
+    """One cell of the report.
+
+    Attributes
+    ----------
+    error, bound : float
+        Of the change of slip velocity, over its possible range; NaN without an answer.
+        The error of a law that declares none is told, not held against it.
+    note : str
+        The status, or what is wrong.
+    """
+
+    method: str
+    family: str
+    case: str
+    outcome: str
+    error: float = np.nan
+    bound: float = np.nan
+    note: str = ""
+    run_time_s: float = 0.0
+
+
+def judge(case: Case) -> Outcome:
+    """Run one case and say what came of it."""
+    try:
+        scene = case.scene.make()
+        simulation = case.method.simulation(case.options, normal=case.normal)
+    except (ValueError, PluginError) as error:
+        return _outcome(case, REFUSED, note=f"bad input: {error}")
+    normal = None if case.normal == HERTZ else simulation.normal
+    return judge_run(case, simulation, scene, reference_for(case.method.tangential, normal))
+
+
+def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Reference) -> Outcome:
+    """Return what came of one scene, its answer judged against ``reference``.
+
+    Parameters
+    ----------
+    case : Case
+        What is reported; ``planned`` says whether whole-impact answers are taken.
+    simulation : Simulation
+    scene : Scene
+    reference : callable
+        Gives the exact change of slip velocity, or None where none is known.
+    """
+    before = time.perf_counter()
+    try:
+        with np.errstate(all="ignore"):
+            result = simulation.run(scene) if case.planned else marched(simulation, scene)
+    except Exception as error:
+        # Whatever a law or the core lets out is a finding, not an end of the report. A run
+        # makes a status of what an integrator raises.
+        note = f"{type(error).__name__}: {error}"
+        outcome = RAISED if case.planned else REFUSED
+        return _outcome(case, outcome, note=note if case.planned else f"LAW_RAISED {note}")
+    taken = time.perf_counter() - before
+    if result.status is not Status.SUCCESS:
+        return _outcome(
+            case, REFUSED, note=f"{result.status.name} {result.motion.detail}", time=taken
+        )
+    try:
+        with np.errstate(all="ignore"):
+            expected = reference(scene, simulation.tangential)
+            known_to = SETTLED if reference is itself else 0.0
+            return _judged(case, simulation, result, (expected, known_to), taken)
+    except Exception as error:
+        note = f"its reference: {type(error).__name__}: {error}"
+        return _outcome(case, RAISED, note=note, time=taken)
+
+
+def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
+    """Run without the plan's short cuts: the integrator does the whole impact."""
+    law, integrator = simulation.tangential, simulation.integrator
+    normal = simulation.normal_motion(scene)
+    tangential = integrator.integrate(normal, law, scene, None)
+    plan = attrs.evolve(
+        simulation.plan(scene),
+        marched=np.ones(scene.shape, dtype=bool),
+        psi2_error=integrator.psi2_error(normal, law, scene),
+    )
+    motion = sound(Motion.along(normal, tangential))
+    return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
+
+
+def _judged(
+    case: Case,
+    simulation: Simulation,
+    result: ImpactResult,
+    known: tuple[float | None, float],
+    taken: float,
+) -> Outcome:
+    """Return the outcome of a run that ended well: right, or silently wrong.
+
+    Parameters
+    ----------
+    case : Case
+    simulation : Simulation
+    result : ImpactResult
+        A success.
+    known : tuple of float
+        Exact change of slip velocity, in m/s, None if it is not known; and how closely it is
+        known, over the range: no answer can be judged more closely.
+    taken : float
+        Run time, in s.
+    """
+    scene, (expected, known_to) = result.scene, known
+    unit, width, _ = range_of(scene)
+    declared = float(result.plan.psi2_error) * unit
+    bound = min(declared / width + ROUNDING, LARGEST_SHARE) if width > 0.0 else ROUNDING
+    held = True
+    if np.isnan(bound):  # nothing is declared: under Hertz's law only the invariants are held
+        bound = UNDECLARED
+        held = case.normal != HERTZ
+    elastic = "elastic_hertz" in simulation.normal.offers
+    passive = "books" not in simulation.tangential.expected_failures
+    books = simulation.tangential.books_bound
+    wrong = broken_invariants(
+        result,
+        bound,
+        passive=passive,
+        books_bound=books,
+        load_impulse=None if elastic else load_impulse(scene, simulation.normal),
+    )
+    error = np.nan
+    if expected is not None:
+        away = abs(float(result.motion.slip_velocity_change) - expected)
+        error = away / width if width > 0.0 else (0.0 if away == 0.0 else np.inf)
+        if case.normal != HERTZ and error > UNDECLARED and np.isnan(declared):
+            told = float(np.asarray(estimated(simulation, result))) * unit / width
+            bound = min(max(bound, ESTIMATED * told), LARGEST_SHARE)
+        if held and not error <= bound + known_to:
+            wrong.append(f"error {error:.2g} of the range, declared {bound:.2g}")
+    off = float(np.asarray(result.normal_restitution)) - 1.0
+    allowed = LARGEST_NORMAL if isinstance(simulation.normal, ClosedFormNormalLaw) else ACCURACY
+    if not off <= allowed or (elastic and not off >= -allowed):
+        wrong.append(f"e is off by {off:.2g}")
+    return _outcome(
+        case,
+        WRONG if wrong else ANSWERED,
+        error=float(error),
+        bound=bound,
+        note="; ".join(wrong) if wrong else "" if expected is not None else "no reference",
+        time=taken,
+    )
+
+
+def _outcome(case: Case, outcome: str, *, time: float = 0.0, **entries: Any) -> Outcome:
+    return Outcome(
+        method=case.method.name,
+        family=case.family,
+        case=case.label,
+        outcome=outcome,
+        run_time_s=time,
+        **entries,
+    )

@@ -1,0 +1,314 @@
+"""Error against run time: every method at every resolution, against the exact solution.
+
+Errors are measured apart from timing. A time is the least of repeated runs after a warm-up: the
+least is what the work takes, the rest is what else the machine did. Failed runs are gaps with
+their status, never dropped.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.compose.registry import REGISTRY
+from contactlab.compose.simulation import Simulation
+from contactlab.impact.scene import Scene
+from contactlab.outcome.result import ImpactResult
+from contactlab.study.bench_methods import Method, scenes
+from contactlab.study.interrupts import uninterrupted
+
+Array = NDArray[np.float64]
+
+#: The composition that gives the exact answers, and how exact: so that at its default
+#: tolerance it is measured too.
+EXACT, EXACT_TOLERANCE = ("fronts", "events"), 1e-12
+#: Repeats of a timed run; fewer once ``LONG`` seconds have gone into a method's resolution.
+REPEATS, LONG = 5, 1.0
+#: Impacts in the sweep whose cost per impact is timed, where a sweep is expected to take
+#: less than ``SWEEP_BUDGET`` seconds.
+SWEEP, SWEEP_BUDGET = 500, 2.0
+#: A method slower than this an impact, in s, is not refined further.
+SLOW, SLOW_QUICK = 0.1, 0.05
+#: Errors below this are rounding: an order is fitted above it.
+ROUNDING = 1e-11
+#: A row is good enough for a short table from this error, or from so many times its law's least;
+#: the best row is told too where it is better by a factor of ``FINER``.
+GOOD, ALIKE, FINER = 1e-3, 2.0, 10.0
+#: A method whose log error falls by less than this over its resolutions does not converge.
+LEAST_GAIN = 0.5
+
+
+@attrs.frozen(kw_only=True)
+class Row:
+    """One method at one resolution.
+
+    Attributes
+    ----------
+    method, options : str
+        Law and integrator, and their options in words.
+    error_rms, error_worst : float
+        Of psi2 over the scenes; NaN where a run failed, as are the next two.
+    force_error_rms : float
+        Of F over mu P_max along the impact, against the exact history.
+    books_worst : float
+        Largest imbalance over the energy at the start.
+    time_s, sweep_time_s : float
+        Run time of one impact, by itself and in a sweep, in s.
+    failed : int
+        Scenes without an answer.
+    status : str
+        ``SUCCESS``, the first failure's name, or ``NOT_RUN``.
+    """
+
+    method: str
+    options: str
+    error_rms: float
+    error_worst: float
+    force_error_rms: float
+    books_worst: float
+    time_s: float
+    sweep_time_s: float
+    failed: int
+    status: str
+
+    @property
+    def ok(self) -> bool:
+        """Return True if every scene gave an answer."""
+        return self.failed == 0
+
+
+@attrs.frozen(kw_only=True)
+class Benchmark:
+    """Rows, and for each method the order observed in its rms error.
+
+    ``complete`` is False where the budget ran out or, then ``interrupted``, on Ctrl-C.
+    """
+
+    rows: tuple[Row, ...]
+    orders: dict[str, float]
+    complete: bool
+    interrupted: bool = False
+
+    def front(self) -> list[Row]:
+        """Return the Pareto front: rows that no other beats in both error and time."""
+        best: list[Row] = []
+        least = np.inf
+        for row in sorted((row for row in self.rows if row.ok), key=lambda row: row.time_s):
+            if row.error_rms < least:
+                best.append(row)
+                # Below rounding nothing is better than anything else.
+                least = row.error_rms if row.error_rms > ROUNDING else 0.0
+        return best
+
+    def short(self) -> list[Row]:
+        """Return a row or two of each law, the most accurate law first.
+
+        The first is the quickest that is good to a per mille, or as good as its law becomes; the
+        second the most accurate, if that is another matter.
+        """
+        of: dict[str, list[Row]] = {}
+        for row in self.rows:
+            if row.ok:
+                of.setdefault(row.method.partition(" / ")[0], []).append(row)
+        found = []
+        for rows in of.values():
+            best = min(rows, key=lambda row: (row.error_rms, row.time_s))
+            limit = max(GOOD, ALIKE * best.error_rms)
+            quick = min((row for row in rows if row.error_rms <= limit), key=lambda row: row.time_s)
+            finer = best.error_rms * FINER <= quick.error_rms
+            found.append([best, quick] if finer and best.time_s > quick.time_s else [quick])
+        return [row for rows in sorted(found, key=lambda rows: rows[0].error_rms) for row in rows]
+
+
+def bench(
+    methods: Sequence[Method],
+    *,
+    quick: bool = False,
+    budget: float = np.inf,
+    progress: Callable[[int, int], object] | None = None,
+) -> Benchmark:
+    """Run the benchmark.
+
+    Parameters
+    ----------
+    methods : sequence of Method
+    quick : bool
+        Fewer scenes and resolutions.
+    budget : float
+        Seconds after which no further resolution is begun; ``complete`` then is False.
+    progress : callable, optional
+        Called as ``progress(done, total)`` after each resolution.
+
+    Returns
+    -------
+    Benchmark
+        Interrupting (Ctrl-C) keeps the resolutions that are done.
+    """
+    given = scenes(quick=quick)
+    exact = [_exact(scene) for scene in given]
+    resolutions = [
+        (method, resolution) for method in methods for resolution in method.resolutions(quick=quick)
+    ]
+    started, rows, slow = time.perf_counter(), [], set[str]()
+    limit = SLOW_QUICK if quick else SLOW
+    interrupted = False
+    try:
+        for done, (method, resolution) in enumerate(resolutions, start=1):
+            if time.perf_counter() - started > budget:
+                break
+            rows.append(
+                _left_out(method, resolution)
+                if method.name in slow
+                else _row(method, resolution, given, exact)
+            )
+            if rows[-1].time_s > limit:
+                slow.add(method.name)
+            if progress is not None:
+                progress(done, len(resolutions))
+    except KeyboardInterrupt:
+        interrupted = True
+    orders = {
+        method.name: _order([row for row in rows if row.method == method.name])
+        for method in methods
+    }
+    return Benchmark(
+        rows=tuple(rows),
+        orders=orders,
+        complete=len(rows) == len(resolutions),
+        interrupted=interrupted,
+    )
+
+
+def _exact(scene: Scene) -> ImpactResult:
+    integrator = REGISTRY.create(f"integrator.{EXACT[1]}", tolerance=EXACT_TOLERANCE)
+    sim = Simulation(normal="hertz", tangential=EXACT[0], integrator=integrator)
+    return sim.run(scene, history=True).check()
+
+
+def _row(
+    method: Method,
+    resolution: dict[str, dict[str, Any]],
+    given: list[Scene],
+    exact: list[ImpactResult],
+) -> Row:
+    """Return error and cost of a method at one resolution.
+
+    Parameters
+    ----------
+    method : Method
+    resolution : mapping of str to mapping
+        Options of tangential law and integrator, by kind: one resolution.
+    given : list of Scene
+    exact : list of ImpactResult
+        Of the same scenes, with history.
+    """
+    simulation = method.simulation(resolution)
+    results = [simulation.run(scene, history=True) for scene in given]
+    failed = [result for result in results if not result.status]
+    good = not failed
+    errors: Any = np.array(
+        [result.psi_change - true.psi_change for result, true in zip(results, exact, strict=True)]
+    )
+    forces = (
+        [_force_error(result, true) for result, true in zip(results, exact, strict=True)]
+        if good
+        else [np.nan]
+    )
+    books: list[Any] = [abs(result.energy.relative_imbalance) for result in results]
+    least = _least_time(simulation, given) if good else np.nan
+    return Row(
+        method=method.name,
+        options=_words(resolution),
+        error_rms=float(np.sqrt(np.mean(errors**2))) if good else np.nan,
+        error_worst=float(np.max(np.abs(errors))) if good else np.nan,
+        force_error_rms=float(np.sqrt(np.mean(np.square(forces)))),
+        books_worst=float(np.max(books)) if good else np.nan,
+        time_s=least,
+        sweep_time_s=_sweep_time(simulation) if good and least * SWEEP < SWEEP_BUDGET else np.nan,
+        failed=len(failed),
+        status=failed[0].status.name if failed else "SUCCESS",
+    )
+
+
+def _left_out(method: Method, resolution: dict[str, dict[str, Any]]) -> Row:
+    """Return the gap that a resolution leaves which would take too long."""
+    nothing = dict.fromkeys(("error_rms", "error_worst", "force_error_rms", "books_worst"), np.nan)
+    return Row(
+        method=method.name,
+        options=_words(resolution),
+        **nothing,
+        time_s=np.nan,
+        sweep_time_s=np.nan,
+        failed=1,
+        status="NOT_RUN",
+    )
+
+
+def _words(resolution: dict[str, dict[str, Any]]) -> str:
+    options = {key: value for part in resolution.values() for key, value in part.items()}
+    return ", ".join(f"{key}={value:g}" for key, value in options.items())
+
+
+def _force_error(result: ImpactResult, exact: ImpactResult) -> float:
+    """Return the rms over the contact of the force's error, over mu P_max."""
+    history, true = result.history, exact.history
+    assert history is not None
+    assert true is not None
+    scene = exact.scene
+    from scipy.interpolate import PchipInterpolator  # a few 1e-7 of the peak at 200 instants
+
+    instants, first = np.unique(true.time, return_index=True)  # an event may stand twice
+    inside = np.clip(history.time, instants[0], instants[-1])
+    expected = PchipInterpolator(instants, true.tangential_force[first])(inside)
+    scale = float(np.asarray(scene.friction_coefficient * exact.motion.maximum_force))
+    return float(np.sqrt(np.mean((history.tangential_force - expected) ** 2))) / scale
+
+
+def _least_time(simulation: Simulation, given: list[Scene]) -> float:
+    """Return the mean over the scenes of the least time of one run, in s."""
+    total = 0.0
+    started = time.perf_counter()
+    for scene in given:
+        simulation.run(scene)  # warm-up
+        least = np.inf
+        for _ in range(REPEATS):
+            before = time.perf_counter()
+            simulation.run(scene)
+            least = min(least, time.perf_counter() - before)
+            if time.perf_counter() - started > LONG:
+                break
+        total += least
+    return total / len(given)
+
+
+def _sweep_time(simulation: Simulation) -> float:
+    """Return the least time per impact of a sweep over psi1, none of it slip throughout, in s."""
+    chi = 49 / 34
+    batch = Scene.nondimensional(psi1=np.linspace(0.01, 4 * chi - 1.01, SWEEP), chi=chi)
+    least = np.inf
+    for _ in range(2):
+        before = time.perf_counter()
+        uninterrupted(simulation.sweep(batch))
+        least = min(least, time.perf_counter() - before)
+    return least / SWEEP
+
+
+def _order(rows: list[Row]) -> float:
+    """Return the slope of rms error against the number of steps or parts, NaN if it has none.
+
+    Only resolutions above rounding count; a tolerance has no order.
+    """
+    points = []
+    for row in rows:
+        sizes = [float(word.partition("=")[2]) for word in row.options.split(", ") if "=" in word]
+        if row.ok and sizes and row.error_rms > ROUNDING and "tolerance" not in row.options:
+            points.append((np.log(sizes[-1]), np.log(row.error_rms)))
+    if len(points) < 3 or points[0][1] - points[-1][1] < LEAST_GAIN:
+        return float("nan")
+    x, y = np.array(points).T
+    return float(-np.polyfit(x, y, 1)[0])

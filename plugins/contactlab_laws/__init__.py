@@ -1,0 +1,1 @@
+"""The laws that come with contactlab: a package for each published model."""

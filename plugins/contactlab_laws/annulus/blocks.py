@@ -1,0 +1,219 @@
+"""All steps of one impact at once: step by step at the edge of stick, all tests in blocks.
+
+Almost always the inner annuli stick and the outer ones slip in one direction. Then a step is one
+small product, and what changes is the number that stick: it is followed by two scalar tests at
+the edge, of the outermost annulus that sticks (36) and the innermost that slips (37). After
+a block of such steps the tests of all annuli are made together. The steps before the first
+failure are kept; the one that failed is left to the search of ``one.advance``, as are
+divisions of other kinds. So the result is that of step by step, at a fraction of the calls.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from contactlab_laws.annulus import one
+from contactlab_laws.annulus.tables import Array, Tables, hertz_pressure, response
+from contactlab_laws.jaeger.all_steps import ScaledSteps
+
+#: Steps in a block: it grows while no test fails.
+SHORTEST, LONGEST = 4, 128
+#: Moves of the edge in one step; more are left to the search.
+MOST_MOVES = 4
+#: Divisions tried on one step before it is left to ``one.advance``, which gives up in the end.
+MOST_TRIES = 8
+
+
+class BlockMarch:
+    """The march of one impact. Row k of its arrays is step k; row 0 of lags and tractions is touch.
+
+    Parameters
+    ----------
+    table : Tables
+    steps : ScaledSteps
+        In the paper's variables.
+    velocity : float
+        Slip velocity at first touch, in m/s.
+    """
+
+    def __init__(self, table: Tables, steps: ScaledSteps, velocity: float) -> None:
+        count, size = len(steps.radius), len(table.weight)
+        limits = hertz_pressure(table, steps.radius)
+        limits *= steps.pressure[:, None]
+        self.table, self.steps, self.velocity, self.limits = table, steps, velocity, limits
+        self.touching_at = np.count_nonzero(limits, axis=1).tolist()
+        self.drifts, self.kicks = steps.drift.tolist(), steps.kick.tolist()
+        self.lags, self.tractions = np.zeros((count + 1, size)), np.zeros((count + 1, size))
+        self.answers = np.zeros((count, size + 1))
+        self.signs, self.touching = np.zeros(size), 0  # the division, as in ``one.Memory``
+        self.at, self.total, self.change = 0, 0.0, 0.0
+
+    @property
+    def forces(self) -> Array:
+        """F^ of the steps taken."""
+        return self.answers[: self.at, 0]
+
+    def march(self) -> bool:
+        """Take all steps; return whether every division was found."""
+        count, length, tries = len(self.answers), SHORTEST, 0
+        while self.at < count:
+            if tries > MOST_TRIES or not self.table.responses:
+                if not self._step():
+                    return False
+                tries = 0
+                continue
+            edge, until = self._edge(), min(self.at + length, count)
+            kept = self._by_division(until) if edge is None else self._by_edge(until, *edge)
+            length = min(2 * length, LONGEST) if self.at == until else SHORTEST
+            tries = 0 if kept else tries + 1
+        return True
+
+    def friction_work(self) -> float:
+        """Return the work of the mean tractions on the slips of all steps taken."""
+        slips = self.lags[: self.at] - self.lags[1 : self.at + 1]
+        means = self.tractions[: self.at] + self.tractions[1 : self.at + 1]
+        return 0.5 * float(np.einsum("ij,ij,j->", means, slips, self.table.weight))
+
+    def _edge(self) -> tuple[int, float] | None:
+        """Return how many leading annuli stick and the sign of the rest, if that says it all."""
+        touching = self.touching
+        signs = self.signs[:touching]
+        slipping = signs.nonzero()[0]
+        if not len(slipping):
+            return touching, 1.0
+        first, sign = slipping.item(0), signs.item(-1)
+        return (
+            (first, sign)
+            if len(slipping) == touching - first and (signs[first:] == sign).all()
+            else None
+        )
+
+    def _by_edge(self, until: int, stuck: int, sign: float) -> int:
+        """Take steps up to ``until`` by the tests at the edge; return how many were kept."""
+        at, answers, responses = self.at, self.answers, self.table.responses
+        touching = self.touching
+        before, lag = self.lags[at], self.lags[at].copy()
+        rows = np.empty((until - at, answers.shape[1]))
+        np.multiply(self.limits[at:until], sign, out=rows[:, 1:])
+        totals, changes, edges, slip_signs = [self.total], [self.change], [], []
+        for k, now, row, limit, answer in zip(
+            range(at, until),
+            self.touching_at[at:until],
+            rows,
+            self.limits[at:until],
+            answers[at:until],
+            strict=True,
+        ):
+            total = totals[-1] + (self.velocity + changes[-1]) * self.drifts[k]
+            known = stuck  # annuli whose lag is in ``lag``
+            stuck = now if stuck == touching else min(stuck, now)
+            if known < stuck:
+                lag[known:stuck] = before[known:stuck]
+                known = stuck
+            row[0], row[1 : stuck + 1] = total, lag[:stuck]
+            for _ in range(MOST_MOVES):
+                np.dot(row, responses[stuck], out=answer)
+                if stuck and abs(answer.item(stuck)) > limit.item(stuck - 1):
+                    if stuck == now and answer.item(stuck) * sign < 0.0:
+                        sign = -sign
+                        rows[k - at, stuck:] *= -1.0
+                        rows[k - at + 1 :, 1:] *= -1.0
+                    row[stuck] = sign * limit.item(stuck - 1)
+                    stuck -= 1
+                    continue
+                if stuck == now:
+                    break
+                lag_before = (lag if stuck < known else before).item(stuck)
+                if sign * (lag_before - answer.item(stuck + 1)) > 0.0:
+                    break
+                lag[stuck] = row[stuck + 1] = lag_before
+                stuck += 1
+                known = max(known, stuck)
+            else:
+                break  # not a matter of the edge alone
+            before, touching = answer[1:], now
+            totals.append(total)
+            changes.append(changes[-1] - self.kicks[k] * answer.item(0))
+            edges.append(stuck)
+            slip_signs.append(sign)
+        if not edges:
+            self.signs[: self.touching] = 0.0  # start the tries anew, from stick all over
+            return 0
+        rows = rows[: len(edges)]
+        inner = np.arange(len(lag)) < np.array(edges)[:, None]
+        return self._tested(
+            rows, np.where(inner, 0.0, np.array(slip_signs)[:, None]), totals, changes
+        )
+
+    def _by_division(self, until: int) -> int:
+        """Take steps up to ``until`` with any division as it stands; return how many were kept."""
+        at, signs, touching = self.at, self.signs, self.touching
+        signs[touching:] = signs[touching - 1]
+        if not signs[-1]:  # newcomers stick, from where they then are: not beyond this block
+            until = next((k for k in range(at, until) if self.touching_at[k] > touching), until)
+            signs[touching:] = 1.0
+        if until == at:
+            self.touching = self.touching_at[at]
+            signs[touching : self.touching] = 0.0
+            until = at + 1
+        sticks = signs == 0.0
+        matrix = response(len(signs), self.table.mean, sticks.tobytes())
+        rows = np.zeros((until - at, self.answers.shape[1]))
+        np.multiply(self.limits[at:until], signs, out=rows[:, 1:])
+        np.copyto(rows[:, 1:], self.lags[at], where=sticks)
+        totals, changes = [self.total], [self.change]
+        for k, known in enumerate(rows.dot(matrix[:, 0]).tolist(), at):
+            totals.append(totals[-1] + (self.velocity + changes[-1]) * self.drifts[k])
+            force = matrix.item(0) * totals[-1] + known
+            changes.append(changes[-1] - self.kicks[k] * force)
+        rows[:, 0] = totals[1:]
+        self.answers[at:until] = rows.dot(matrix)
+        return self._tested(rows, np.tile(signs, (len(rows), 1)), totals, changes)
+
+    def _tested(self, rows: Array, signs: Array, totals: list[float], changes: list[float]) -> int:
+        """Enter a block of steps; keep and count those that pass (36) and (37).
+
+        Parameters
+        ----------
+        rows : array, shape (steps, n + 1)
+            D, and what is given of each annulus: its lag where it sticks, else its traction.
+        signs : array, shape (steps, n)
+            Of slip, 0 where stuck.
+        totals, changes : list of float
+            D and the change of slip velocity, before the block and after each step.
+        """
+        at, until = self.at, self.at + len(rows)
+        given, answer, limits = rows[:, 1:], self.answers[at:until, 1:], self.limits[at:until]
+        sticks, here = signs == 0.0, slice(at + 1, until + 1)
+        self.lags[here] = np.where(sticks, given, answer)
+        self.tractions[here] = np.where(sticks, answer, given)
+        good = signs * (self.lags[at:until] - self.lags[here]) > 0.0
+        good |= limits == 0.0
+        np.copyto(good, np.abs(answer) <= limits, where=sticks)
+        first = int(good.argmin())
+        kept = len(good) if good.flat[first] else first // good.shape[1]
+        self.at, self.total, self.change = at + kept, totals[kept], changes[kept]
+        if kept == len(good):
+            self.signs, self.touching = signs[-1].copy(), self.touching_at[self.at - 1]
+        else:  # for the next try, all violators of the step that failed are flipped
+            begins = np.where(sticks[kept], np.sign(answer[kept]), 0.0)
+            self.signs = np.where(good[kept], signs[kept], begins)
+            self.touching = self.touching_at[self.at]
+        return kept
+
+    def _step(self) -> bool:
+        """Take one step by the search for any division."""
+        at, steps = self.at, self.steps
+        memory = one.Memory(
+            self.total, self.lags[at], self.tractions[at], self.signs, self.touching
+        )
+        move = (self.velocity + self.change) * self.drifts[at]
+        radius, pressure = float(steps.radius[at]), float(steps.pressure[at])
+        force, _, settled, memory = one.advance(self.table, memory, move, radius, pressure)
+        if settled:
+            self.total, self.lags[at + 1], self.tractions[at + 1], signs, self.touching = memory
+            self.signs = signs.copy()
+            self.answers[at, 0] = force
+            self.change -= self.kicks[at] * force
+            self.at += 1
+        return settled

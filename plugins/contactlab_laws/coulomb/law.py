@@ -1,0 +1,83 @@
+"""Rigid-body friction: slip, then rolling with no force."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import attrs
+
+from contactlab.contracts import (
+    NormalMotion,
+    WholeImpact,
+    WholeImpactTangentialLaw,
+    no_force,
+    sliding,
+)
+from contactlab.impact.scene import Scene
+
+#: Of the energy books, over the energy at the start.
+ROUNDING = 1e-9
+
+
+@attrs.frozen(kw_only=True)
+class Coulomb(WholeImpactTangentialLaw):
+    """Coulomb friction between bodies that do not deform tangentially.
+
+    While the contact slips the force is mu times the friction load; once slip has stopped the
+    bodies roll and the force is zero. So the change of slip velocity is the lesser of what
+    friction can do and what stops the slip, under any normal law.
+
+    References
+    ----------
+    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, the rigid body theory of §§1 and 4.3.
+    """
+
+    api_version: ClassVar[int] = 2
+    expected_failures: ClassVar[Mapping[str, str]] = {
+        "impact_reference": "the exact solution is that of bodies which deform tangentially",
+    }
+
+    @property
+    def books_bound(self) -> float:
+        """Return the bound of rounding: the work is that of the force."""
+        return ROUNDING
+
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return slip until it stops, if it does."""
+        reason = "rigid bodies: slip until it stops, if it does, then rolling"
+        return (
+            *super().whole_impacts(scene, normal),
+            sliding(scene, normal, where=True, reason=reason, stops=True),
+        )
+
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+        """Return that the elasticity of the surfaces is left out."""
+        return (
+            "rigid bodies: tangential elasticity is left out, which moves psi2 of solid spheres by "
+            "up to about 1.5 where the contact sticks (model, not numerical error)",
+        )
+
+
+@attrs.frozen(kw_only=True)
+class Frictionless(WholeImpactTangentialLaw):
+    """No tangential force at all: the null object, and the yardstick for cost."""
+
+    api_version: ClassVar[int] = 2
+    expected_failures: ClassVar[Mapping[str, str]] = {
+        "impact_reference": "the exact solution is that of bodies with friction",
+        "sliding_impulse": "there is no friction, however large the slip",
+    }
+
+    @property
+    def books_bound(self) -> float:
+        """Return the bound of rounding: there is no work."""
+        return ROUNDING
+
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return no force."""
+        return (no_force(scene, where=True, reason="the law makes no force"),)
+
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+        """Return nothing: there is no coupling without traction."""
+        return ()

@@ -1,0 +1,84 @@
+"""``python -m contactlab_laws.damped_table``: build the table, verify it, or time it."""
+
+from __future__ import annotations
+
+import argparse
+import time
+
+import numpy as np
+
+from contactlab_laws.damped_table.coordinates import CHI, RESTITUTION
+from contactlab_laws.damped_table.function import rebound
+from contactlab_laws.damped_table.table import SHIPPED, read
+
+#: Largest error that is allowed, and springs of the impacts that the table is compared with.
+BOUND, SPRINGS = 2e-4, 250
+#: Impacts that are timed, and runs of which the fastest counts.
+TIMED, RUNS = 1_000_000, 5
+#: Restitutions that are drawn: for each a batch of impacts.
+DRAWS = 12
+#: psi1 of a draw is at most this.
+LARGEST = 9.0
+
+
+def main() -> int:
+    """Run one command; return 0, or 1 if the table is not as good as it should be."""
+    parser = argparse.ArgumentParser(
+        prog="python -m contactlab_laws.damped_table", description=__doc__
+    )
+    commands = parser.add_subparsers(dest="command", required=True)
+    commands.add_parser("build", help="build the table: minutes")
+    verifying = commands.add_parser("verify", help="compare with fresh impacts by springs")
+    verifying.add_argument("--count", type=int, default=1200, help="impacts (1200)")
+    verifying.add_argument("--seed", type=int, default=1)
+    commands.add_parser("bench", help="print the processor time an impact takes")
+    asked = parser.parse_args()
+    if asked.command == "build":
+        from contactlab_laws.damped_table.build import build
+
+        build(SHIPPED)
+        return 0
+    return verify(asked.count, asked.seed) if asked.command == "verify" else bench()
+
+
+def verify(count: int, seed: int) -> int:
+    """Print the errors against springs at random psi1, chi and e, a third of them near e = 1."""
+    from contactlab_laws.damped_table.build import solve
+
+    table = read(SHIPPED)
+    print(f"{SHIPPED}: contactlab {table.version}, {table.built}, {table.checksum()[:12]}")
+    draw = np.random.default_rng(seed)
+    worst = 0.0
+    for number in range(DRAWS):
+        e = float(draw.uniform(*RESTITUTION))
+        if number % 3 == 0:
+            e = 1.0 - 10.0 ** float(draw.uniform(-5.0, -1.0))
+        size = max(count // DRAWS, 1)
+        psi1, chi = draw.uniform(0.0, LARGEST, size), draw.uniform(*CHI, size)
+        off = np.abs(rebound(psi1, chi, e) - solve(psi1, chi, e, springs=SPRINGS))
+        at = int(off.argmax())
+        worst = max(worst, float(off[at]))
+        rms = float(np.sqrt(np.mean(off**2)))
+        print(
+            f"e = {e:.6f}: largest {off[at]:.1e} at psi1 = {psi1[at]:.4f}, chi = {chi[at]:.4f}; "
+            f"rms {rms:.1e}"
+        )
+    print(f"largest {worst:.1e}, allowed {BOUND:.0e}")
+    return 0 if worst <= BOUND else 1
+
+
+def bench() -> int:
+    """Print nanoseconds of processor time an impact takes in bulk."""
+    draw = np.random.default_rng(1)
+    psi1, chi = draw.uniform(0.0, LARGEST, TIMED), draw.uniform(*CHI, TIMED)
+    taken = []
+    for _ in range(RUNS):
+        began = time.process_time()
+        rebound(psi1, chi, 0.9)
+        taken.append(time.process_time() - began)
+    print(f"{TIMED} impacts: {1e9 * min(taken) / TIMED:.0f} ns of processor time each")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

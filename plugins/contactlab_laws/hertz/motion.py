@@ -1,0 +1,157 @@
+"""The motion of a Hertz impact in closed form."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import lru_cache
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.contracts import (
+    ClosedFormMotion,
+    NormalContact,
+    NormalLaw,
+    NormalSample,
+    ScaledContact,
+)
+from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
+
+Array = NDArray[np.float64]
+
+#: Longer tables are not kept: 64 of them, three columns of 8 bytes, are 6 MB at most.
+LONGEST_KEPT = 4000
+
+
+def velocity_factor(root: Real) -> Real:
+    """g(u) = sqrt((1+u+u²+u³+u⁴)/(1+u)), so that V = cos x g(u): theory §3."""
+    u = root
+    return ((1.0 + u * (1.0 + u * (1.0 + u * (1.0 + u)))) / (1.0 + u)) ** 0.5
+
+
+def scaled_time(root: Real, rate: Real) -> Real:
+    """T at sqrt(zeta) = ``root`` and V = ``rate``: theory §3, an incomplete beta function.
+
+    T = 0.4 B(0.4, 0.5) I(sin² th), with sin² th = u⁵ and cos² th = V². Near the greatest
+    compression the complement in V² is used, where u⁵ rounds to 1.
+    """
+    from scipy.special import betainc  # not before a motion is asked for its time
+
+    quarter = np.where(
+        np.abs(rate) > 0.5,
+        betainc(0.4, 0.5, np.minimum(root**5, 1.0)),
+        1.0 - betainc(0.5, 0.4, np.minimum(np.square(rate), 1.0)),
+    )
+    half = 0.5 * DURATION_CONSTANT
+    return np.where(np.asarray(rate) >= 0.0, half * quarter, half * (2.0 - quarter))
+
+
+def scaled_motion(phase: Array) -> tuple[Array, Array, Array]:
+    """Return u = sqrt(zeta), V and T at ``phase``."""
+    u = np.maximum(np.sin(phase), 0.0)
+    rate = np.cos(phase) * velocity_factor(u)
+    return u, rate, np.asarray(scaled_time(u, rate))
+
+
+def phase_at_fraction(fraction: Array) -> tuple[Array]:
+    """Return the phase at ``fraction`` of the duration, by the inverse of ``scaled_time``."""
+    from scipy.special import betaincinv
+
+    half = np.minimum(fraction, 1.0 - fraction)
+    rising = np.arcsin(betaincinv(0.4, 0.5, 2.0 * half) ** 0.2)
+    return (np.where(fraction <= 0.5, rising, np.pi - rising),)
+
+
+def remembered(function: Callable[[Array], tuple[Array, ...]], at: Real) -> tuple[Array, ...]:
+    """Return ``function(at)``, kept if short: every impact with equal steps asks for the same."""
+    points = np.asarray(at, dtype=np.float64)
+    if points.size > LONGEST_KEPT:
+        return function(points)
+    return tuple(array.reshape(points.shape) for array in _kept(function, points.tobytes()))
+
+
+@lru_cache(maxsize=64)
+def _kept(function: Callable[[Array], tuple[Array, ...]], at: bytes) -> tuple[Array, ...]:
+    found = function(np.frombuffer(at))
+    for array in found:
+        array.flags.writeable = False
+    return found
+
+
+@attrs.frozen(kw_only=True, eq=False, repr=False)
+class HertzMotion(ClosedFormMotion):
+    """Elastic impact: V² + zeta^2.5 = 1 in scaled variables, theory §§1 and 3.
+
+    With the phase x in [0, pi]: sqrt(zeta) = sin x = u, V = cos x g(u), dT/dx = 2u/g(u).
+    """
+
+    law: NormalLaw
+    scene: Scene
+    duration: Real
+    maximum_radius: Real
+    maximum_approach: Real
+    maximum_force: Real
+    final_rate: Real
+    total_load_impulse: Real
+
+    @classmethod
+    def of(cls, law: NormalLaw, scene: Scene) -> HertzMotion:
+        """Return the motion of ``scene``, eqs (7)-(9); it parts as fast as it met."""
+        scales, speed = hertz_scales(scene), scene.normal_speed
+        return cls(
+            law=law,
+            scene=scene,
+            duration=scales.duration,
+            maximum_radius=scales.radius,
+            maximum_approach=scales.approach,
+            maximum_force=scales.force,
+            final_rate=-speed,
+            total_load_impulse=2.0 * scene.pair.normal_mass * speed,
+        )
+
+    def take(self, part: object) -> HertzMotion:
+        """Return the motion of some impacts."""
+        return HertzMotion.of(self.law, self.scene.take(part))
+
+    @property
+    def scaled_mass(self) -> float:
+        """V' = -1.25 zeta^1.5, theory §1."""
+        return 0.8
+
+    def scaled(self, phase: Array) -> ScaledContact:
+        """Return zeta = u², b/a = u, V = cos x g(u), P/P_max = u³ and dT/dx = 2u/g(u)."""
+        u = np.sin(phase)
+        square = u * u
+        g = np.sqrt(1.0 + square + square * square / (1.0 + u))
+        return ScaledContact(phase, square, u, np.cos(phase) * g, u * square, (u + u) / g)
+
+    def scaled_at(self, phase: float) -> ScaledContact:
+        """Return the same in plain floats."""
+        u = math.sin(phase)
+        square = u * u
+        g = math.sqrt(1.0 + square + square * square / (1.0 + u))
+        return ScaledContact(phase, square, u, math.cos(phase) * g, u * square, 2.0 * u / g)
+
+    def phase_at_rate(self, rate: Real) -> Real:
+        """Return x where V = ``rate``; by the tangent, accurate near the greatest compression."""
+        u = np.maximum(0.0, (1.0 - rate) * (1.0 + rate)) ** 0.2
+        return np.arctan2(u, rate / velocity_factor(u))
+
+    def at(self, phase: Real) -> NormalSample:
+        """Return the motion at ``phase`` in [0, pi]."""
+        speed = self.scene.normal_speed
+        u, rate, instant = remembered(scaled_motion, phase)
+        instant = instant * (self.maximum_approach / speed)
+        approach = u * u * self.maximum_approach
+        force = u**3 * self.maximum_force
+        contact = NormalContact(force, u * self.maximum_radius, approach, force)
+        impulse = self.scene.pair.normal_mass * speed * (1.0 - rate)
+        return NormalSample(instant, approach, rate * speed, contact, impulse)
+
+    def phase(self, fraction: Real) -> Real:
+        """Return the phase at ``fraction`` of the duration, by the inverse of ``scaled_time``."""
+        return remembered(phase_at_fraction, fraction)[0]

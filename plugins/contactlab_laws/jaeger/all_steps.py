@@ -1,0 +1,133 @@
+"""All steps at once: the geometry of every step, then a lean loop; of one impact, or of many."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from contactlab.numeric.checks import Real
+from contactlab_laws.jaeger.bundle import Array, Bundle
+from contactlab_laws.jaeger.geometry import of_each
+
+
+class ScaledSteps(NamedTuple):
+    """The steps, scaled, each of shape (K,); drift and kick of a batch (K, items) or (K, 1).
+
+    ``drift`` takes the slip velocity to displacement, ``kick`` takes F to its change.
+    """
+
+    radius: Array
+    pressure: Array
+    drift: Array
+    kick: Array
+
+
+def advance_all(bundle: Bundle, steps: ScaledSteps, velocity: float) -> tuple[Array, float]:
+    """Return the forces, shape (K,), and the friction work, as ``step.advance`` would.
+
+    ``velocity`` is the slip velocity at first touch, in m/s.
+    """
+    square = steps.radius * steps.radius
+    before = np.concatenate(([0.0], square[:-1]))
+    throughout, part, limit, weights = of_each(bundle, before, square, steps.pressure)
+    count, touching = len(square), len(limit)
+    trials = np.ones((count, touching))  # parts of the displacement, then w before the limit
+    trials[:, throughout:] = part.T
+    limits = np.ascontiguousarray(limit.T)
+    deflections = np.zeros((count + 1, touching))  # w at the ends of steps
+    weights = np.ascontiguousarray(weights.T)
+    old, change, forces = deflections[0], 0.0, []
+    minimum, maximum = np.minimum, np.maximum  # looked up once
+    for trial, new, most, least, weight, drift, kick in zip(
+        trials,
+        deflections[1:],
+        limits,
+        -limits,
+        weights,
+        steps.drift.tolist(),
+        steps.kick.tolist(),
+        strict=True,
+    ):
+        trial *= (velocity + change) * drift
+        trial += old
+        minimum(trial, most, out=new)
+        maximum(new, least, out=new)
+        force = float(weight.dot(new))
+        change -= kick * force
+        forces.append(force)
+        old = new
+    slip = np.subtract(trials, deflections[1:], out=trials)
+    slip *= deflections[1:] + deflections[:-1]
+    work = np.maximum(np.einsum("ij,ij->i", weights, slip), 0.0)
+    return np.array(forces), 0.5 * float(work.sum())
+
+
+def advance_batch(
+    bundle: Bundle, steps: ScaledSteps, velocity: Real, items: int
+) -> tuple[Array, Array]:
+    """Return the same of impacts that share one contact: forces (K, items) and works (items,).
+
+    Springs lead, so that a row is contiguous over the batch. A spring out of contact has limit
+    and deflection 0; only those that touch at the start or the end of a step are looked at.
+
+    Parameters
+    ----------
+    bundle : Bundle
+    steps : ScaledSteps
+    velocity : float or array, shape (items,)
+        Slip velocity at first touch, in m/s.
+    items : int
+        Impacts.
+    """
+    square = steps.radius * steps.radius
+    before = np.concatenate(([0.0], square[:-1]))
+    throughout, part, limit, weights = of_each(bundle, before, square, steps.pressure)
+    part = np.concatenate((np.ones((throughout, len(square))), part))
+    touching = bundle.squares.searchsorted(square)
+    whole = np.where(square > before, bundle.squares.searchsorted(before), touching)
+    limits = _columns(limit)
+    old, new, trial = np.zeros((3, len(limit), items))
+    forces, works = np.empty((2, len(square), items))
+    change, displacement = np.zeros((2, items))
+    last = 0  # springs that touched at the end of the step before
+    for first, now, parts, most, least, weight, drift, kick, force, work in zip(
+        whole.tolist(),
+        touching.tolist(),
+        _columns(part),
+        limits,
+        -limits,
+        np.ascontiguousarray(weights.T),
+        steps.drift,
+        steps.kick,
+        forces,
+        works,
+        strict=True,
+    ):
+        rows = max(now, last)
+        same = first if first < now else rows  # springs with the whole displacement
+        held, moved, kept, weight = old[:rows], trial[:rows], new[:rows], weight[:rows]
+        np.add(velocity, change, out=displacement)
+        displacement *= drift
+        np.add(held[:same], displacement, out=moved[:same])
+        if same < rows:
+            np.multiply(parts[same:rows], displacement, out=moved[same:])
+            moved[same:] += held[same:]
+        np.minimum(moved, most[:rows], out=kept)  # faster than clip
+        np.maximum(kept, least[:rows], out=kept)
+        weight.dot(kept, out=force)
+        np.multiply(force, kick, out=displacement)
+        change -= displacement
+        moved -= kept  # the slip
+        held += kept
+        moved *= held
+        weight.dot(moved, out=work)
+        if now < rows:
+            old[now:rows] = 0.0
+        old, new, last = new, old, now
+    return forces, 0.5 * np.maximum(works, 0.0, out=works).sum(axis=0)
+
+
+def _columns(table: Array) -> Array:
+    """Return a table (springs, K) as K columns, shape (K, springs, 1)."""
+    return np.ascontiguousarray(table.T)[:, :, None]

@@ -1,0 +1,202 @@
+"""The part of a law of springs that does not depend on where they are."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Mapping
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.contracts import (
+    AllStepsResponse,
+    AllStepsTangentialLaw,
+    Increment,
+    NormalContact,
+    NormalMotion,
+    Steps,
+    TangentialResponse,
+    WholeImpact,
+)
+from contactlab.contracts.error_model import ErrorModel
+from contactlab.impact.coupling import hemisphere
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
+from contactlab_laws.jaeger import all_steps, step
+from contactlab_laws.jaeger.bundle import Array, Bundle
+from contactlab_laws.jaeger.gross_slip import gross_slip
+
+#: Numbers in a table of a whole run; larger ones (16 MB each) are not made.
+LARGEST_RUN = 2_000_000
+
+
+class Scales(NamedTuple):
+    """What turns SI into scaled variables and back; floats, or arrays of the batch shape.
+
+    Attributes
+    ----------
+    radius : float or array
+        a, the largest contact radius, in m.
+    displacement : float or array
+        kappa R/(mu a²), in 1/m: scaled displacement per metre; 0 without friction.
+    force : float or array
+        mu P_max, in N.
+    normal_force : float or array
+        P_max of a Hertz contact of radius a, in N.
+    work : float or array
+        mu P_max times mu a²/(kappa R), in J.
+    """
+
+    radius: Real
+    displacement: Real
+    force: Real
+    normal_force: Real
+    work: Real
+
+    @classmethod
+    def of(cls, scene: Scene, normal: NormalMotion) -> Scales:
+        """Return the scales of the largest contact, theory §1."""
+        pair, radius, friction = scene.pair, normal.maximum_radius, scene.friction_coefficient
+        peak = (4.0 / 3.0) * pair.effective_modulus * radius**3 / pair.radius
+        slip = friction * radius**2 / (pair.stiffness_ratio * pair.radius)
+        per_slip = (friction > 0.0) / (slip + (friction == 0.0))
+        return cls(radius, per_slip, friction * peak, peak, friction * peak * slip)
+
+    def pressure(self, radius: Any, load: Any) -> Any:
+        """Return p: 1 for a Hertz contact; another law may carry another load at a radius."""
+        cube = self.normal_force * radius**3
+        return load / (cube + (cube == 0.0))
+
+
+class State(NamedTuple):
+    """Memory of the contacts of one batch shape, and their scales; never changed once made."""
+
+    shape: tuple[int, ...]
+    scales: Scales
+    memory: step.Memory
+
+
+class ProfileLaw(AllStepsTangentialLaw):
+    """A law of independent springs; a subclass says where they are."""
+
+    offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
+    needs: ClassVar[frozenset[str]] = frozenset({"radius"})
+    errors: ClassVar[ErrorModel]
+
+    @abstractmethod
+    def bundle(self) -> Bundle:
+        """Return the springs, made once for each number of them."""
+
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return those of gross slip too, where (44) and (46) say so."""
+        return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
+
+    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
+        """Return what was measured over elastic Hertz contacts; of others nothing is declared."""
+        if "elastic_hertz" not in normal.offers:
+            return math.nan
+        return self.errors.psi2_error(scene, steps, len(self.bundle().squares))
+
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+        """Return those of every law, and that of a pressure that may be no hemisphere."""
+        return (*super().cautions(scene, normal), *hemisphere(normal.offers))
+
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
+        """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""
+        return 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
+
+    def start(self, scene: Scene, normal: NormalMotion) -> State:
+        """Return contacts without traction."""
+        return State(scene.shape, Scales.of(scene, normal), step.start())
+
+    def advance(
+        self,
+        state: State,
+        increment: Increment,
+        before: NormalContact,
+        after: NormalContact,
+    ) -> tuple[TangentialResponse, State]:
+        """Return the force after the step."""
+        shape, scales, memory = state
+        radius = step.float_of_one(after.radius) / scales.radius
+        pressure = scales.pressure(radius, step.float_of_one(after.friction_load))
+        radius, pressure = step.common(radius, shape), step.common(pressure, shape)
+        moved = increment.displacement * scales.displacement
+        if not shape:
+            force, work, memory = step.advance(self.bundle(), memory, moved, radius, pressure, 1)
+            response = TangentialResponse(force.item() * scales.force, work.item() * scales.work)
+            return response, State(shape, scales, memory)
+        if len(shape) > 1 or np.shape(moved) != shape:
+            moved = np.broadcast_to(moved, shape).reshape(-1)
+        force, work, memory = step.advance(
+            self.bundle(), memory, moved, radius, pressure, math.prod(shape)
+        )
+        force, work = force.reshape(shape) * scales.force, work.reshape(shape) * scales.work
+        return TangentialResponse(force, work), State(shape, scales, memory)
+
+    def advance_all(
+        self, scene: Scene, normal: NormalMotion, steps: Steps
+    ) -> AllStepsResponse | None:
+        """Return the forces of a whole impact, or of a batch whose contacts differ in scale only.
+
+        Batches of several axes are better done step by step, as are runs of large tables.
+        """
+        shape, bundle = scene.shape, self.bundle()
+        columns = max(len(bundle.squares), math.prod(shape))
+        if len(shape) > 1 or len(steps.drift) * columns > LARGEST_RUN:
+            return None
+        scales = Scales.of(scene, normal)
+        radius = steps.contact.radius / scales.radius
+        scaled = all_steps.ScaledSteps(
+            radius=radius,
+            pressure=scales.pressure(radius, steps.contact.friction_load),
+            drift=steps.drift * scales.displacement,
+            kick=steps.kick * (scales.force / scene.pair.tangential_mass),
+        )
+        if not shape:
+            force, work = all_steps.advance_all(bundle, scaled, float(scene.slip_velocity))
+            return AllStepsResponse(force * scales.force, float(work * scales.work), True)
+        if not (_alike(scaled.radius) and _alike(scaled.pressure)):
+            return None
+        scaled = scaled._replace(radius=scaled.radius[:, 0], pressure=scaled.pressure[:, 0])
+        forces, works = all_steps.advance_batch(bundle, scaled, scene.slip_velocity, *shape)
+        forces *= scales.force
+        return AllStepsResponse(forces, works * scales.work, True)
+
+    def fields(self, state: State) -> Mapping[str, NDArray[Any]]:
+        """Return radius (m), displacement and limit (m), stuck and slipping of every spring.
+
+        ``displacement`` is w, the tangential displacement of the spring; ``slipping``
+        is its sign where it is held at the limit, 0 elsewhere.
+        """
+        shape, scales, memory = state
+        squares = self.bundle().squares
+        items = math.prod(shape)
+
+        def of_all(rows: Array) -> Array:
+            full = np.zeros((items, len(squares)))
+            full[:, : len(rows)] = rows.T
+            return full.reshape(*shape, len(squares))
+
+        def column(value: Real) -> Any:
+            return np.asarray(value)[..., None]
+
+        deflection, limit = of_all(memory.deflection), of_all(memory.limit)
+        with np.errstate(divide="ignore"):
+            unit = np.where(np.asarray(scales.displacement) > 0, 1.0 / scales.displacement, 0.0)
+        slips = (limit > 0.0) & (np.abs(deflection) >= limit)
+        return {
+            "radius": np.broadcast_to(column(scales.radius) * np.sqrt(squares), deflection.shape),
+            "displacement": column(unit) * deflection,
+            "limit": column(unit) * limit,
+            "stuck": (limit > 0.0) & ~slips,
+            "slipping": (slips * np.sign(deflection)).astype(np.int8),
+        }
+
+
+def _alike(rows: Array) -> bool:
+    """Return whether all impacts agree, to rounding, in each row."""
+    first = rows[:, :1]
+    return rows.shape[1] == 1 or bool((np.abs(rows - first) <= step.ROUNDING * first).all())

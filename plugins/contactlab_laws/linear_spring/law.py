@@ -1,0 +1,125 @@
+"""A spring of constant stiffness with Coulomb's cap."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, NamedTuple
+
+import attrs
+import numpy as np
+
+from contactlab.contracts import (
+    Increment,
+    NormalContact,
+    NormalMotion,
+    SteppedTangentialLaw,
+    TangentialResponse,
+)
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Real, quantity
+from contactlab_laws.mindlin.dashpot import critical_share, cut, with_dashpot
+
+#: Of the energy books at the fewest steps that are admitted; it falls as their square. A dashpot
+#: adds the share of a step in which the velocity reverses.
+COARSEST_BOOKS = 0.05
+
+#: What a dashpot fails by its nature.
+DAMPED: Mapping[str, str] = {
+    "turning_points": "the force of a dashpot depends on the velocity, which a path has not",
+    "stiffness": "the force of a dashpot is no force of displacement",
+}
+
+PARTIAL_SLIP = (
+    "one spring: no part of the contact slips before the whole does, which moves psi2 of "
+    "solid spheres by up to about 0.7 (model, not numerical error)"
+)
+
+
+class Spring(NamedTuple):
+    """Stiffness (N/m), dashpot (N s/m), masses, friction coefficient, and the memory in N."""
+
+    stiffness: Real
+    constant: Real
+    tangential_mass: Real
+    friction_coefficient: Real
+    spring: Real
+    force: Real
+
+
+@attrs.frozen(kw_only=True)
+class LinearSpring(SteppedTangentialLaw):
+    """F = k_t u + c v_x within mu L: spring and dashpot, in series with a slider.
+
+    The stiffness is the same from first touch to separation, k_t = ``stiffness_ratio`` times
+    k_n = M_n v1²/z², the stiffness of the linear spring that is compressed as far as this
+    contact, z (Di Renzo & Di Maio 2004). So the law needs no contact radius.
+
+    Parameters
+    ----------
+    stiffness_ratio : float, optional
+        k_t over k_n; kappa of the bodies, Mindlin's ratio, if not given.
+    damping : float
+        c over 2 sqrt(k_t M_n); 0 for no dashpot. Its work counts as friction work.
+
+    References
+    ----------
+    Cundall & Strack, Géotechnique 29 (1979) 47-65, doi:10.1680/geot.1979.29.1.47; Di Renzo &
+    Di Maio, Chem. Eng. Sci. 59 (2004) 525-541, doi:10.1016/j.ces.2003.09.037.
+    """
+
+    api_version: ClassVar[int] = 2
+
+    stiffness_ratio: float | None = quantity("1", rule=POSITIVE, default=None)
+    damping: float = quantity("1", rule=NON_NEGATIVE, default=0.0)
+
+    @property
+    def books_bound(self) -> float:
+        """Return what the fewest steps leave; without a dashpot the books close to rounding."""
+        return COARSEST_BOOKS
+
+    @property
+    def expected_failures(self) -> Mapping[str, str]:
+        """Return what a dashpot fails, if there is one."""
+        return DAMPED if self.damping else {}
+
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
+        """Return k_t."""
+        pair = scene.pair
+        ratio = pair.stiffness_ratio if self.stiffness_ratio is None else self.stiffness_ratio
+        frequency = scene.normal_speed / normal.maximum_approach
+        return ratio * pair.normal_mass * frequency * frequency
+
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+        """Return that partial slip is left out."""
+        return (*super().cautions(scene, normal), PARTIAL_SLIP)
+
+    def start(self, scene: Scene, normal: NormalMotion) -> Spring:
+        """Return the spring at rest."""
+        nothing: Real = np.zeros(scene.shape) if scene.shape else 0.0
+        stiffness = self.stiffness(scene, normal)
+        return Spring(
+            stiffness,
+            critical_share(self.damping, stiffness, scene.pair.normal_mass),
+            scene.pair.tangential_mass,
+            scene.friction_coefficient,
+            nothing,
+            nothing,
+        )
+
+    def advance(
+        self, state: Spring, increment: Increment, before: NormalContact, after: NormalContact
+    ) -> tuple[TangentialResponse, Spring]:
+        """Return the force, and what the spring does not keep of the work done on it."""
+        limit = state.friction_coefficient * after.friction_load
+        trial = state.spring + state.stiffness * increment.displacement
+        spring = force = cut(trial, limit)
+        # The mean of the forces before and after: as contact ends a spring lets go of all it holds.
+        work = 0.5 * (state.spring + spring) * (trial - spring) / state.stiffness
+        if self.damping:
+            force = with_dashpot(spring, state.constant, increment, state.tangential_mass, limit)
+            viscous = force - spring + state.force - state.spring
+            work = work + 0.5 * viscous * increment.displacement
+        work = np.maximum(work, 0.0)
+        if not np.ndim(state.force):
+            force, spring, work = float(force), float(spring), float(work)
+        return TangentialResponse(force, work), state._replace(spring=spring, force=force)

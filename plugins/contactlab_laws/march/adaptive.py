@@ -1,0 +1,183 @@
+"""Error control around even steps: as many as keep psi2 within a tolerance."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab.contracts import (
+    Integrator,
+    NormalMotion,
+    Observer,
+    SteppedTangentialLaw,
+    TangentialLaw,
+    TangentialMotion,
+    faults,
+)
+from contactlab.contracts.error_model import psi_magnitude, range_of
+from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.numeric import arrays as batch
+from contactlab.numeric.checks import Real, Rule, quantity
+from contactlab_laws.march.division import midpoints
+from contactlab_laws.march.fixed import MOST_STEPS, in_groups, needed_steps, refined
+from contactlab_laws.march.march import march
+
+TOLERANCE = Rule(
+    lambda value: np.ndim(value) == 0 and 1e-12 <= value <= 1.0,
+    "must be one number in [1e-12, 1]",
+)
+#: Steps that are tried first; then twice as many, until the error is small enough.
+FIRST = 32
+#: Where the steps are doubled the change of psi2 falls by 4 for a smooth law: from this ratio on
+#: one is taken for smooth, and the error left is the last change over the ratio less 1.
+SMOOTH = 3.0
+#: A law that jumps is of first order, and its error wanders: the last change and half the one
+#: before it, times this.
+WANDERS = 2.0
+#: Less than this part of the change before is never believed: two answers may agree by chance.
+BELIEVED = 1.0 / 6.0
+#: psi2 is rounded to this part of max(1, |psi1|) by sums of many steps.
+ROUNDING = 1e-13
+
+
+@attrs.frozen(kw_only=True)
+class Adaptive(Integrator):
+    """The steps of ``symplectic``, doubled until psi2 no longer changes by the tolerance.
+
+    The error is that of the whole impact, seen in the answer itself, and not a sum of what
+    single steps may have missed. It is the error in time: that of a law's own discretisation
+    is not in it.
+
+    Parameters
+    ----------
+    tolerance : float
+        Of psi2 over max(1, |psi1|); from 1e-12 to 1. Cost grows as its inverse square root.
+
+    References
+    ----------
+    Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), §II.4:
+    Richardson extrapolation as an estimate of the error.
+    """
+
+    api_version: ClassVar[int] = 2
+    resolution: ClassVar[str | None] = "tolerance"
+    tangential_contract: ClassVar[Any] = SteppedTangentialLaw
+
+    tolerance: float = quantity("1", rule=TOLERANCE, default=1e-4)
+
+    def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
+        """Return twice the tolerance, and what the law declares for its own discretisation."""
+        own: Any = tangential.psi2_error(scene, normal, np.inf)
+        bound: Real = 2.0 * self.tolerance * psi_magnitude(scene) + own
+        return bound
+
+    def integrate(
+        self,
+        normal: NormalMotion,
+        tangential: TangentialLaw,
+        scene: Scene,
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
+        """Return the motion; impacts of a batch choose their own steps."""
+        law = tangential
+        assert isinstance(law, SteppedTangentialLaw)
+
+        def even(normal: NormalMotion, count: int) -> TangentialMotion:
+            first = _march(normal, law, count)
+            second = _march(normal, law, 2 * count) if _succeeded(first) else first
+            if not _succeeded(second):
+                return second
+            return self._doubled(normal, law, 4 * count, (first, second), 3 * count)
+
+        try:
+            with faults.blaming(law):
+                needed = needed_steps(normal, law)
+            motion = in_groups(normal, FIRST, needed, refined(FIRST, needed), even)
+            if observer is not None:
+                _march(normal, law, motion.counters.get("steps", FIRST), observer)
+        except faults.LawFaultError as fault:
+            return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
+        return motion
+
+    def _doubled(
+        self,
+        normal: NormalMotion,
+        law: SteppedTangentialLaw,
+        count: int,
+        before: tuple[TangentialMotion, TangentialMotion],
+        tried: int,
+    ) -> TangentialMotion:
+        """Return the motion in ``count`` steps, and in twice as many where that is not enough.
+
+        Parameters
+        ----------
+        normal : NormalMotion
+        law : SteppedTangentialLaw
+        count : int
+        before : tuple of two TangentialMotion
+            With a quarter and with half the steps.
+        tried : int
+            Steps taken before, for the counters.
+        """
+        shape = normal.scene.shape
+        counters = {"steps": count, "evaluations": tried + count}
+        last = attrs.evolve(_march(normal, law, count), counters=counters)
+        if not _succeeded(last):
+            return last
+        left, allowed = self._error(*before, last), self._allowed(normal.scene)
+        open_: Any = np.asarray(~(left <= allowed))
+        if not open_.any():
+            return last
+        if 2 * count > MOST_STEPS:
+            sentence = f"After {count} steps psi2 still changes by more than the tolerance."
+            return last.failing(open_, Status.UNRESOLVED, sentence)
+        if not shape or open_.all():
+            return self._doubled(normal, law, 2 * count, (before[1], last), tried + count)
+        middle, fine = (batch.taken(motion, shape, open_) for motion in (before[1], last))
+        finer = self._doubled(normal.take(open_), law, 2 * count, (middle, fine), 0)
+        merged = TangentialMotion.merged(((np.ones_like(open_), last), (open_, finer)), shape)
+        # The most steps that any impact took, and all evaluations.
+        evaluations = counters["evaluations"] + finer.counters["evaluations"]
+        return attrs.evolve(
+            merged, counters={"steps": finer.counters["steps"], "evaluations": evaluations}
+        )
+
+    def _allowed(self, scene: Scene) -> Any:
+        """Return the tolerance as a change of slip velocity, in m/s."""
+        unit, _, speed = range_of(scene)
+        return max(self.tolerance, ROUNDING) * np.maximum(unit, speed)
+
+    @staticmethod
+    def _error(*motions: TangentialMotion) -> Any:
+        """Return the error of the last of three answers, each with twice the steps, in m/s."""
+        coarse, middle, fine = (np.asarray(m.slip_velocity_change) for m in motions)
+        one, two = np.abs(middle - coarse), np.abs(fine - middle)
+        with np.errstate(all="ignore"):
+            ratio = np.where(two > 0.0, one / two, np.inf)
+            smooth = np.maximum(two / (np.minimum(ratio, 4.0) - 1.0), BELIEVED * one)
+        return np.where(ratio >= SMOOTH, smooth, WANDERS * np.maximum(two, 0.5 * one))
+
+
+def _succeeded(motion: TangentialMotion) -> bool:
+    """Return whether every impact was followed to its end."""
+    return bool(np.all(motion.status == Status.SUCCESS))
+
+
+def _march(
+    normal: NormalMotion, law: SteppedTangentialLaw, count: int, observer: Observer | None = None
+) -> TangentialMotion:
+    """Return the motion in ``count`` steps, each sampled in its middle.
+
+    Parameters
+    ----------
+    normal : NormalMotion
+    law : SteppedTangentialLaw
+    count : int
+    observer : callable, optional
+    """
+    with faults.blaming(normal.law):
+        steps = midpoints(normal, count)
+    return march(normal, law, steps, observer)

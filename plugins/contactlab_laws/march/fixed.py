@@ -1,0 +1,196 @@
+"""How many even steps an impact needs, and what is done if fewer were asked for."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab.contracts import (
+    Integrator,
+    NormalMotion,
+    Observer,
+    SteppedTangentialLaw,
+    Steps,
+    TangentialLaw,
+    TangentialMotion,
+    faults,
+)
+from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import for_share
+from contactlab.numeric.checks import Real, count, flag
+from contactlab_laws.march.march import march
+
+#: Largest omega dt of the fastest tangential oscillation. At 2 the leapfrog is unstable (theory
+#: §4) and wrong by any amount; below it is stable, but useless well before: at 1/2 the
+#: phase is off by 1 % a radian.
+LARGEST_PHASE_STEP = 0.5
+#: The leapfrog's phase runs ahead by (omega dt)²/24 a radian. Where microslip damps the oscillation
+#: that is forgotten with it; where a law has none it adds up over the impact, to no more than
+#: this, in radians: an error of up to a third of it over the range, whatever chi.
+LARGEST_LEAD = 0.05
+#: The normal load is half an oscillation, and is resolved alike whatever the tangential law.
+LEAST_STEPS = math.ceil(math.pi / LARGEST_PHASE_STEP)
+#: More steps than this are refused, whoever asks for them.
+MOST_STEPS = 2_000_000
+#: Ratio of one number of steps to the next where they are raised.
+RAISE = 1.25
+
+#: The march of impacts that all take the same number of steps.
+EvenMarch = Callable[[NormalMotion, int], TangentialMotion]
+
+
+def needed_steps(normal: NormalMotion, law: TangentialLaw) -> Any:
+    """Return the least number of steps an impact that resolve omega = sqrt(stiffness/mass).
+
+    A float, or an array of the batch shape; ``LEAST_STEPS`` for a law without stiffness.
+    """
+    assert isinstance(law, SteppedTangentialLaw)
+    scene = normal.scene
+    omega = np.sqrt(law.stiffness(scene, normal) / scene.pair.tangential_mass)
+    radians = omega * normal.duration
+    steps = radians / LARGEST_PHASE_STEP
+    if "partial_slip" not in law.offers:
+        steps = np.maximum(steps, radians * np.sqrt(radians / (24.0 * LARGEST_LEAD)))
+    return np.maximum(np.ceil(steps), float(LEAST_STEPS))
+
+
+def refined(steps: int, needed: Any) -> Any:
+    """Return ``steps``, or the first number of a sequence that grows from there that is enough.
+
+    Taken from a sequence, the impacts of a batch fall into a few groups of equal steps.
+    """
+    if isinstance(needed, float) and needed <= steps:
+        return float(steps)
+    sequence = [float(steps)]
+    while sequence[-1] < min(float(np.nanmax(needed)), MOST_STEPS):
+        sequence.append(min(math.ceil(sequence[-1] * RAISE), MOST_STEPS))
+    sequence.append(np.inf)
+    return np.array(sequence)[np.searchsorted(sequence, needed)]
+
+
+def refusal(steps: int, needed: float) -> str:
+    """Return the detail of ``TOO_FEW_STEPS``."""
+    return f"steps = {steps}; this scene needs at least {needed:.6g}."
+
+
+def in_groups(
+    normal: NormalMotion, steps: int, needed: Any, taken: Any, even: EvenMarch
+) -> TangentialMotion:
+    """Return the motion of impacts, each marched in the steps that it would take alone.
+
+    Parameters
+    ----------
+    normal : NormalMotion
+    steps : int
+        Asked for, for the refusal.
+    needed, taken : float or array
+        Steps that an impact needs, and those that it takes.
+    even : callable
+        Marches impacts that take the same number of steps.
+    """
+    shape = normal.scene.shape
+    possible = (needed <= taken) & (taken <= MOST_STEPS)
+    if np.all(possible) and np.min(taken) == np.max(taken):
+        return even(normal, int(np.max(taken)))
+    if not shape:
+        return TangentialMotion.nothing(shape, Status.TOO_FEW_STEPS, refusal(steps, needed))
+    taken = np.broadcast_to(np.where(possible, taken, 0), shape)
+    needed = np.broadcast_to(needed, shape)
+    parts = []
+    for number in np.unique(taken).tolist():
+        where = taken == number
+        if number:
+            motion = even(normal.take(where), int(number))
+        else:
+            detail = [refusal(steps, least) for least in needed[where].tolist()]
+            motion = TangentialMotion.nothing((len(detail),), Status.TOO_FEW_STEPS, detail)
+        parts.append((where, motion))
+    return TangentialMotion.merged(parts, shape)
+
+
+@attrs.frozen(kw_only=True)
+class FixedSteps(Integrator):
+    """Even steps over the contact's duration, whatever the normal law; a subclass samples them.
+
+    Parameters
+    ----------
+    steps : int
+        Steps from first touch to separation.
+    refine : bool
+        Where ``steps`` are too few for the stiffness of the law: take more (the default),
+        or refuse with the status ``TOO_FEW_STEPS`` and the number needed.
+    """
+
+    resolution: ClassVar[str | None] = "steps"
+    order: ClassVar[int | None] = 2
+    tangential_contract: ClassVar[Any] = SteppedTangentialLaw
+
+    steps: int = count(default=200, most=MOST_STEPS)
+    refine: bool = flag(default=True)
+
+    @abstractmethod
+    def divide(self, normal: NormalMotion, count: int) -> Steps:
+        """Return ``count`` steps of a normal motion."""
+
+    def _taken(self, needed: Any) -> Any:
+        """Return how many steps each impact takes, more than ``steps`` where those are too few."""
+        return refined(self.steps, needed) if self.refine else float(self.steps)
+
+    def resolution_for(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
+        """Return how many steps each impact takes."""
+        steps: Real = self._taken(needed_steps(normal, tangential))
+        return steps
+
+    def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
+        """Return what the tangential law declares for as many steps."""
+        steps: Any = self.resolution_for(normal, tangential, scene)
+        return tangential.psi2_error(scene, normal, steps)
+
+    def remarks(
+        self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
+    ) -> tuple[str, ...]:
+        """Return a sentence where the steps are too few: what is taken instead, or needed."""
+        needed = needed_steps(normal, tangential)
+        most = float(np.nanmax(needed))
+        if most <= self.steps:
+            return ()
+        share = for_share(np.broadcast_to(needed > self.steps, scene.shape))
+        if self.refine and most <= MOST_STEPS:
+            to = int(np.max(refined(self.steps, needed)))
+            raised = f"steps raised from {self.steps} to {to}{share}"
+            return (f"{raised}: fewer do not resolve the stiffness",)
+        return (f"{self.steps} steps are too few{share}: this scene needs {most:.6g}",)
+
+    def integrate(
+        self,
+        normal: NormalMotion,
+        tangential: TangentialLaw,
+        scene: Scene,
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
+        """Return the motion, with more steps than asked for where those are too few.
+
+        Impacts that are observed take as many steps as any of them needs: one time axis.
+        """
+        law = tangential
+        assert isinstance(law, SteppedTangentialLaw)
+
+        def even(normal: NormalMotion, number: int) -> TangentialMotion:
+            with faults.blaming(normal.law):
+                steps = self.divide(normal, number)
+            return march(normal, law, steps, observer)
+
+        try:
+            with faults.blaming(law):
+                needed = needed_steps(normal, law)
+            if observer is not None:
+                needed = float(np.max(needed))
+            return in_groups(normal, self.steps, needed, self._taken(needed), even)
+        except faults.LawFaultError as fault:
+            return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)

@@ -1,0 +1,206 @@
+"""The march that every scheme of even steps shares: drift, ask the law, kick."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from contactlab.contracts import (
+    AllStepsResponse,
+    AllStepsTangentialLaw,
+    Increment,
+    Law,
+    NormalContact,
+    NormalMotion,
+    Observer,
+    Sample,
+    SteppedTangentialLaw,
+    Steps,
+    TangentialMotion,
+    faults,
+)
+from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import filled, locked, spread
+from contactlab.numeric.checks import Real, shown
+from contactlab_laws.march.division import one_by_one
+
+
+def march(
+    normal: NormalMotion, law: SteppedTangentialLaw, steps: Steps, observer: Observer | None
+) -> TangentialMotion:
+    """Return the tangential motion along ``steps``: all at once if the law can, else one by one.
+
+    Parameters
+    ----------
+    normal : NormalMotion
+    law : SteppedTangentialLaw
+    steps : Steps
+        Of the normal motion.
+    observer : callable or None
+    """
+    if (complaint := _unsound(normal, steps)) is not None:
+        return TangentialMotion.nothing(normal.scene.shape, Status.NON_FINITE, complaint)
+    if observer is None and isinstance(law, AllStepsTangentialLaw):
+        motion = _all_at_once(normal, law, steps)
+        if motion is not None:
+            return motion
+    return _one_by_one(normal, law, steps, observer)
+
+
+def _all_at_once(
+    normal: NormalMotion, law: AllStepsTangentialLaw, steps: Steps
+) -> TangentialMotion | None:
+    """Return the tangential motion from a law that takes all steps in one call, if it does."""
+    scene = normal.scene
+    try:
+        with faults.blaming(law):
+            response = law.advance_all(scene, normal, steps)
+            if response is None:
+                return None
+            if (complaint := _malformed(response, scene, len(steps.kick))) is not None:
+                raise faults.LawFaultError(Status.MALFORMED, faults.sentence(law, complaint, 1))
+            force, count = response.force, len(response.force)
+            kick = steps.kick[:count] / scene.pair.tangential_mass
+            change = -np.einsum("k...,k...->...", force, kick)  # makes no table of products
+    except faults.LawFaultError as found:
+        return TangentialMotion.nothing(scene.shape, found.status, found.detail)
+    fault = None
+    if response.settled is not True and not np.all(response.settled):
+        detail = faults.sentence(law, "no division found", count + 1)
+        fault = faults.LawFaultError(Status.UNSETTLED, detail)
+    elif not np.isfinite(change).all():
+        step = int((~np.isfinite(force)).reshape(count, -1).any(axis=1).argmax())
+        detail = faults.sentence(law, f"force {shown(force[step])}", step + 1)
+        fault = faults.LawFaultError(Status.NON_FINITE, detail)
+    return _ended(normal, law, change, response.friction_work, count, fault)
+
+
+def _malformed(response: AllStepsResponse, scene: Scene, steps: int) -> str | None:
+    """Return what is wrong with an answer to all steps: its kind, or its shape."""
+    force, work, settled = response
+    if not isinstance(force, np.ndarray) or not force.ndim or faults.malformed(force, force.shape):
+        return f"the forces {shown(force)}"
+    count = len(force)
+    missing = count > steps or (count < steps and np.all(settled))
+    if missing or force.shape[1:] != scene.shape:
+        given = f"for {steps} steps of a scene of shape {scene.shape}"
+        return f"forces of shape {force.shape} {given}"
+    return f"friction work {shown(work)}" if faults.malformed(work, scene.shape) else None
+
+
+def _one_by_one(
+    normal: NormalMotion, law: SteppedTangentialLaw, steps: Steps, observer: Observer | None
+) -> TangentialMotion:
+    """Return the tangential motion, the law asked in every step.
+
+    The change of velocity is summed apart from the velocity, which may be so large
+    that it would swallow the change (theory §8).
+
+    Parameters
+    ----------
+    normal : NormalMotion
+    law : SteppedTangentialLaw
+    steps : Steps
+    observer : callable or None
+    """
+    scene = normal.scene
+    shape, initial, mass = scene.shape, scene.slip_velocity, scene.pair.tangential_mass
+    single = not shape
+    change: Real = 0.0 if single else np.zeros(shape)
+    work: Real = 0.0 if single else np.zeros(shape)
+    nothing = 0.0 * change
+    before = NormalContact(nothing, nothing, nothing, nothing)
+    fault, count = None, 0
+    velocity: Real = locked(initial)
+    time: Real = 0.0
+    try:
+        state = law.start(scene, normal)
+        for step in one_by_one(steps):
+            time, contact = step.time, step.contact
+            count += 1
+            displacement = velocity * step.drift
+            if not single:
+                locked(velocity), locked(displacement)
+            increment = Increment(displacement, velocity, step.friction_load, step.kick)
+            response, state = law.advance(state, increment, before, contact)
+            force, lost = response.force, response.friction_work
+            if not (single and isinstance(force, float) and isinstance(lost, float)):
+                for answer in (force, lost):
+                    if faults.malformed(answer, shape):
+                        raise faults.LawFaultError(Status.MALFORMED, f"the answer {shown(answer)}")
+            slowed = force * (step.kick / mass)
+            change = change - slowed
+            work = work + lost
+            before = contact
+            if observer is not None:
+                middle, fields = velocity - 0.5 * slowed, partial(law.fields, state)
+                moment = step.time, step.approach, step.rate
+                observer(Sample(*moment, contact, middle, force, fields))
+            velocity = initial + change
+            if response.settled is not True and not np.all(response.settled):
+                raise faults.LawFaultError(Status.UNSETTLED, "no division found")
+            if not (math.isfinite(force) if single else np.isfinite(force).all()):
+                raise faults.LawFaultError(Status.NON_FINITE, f"force {shown(force)}")
+    except KeyboardInterrupt:
+        raise
+    except faults.LawFaultError as found:
+        sentence = faults.sentence(law, found.detail, count, time)
+        fault = faults.LawFaultError(found.status, sentence)
+    except BaseException as error:  # a plug-in may not end the process
+        sentence = faults.sentence(law, faults.raised(error), count, time)
+        fault = faults.LawFaultError(Status.LAW_RAISED, sentence)
+    return _ended(normal, law, change, work, count, fault)
+
+
+def _ended(
+    normal: NormalMotion,
+    law: Law,
+    change: Real,
+    work: Real,
+    count: int,
+    fault: faults.LawFaultError | None,
+) -> TangentialMotion:
+    """Return the motion as it ended; friction work that is not finite is a failure too.
+
+    Parameters
+    ----------
+    normal : NormalMotion
+    law : Law
+        Whose failure it is.
+    change, work : float or array
+        Change of slip velocity (m/s) and friction work (J).
+    count : int
+        Steps taken.
+    fault : LawFaultError or None
+        What ended it before separation.
+    """
+    if fault is None and not np.all(np.isfinite(work)):
+        detail = faults.sentence(law, f"friction work {shown(work)}", count)
+        fault = faults.LawFaultError(Status.NON_FINITE, detail)
+    shape = normal.scene.shape
+    return TangentialMotion(
+        slip_velocity_change=spread(change, shape),
+        friction_work=spread(work, shape),
+        status=filled(Status.SUCCESS if fault is None else fault.status, shape),
+        detail="" if fault is None else fault.detail,
+        counters={"steps": count},
+    )
+
+
+def _unsound(normal: NormalMotion, steps: Steps) -> str | None:
+    """Return what is wrong with a normal motion that is not finite: then no march is begun.
+
+    Not left to the tangential law: where the load is infinite Coulomb's cap is no cap, and
+    the answer would look right.
+    """
+    for column in (*steps.contact, *steps[1:4]):
+        if not np.isfinite(column).all():
+            bad = ~np.isfinite(column).reshape(len(column), -1).all(axis=1)
+            count: int = int(bad.argmax())
+            what: Any = shown(column[count])
+            return faults.sentence(normal.law, what, count + 1, steps.time[count])
+    return None

@@ -1,0 +1,111 @@
+"""A contact of two springs with a slider: slip and stick of a whole impact."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab.contracts import NormalMotion, WholeImpact, WholeImpactTangentialLaw
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import POSITIVE, quantity, refuse
+from contactlab_laws.stronge.lumped import Rebound, rebound
+
+#: Of the energy books, over the energy at the start.
+ROUNDING = 1e-9
+#: Above this ratio of the frequencies the oscillations of one impact are not followed: chi = 5e7.
+MOST_FREQUENCY = 1e4
+
+
+@attrs.frozen(kw_only=True)
+class Stronge(WholeImpactTangentialLaw):
+    """The lumped contact: a normal and a tangential spring, the tangential one on a slider.
+
+    The normal spring has k_n in compression and k_n/e² in restitution, e that of the normal
+    law's motion; the tangential one k_t throughout. Between the changes of slip and stick
+    the motion is one of sines and cosines, so nothing is marched. The contact sticks at first if
+    v_x < mu v1 k_n/k_t. The true normal motion enters by e alone: the course is told by nobody.
+
+    Parameters
+    ----------
+    stiffness_ratio : float, optional
+        k_t/k_n, Stronge's 1/eta²; kappa of the bodies, Mindlin's ratio, if not given. With it
+        the ratio of the natural frequencies is sqrt(2 chi).
+
+    References
+    ----------
+    Stronge, Int. J. Impact Eng. 15 (1994) 435-450, doi:10.1016/0734-743X(94)80027-7; Stronge,
+    Impact Mechanics (2nd ed., 2018), ch. 5.
+    """
+
+    api_version: ClassVar[int] = 2
+    expected_failures: ClassVar[Mapping[str, str]] = {
+        "impact_reference": "one spring for the whole contact: there is no partial slip",
+    }
+
+    stiffness_ratio: float | None = quantity("1", rule=POSITIVE, default=None)
+
+    @property
+    def books_bound(self) -> float:
+        """Return the bound of rounding: slip and stick are closed forms."""
+        return ROUNDING
+
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return slip and stick of every impact."""
+        pair = scene.pair
+        ratio = pair.stiffness_ratio if self.stiffness_ratio is None else self.stiffness_ratio
+        with np.errstate(all="ignore"):
+            unit: Any = scene.friction_coefficient * scene.normal_speed / ratio
+            incidence = np.abs(scene.slip_velocity) / unit
+            frequency = np.sqrt(ratio * pair.normal_mass / pair.tangential_mass)
+            # The impulse of restitution over that of compression; not below zero by rounding.
+            bounce = normal.total_load_impulse / (pair.normal_mass * scene.normal_speed) - 1.0
+        known = super().whole_impacts(scene, normal)
+        change, work = _of_each(incidence, frequency, np.maximum(bounce, 0.0), scene.shape)
+        answer = WholeImpact(
+            where=True,
+            slip_velocity_change=np.sign(scene.slip_velocity) * change * unit,
+            friction_work=pair.tangential_mass * np.square(unit) * work,
+            reason="two springs and a slider: sines and cosines between slip and stick",
+        )
+        return (*known, answer)
+
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+        """Return that the contact is lumped."""
+        return (
+            "lumped contact: springs that do not know the contact's area, and no partial slip, "
+            "which moves psi2 of solid spheres by up to about 0.4 (model, not numerical error)",
+        )
+
+
+def _of_each(incidence: Any, frequency: Any, bounce: Any, shape: tuple[int, ...]) -> Rebound:
+    """Return the rebounds of all impacts, arrays of ``shape``; 0 where there is no friction.
+
+    Parameters
+    ----------
+    incidence : float or array
+        psi before the impact, abs(v_x) k_t/(k_n mu v1); no unit.
+    frequency : float or array
+        omega, the tangential over the normal natural frequency; no unit.
+    bounce : float or array
+        e of the normal motion, at least 0.
+    shape : tuple of int
+        Which all three broadcast to.
+    """
+    columns = (np.broadcast_to(column, shape).ravel().tolist() for column in (
+        incidence, frequency, bounce
+    ))  # fmt: skip
+    answers = [_of_one(*row) for row in zip(*columns, strict=True)]
+    change, work = np.array(answers).T.reshape(2, *shape)
+    return Rebound(change, work)
+
+
+def _of_one(incidence: float, frequency: float, bounce: float) -> Rebound:
+    if not 0.0 < incidence < np.inf:  # central, or smooth: answered already
+        return Rebound(0.0, 0.0)
+    if not frequency <= MOST_FREQUENCY:
+        why = f"must be at most {MOST_FREQUENCY:g}: each oscillation is followed"
+        raise refuse("ratio of natural frequencies", frequency, why, "take tangential.fronts")
+    return rebound(incidence, frequency, bounce)

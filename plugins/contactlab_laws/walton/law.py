@@ -1,0 +1,76 @@
+"""Hard spheres: gross slip, or a constant restitution of the slip velocity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab.contracts import NormalMotion, WholeImpact, WholeImpactTangentialLaw
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Rule, quantity
+
+#: Of the energy books, over the energy at the start.
+ROUNDING = 1e-9
+SHARE = Rule(
+    lambda value: (value >= -1.0) & (value <= 1.0),
+    "must lie in [-1, 1]: -1 without friction, 0 as rigid bodies, 1 with all of it reversed",
+)
+
+
+@attrs.frozen(kw_only=True)
+class Walton(WholeImpactTangentialLaw):
+    """The lesser of two tangential impulses: mu times the normal one, (1 + beta_0) M_t v_x.
+
+    Of the three parameters the restitution e is that of the normal law, whatever it is: the
+    impulse of slip is mu (1 + e) M_n v1, that of the friction load. It says nothing of the
+    course of an impact.
+
+    Parameters
+    ----------
+    slip_restitution : float
+        beta_0: minus the slip velocity after over before, where the contact does not slide
+        throughout. Measured values lie near 0.4 for glass and acetate (Foerster et al. 1994).
+
+    References
+    ----------
+    Walton, in Particulate Two-Phase Flow (ed. Roco, 1993), ch. 25; Foerster, Louge, Chang &
+    Allia, Phys. Fluids 6 (1994) 1108-1115, doi:10.1063/1.868282.
+    """
+
+    api_version: ClassVar[int] = 2
+    expected_failures: ClassVar[Mapping[str, str]] = {
+        "impact_reference": "the exact solution is that of bodies which deform tangentially",
+    }
+
+    slip_restitution: float = quantity("1", rule=SHARE, default=0.4)
+
+    @property
+    def books_bound(self) -> float:
+        """Return the bound of rounding: the work is the loss of the two impulses."""
+        return ROUNDING
+
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return the lesser of the two impulses."""
+        mass, speed = scene.pair.tangential_mass, np.abs(scene.slip_velocity)
+        with np.errstate(all="ignore"):
+            slipping = scene.friction_coefficient * normal.total_load_impulse / mass
+            lost = np.minimum(slipping, (1.0 + self.slip_restitution) * speed)
+            # Of a body that loses ``lost``: the mean velocity is that of before and after.
+            work = mass * lost * (speed - 0.5 * lost)
+        answer = WholeImpact(
+            where=True,
+            slip_velocity_change=-np.sign(scene.slip_velocity) * lost,
+            friction_work=work,
+            reason="hard spheres: the lesser of gross slip and a constant slip restitution",
+        )
+        return (*super().whole_impacts(scene, normal), answer)
+
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+        """Return that one number stands for the elasticity of the surfaces."""
+        return (
+            "hard spheres: one slip restitution stands for the tangential elasticity, at every "
+            "angle; it moves psi2 of solid spheres by up to about 0.8 (model, not numerical error)",
+        )
