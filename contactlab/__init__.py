@@ -39,7 +39,6 @@ from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
 from contactlab.outcome.energy import EnergyLedger
 from contactlab.outcome.result import ImpactError, ImpactResult
-from contactlab.signatures import named_arguments
 
 if TYPE_CHECKING:
     from contactlab.fitting import fit
@@ -72,7 +71,6 @@ __all__ = [
 ]
 
 
-@named_arguments("create('tangential.annulus', annuli=50)")
 def create(name: str, **options: Any) -> Any:
     """Return a new law by name: ``create("tangential.annulus", annuli=50)``.
 
@@ -93,7 +91,6 @@ def create(name: str, **options: Any) -> Any:
     return REGISTRY.create(name, **options)
 
 
-@named_arguments("read_scene('scene.toml')")
 def read_scene(path: str | Path) -> SceneFile:
     """Read a scene or a sweep, its laws and its measured values from a TOML file.
 

@@ -9,7 +9,6 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.attributes import named_attributes
 from contactlab.compose import impulses
 from contactlab.compose.collision_plan import by_rebound, collision_plan
 from contactlab.compose.rebound import damped
@@ -23,7 +22,6 @@ from contactlab.numeric.checks import Real, real, refuse
 from contactlab.outcome.energy import EnergyLedger, books
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
-from contactlab.signatures import named_arguments
 
 Array = NDArray[np.float64]
 
@@ -33,7 +31,6 @@ SAME_ANSWERS = "tangential.tabulated"
 SEPARATING = ("refuse", "pass")
 
 
-@named_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
 class Collision:
     """Both bodies after an encounter; vectors have the shape ``(..., 3)``, numbers the batch's.
@@ -209,9 +206,6 @@ class Collision:
             return Simulation()
 
 
-@named_arguments(
-    "collide(Encounter(ball, plate, 0.2, normal=[0, 0, -1], velocity=v), restitution=0.9)"
-)
 def collide(
     encounter: Encounter,
     simulation: Simulation | None = None,

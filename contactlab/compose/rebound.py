@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from contactlab.contracts.restitution import RESTITUTION
 from contactlab.numeric.checks import POSITIVE, Real, Rule, paired, real, refuse
-from contactlab.signatures import named_arguments
 
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation
@@ -57,7 +56,6 @@ def rebound(
 def rebound(
     psi1: object, chi: object, *, tolerance: float = 1e-5, derivatives: Literal[True]
 ) -> tuple[Real, Real, Real]: ...
-@named_arguments("rebound(1.2, 1.4412)")
 def rebound(
     psi1: object,
     chi: object,

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from contactlab.attributes import named_attributes
 from contactlab.compose import composition
 from contactlab.compose.composition import Laws
 from contactlab.compose.error_estimate import estimated
@@ -27,14 +26,11 @@ from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Plan, Sentence
 from contactlab.outcome.result import ImpactResult
-from contactlab.signatures import named_arguments
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
 
-@named_attributes
-@named_arguments("Simulation(tangential='annulus', integrator='symplectic')")
 @attrs.frozen(kw_only=True, init=False)
 class Simulation:
     """A normal law, a tangential law and an integrator, composed.
@@ -67,7 +63,6 @@ class Simulation:
         laws = composition.compose(normal, tangential, integrator)
         self.__attrs_init__(**laws._asdict())
 
-    @named_arguments("Simulation().plan(scene)")
     def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
         """Return what ``run`` would compute for ``scene``, what it would leave out and why.
 
@@ -80,7 +75,6 @@ class Simulation:
         """
         return _complete(prepare(self._laws, _scene(scene), _history(history)).plan, scene)
 
-    @named_arguments("Simulation().run(scene, history=True)")
     def run(
         self, scene: Scene, *, history: bool | str = False, estimate_error: bool = False
     ) -> ImpactResult:
@@ -122,7 +116,6 @@ class Simulation:
             return result
         return attrs.evolve(result, psi2_error_estimate=estimated(self, result))
 
-    @named_arguments("Simulation().sweep(scenes)")
     def sweep(
         self,
         scenes: Scene | Sequence[Scene],

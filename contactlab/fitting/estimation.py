@@ -22,7 +22,6 @@ from contactlab.fitting.suspects import suspects
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
 from contactlab.scene_file import SceneFile
-from contactlab.signatures import named_arguments
 
 Array = NDArray[np.float64]
 
@@ -36,7 +35,6 @@ SAME = 1e-3
 AT_END = 1e-6
 
 
-@named_arguments("fit('impacts.csv', 'bodies.toml', parameters=['friction_coefficient'])")
 def fit(
     measurements: object,
     scene: Scene | SceneFile | str | Path | None = None,

@@ -10,7 +10,6 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.attributes import named_attributes
 from contactlab.fitting.measurements import Measurements
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.json_values import json_value
@@ -43,7 +42,6 @@ class Estimate:
     bootstrap: Interval | None = None
 
 
-@named_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class Fit:
     """Parameters that meet measured impacts best, and how well they do.

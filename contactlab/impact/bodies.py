@@ -8,7 +8,6 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.attributes import named_attributes
 from contactlab.numeric.checks import (
     GYRATION,
     POISSON,
@@ -19,14 +18,11 @@ from contactlab.numeric.checks import (
     real,
     refuse,
 )
-from contactlab.signatures import named_arguments
 
 #: K of a solid homogeneous sphere: K² = 2/5.
 SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)
 
 
-@named_attributes
-@named_arguments("Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)")
 @attrs.frozen(init=False, kw_only=True)
 class Material:
     """A linear elastic, isotropic material.
@@ -80,7 +76,6 @@ class Material:
         self.__attrs_init__(shear_modulus=shear, poisson_ratio=ratio, density=density)
 
     @classmethod
-    @named_arguments("Material.named('steel')")
     def named(cls, name: str) -> Material:
         """Return a material of the collection by name: see ``contactlab.impact.materials``.
 
@@ -110,8 +105,6 @@ def _material() -> Any:
     )
 
 
-@named_attributes
-@named_arguments("Sphere(0.0127, steel)")
 @attrs.frozen
 class Sphere:
     """An elastic sphere.
@@ -154,8 +147,6 @@ class Sphere:
         object.__setattr__(self, "mass", real("mass", solid, rule=POSITIVE))
 
 
-@named_attributes
-@named_arguments("HalfSpace(steel)")
 @attrs.frozen
 class HalfSpace:
     """An elastic body with a plane surface, so large that no impact changes its motion.
@@ -169,8 +160,6 @@ class HalfSpace:
     material: Material = _material()
 
 
-@named_attributes
-@named_arguments("Pair.of(Sphere(0.0127, steel), HalfSpace(glass))")
 @attrs.frozen(kw_only=True)
 class Pair:
     """What the laws need to know of two bodies in contact: theory §1.

@@ -10,13 +10,11 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.attributes import named_attributes
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import NON_NEGATIVE, Real, instance, quantity, refuse
 from contactlab.numeric.vectors import LEAST, components, difference, first_of, square_root, vector
-from contactlab.signatures import named_arguments
 
 Array = NDArray[np.float64]
 
@@ -43,8 +41,6 @@ class Contact(NamedTuple):
     slip: Any
 
 
-@named_attributes
-@named_arguments("Encounter(ball, plate, friction_coefficient=0.2, normal=[0, 0, -1], velocity=v)")
 @attrs.frozen
 class Encounter:
     """A sphere and a target as they touch, or a batch of such pairs, by vectors in SI units.

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from contactlab.attributes import named_attributes
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import (
@@ -22,7 +21,6 @@ from contactlab.numeric.checks import (
     real,
     refuse,
 )
-from contactlab.signatures import named_arguments
 
 if TYPE_CHECKING:
     from contactlab.impact.grid import Grid
@@ -37,8 +35,6 @@ OBLIQUE = Rule(
 )
 
 
-@named_attributes
-@named_arguments("Scene(ball, plate, friction_coefficient=0.2, normal_speed=1.0)")
 @attrs.frozen
 class Scene:
     """One oblique impact, or a batch of them, in SI units.
@@ -160,7 +156,6 @@ class Scene:
             )
 
     @classmethod
-    @named_arguments("Scene.at_angle(ball, plate, 0.2, speed=3.9, angle_deg=30)")
     def at_angle(
         cls,
         sphere: Sphere,
@@ -200,7 +195,6 @@ class Scene:
         return cls(sphere, target, friction_coefficient, fast * ahead, fast * aside, spin)
 
     @classmethod
-    @named_arguments("Scene.nondimensional(psi1=1.2, chi=1.4412)")
     def nondimensional(cls, *, psi1: Any, chi: Any) -> Scene:
         """Return the scene of the paper's own two parameters, eqs (29) and (38).
 
@@ -261,7 +255,6 @@ class Scene:
         return grid(*bodies, **entries)
 
     @classmethod
-    @named_arguments("Scene.stack([one, other])")
     def stack(cls, scenes: Sequence[Scene]) -> Scene:
         """Return one batch scene of shape (len(scenes),) from scalar scenes.
 

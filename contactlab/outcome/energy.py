@@ -7,7 +7,6 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.attributes import named_attributes
 from contactlab.contracts.status import Status
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
@@ -28,7 +27,6 @@ def _energy() -> Any:
     return attrs.field(metadata={"unit": "J"})
 
 
-@named_attributes
 @attrs.frozen(kw_only=True, eq=False)
 class EnergyLedger:
     """Kinetic energy of the relative motion at the contact, in J.

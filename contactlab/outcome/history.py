@@ -9,7 +9,6 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.attributes import named_attributes
 from contactlab.compose.answers import Answer
 from contactlab.contracts.integrator import Observer, Sample
 from contactlab.contracts.motion import NormalMotion
@@ -29,7 +28,6 @@ def _column(unit: str) -> Any:
     return attrs.field(metadata={"unit": unit})
 
 
-@named_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class History:
     """Arrays over the instants of an impact, shape (K, ...): instants first, then the batch.

@@ -8,7 +8,6 @@ from typing import Any, Self
 import attrs
 import numpy as np
 
-from contactlab.attributes import named_attributes
 from contactlab.contracts.integrator import TangentialMotion
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
@@ -16,7 +15,6 @@ from contactlab.numeric.arrays import locked, spread
 from contactlab.numeric.checks import Real
 
 
-@named_attributes
 @attrs.frozen(kw_only=True, eq=False)
 class Motion(TangentialMotion):
     """A tangential motion, and how the normal motion that it went along began and ended.

@@ -11,7 +11,6 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.attributes import named_attributes
 from contactlab.numeric.arrays import share, taken
 from contactlab.numeric.checks import Real
 from contactlab.outcome.json_values import json_value
@@ -36,7 +35,6 @@ class Sentence(NamedTuple):
 Sentences = tuple[Sentence, ...]
 
 
-@named_attributes
 @attrs.frozen(kw_only=True, eq=False)
 class Plan:
     """What will be computed, what is left out, and what to be wary of.

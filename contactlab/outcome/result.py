@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from contactlab.attributes import named_attributes
 from contactlab.contracts.status import Status
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.scene import Scene
@@ -41,7 +40,6 @@ class ImpactError(RuntimeError):
         return str(self.args[0])
 
 
-@named_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class ImpactResult:
     """Outcome of one impact, or of a batch: every entry has the scene's shape.

@@ -11,7 +11,6 @@ from typing import Any
 
 import attrs
 
-from contactlab.attributes import named_attributes
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.grid import over
 from contactlab.impact.scene import Scene
@@ -37,7 +36,6 @@ DEEPEST = 20
 ABOUT_KEYS = ("title", "citation", "notes")
 
 
-@named_attributes
 @attrs.frozen(kw_only=True, eq=False)
 class SceneFile:
     """What a scene file says.

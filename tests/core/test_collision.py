@@ -99,7 +99,6 @@ def test_a_moving_half_space():
         ({"sphere": None}, "sphere"),
         ({"target": STEEL}, "target"),
         ({"friction_coefficient": -1.0}, "friction_coefficient"),
-        ({"mu": 0.1}, "friction_coefficient"),
     ],
 )
 def test_refusals(changes, words):

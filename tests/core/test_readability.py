@@ -9,8 +9,6 @@ import contactlab
 PACKAGE = Path(contactlab.__file__).parent
 PLUGINS = PACKAGE.parent / "plugins"
 ROOMS = re.findall(r"^``(\w+)`` ", contactlab.__doc__, flags=re.MULTILINE)
-#: Files that stand outside the rooms, to be deleted: refusals of unknown names.
-OUTSIDE = {"attributes", "signatures"}
 #: Arrows that point upward still, from a file to a room. None may come; one that goes, goes here.
 UPWARD = {
     ("contracts/faults.py", "compose"),
@@ -45,14 +43,14 @@ def upward_imports():
         for level, room in enumerate(ROOMS)
         for file in (PACKAGE / room).rglob("*.py")
         for other in imported_rooms(file.read_text())
-        if other not in {*ROOMS[: level + 1], *OUTSIDE}
+        if other not in ROOMS[: level + 1]
     }
 
 
 def test_the_map_of_the_package_names_every_room():
     paths = (path for path in PACKAGE.iterdir() if (path.is_dir() or path.suffix == ".py"))
     found = {path.stem for path in paths if not path.name.startswith("__")}
-    assert sorted(ROOMS) == sorted(found - {"guide", *OUTSIDE})
+    assert sorted(ROOMS) == sorted(found - {"guide"})
 
 
 def test_imports_point_downward():

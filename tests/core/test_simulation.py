@@ -252,3 +252,10 @@ def test_an_impact_given_up_for_its_neighbour_is_followed_by_itself():
     assert [one.name for one in result.status] == ["SUCCESS", "SUCCESS", "NON_FINITE", "SUCCESS"]
     alone = Simulation(tangential="springs", integrator=GivesUpNeighbours()).run(scene.take(1))
     assert result.psi2[1] == pytest.approx(alone.psi2, abs=1e-12)
+
+
+def test_values_of_the_wrong_kind_are_refused_with_what_was_meant():
+    with pytest.raises(ValueError, match=r"by its name: Material\.named\('steel'\)"):
+        Sphere(0.01, "steel")
+    with pytest.raises(ValueError, match=r"of a file: read_scene\(path\)"):
+        Simulation().run("scene.toml")

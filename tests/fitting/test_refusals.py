@@ -160,7 +160,6 @@ def test_a_law_that_is_not_that_of_the_data_ends_at_the_end_of_a_range():
         ({"bootstrap": -1}, "bootstrap"),
         ({"parameters": ["restitution"]}, "it is an option of normal.hunt_crossley, "),
         ({"parameters": ["normal.restitution"]}, "normal.tsuji"),
-        ({"paramters": ["friction_coefficient"]}, "did you mean 'parameters'"),
     ],
 )
 def test_bad_arguments(arguments, words):
