@@ -20,8 +20,8 @@ import attrs
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
+from contactlab.outcome.columns import json_value
 from contactlab.outcome.files import write_table
-from contactlab.outcome.json_values import json_value
 from contactlab.outcome.tables import time
 from contactlab.study.bench_methods import methods
 from contactlab.study.work_precision import Benchmark, Row, bench

@@ -32,7 +32,7 @@ from contactlab.compose.registry import KINDS, REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import nearest
-from contactlab.outcome.quantities import quantity_named
+from contactlab.outcome.columns import quantity_named
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.study.compare import Comparison, compare
 from contactlab.study.compare_export import plain_score, to_dict, write_csv

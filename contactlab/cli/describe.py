@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from contactlab.cli.table import table
-from contactlab.compose.collision import Collision
-from contactlab.outcome.export import VECTORS
+from contactlab.compose.collision import VECTORS, Collision
+from contactlab.impact.grid import entry_unit
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import answer, closing, largest_imbalance, sections, sweep_section
-from contactlab.scene_file.entries import entry_unit
 
 
 def describe(

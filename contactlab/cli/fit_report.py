@@ -9,10 +9,10 @@ import numpy as np
 
 from contactlab.cli.table import table
 from contactlab.fitting import Fit, Ranked
+from contactlab.impact.grid import entry_unit
+from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.files import write_table
-from contactlab.outcome.quantities import QUANTITIES
 from contactlab.outcome.tables import heading
-from contactlab.scene_file.entries import entry_unit
 
 
 def describe(found: Fit) -> str:

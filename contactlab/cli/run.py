@@ -28,8 +28,8 @@ from contactlab.cli.scene import add_scene, given
 from contactlab.compose.collision import Collision
 from contactlab.contracts.status import Status
 from contactlab.outcome import export
+from contactlab.outcome.columns import json_value
 from contactlab.outcome.export import WRITERS
-from contactlab.outcome.json_values import json_value
 from contactlab.outcome.result import ImpactResult
 
 
@@ -142,7 +142,7 @@ def report(
         swept = {name: json_value(values) for name, values in (varied or {}).items()}
         content = export.to_dict(result) | {"varied": swept}
         if collision is not None:
-            content["collision"] = export.vectors(collision)
+            content["collision"] = collision.to_dict()
         print(json.dumps(content, indent=2, allow_nan=False))
     failures = result.failures
     if not failures:

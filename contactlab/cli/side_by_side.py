@@ -8,11 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from contactlab.cli.table import table
-from contactlab.outcome.export import COMPARISON_TABLE
-from contactlab.outcome.quantities import QUANTITIES
+from contactlab.impact.grid import entry_unit
+from contactlab.outcome.columns import COMPARISON_TABLE, QUANTITIES
 from contactlab.outcome.tables import heading, number, time
 from contactlab.scene_file import SceneFile
-from contactlab.scene_file.entries import entry_unit
 from contactlab.study.compare import Agreement, Comparison
 from contactlab.study.scores import Score
 

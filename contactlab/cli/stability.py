@@ -20,8 +20,8 @@ import numpy as np
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
+from contactlab.outcome.columns import json_value
 from contactlab.outcome.files import write_table
-from contactlab.outcome.json_values import json_value
 from contactlab.study.bench_methods import methods
 from contactlab.study.model_error import ModelError
 from contactlab.study.stability import Stability, stability

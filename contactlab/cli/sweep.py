@@ -23,13 +23,14 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.run import draw, report
 from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
 from contactlab.cli.table import table
+from contactlab.impact.grid import entry_unit
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.export import COLUMNS, WRITERS, csv_heading
+from contactlab.outcome.columns import COLUMNS, csv_heading
+from contactlab.outcome.export import WRITERS
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import evenly, sweep_section
 from contactlab.scene_file import LawChoice, read_scene
-from contactlab.scene_file.entries import entry_unit
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -86,7 +87,7 @@ def execute(arguments: argparse.Namespace) -> int:
         _clear(keep, result)
     varied = file.varied if file else {}
     if arguments.csv:
-        units = {name: unit for name, unit, _ in COLUMNS}
+        units = {column.name: column.unit for column in COLUMNS}
         print(",".join(csv_heading(name, units[name], result.scene) for name in SHOWN))
         for psi1, chi, psi2, status in _rows(result):
             print(f"{psi1!r},{chi!r},{psi2!r},{status}")

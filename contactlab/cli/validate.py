@@ -19,8 +19,7 @@ import attrs
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import WIDTH, table
-from contactlab.outcome.json_values import json_value
-from contactlab.outcome.quantities import QUANTITIES
+from contactlab.outcome.columns import QUANTITIES, json_value
 from contactlab.outcome.tables import heading
 from contactlab.study.evidence import Evidence, gather
 from contactlab.study.validation import Finding, judged, validate

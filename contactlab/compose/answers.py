@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import faults
+from contactlab.contracts.integrator import Observer, Sample
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
@@ -21,6 +23,10 @@ Mask = NDArray[np.bool_]
 #: The masks of a single impact: NumPy takes longer to make one than to say what it says.
 ONE: Mask = locked(np.array(True))
 NONE: Mask = locked(np.array(False))
+
+
+#: Instants in the history of an impact that is not marched.
+INSTANTS = 201
 
 
 class Answer(NamedTuple):
@@ -73,6 +79,33 @@ def answers(
     if history and left.any():
         return []
     return found
+
+
+def show(normal: NormalMotion, known: Sequence[Answer], observer: Observer) -> None:
+    """Show ``observer`` the impacts that have whole-impact answers, at ``INSTANTS`` of each.
+
+    NaN stands for slip velocity and force where an answer has no ``course``.
+    """
+    scene = normal.scene
+    for phase in np.linspace(0.0, np.pi, INSTANTS).tolist():
+        time, approach, rate, contact, impulse = normal.at(phase)
+        change: Any = np.full(scene.shape, np.nan)
+        force: Any = np.full(scene.shape, np.nan)
+        for where, answer in known:
+            if answer.course is not None:
+                gained, acting = answer.course(impulse, contact.friction_load)
+                change, force = np.where(where, gained, change), np.where(where, acting, force)
+        observer(
+            Sample(
+                time=time,
+                approach=approach,
+                normal_velocity=rate,
+                contact=contact,
+                slip_velocity=scene.slip_velocity + change,
+                tangential_force=force,
+                fields=dict,
+            )
+        )
 
 
 def _checked(known: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> WholeImpact:

@@ -19,6 +19,7 @@ from contactlab.impact.bodies import Sphere
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import Real, real, refuse
+from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
@@ -29,6 +30,11 @@ Array = NDArray[np.float64]
 #: their own; where it is not installed the default takes its place.
 SAME_ANSWERS = "tangential.tabulated"
 SEPARATING = ("refuse", "pass")
+#: Vectors after a collision: name and unit.
+VECTORS = (
+    ("velocity", "m/s"), ("spin", "rad/s"), ("target_velocity", "m/s"), ("target_spin", "rad/s"),
+    ("impulse", "N s"), ("contact_velocity", "m/s"), ("target_contact_velocity", "m/s"),
+)  # fmt: skip
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
@@ -91,6 +97,10 @@ class Collision:
             raise refuse("result", result, why, "run that: simulation.run(encounter.scene)")
         moved = impulses.moved(encounter, _columns(encounter, result))
         return _collision(encounter, moved, known=result)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the vectors of both bodies after the collision as plain lists."""
+        return {name: json_value(np.asarray(getattr(self, name))) for name, _ in VECTORS}
 
     def __repr__(self) -> str:
         """Return how many collided, and how it went."""

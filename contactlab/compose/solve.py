@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.compose.answers import Answer, answers
+from contactlab.compose.answers import Answer, answers, show
 from contactlab.compose.composition import Laws
 from contactlab.compose.marching import march
 from contactlab.compose.normal_motion import normal_motion
@@ -22,7 +22,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled, halves
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.energy import balanced
-from contactlab.outcome.history import Recorder, show
+from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import Plan
 

@@ -46,12 +46,6 @@ class Law(ABC):
     offers: ClassVar[frozenset[str]] = frozenset()
     resolution: ClassVar[str | None] = None
 
-    def _repr_html_(self) -> str:
-        """Return what a notebook shows: the law, its options and its sources."""
-        from contactlab.pages.notebook import law_html  # only in notebooks
-
-        return law_html(self)
-
     @property
     def expected_failures(self) -> Mapping[str, str]:
         """Checks that fail by the law's nature, with the reasons; none by default."""

@@ -24,9 +24,9 @@ from contactlab.figures.style import (
     zero_line,
 )
 from contactlab.numeric.checks import refuse
+from contactlab.outcome.columns import scaled_forces
 from contactlab.outcome.files import written
 from contactlab.outcome.result import ImpactResult
-from contactlab.study.paper_figures import scaled_forces
 
 #: Frames before, during and after contact, and how long each is shown, in ms.
 ARRIVING, IN_CONTACT, LEAVING = 14, 72, 22

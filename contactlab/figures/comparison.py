@@ -22,11 +22,9 @@ from contactlab.figures.style import (
     verbatim,
     zero_line,
 )
-from contactlab.impact.grid import Grid
-from contactlab.outcome.quantities import QUANTITIES
-from contactlab.scene_file.entries import entry_unit
+from contactlab.impact.grid import Grid, entry_unit
+from contactlab.outcome.columns import QUANTITIES, scaled_forces
 from contactlab.study.compare import Agreement, Comparison
-from contactlab.study.paper_figures import scaled_forces
 
 POINTS: dict[str, Any] = {
     "color": MEASURED_COLOUR, "linestyle": "none", "marker": "o", "markersize": 4.5,

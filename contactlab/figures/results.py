@@ -21,16 +21,12 @@ from contactlab.figures.style import (
     zero_line,
 )
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.export import unit_in
-from contactlab.outcome.history import History
-from contactlab.outcome.quantities import quantity_named
-from contactlab.outcome.result import ImpactResult
-from contactlab.study.paper_figures import scaled_forces
+from contactlab.outcome.columns import quantity_named, scaled_forces, unit_in
 
 
 def draw_result(
     axes: Axes | None,
-    result: ImpactResult,
+    result: Any,
     x: str | None,
     y: str | None,
     *,
@@ -66,9 +62,9 @@ def draw_result(
         return _quantities(drawn, result, x or "psi1", y or "psi2")
 
 
-def draw_history(axes: Axes | None, history: History, *, width: Width | None = None) -> Axes:
+def draw_history(axes: Axes | None, history: Any, *, width: Width | None = None) -> Axes:
     """Draw normal and tangential force over time, in the history's units."""
-    force, time = History.unit("normal_force"), History.unit("time")
+    force, time = history.unit("normal_force"), history.unit("time")
     with _on(axes, width) as drawn:
         zero_line(drawn)
         for number, name in enumerate(("normal_force", "tangential_force")):
@@ -95,7 +91,7 @@ def _on(axes: Axes | None, width: Width | None) -> Iterator[Axes]:
         yield pyplot.subplots(figsize=size)[1]
 
 
-def _forces(axes: Axes, result: ImpactResult) -> Axes:
+def _forces(axes: Axes, result: Any) -> Axes:
     history = result.history
     if history is None or not history.time.size:
         raise refuse(
@@ -109,7 +105,7 @@ def _forces(axes: Axes, result: ImpactResult) -> Axes:
     return axes
 
 
-def _quantities(axes: Axes, result: ImpactResult, x: str, y: str) -> Axes:
+def _quantities(axes: Axes, result: Any, x: str, y: str) -> Axes:
     """Draw one quantity of a batch over another: a curve, or points where one x has several.
 
     Parameters
@@ -138,7 +134,7 @@ def _quantities(axes: Axes, result: ImpactResult, x: str, y: str) -> Axes:
     return axes
 
 
-def _band(axes: Axes, result: ImpactResult, x: Any, y: Any, order: Any) -> None:
+def _band(axes: Axes, result: Any, x: Any, y: Any, order: Any) -> None:
     """Draw the numerical error of psi2, estimated or else declared, where it can be seen.
 
     Parameters

@@ -6,9 +6,10 @@ import math
 import re
 from typing import NamedTuple
 
+from contactlab.impact.grid import entry_unit
 from contactlab.numeric.checks import nearest
-from contactlab.outcome.quantities import QUANTITIES
-from contactlab.scene_file.entries import ENTRIES, entry_unit
+from contactlab.outcome.columns import QUANTITIES
+from contactlab.scene_file.entries import ENTRIES
 
 #: What can be measured of a rebound; everything else of a result follows from these and a law.
 MEASURABLE = (

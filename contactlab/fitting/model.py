@@ -16,9 +16,9 @@ from contactlab.fitting.parameters import Parameter, Setup
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
+from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Plan
-from contactlab.outcome.quantities import QUANTITIES
 from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.study.interrupts import uninterrupted

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from contactlab.fitting.measurements import Measurements
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.json_values import json_value
+from contactlab.outcome.columns import json_value
 
 Array = NDArray[np.float64]
 Interval = tuple[float, float]

@@ -11,11 +11,19 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.impact.bodies import Material, Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import real, refuse
 
 #: Most impacts of a grid: a slip of the finger should not fill the memory.
 MOST_IMPACTS = 10_000_000
+#: Units of the entries that a scene may be made of.
+UNITS: dict[str, str] = {
+    field.name: field.metadata["unit"]
+    for kind in (Scene, Sphere, Material)
+    for field in attrs.fields(kind)
+    if "unit" in field.metadata
+} | {"speed": "m/s", "angle_deg": "deg", "psi1": "1", "chi": "1", "young_modulus": "Pa"}
 Array = NDArray[np.float64]
 Kind = TypeVar("Kind", bound=Scene)
 
@@ -84,6 +92,11 @@ def grid(*bodies: Any, **entries: Any) -> Grid:
         make = Scene.at_angle
     made = make(*bodies, **(entries | product(axes)))
     return over(made, axes)
+
+
+def entry_unit(name: str) -> str:
+    """Return the unit of an entry, by a dotted name too: ``"sphere.radius"`` is in m."""
+    return UNITS[name.rpartition(".")[2]]
 
 
 def product(axes: Mapping[str, Any]) -> dict[str, Array]:

@@ -102,12 +102,6 @@ class Scene:
         real("tangential_velocity + spin * radius", self.slip_velocity)
         self._check_scales()
 
-    def _repr_html_(self) -> str:
-        """Return what a notebook shows: the bodies and how they meet."""
-        from contactlab.pages.notebook import scene_html  # only in notebooks
-
-        return scene_html(self)
-
     def numbers(self) -> dict[str, Real]:
         """Return every number of the scene and of its pair, by name."""
         numbers = {field.name: getattr(self.pair, field.name) for field in attrs.fields(Pair)}

@@ -12,7 +12,7 @@ from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import some
 from contactlab.numeric.checks import Real
-from contactlab.outcome.json_values import json_value
+from contactlab.outcome.columns import json_value
 from contactlab.outcome.motion import Motion
 
 #: e beyond this is energy from nothing, and not the error of a scheme: the fewest steps

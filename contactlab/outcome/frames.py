@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.impact.grid import Grid
-from contactlab.outcome import export
-from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.columns import columns as all_columns
+from contactlab.outcome.columns import unit_in
 
 
 class Labelled(NamedTuple):
@@ -30,7 +30,7 @@ class Labelled(NamedTuple):
     units: dict[str, str]
 
 
-def to_dataframe(result: ImpactResult) -> Any:
+def to_dataframe(result: Any) -> Any:
     """Return a ``pandas.DataFrame`` of one row an impact; see ``ImpactResult.to_dataframe``."""
     pandas = _needed("pandas", "to_dataframe")
     columns, axes, units = _labelled(result)
@@ -43,7 +43,7 @@ def to_dataframe(result: ImpactResult) -> Any:
     return frame
 
 
-def to_xarray(result: ImpactResult) -> Any:
+def to_xarray(result: Any) -> Any:
     """Return an ``xarray.Dataset`` with a dimension for each axis; see ``ImpactResult.to_xarray``.
 
     A batch that is no grid has the dimension ``impact``, or ``impact_0``, ``impact_1``, ...
@@ -66,14 +66,14 @@ def to_xarray(result: ImpactResult) -> Any:
     )
 
 
-def _labelled(result: ImpactResult) -> Labelled:
+def _labelled(result: Any) -> Labelled:
     scene = result.scene
     axes = dict(scene.axes) if isinstance(scene, Grid) else {}
     columns, units = {}, {}
-    for name, unit, values in export.columns(result):
+    for name, unit, values in all_columns(result):
         if values is None:  # not defined for a scene without bodies
             continue
-        units[name] = export.unit_in(unit, scene) if unit else ""
+        units[name] = unit_in(unit, scene) if unit else ""
         if name in axes:
             continue
         if name == "status":

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.answers import Answer
-from contactlab.contracts.integrator import Observer, Sample
-from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.integrator import Sample
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,9 +16,6 @@ if TYPE_CHECKING:
     from contactlab.figures.style import Width
 
 Array = NDArray[np.float64]
-
-#: Instants in the history of impacts that are not marched.
-INSTANTS = 201
 
 
 def _column(unit: str) -> Any:
@@ -109,30 +103,3 @@ class Recorder:
         keys = self._fields[0] if self._fields else {}
         fields = {key: np.array([entry[key] for entry in self._fields]) for key in keys}
         return History(**columns, fields=fields)
-
-
-def show(normal: NormalMotion, known: Sequence[Answer], observer: Observer) -> None:
-    """Call ``observer`` at instants of impacts that have whole-impact answers.
-
-    NaN stands for slip velocity and force where an answer has no ``course``.
-    """
-    scene = normal.scene
-    for phase in np.linspace(0.0, np.pi, INSTANTS).tolist():
-        time, approach, rate, contact, impulse = normal.at(phase)
-        change: Any = np.full(scene.shape, np.nan)
-        force: Any = np.full(scene.shape, np.nan)
-        for where, answer in known:
-            if answer.course is not None:
-                gained, acting = answer.course(impulse, contact.friction_load)
-                change, force = np.where(where, gained, change), np.where(where, acting, force)
-        observer(
-            Sample(
-                time=time,
-                approach=approach,
-                normal_velocity=rate,
-                contact=contact,
-                slip_velocity=scene.slip_velocity + change,
-                tangential_force=force,
-                fields=dict,
-            )
-        )

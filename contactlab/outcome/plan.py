@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import math
 import re
 from collections.abc import Sequence
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from contactlab.numeric.arrays import share, taken
 from contactlab.numeric.checks import Real
-from contactlab.outcome.json_values import json_value
+from contactlab.outcome.columns import json_value
 
 Mask = NDArray[np.bool_]
 
@@ -65,10 +66,8 @@ class Plan:
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        """Return what a notebook shows: lists of what is computed, left out and doubtful."""
-        from contactlab.pages.notebook import plan_html  # only in notebooks
-
-        return plan_html(self)
+        """Return what a notebook shows: the words of ``str``."""
+        return f"<pre>{html.escape(str(self))}</pre>"
 
     def to_dict(self) -> dict[str, Any]:
         """Return the sentences as plain lists, and the declared error."""

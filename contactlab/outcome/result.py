@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
@@ -87,10 +88,8 @@ class ImpactResult:
         return f"ImpactResult({found}; {told}; {laws})"
 
     def _repr_html_(self) -> str:
-        """Return what a notebook shows: answer, tables and plan of one impact; or a sweep's."""
-        from contactlab.pages.notebook import result_html  # only in notebooks
-
-        return result_html(self)
+        """Return what a notebook shows: the words of ``str``."""
+        return f"<pre>{html.escape(str(self))}</pre>"
 
     @property
     def status(self) -> Any:
@@ -164,6 +163,12 @@ class ImpactResult:
             return None
         share = self.scene.pair.tangential_mass / sphere.mass
         return self.scene.tangential_velocity + share * self.motion.slip_velocity_change
+
+    @property
+    def rebound_speed(self) -> Real | None:
+        """Speed of the sphere's centre in m/s; None for a non-dimensional scene."""
+        tangential = self.rebound_tangential_velocity
+        return None if tangential is None else np.hypot(self.rebound_normal_velocity, tangential)
 
     @property
     def rebound_spin(self) -> Real | None:

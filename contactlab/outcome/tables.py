@@ -11,8 +11,7 @@ import numpy as np
 from contactlab.contracts.status import Status
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.scene import Scene
-from contactlab.outcome.export import SWEEP_TABLE
-from contactlab.outcome.quantities import QUANTITIES
+from contactlab.outcome.columns import QUANTITIES, SWEEP_TABLE
 from contactlab.outcome.result import ImpactResult
 
 #: Different sentences about failed impacts that are shown.

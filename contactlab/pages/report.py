@@ -16,14 +16,14 @@ from contactlab.compose.citations import references
 from contactlab.compose.simulation import Simulation
 from contactlab.figures.comparison import differences, forces_over_contact, laws_over_sweep
 from contactlab.figures.files import as_svg
+from contactlab.impact.grid import entry_unit
 from contactlab.impact.scene import Scene
-from contactlab.outcome.quantities import QUANTITIES
+from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import closing, largest_imbalance, scene_section, sweep_section, time
 from contactlab.pages import html
 from contactlab.pages.drawing import scene_drawing
 from contactlab.scene_file import SceneFile
-from contactlab.scene_file.entries import entry_unit
 from contactlab.study.compare import Agreement, Comparison
 
 #: Rows of a sweep that are printed; the rest is in the file of ``contactlab sweep --out``.

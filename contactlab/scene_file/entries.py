@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from contactlab.impact import materials
+from contactlab.impact.grid import UNITS as SCENE_UNITS
 from contactlab.numeric.checks import nearest
 
 MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density")
@@ -19,12 +20,8 @@ NONDIMENSIONAL_KEYS = ("psi1", "chi")
 BODY_SECTIONS = ("sphere", "target", "impact")
 
 #: Units for the remedies; the rules themselves are those of the classes that are made.
-UNITS = {
-    "shear_modulus": "Pa", "young_modulus": "Pa", "poisson_ratio": "1", "density": "kg/m³",
-    "radius": "m", "mass": "kg", "gyration_ratio": "1", "friction_coefficient": "1",
-    "speed": "m/s", "angle_deg": "deg", "normal_speed": "m/s",
-    "tangential_velocity": "m/s", "spin": "rad/s", "psi1": "1", "chi": "1", "velocity": "m/s",
-    "normal": "1", "target_velocity": "m/s", "target_spin": "rad/s",
+UNITS = SCENE_UNITS | {
+    "velocity": "m/s", "normal": "1", "target_velocity": "m/s", "target_spin": "rad/s",
 }  # fmt: skip
 
 
@@ -58,11 +55,6 @@ def entry_path(name: str, *, where: str = "") -> str:
             f"known: {short}, or dotted ones such as sphere.radius"
         )
     return ENTRIES[name]
-
-
-def entry_unit(name: str) -> str:
-    """Return the unit of an entry that may vary."""
-    return UNITS[name.rpartition(".")[2]]
 
 
 def replaced(document: Mapping[str, Any], path: str, value: object) -> dict[str, Any]:

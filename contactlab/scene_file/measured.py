@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.quantities import quantity_named
+from contactlab.outcome.columns import quantity_named
 from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table
 

@@ -15,7 +15,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.grid import Grid, product
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.quantities import quantity_named
+from contactlab.outcome.columns import quantity_named
 from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import Measured, SceneFile
 from contactlab.study.interrupts import uninterrupted

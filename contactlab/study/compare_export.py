@@ -9,10 +9,8 @@ from typing import Any, TextIO
 import attrs
 import numpy as np
 
-from contactlab.outcome.export import csv_heading
-from contactlab.outcome.json_values import json_value
-from contactlab.outcome.quantities import QUANTITIES
-from contactlab.scene_file.entries import entry_unit
+from contactlab.impact.grid import entry_unit
+from contactlab.outcome.columns import QUANTITIES, csv_heading, json_value
 from contactlab.study.compare import Comparison
 from contactlab.study.scores import Score
 

@@ -19,7 +19,7 @@ from contactlab.compose.simulation import Simulation
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
-from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.columns import scaled_forces
 
 Array = NDArray[np.float64]
 
@@ -125,17 +125,6 @@ def figures() -> dict[int, Callable[[Simulation], FigureData]]:
 def chi_of_gyration(gyration_ratio: float) -> float:
     """Return chi (38) for Poisson's ratio 0.3."""
     return 0.7 / 1.7 * (1.0 + gyration_ratio**-2)
-
-
-def scaled_forces(result: ImpactResult) -> tuple[Array, Array, Array]:
-    """Return (t/duration, F/(mu P_max), P/P_max), from first touch to separation."""
-    scene, history = result.scene, result.history
-    assert history is not None
-    peak = float(result.motion.maximum_force)
-    time = np.concatenate([[0.0], history.time / result.motion.duration])
-    tangential = history.tangential_force / (scene.friction_coefficient * peak)
-    normal = history.normal_force / peak
-    return time, np.concatenate([[0.0], tangential]), np.concatenate([[0.0], normal])
 
 
 def _forces(

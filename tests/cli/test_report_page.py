@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html.parser
 import re
 
 import numpy as np
@@ -11,7 +12,23 @@ from contactlab import create
 from contactlab.compose.citations import DOI, YEAR, bibtex, references
 from contactlab.compose.registry import REGISTRY
 from tests.cli.conftest import EXAMPLES
-from tests.core.test_notebook import Balanced
+
+
+class Balanced(html.parser.HTMLParser):
+    """Text and tags of a page; a tag that is closed wrongly is an error."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.words = [], []
+
+    def handle_starttag(self, tag, attrs):
+        self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words.append(data)
 
 
 @pytest.fixture

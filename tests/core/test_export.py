@@ -7,17 +7,9 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation
-from contactlab.outcome import export, quantities
-from contactlab.outcome.export import (
-    COMPARISON_TABLE,
-    SWEEP_TABLE,
-    to_dict,
-    write_csv,
-    write_history_csv,
-    write_json,
-    write_npz,
-)
-from contactlab.outcome.quantities import QUANTITIES
+from contactlab.outcome import columns
+from contactlab.outcome.columns import COMPARISON_TABLE, QUANTITIES, SWEEP_TABLE
+from contactlab.outcome.export import to_dict, write_csv, write_history_csv, write_json, write_npz
 
 SIM = Simulation(tangential="coulomb", integrator="symplectic")
 SINGLE = Scene.nondimensional(psi1=2.0, chi=1.4411764706)
@@ -80,18 +72,17 @@ def test_the_tables_for_reading_name_columns():
 
 def test_a_new_column_is_one_line(monkeypatch, tmp_path):
     """Every file has it, and quantities by name, an angle in degrees too."""
-    line = ("turned", "rad", lambda result: np.arctan(result.psi2))
-    for module in (export, quantities):
-        monkeypatch.setattr(module, "COLUMNS", (*export.COLUMNS, line))
+    line = columns.Column("turned", "rad", "local_rebound_angle")
+    monkeypatch.setattr(columns, "COLUMNS", (*columns.COLUMNS, line))
     result = SIM.run(SINGLE)
-    turned = np.arctan(result.psi2)
+    turned = result.local_rebound_angle
     assert to_dict(result)["turned"] == turned
     write_csv(result, tmp_path / "a.csv")
     assert float(table(tmp_path / "a.csv")[0]["turned (rad)"]) == turned
     write_npz(result, tmp_path / "a.npz")
     with np.load(tmp_path / "a.npz") as content:
         assert content["turned"] == turned
-    found = quantities.numeric_columns()
+    found = columns.numeric_columns()
     assert found["turned"].of(result) == turned
     assert found["turned_deg"].of(result) == pytest.approx(np.degrees(turned), rel=1e-15)
 

@@ -9,7 +9,8 @@ import pytest
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scene
 from contactlab.impact.grid import MOST_IMPACTS, Grid
 from contactlab.impact.hertz import rigid_body_rebound
-from contactlab.outcome.export import COLUMNS, to_dict, write_csv, write_npz
+from contactlab.outcome.columns import COLUMNS
+from contactlab.outcome.export import to_dict, write_csv, write_npz
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 CHI, PSI1 = [1.0, 1.2, 1.4412], [0.0, 2.0, 6.0, 8.0]
@@ -96,7 +97,7 @@ def test_columns_are_those_of_the_csv(result, tmp_path):
     frame = result[0:3].to_dataframe()
     units = frame.attrs["units"]
     named = [f"{name} ({units[name]})" if units[name] else name for name in frame.columns]
-    undefined = [name for name, _, read in COLUMNS if read(result) is None]
+    undefined = [column.name for column in COLUMNS if column.read(result) is None]
     assert [one for one in headings if one.partition(" ")[0] not in undefined] == named
 
 

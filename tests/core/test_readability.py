@@ -12,15 +12,8 @@ ROOMS = re.findall(r"^``(\w+)`` ", contactlab.__doc__, flags=re.MULTILINE)
 #: Arrows that point upward still, from a file to a room. None may come; one that goes, goes here.
 UPWARD = {
     ("contracts/faults.py", "compose"),
-    ("contracts/law.py", "pages"),
-    ("impact/scene.py", "pages"),
-    ("outcome/export.py", "compose"),
-    ("outcome/export.py", "scene_file"),
-    ("outcome/history.py", "compose"),
     ("outcome/history.py", "figures"),
-    ("outcome/plan.py", "pages"),
     ("outcome/result.py", "figures"),
-    ("outcome/result.py", "pages"),
 }
 
 

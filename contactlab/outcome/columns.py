@@ -1,0 +1,165 @@
+"""The columns of a result: one list for text, files, frames, figures, fits and scene files.
+
+To add a column, add a line to ``COLUMNS``; an angle is a quantity in degrees too. The tables for
+reading show the columns that ``SWEEP_TABLE`` and ``COMPARISON_TABLE`` name.
+"""
+
+from __future__ import annotations
+
+from operator import attrgetter
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.contracts.status import Status
+from contactlab.impact.grid import Grid, entry_unit, product
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import nearest, refuse
+
+
+class Column(NamedTuple):
+    """A named column of a result.
+
+    Attributes
+    ----------
+    name : str
+    unit : str
+        Empty for words.
+    path : str
+        The attribute of the result that holds it, such as ``"scene.chi"``.
+    factor : float
+        From the unit of the attribute to that of the column.
+    """
+
+    name: str
+    unit: str
+    path: str
+    factor: float = 1.0
+
+    def read(self, result: Any) -> Any:
+        """Return the values as the result holds them; None where the scene defines none."""
+        value = attrgetter(self.path)(result)
+        return value if value is None or self.factor == 1.0 else value * self.factor
+
+    def of(self, result: Any) -> NDArray[np.float64]:
+        """Return an array of the scene's shape; NaN where the scene defines no value."""
+        value = self.read(result)
+        number = np.nan if value is None else value
+        return np.array(np.broadcast_to(np.asarray(number, dtype=np.float64), result.scene.shape))
+
+    def unit_in(self, scene: Scene) -> str:
+        """Return the unit that the numbers have in ``scene``."""
+        return unit_in(self.unit, scene)
+
+
+#: The columns of every file, in their order: name, unit, and where the result holds it.
+COLUMNS = (
+    Column("psi1", "1", "psi1"),
+    Column("chi", "1", "scene.chi"),
+    Column("psi2", "1", "psi2"),
+    Column("normal_speed", "m/s", "scene.normal_speed"),
+    Column("tangential_velocity", "m/s", "scene.tangential_velocity"),
+    Column("spin", "rad/s", "scene.spin"),
+    Column("rebound_normal_velocity", "m/s", "rebound_normal_velocity"),
+    Column("rebound_tangential_velocity", "m/s", "rebound_tangential_velocity"),
+    Column("rebound_spin", "rad/s", "rebound_spin"),
+    Column("target_rebound_normal_velocity", "m/s", "target_rebound_normal_velocity"),
+    Column("target_rebound_tangential_velocity", "m/s", "target_rebound_tangential_velocity"),
+    Column("target_rebound_spin", "rad/s", "target_rebound_spin"),
+    Column("rebound_slip_velocity", "m/s", "rebound_slip_velocity"),
+    Column("normal_restitution", "1", "normal_restitution"),
+    Column("tangential_restitution", "1", "tangential_restitution"),
+    Column("slip_restitution", "1", "slip_restitution"),
+    Column("incidence_angle", "rad", "incidence_angle"),
+    Column("rebound_angle", "rad", "rebound_angle"),
+    Column("local_rebound_angle", "rad", "local_rebound_angle"),
+    Column("contact_time", "s", "motion.duration"),
+    Column("normal_loss", "J", "energy.normal_loss"),
+    Column("friction_work", "J", "energy.friction_work"),
+    Column("energy_imbalance", "J", "energy.imbalance"),
+    Column("status", "", "status"),
+)
+
+#: The columns of the table of a sweep, and of a comparison of single impacts; a column that no
+#: impact defines is left out.
+SWEEP_TABLE = (
+    "psi1", "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg",
+    "rebound_spin", "friction_work",
+)  # fmt: skip
+COMPARISON_TABLE = (
+    "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg", "rebound_spin",
+    "contact_time", "friction_work", "energy_imbalance",
+)  # fmt: skip
+
+
+def numeric_columns() -> dict[str, Column]:
+    """Return the columns that hold numbers, by name: angles in degrees and the speed too."""
+    found = {}
+    for column in COLUMNS:
+        if column.unit:
+            found[column.name] = column
+        if column.unit == "rad":
+            name = f"{column.name}_deg"
+            found[name] = Column(name, "deg", column.path, 180.0 / np.pi)
+    found["rebound_speed"] = Column("rebound_speed", "m/s", "rebound_speed")
+    return found
+
+
+QUANTITIES = numeric_columns()
+
+
+def quantity_named(name: str, *, where: str = "quantity") -> Column:
+    """Return a column of numbers by name: ``"rebound_angle"``, or ``"rebound_angle_deg"``.
+
+    Raises
+    ------
+    ValueError
+        If there is none, with the nearest match.
+    """
+    if name in QUANTITIES:
+        return QUANTITIES[name]
+    remedy = f"{nearest(name, QUANTITIES)}known: {', '.join(QUANTITIES)}"
+    raise refuse(where, name, "is not a quantity of a result", remedy)
+
+
+def columns(result: Any) -> list[tuple[str, str, Any]]:
+    """Return name, unit and values of every column; grid axes that are not columns come first."""
+    found = [(column.name, column.unit, column.read(result)) for column in COLUMNS]
+    if not isinstance(result.scene, Grid):
+        return found
+    varied = product(result.scene.axes)
+    for column in COLUMNS:
+        varied.pop(column.name, None)
+    return [(name, entry_unit(name), values) for name, values in varied.items()] + found
+
+
+def unit_in(unit: str, scene: Scene) -> str:
+    """Return the unit that a column has in ``scene``: the paper's own have only angles."""
+    return "1" if scene.sphere is None and unit not in ("rad", "deg") else unit
+
+
+def csv_heading(name: str, unit: str, scene: Scene) -> str:
+    """Return the heading of a CSV column: its name, and its unit unless it holds words."""
+    return f"{name} ({unit_in(unit, scene)})" if unit else name
+
+
+def scaled_forces(result: Any) -> tuple[Any, Any, Any]:
+    """Return t/duration, F/(mu P_max) and P/P_max of an impact with a history, from first touch."""
+    scene, history = result.scene, result.history
+    peak = float(result.motion.maximum_force)
+    time = np.concatenate([[0.0], history.time / result.motion.duration])
+    tangential = history.tangential_force / (scene.friction_coefficient * peak)
+    normal = history.normal_force / peak
+    return time, np.concatenate([[0.0], tangential]), np.concatenate([[0.0], normal])
+
+
+def json_value(value: Any) -> Any:
+    """Return ``value`` as JSON takes it: floats, lists, None for what is undefined."""
+    if isinstance(value, Status):
+        return value.name
+    if isinstance(value, np.ndarray):
+        return [json_value(item) for item in value.tolist()]
+    if isinstance(value, float | np.floating):
+        return float(value) if np.isfinite(value) else None
+    return value
