@@ -88,8 +88,6 @@ def test_a_yield_stress_is_a_number_of_the_material():
     assert attrs.evolve(scene(YIELD), normal_speed=0.5).sphere.material.yield_stress == YIELD
     with pytest.raises(ValueError, match=r"yield_stress = -1\.0"):
         steel(-1.0)
-    with pytest.raises(TypeError, match="yield_stress"):
-        Material(young_modulus=1e9, poisson_ratio=0.3, Y=1e6)
 
 
 def test_a_scene_file_takes_it(tmp_path):
