@@ -1,4 +1,4 @@
-"""One spring with a cap: what most discrete-element codes take for friction."""
+"""One spring with a cap: the friction of LAMMPS, LIGGGHTS, YADE, Kratos and MFiX."""
 
 from __future__ import annotations
 
