@@ -26,13 +26,14 @@ def yielding(scene: Scene) -> tuple[str, ...]:
     }
     if not known:
         return ()
-    softest = min(known, key=lambda name: float(np.min(known[name])))
     pressure = np.broadcast_to(peak_pressure(scene), scene.shape)
-    limit = np.broadcast_to(FIRST_YIELD * known[softest], scene.shape)
+    limits = np.stack([np.broadcast_to(FIRST_YIELD * each, scene.shape) for each in known.values()])
+    limit = limits.min(axis=0)
     yields = pressure > limit
     if not yields.any():
         return ()
     worst = np.unravel_index(np.argmax(pressure / limit), scene.shape) if scene.shape else ()
+    softest = list(known)[int(np.argmin(limits[(slice(None), *worst)]))]
     return (
         f"yield{for_share(yields)}: the peak pressure of Hertz's contact is "
         f"{pressure[worst] / GPA:.2g} GPa, above 1.6 Y = {limit[worst] / GPA:.2g} GPa of the "

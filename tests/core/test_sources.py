@@ -20,17 +20,29 @@ INVENTED = {"10.9999/odd"}
 CODES = re.compile(r"LAMMPS|MFiX|Lethe|Kratos")
 
 
+FOLDERS = ("contactlab", "plugins", "tests", "examples", ".ci")
+
+
+def names():
+    """Return the tracked files; of a copy without a repository those of the same folders."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    if listed.returncode == 0:
+        return [name for name in listed.stdout.split("\0") if name]
+    paths = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*")]
+    return [str(path.relative_to(ROOT)) for path in (*paths, *ROOT.glob("*"))]
+
+
 def texts():
     """Return the tracked files that are text, by path from the root."""
-    listed = subprocess.run(
-        ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    found = {}
-    for name in listed.stdout.split("\0"):
-        path = ROOT / name
-        if name and path.is_file() and path.suffix not in (".png", ".gif", ".npz"):
-            found[name] = path.read_text(encoding="utf-8")
-    return found
+    paths = {name: ROOT / name for name in names()}
+    binary = (".png", ".gif", ".npz", ".pyc")
+    return {
+        name: path.read_text(encoding="utf-8")
+        for name, path in paths.items()
+        if path.is_file() and path.suffix not in binary
+    }
 
 
 TEXTS = texts()

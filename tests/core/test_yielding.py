@@ -82,6 +82,11 @@ def test_the_softer_body_is_named_and_the_worst_of_a_batch():
     worst = peak_pressure(scene(None, speed=2.0))
     assert f"{float(worst) / 1e9:.2g} GPa" in text
 
+    mixed = scene(np.array([YIELD, 5e9]), plane=np.array([5e9, 1e9]))
+    (text,) = said("hertz", mixed)
+    assert "for 2 of 2 impacts" in text
+    assert "1.6 Y = 1.6 GPa of the target" in text
+
 
 def test_a_yield_stress_is_a_number_of_the_material():
     assert steel().yield_stress is None
