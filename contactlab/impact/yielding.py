@@ -33,7 +33,7 @@ def yielding(scene: Scene) -> tuple[str, ...]:
     if not yields.any():
         return ()
     worst = np.unravel_index(np.argmax(pressure / limit), scene.shape) if scene.shape else ()
-    softest = list(known)[int(np.argmin(limits[(slice(None), *worst)]))]
+    softest = list(known)[int(np.argmin([each[worst] for each in limits]))]
     return (
         f"yield{for_share(yields)}: the peak pressure of Hertz's contact is "
         f"{pressure[worst] / GPA:.2g} GPa, above 1.6 Y = {limit[worst] / GPA:.2g} GPa of the "
