@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import json
 import re
 import sys
 import types
@@ -9,10 +10,13 @@ from pathlib import Path
 
 import pytest
 
+from contactlab.cli.main import main
 from contactlab.compose.registry import REGISTRY
+from contactlab.impact.hertz import peak_pressure
 from contactlab.testing import CHECKS, Verdict, check_law
 
-TEXT = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[1]
+TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 SNIPPETS = re.findall(r"```python\n(.*?)```\n(?:```text\n(.*?)```\n)?", TEXT, re.DOTALL)
 
 
@@ -39,7 +43,7 @@ def test_there_are_snippets():
 def test_the_table_of_errors_names_every_law():
     """But for the one that makes no force, and laws of other distributions."""
     table = TEXT.partition("## Error against run time")[2].partition("\n## ")[0]
-    told = set(re.findall(r"^\| (?:rigid )?(\w+)", table, re.MULTILINE)) - {"law"}
+    told = set(re.findall(r"^\| `(\w+)`", table, re.MULTILINE))
     ours = {
         info.name.partition(".")[2]
         for info in REGISTRY.installed()
@@ -55,3 +59,65 @@ def test_the_law_of_ones_own_passes_the_kit_as_it_stands():
     told = re.search(r"conformance kit: (\d+) of its (\d+) small named checks", TEXT)
     assert told, "the README should say how many checks apply"
     assert (len(found), len(CHECKS)) == (int(told[1]), int(told[2]))
+
+
+def printed(*arguments):
+    """Return what a command prints as JSON."""
+    out = io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()):
+        assert main([*map(str, arguments), "--json"]) == 0
+    return json.loads(out.getvalue())
+
+
+def rows(section):
+    """Return the rows of the table of a section, without heading."""
+    part = TEXT.partition(section)[2].partition("\n## ")[0]
+    lines = [line for line in part.splitlines() if re.match(r"^\| (?!!|\|)", line)]
+    return [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in lines[1:]]
+
+
+def close(told, value):
+    """Compare a number of the README, of one digit or two, with the one that it rounds."""
+    if float(told) == 0.0:
+        return abs(value) < 1e-6
+    digits = len(told.lower().partition("e")[0].replace(".", "").lstrip("0"))
+    return abs(value / float(told) - 1.0) <= (0.35 if digits == 1 else 0.06)
+
+
+@pytest.mark.slow
+def test_the_table_of_laws_is_what_the_command_prints():
+    scores = {one["law"]: one for one in printed("compare", "--all")["scores"]}
+    table = rows("## What four discrete-element codes do")
+    assert len(table) == 12
+    for name, *told in table:
+        law, _, form = name.removeprefix("rigid ").partition(",")
+        form = form.split()[0] if law == "mindlin_cap" else ""
+        one = scores[f"{law} {form}".strip().removesuffix(" displacement")]
+        found = [one[key] for key in ("rms", "worst", "energy_made", "pressed_force")]
+        for number, value in zip(told, found, strict=True):
+            assert value is None if number == "-" else close(number, value), (name, number, value)
+        assert one["numerical_error"] < 0.005
+
+
+def test_the_table_of_the_experiment_is_what_the_command_prints():
+    measured = printed("compare", ROOT / "examples" / "kharaz2001.toml")["measured"]
+    for name, *told in rows("## The experiment"):
+        law = {"annulus": "annulus", "rigid Coulomb": "coulomb"}[name]
+        for series, (rms, largest) in zip(measured, (told[:2], told[2:]), strict=False):
+            found = series["laws"][law]
+            assert close(rms.rstrip("°"), found["rms"])
+            assert close(largest.partition(" at ")[0].rstrip("°"), found["largest"])
+
+
+def test_the_pressure_of_the_first_scene():
+    module, _ = run(SNIPPETS[0][0])
+    pressure = float(peak_pressure(module.scene)) / 1e9
+    assert f"{pressure:.1f} GPa in this impact" in TEXT
+    assert f"above {pressure / 1.6:.1f} GPa stays elastic" in " ".join(TEXT.split())
+    assert float(f"{module.result.plan.psi2_error:.0e}") == 3e-9
+    assert "3e-9 here" in TEXT
+
+
+def test_nothing_is_said_of_codes_or_times_that_no_command_prints():
+    for words in ("mostly meet", "compiled", "2.5 µs", "busy machine", "No constant is fitted"):
+        assert words not in TEXT.replace("compiled_codes.toml", "")

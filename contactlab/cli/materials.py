@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 
 import attrs
 
@@ -50,7 +51,13 @@ def execute(arguments: argparse.Namespace) -> int:
 def _sources(entry: materials.Entry) -> str:
     """Return where the numbers of a material come from, the works written out."""
     lines = [f"\nelastic constants: {entry.elastic_source}", f"density: {entry.density_source}"]
+    if entry.yield_stress is not None:
+        lines.append(f"yield stress: {entry.yield_stress / 1e6:.4g} MPa, {entry.yield_source}")
     lines += [f"note: {entry.note}"] if entry.note else []
     told = " ".join(lines)
-    works = [f"{key}: {text}" for key, text in materials.references().items() if key in told]
+    works = [
+        f"{key}: {text}"
+        for key, text in materials.references().items()
+        if re.search(rf"\b{key}\b", told)
+    ]
     return "\n".join([*lines, "", *works])

@@ -9,9 +9,9 @@ from typing import Any
 
 from contactlab.compose.options import section
 
-DOI = re.compile(r"10\.\d{4,9}/[^\s,;}]+[^\s,;.}]")
+DOI = re.compile(r"10\.\d{4,9}/[^\s,;}\"'`]+[^\s,;.}\"'`]")
 #: The year of a work, as sources in words have it.
-YEAR = re.compile(r"\b(?:19|20)\d\d(?=\))")
+YEAR = re.compile(r"\b(?:19|20)\d\d(?=\)|\.?$)")
 
 
 def references(law: Any) -> list[str]:
@@ -60,17 +60,17 @@ def _names(text: str, entry: str, names: tuple[str, str]) -> bool:
     if doi is not None and doi[0] in text:
         return True
     author, year = names
-    named = re.search(rf"\b{re.escape(author)}\b[^;]*?\b{year}\)(?P<rest>[^;]*)", text)
+    named = re.search(rf"\b{re.escape(author)}\b[^;]*?\b{year}(?:\)|\.?$)(?P<rest>[^;]*)", text)
     return named is not None and (doi is None or DOI.search(named["rest"]) is None)
 
 
 def _known() -> dict[str, tuple[str, tuple[str, str]]]:
-    """Return the entries by key, with the first author's surname and the year."""
+    """Return the entries by key, with the first author's or editor's surname and the year."""
     text = resources.files("contactlab.compose").joinpath("references.bib").read_text("utf-8")
     found = {}
     for entry in re.split(r"\n(?=@)", text.strip()):
         key = re.match(r"@\w+\{(\w+),", entry)
-        author = re.search(r"author = \{(.*?)[,}]", entry)
+        author = re.search(r"(?:author|editor) = \{(.*?)[,}]", entry)
         year = re.search(r"year = \{(\d+)\}", entry)
         assert key is not None
         assert author is not None

@@ -10,6 +10,7 @@ import numpy as np
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import ClosedFormMotion, NormalMotion
 from contactlab.impact.scene import Scene
+from contactlab.impact.yielding import yielding
 from contactlab.numeric.checks import Real
 
 #: Above this ratio of contact radius to R the picture of half-spaces is doubtful (theory §8).
@@ -91,10 +92,12 @@ class NormalLaw(Law):
     5. The motion from first touch to separation is made from ``respond``, before any friction,
        to ``contactlab.compose.normal_motion.TOLERANCE``; see ``ClosedFormNormalLaw`` for the
        exception.
-    6. ``cautions`` says where the model itself is doubtful.
+    6. ``cautions`` says where the model itself is doubtful. ``plastic`` is True for a law whose
+       bodies yield: it is not cautioned about yield.
     """
 
     kind: ClassVar[str] = "normal"
+    plastic: ClassVar[bool] = False
 
     @abstractmethod
     def start(self, scene: Scene) -> Any:
@@ -132,10 +135,12 @@ class NormalLaw(Law):
         """
         if scene.sphere is None:
             return ()
+        found = () if self.plastic else yielding(scene)
         largest = float(np.max(motion.maximum_radius / scene.pair.radius))
         if not largest > DOUBTFUL_SIZE_RATIO:
-            return ()
+            return found
         return (
+            *found,
             f"C = {largest:.3g}, contact radius over R: the contact is not small against the "
             f"radius, the theory of half-spaces is doubtful above {DOUBTFUL_SIZE_RATIO}",
         )

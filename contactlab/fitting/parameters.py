@@ -14,7 +14,7 @@ import numpy as np
 
 from contactlab.compose.registry import KINDS, REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
-from contactlab.impact.bodies import HalfSpace, Material, Sphere
+from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule, nearest
 
@@ -99,7 +99,7 @@ class StiffnessRatio(Parameter):
         def like(body: Any) -> Any:
             old = body.material
             shear = old.shear_modulus * (1.0 - poisson) / (1.0 - old.poisson_ratio)
-            new = Material(shear_modulus=shear, poisson_ratio=poisson, density=old.density)
+            new = attrs.evolve(old, shear_modulus=shear, poisson_ratio=poisson)
             return (
                 HalfSpace(new) if isinstance(body, HalfSpace) else attrs.evolve(body, material=new)
             )

@@ -35,6 +35,9 @@ class Material:
         In [-1, 0.5].
     density : float, optional
         In kg/m³; needed only by a sphere whose mass is not given.
+    yield_stress : float, optional
+        Y in Pa, of a tension test: plans caution where the contact pressure exceeds 1.6 Y. No law
+        computes with it.
 
     Raises
     ------
@@ -45,6 +48,7 @@ class Material:
     shear_modulus: Real = quantity("Pa", rule=POSITIVE)
     poisson_ratio: Real = quantity("1", rule=POISSON)
     density: Real | None = quantity("kg/m³", rule=POSITIVE, default=None)
+    yield_stress: Real | None = quantity("Pa", rule=POSITIVE, default=None)
 
     def __init__(
         self,
@@ -53,6 +57,7 @@ class Material:
         young_modulus: object = None,
         poisson_ratio: object,
         density: Any = None,
+        yield_stress: Any = None,
     ) -> None:
         if (shear_modulus is None) == (young_modulus is None):
             raise refuse(
@@ -73,7 +78,9 @@ class Material:
                 )
             shear_modulus = young / (2.0 * (1.0 + ratio))
         shear = real("shear_modulus", shear_modulus, rule=POSITIVE, remedy="give it in Pa")
-        self.__attrs_init__(shear_modulus=shear, poisson_ratio=ratio, density=density)
+        self.__attrs_init__(
+            shear_modulus=shear, poisson_ratio=ratio, density=density, yield_stress=yield_stress
+        )
 
     @classmethod
     def named(cls, name: str) -> Material:

@@ -65,6 +65,12 @@ def hertz_scales(scene: Scene) -> HertzScales:
     )
 
 
+def peak_pressure(scene: Scene) -> Real:
+    """Return the greatest pressure in Pa of an elastic Hertz impact, p_0 = 3 P_max/(2 pi a²)."""
+    scales = hertz_scales(scene)
+    return 1.5 * (scales.force / scales.radius) / (math.pi * scales.radius)
+
+
 def linear_stiffness(scene: Scene) -> Real:
     """Return k of the linear spring that gives way as far as Hertz's contact, M (v1/z_max)²."""
     frequency = scene.normal_speed / hertz_scales(scene).approach

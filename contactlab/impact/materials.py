@@ -27,6 +27,10 @@ class Entry:
         In kg/m³.
     elastic_source, density_source : str
         Where the numbers come from: a work and a place in it.
+    yield_stress : float, optional
+        In Pa, where the entry is one alloy in one condition.
+    yield_source : str
+        Where the yield stress comes from; empty without one.
     note : str
         What to know of them: a range, a value that is assumed; empty where there is nothing.
     """
@@ -37,6 +41,8 @@ class Entry:
     density: float = attrs.field(metadata={"unit": "kg/m³"})
     elastic_source: str
     density_source: str
+    yield_stress: float | None = attrs.field(default=None, metadata={"unit": "Pa"})
+    yield_source: str = ""
     note: str = ""
 
     def material(self) -> Material:
@@ -45,8 +51,8 @@ class Entry:
 
     def numbers(self) -> dict[str, float]:
         """Return what a scene file says of a material, key to value."""
-        keys = ("young_modulus", "poisson_ratio", "density")
-        return {key: getattr(self, key) for key in keys}
+        keys = ("young_modulus", "poisson_ratio", "density", "yield_stress")
+        return {key: getattr(self, key) for key in keys if getattr(self, key) is not None}
 
 
 def names() -> tuple[str, ...]:

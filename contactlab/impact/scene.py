@@ -108,6 +108,10 @@ class Scene:
         for field in attrs.fields(Scene):
             if "unit" in field.metadata:
                 numbers[field.name] = getattr(self, field.name)
+        for name in ("sphere", "target"):
+            body = getattr(self, name)
+            if body is not None and body.material.yield_stress is not None:
+                numbers[f"{name}.material.yield_stress"] = body.material.yield_stress
         return numbers
 
     def _check_scales(self) -> None:

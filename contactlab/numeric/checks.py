@@ -25,7 +25,7 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "mu": ("friction_coefficient",), "friction": ("friction_coefficient", "tangential"),
     "nu": ("poisson_ratio",), "E": ("young_modulus",), "G": ("shear_modulus",),
     "rho": ("density",), "R": ("radius",), "r": ("radius",), "diameter": ("radius",),
-    "d": ("radius",),
+    "d": ("radius",), "Y": ("yield_stress",),
     "law": ("tangential",), "theta": ("angle_deg",), "alpha": ("angle_deg",),
     "m": ("mass",), "M": ("mass",), "K": ("gyration_ratio",),
     "v": ("tangential_velocity", "speed", "velocity"), "vx": ("tangential_velocity",),

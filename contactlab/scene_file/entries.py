@@ -9,7 +9,7 @@ from contactlab.impact import materials
 from contactlab.impact.grid import UNITS as SCENE_UNITS
 from contactlab.numeric.checks import nearest
 
-MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density")
+MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density", "yield_stress")
 SPHERE_KEYS = ("radius", "mass", "gyration_ratio", "material")
 IMPACT_KEYS = (
     "friction_coefficient", "speed", "angle_deg", "normal_speed", "tangential_velocity", "spin",

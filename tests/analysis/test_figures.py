@@ -262,7 +262,7 @@ def test_measured_values_are_drawn_beside_all_laws():
     """Of the quantity that is drawn, and of no other."""
     file = read_scene(EXAMPLES / "kharaz2001.toml")
     comparison = compare(file, {"exact": Simulation(), "coulomb": Simulation(tangential="coulomb")})
-    first, other = file.measured
+    first, other, _ = file.measured
     upper, _ = all_laws(*Figure().subplots(2), comparison, first.quantity)
     drawn = {tuple(line.get_ydata()) for line in upper.lines}
     assert tuple(first.values) in drawn

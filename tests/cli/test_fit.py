@@ -78,6 +78,7 @@ def test_a_parameter_has_a_row_with_its_intervals(run, impacts):
 def test_restitution_of_a_damped_law_comes_out_of_kharaz(run):
     """Of e_t and the rebound angle: nearer to 1 than the 0.98 that is quoted beside them."""
     ran = run("fit", KHARAZ, "--normal", "tsuji", "--fit", "friction_coefficient,restitution",
+              "--quantity", "tangential_restitution,rebound_angle_deg",
               "--bootstrap", 0, "--json")  # fmt: skip
     content = json.loads(ran.out)
     found = content["parameters"]["normal.restitution"]

@@ -48,3 +48,21 @@ def test_the_first_commands_of_a_newcomer_run(run, tmp_path, monkeypatch):
     assert len(lines(section)) >= 4
     for line in lines(section):
         assert run(*line.split()).status == 0, line
+
+
+#: Commands of the README that other tests run, for they are long.
+LONG = ("bench", "stability", "compare --all")
+
+
+@pytest.mark.slow
+def test_the_commands_of_the_readme_run(run, tmp_path, monkeypatch):
+    shutil.copytree(EXAMPLES, tmp_path / "examples", ignore=shutil.ignore_patterns("*_plugin"))
+    monkeypatch.chdir(tmp_path)
+    readme = (EXAMPLES.parent / "README.md").read_text(encoding="utf-8")
+    block = readme.partition("## The command line")[2].partition("```\n")[2].partition("```")[0]
+    commands = [line.removeprefix("contactlab ") for line in block.splitlines()]
+    assert len(commands) == 15
+    for line in commands:
+        if not line.startswith(LONG):
+            ran = run(*line.split())
+            assert ran.status == 0, f"{line}: {ran.err}"

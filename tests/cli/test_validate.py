@@ -53,7 +53,7 @@ def test_the_experiment_is_met_to_its_bound_by_partial_slip_alone(gathered):
 def test_what_is_said_of_the_experiment_holds(gathered):
     """e_t tan(angle)/tan(rebound angle) is the restitution; the two figures have it near 1."""
     one = gathered["kharaz2001"]
-    tangential, angle = (series.measured for series in one.comparison.agreements)
+    tangential, angle, _ = (series.measured for series in one.comparison.agreements)
     known = angle.x > 20.0
     at = np.interp(angle.x[known], tangential.x, tangential.values)
     slopes = np.tan(np.radians(angle.x[known])) / np.tan(np.radians(angle.values[known]))

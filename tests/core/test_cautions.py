@@ -15,6 +15,7 @@ from contactlab.impact.coupling import coupling_shift
 GUIDE = Path(contactlab.__file__).parent / "guide" / "theory.md"
 CHI = 49.0 / 34.0
 PSI1 = (0.5, 1.0, 1.5, 2.0, 3.0)
+SOLID, SHELL = np.sqrt(0.4), np.sqrt(2.0 / 3.0)
 
 
 def coupled(strength, psi1):
@@ -60,3 +61,47 @@ def test_the_plan_says_the_worst_of_a_batch():
     assert "by at least 0.3" in str(simulation.plan(coupled(2.5, 1.0)))
     assert "unlike bodies" not in str(simulation.plan(coupled(0.02, 0.1)))
     assert "unlike bodies" not in str(simulation.plan(coupled(0.0, 1.0)))
+
+
+def steel_on_rubber(psi1, *, gyration=SOLID):
+    """Return a scene in SI of a steel sphere on a soft half-space of nu = 0.3."""
+    steel = contactlab.Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+    soft = contactlab.Material(young_modulus=2e9, poisson_ratio=0.3)
+    ball = contactlab.Sphere(0.01, steel, gyration_ratio=gyration)
+    scene = Scene(ball, contactlab.HalfSpace(soft), 0.2, normal_speed=0.01)
+    return attrs.evolve(scene, tangential_velocity=np.asarray(psi1) / scene.psi_scale)
+
+
+def cautions(scene):
+    """Return what the plan says of the coupling."""
+    said = [str(sentence) for sentence in Simulation().plan(scene).cautions]
+    return [text for text in said if "unlike bodies" in text]
+
+
+def test_the_sentence_says_what_the_table_is_for():
+    (text,) = cautions(steel_on_rubber(1.0))
+    assert "by a table for chi = 1.44, nu = 0.3, psi1 up to 3)" in text
+    assert "rough guide" not in text
+    (text,) = cautions(steel_on_rubber(1.0, gyration=SHELL))
+    assert "psi1 up to 3; a rough guide at chi = 1.03)" in text
+    (text,) = cautions(steel_on_rubber(3.6))
+    assert "psi1 up to 3; a rough guide at psi1 = 3.6)" in text
+
+
+def test_where_the_whole_contact_slips_no_size_is_claimed():
+    """The table ends before gross slip, at 4 chi - 1 = 4.76; it was read beyond its end there."""
+    sliding = steel_on_rubber(5.0)
+    assert np.isnan(coupling_shift(sliding))
+    (text,) = cautions(sliding)
+    assert "second order in Lambda/psi1 = " in text
+    assert "by about" not in text
+    assert "by how much is not known" in text
+    assert not cautions(steel_on_rubber(500.0))
+    both = cautions(steel_on_rubber([1.0, 5.0]))
+    assert ["table" in each for each in both] == [True, False]
+
+
+def test_without_friction_there_is_no_caution():
+    scene = attrs.evolve(steel_on_rubber(1.0), friction_coefficient=0.0)
+    assert not cautions(scene)
+    assert float(coupling_shift(scene)) == 0.0

@@ -14,10 +14,8 @@ import contactlab
 from contactlab import Status, contracts
 from contactlab.cli.guide import SECTION, TOPICS, sections, summary, text
 from contactlab.compose import normal_motion
-from contactlab.contracts import error_model as declared
-from contactlab.impact import bodies
-from contactlab.impact import coupling as cautions
-from contactlab.impact import hertz as closed_forms
+from contactlab.contracts import error_model
+from contactlab.impact import bodies, coupling, hertz
 from contactlab.outcome import energy, history, motion, plan, result
 from contactlab.study.validation import REFERENCE_PSI2
 from contactlab.testing import Verdict, check_law
@@ -35,7 +33,8 @@ LAWS = ("Viscoelastic", "Brush", "HardSphere", "SlipThenRoll", "Leapfrog")
 NAMESPACES = (
     contactlab, contracts, bodies, plan, history, motion, energy, normal_motion, result,
 )  # fmt: skip
-MODULES = {"cautions": cautions, "declared": declared, "closed_forms": closed_forms}
+#: Modules that the glossary names functions of, by the name that stands there.
+MODULES = {"coupling": coupling, "error_model": error_model, "hertz": hertz}
 
 
 def sources():
@@ -148,7 +147,7 @@ def test_tables_of_the_theory_are_those_of_the_code():
     for chi, psi2 in REFERENCE_PSI2.items():
         assert reference[round(chi, 6)] == psi2
     shifts = {row[0]: [abs(cell) for cell in row[1:]] for row in rows("9")}
-    for strength, line in zip(cautions.COUPLING_LAMBDA, cautions.COUPLING_SHIFT, strict=True):
+    for strength, line in zip(coupling.COUPLING_LAMBDA, coupling.COUPLING_SHIFT, strict=True):
         assert strength == 0.0 or shifts[strength] == list(line[1:])
 
 

@@ -22,7 +22,7 @@ def test_an_entry_is_a_solid_with_its_sources(name):
     assert 1e6 <= one.young_modulus <= 1e12
     assert 0.1 <= one.poisson_ratio <= 0.5
     assert 900.0 <= one.density <= 22_600.0
-    for source in (one.elastic_source, one.density_source):
+    for source in (one.elastic_source, one.density_source, one.yield_source or one.density_source):
         for part in source.split("; "):
             assert part.partition(",")[0] in materials.references(), part
 
@@ -31,7 +31,11 @@ def test_every_work_is_cited_and_given_in_full():
     cited = {
         part.partition(",")[0]
         for one in materials.entries()
-        for source in (one.elastic_source, one.density_source)
+        for source in (
+            one.elastic_source,
+            one.density_source,
+            one.yield_source or one.density_source,
+        )
         for part in source.split("; ")
     }
     named = {key for one in materials.entries() for key in re.findall(r"\w+", one.note)}

@@ -170,9 +170,11 @@ def test_scene_at_leaves_the_sweep_out():
 
 def test_the_experiment_is_typed_in_whole():
     file = contactlab.read_scene(EXAMPLES / "kharaz2001.toml")
-    restitution, angle = file.measured
+    restitution, angle, spin = file.measured
     assert len(restitution.x) == 11
     assert len(angle.x) == 9
+    assert len(spin.x) == 7
+    assert np.nanmax(spin.error) < 0.6
     assert np.nanmax(restitution.error) < 0.002
     assert "10.1016/S0032-5910(01)00283-2" in file.citation
 

@@ -1,11 +1,14 @@
 """Stronge's lumped contact against a direct integration, and against marched springs."""
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 import contactlab
 from contactlab import Scene, Simulation
+from contactlab_laws.stronge import lumped
 from contactlab_laws.stronge.lumped import rebound
 from contactlab_laws.stronge.roots import first_zero
 from tests.exact.laws import order
@@ -117,3 +120,31 @@ def test_bodies_of_very_unlike_inertia_are_refused_with_a_sentence():
     result = Simulation(tangential="stronge").run(Scene.nondimensional(psi1=1.0, chi=1e9))
     assert not result.status
     assert "natural frequencies" in result.motion.detail
+
+
+def stages(psi1, chi):
+    """Return the senses of slip, 0 for stick, in their order; e = 1."""
+    contact = lumped.Contact(psi1, 0.0, 0.0, 0.0, int(psi1 >= 1.0))
+    found = []
+    for half in (lumped.Half(1.0, True), lumped.Half(1.0, False)):
+        x = 0.0
+        while x < 0.5 * np.pi:
+            if not found or found[-1] != contact.sense:
+                found.append(contact.sense)
+            follow = lumped._slip if contact.sense else lumped._stick
+            contact, x = follow(contact, half, np.sqrt(2.0 * chi), x)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("chis", "most"), [(np.linspace(7 / 6, 7 / 4, 8), 3), ([3.0], 5), ([1000.0], 45)]
+)
+def test_the_stages_are_as_many_as_the_theory_page_says(chis, most):
+    found = [
+        stages(psi1, chi)
+        for chi in chis
+        for psi1 in np.geomspace(1e-2, 4.0 * chi, 60 if most < 45 else 150).tolist()
+    ]
+    assert max(len(each) for each in found) == most
+    longest = max(found, key=len)
+    assert all((0 in pair) and pair != (0, 0) for pair in itertools.pairwise(longest))

@@ -5,7 +5,9 @@ import pytest
 from numpy.polynomial.polynomial import polyder, polygrid2d, polyval, polyval2d
 
 import contactlab
+from contactlab import Simulation
 from contactlab.compose import rebound as rebounds
+from contactlab.study.work_precision import scenes
 from contactlab_laws.tabulated import cuts, evaluate, rebound, start
 from contactlab_laws.tabulated.coordinates import (
     CUT_END,
@@ -336,3 +338,11 @@ def test_impacts_are_drawn_on_curves_and_on_both_sides_of_them():
     # Elsewhere no further than a little beyond the beginning of full slip, which is known.
     rest = kind < 0
     assert (psi1[rest] <= np.maximum(1.5, 1.05 * (4.0 * chi[rest] - 1.0))).all()
+
+
+def test_the_error_over_the_scenes_of_the_benchmark_is_that_of_the_theory_page():
+    for scene in scenes(quick=False):
+        integrator = contactlab.create("integrator.events", tolerance=1e-12)
+        known = float(Simulation(integrator=integrator).run(scene).check().psi2)
+        found = contactlab.rebound(float(scene.psi1), float(scene.chi))
+        assert found == pytest.approx(known, abs=1.5e-11)

@@ -68,7 +68,7 @@ class Annulus(AllStepsTangentialLaw):
 
     References
     ----------
-    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-4,
+    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-5,
     eqs (1), (13)-(18), (22), non-dimensional as (33)-(37).
     """
 

@@ -96,7 +96,7 @@ class SharpAnnulus(ProfileLaw):
 
     References
     ----------
-    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-4,
+    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-5,
     eqs (1), (33), (34); Jaeger, Arch. Appl. Mech. 65 (1995) 478-487.
     """
 

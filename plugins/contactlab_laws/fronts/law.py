@@ -47,7 +47,7 @@ class Fronts(ManyPhasedTangentialLaw):
 
     References
     ----------
-    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-4.
+    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-5.
     Ciavarella, J. Appl. Mech. 65 (1998) 998-1003, and Jaeger, J. Tribol. 120 (1998) 677-684:
     tangential loading from superposed normal contacts, of which the springs are one form.
     """

@@ -21,7 +21,7 @@ class Hertz(ClosedFormNormalLaw):
 
     References
     ----------
-    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-4,
+    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-5,
     eqs (2)-(6), for a general pair: P = (4/3) E* sqrt(R) u_z^1.5.
     """
 

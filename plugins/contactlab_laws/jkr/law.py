@@ -55,7 +55,7 @@ class JohnsonKendallRoberts(NormalLaw):
     z = (b1²/R)(s⁴ - s), P = 2 pi Gamma R ((4/3) s⁶ - 2 s³), in N, positive in compression.
     Contact is made at z = 0, where P = -(8/9) P_c, P_c = 1.5 pi Gamma R, and breaks at negative z,
     s³ = 1/4, with P = -(5/9) P_c. What is lost in between is ½ M v_s² =
-    7.09 (Gamma⁵ R⁴/E*²)^(1/3); slower bodies do not part. The pressure is a hemisphere less that
+    7.0922 (Gamma⁵ R⁴/E*²)^(1/3); slower bodies do not part. The pressure is a hemisphere less that
     of a flat punch. Friction is taken of P + 2 P_c.
 
     Parameters

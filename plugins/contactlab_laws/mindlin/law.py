@@ -1,4 +1,4 @@
-"""One spring with a cap: what most discrete-element codes take for friction."""
+"""One spring with a cap: the friction of LAMMPS, LIGGGHTS, YADE, Kratos and MFiX."""
 
 from __future__ import annotations
 
@@ -105,8 +105,9 @@ class MindlinCap(SteppedTangentialLaw):
         the cap (LAMMPS ``mindlin/force``, YADE); ``"increment_rescaled"``: the same, F
         multiplied with b/b before while b shrinks (LAMMPS ``mindlin_rescale/force``, Kratos).
     stiffness_factor : float
-        k over 2 G* b, Mindlin's stiffness; 2/3 in codes that take (16/3) G b for 8 G b, with
-        1/G the sum of (2 - nu)/G of the bodies (Di Renzo & Di Maio 2005; MFiX).
+        k over 2 G* b, Mindlin's stiffness; 2/3 where (16/3) G b is taken for 8 G b, with 1/G the
+        sum of (2 - nu)/G of the bodies (Di Renzo & Di Maio 2005). LAMMPS, LIGGGHTS, YADE, Kratos
+        and MFiX have 1.
     damping : float
         Constant of a dashpot beside the spring, over 2 sqrt(k M_n) with the stiffness k of the
         instant: sqrt(5/6) ln e/sqrt(ln² e + pi²) in size in LIGGGHTS. 0 for none.

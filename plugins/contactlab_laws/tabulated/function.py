@@ -70,7 +70,7 @@ def rebound(
 
     References
     ----------
-    .. [1] Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-4.
+    .. [1] Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-5.
     """
     if type(psi1) is float and type(chi) is float and not derivatives:
         speed = abs(psi1)

@@ -30,7 +30,7 @@ class Tabulated(WholeImpactTangentialLaw):
 
     References
     ----------
-    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-4.
+    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, doi:10.1016/0043-1648(76)90201-5.
     """
 
     api_version: ClassVar[int] = 2

@@ -52,6 +52,7 @@ class Thornton(NormalLaw):
     """
 
     api_version: ClassVar[int] = 2
+    plastic: ClassVar[bool] = True
     offers: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     yield_velocity: float | None = quantity("m/s", rule=POSITIVE, default=None)

@@ -44,6 +44,7 @@ class WaltonBraun(NormalLaw):
     """
 
     api_version: ClassVar[int] = 2
+    plastic: ClassVar[bool] = True
     offers: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     restitution: float = restitution(default=0.9)
