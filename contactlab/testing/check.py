@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import Law
+from contactlab.testing.limits import SECONDS, limited
 
 Function: TypeAlias = Callable[[Any], None]
 
@@ -49,15 +50,23 @@ class Check:
         """What it holds, in one line: the first of the function's docstring."""
         return str(self.function.__doc__).strip().splitlines()[0]
 
-    def __call__(self, law: Law) -> None:
+    def __call__(self, law: Law, *, seconds: float = SECONDS) -> None:
         """Put ``law`` through it; NaN and infinity are given on purpose.
+
+        Parameters
+        ----------
+        law : Law
+        seconds : float
+            Time that the check may take; see ``contactlab.testing.limits.limited``.
 
         Raises
         ------
         NotApplicableError
             If it does not apply: nothing was tried, so nothing was passed.
+        OutOfTimeError
+            If the law hangs or crawls.
         """
-        with np.errstate(all="ignore"):
+        with np.errstate(all="ignore"), limited(self.name, law, seconds):
             self.function(law)
 
 

@@ -13,6 +13,7 @@ from contactlab.testing.faulty_laws import (
     FailingSpring,
     SpoiledHertz,
     TooManyCallsError,
+    UnsettledSpring,
     Unyielding,
 )
 from contactlab.testing.integrators import CHI, fitting, marched_impact
@@ -23,8 +24,13 @@ NONE_FIT = "None of the faulty laws of the kit fits it."
 
 @check(Integrator)
 def faults_reported(integrator: Any) -> None:
-    """A law that answers NaN or raises gives a status, with the history so far (Integrator, 1)."""
-    faulty = (FailingSpring(), FailingSpring(raises=True), SlidingForEver(fails=True))
+    """A law that answers NaN, finds no answer or raises gives a status and the history so far."""
+    faulty = (
+        FailingSpring(),
+        FailingSpring(raises=True),
+        UnsettledSpring(),
+        SlidingForEver(fails=True),
+    )
     _reported([*fitting(integrator, faulty, "normal.hertz")], least=1)
 
 

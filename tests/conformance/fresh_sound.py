@@ -40,6 +40,10 @@ class Brush(SteppedTangentialLaw):
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
     resolution: ClassVar[str | None] = "springs"
 
+    expected_failures: ClassVar[dict[str, str]] = {
+        "coulomb_at_a_point_damped": "each spring is cut alone, whatever its neighbours do",
+    }
+
     springs: int = count(default=50, most=10_000)
 
     def friction(self, scene):
@@ -208,6 +212,10 @@ class Tabled(HardSphere):
     def restitution(self, scene):
         x = np.linspace(0.0, 40.0, self.knots)
         return np.interp(np.abs(scene.psi1), x, 0.6 * np.exp(-0.3 * x))
+
+    def answer(self, scene, change, work):
+        """Answer without a declared error."""
+        return attrs.evolve(super().answer(scene, change, work), psi2_error=np.nan)
 
 
 @attrs.frozen(kw_only=True)
