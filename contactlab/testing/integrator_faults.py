@@ -84,6 +84,5 @@ def _reported(simulations: list[Simulation], *, least: int) -> None:
         who = f"{type(simulation.normal).__name__} and {type(simulation.tangential).__name__}"
         hold(not result.status, f"A fault in {who} reads as success.")
         hold(result.motion.detail, f"{result.status.name} says nothing of what and where: {who}.")
-        hold(result.history is not None, "There is no history.")
         instants = len(result.history.time) if result.history is not None else 0
         hold(instants >= least, f"{instants} instants of the history are left ({who}).")

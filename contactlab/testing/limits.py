@@ -72,7 +72,17 @@ def limited(name: str, law: Any, seconds: float = SECONDS) -> Iterator[None]:
 
 
 def _sentence(name: str, law: Any, seconds: float, frame: FrameType | None) -> str:
-    """Return which check was stopped, after how long, and where the law was."""
+    """Return which check was stopped, after how long, and where the law was.
+
+    Parameters
+    ----------
+    name : str
+        Of the check.
+    law : Law
+    seconds : float
+    frame : frame or None
+        What ran when the time was over.
+    """
     what = f", in {DOING.what}" if DOING.what else ""
     steps = f" at step {DOING.steps}" if DOING.steps else ""
     where = ""

