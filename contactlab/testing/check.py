@@ -10,13 +10,17 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import Law
-from contactlab.testing.limits import SECONDS, limited
+from contactlab.testing.limits import SECONDS, OutOfTimeError, limited
 
 Function: TypeAlias = Callable[[Any], None]
 
 
 class CheckFailedError(AssertionError):
     """A law does not do what its contract says; the message is one sentence."""
+
+
+class CheckStoppedError(CheckFailedError):
+    """A check ran out of time: the law hangs, or crawls."""
 
 
 class NotApplicableError(unittest.SkipTest):
@@ -63,11 +67,14 @@ class Check:
         ------
         NotApplicableError
             If it does not apply: nothing was tried, so nothing was passed.
-        OutOfTimeError
+        CheckStoppedError
             If the law hangs or crawls.
         """
-        with np.errstate(all="ignore"), limited(self.name, law, seconds):
-            self.function(law)
+        try:
+            with np.errstate(all="ignore"), limited(self.name, law, seconds):
+                self.function(law)
+        except OutOfTimeError as stopped:
+            raise CheckStoppedError(str(stopped)) from None
 
 
 #: Every check, in the order in which they are run.

@@ -59,13 +59,19 @@ def limited(name: str, law: Any, seconds: float = SECONDS) -> Iterator[None]:
         yield
         return
 
+    running = True
+
     def stop(_: int, frame: FrameType | None) -> None:
-        raise OutOfTimeError(_sentence(name, law, seconds, frame))
+        if running:
+            raise OutOfTimeError(_sentence(name, law, seconds, frame))
 
     before = signal.signal(signal.SIGALRM, stop)
     signal.setitimer(signal.ITIMER_REAL, seconds, AGAIN)
     try:
-        yield
+        try:
+            yield
+        finally:
+            running = False
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)

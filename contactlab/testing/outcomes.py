@@ -10,8 +10,14 @@ import attrs
 
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import Law
-from contactlab.testing.check import CHECKS, Check, CheckFailedError, NotApplicableError
-from contactlab.testing.limits import MOST_TIMEOUTS, SECONDS, OutOfTimeError
+from contactlab.testing.check import (
+    CHECKS,
+    Check,
+    CheckFailedError,
+    CheckStoppedError,
+    NotApplicableError,
+)
+from contactlab.testing.limits import MOST_TIMEOUTS, SECONDS
 
 
 class Verdict(Enum):
@@ -75,7 +81,7 @@ def outcome(law: Law, check: Check, *, seconds: float = SECONDS) -> Outcome:
     reason = expected(law).get(check.name)
     try:
         check(law, seconds=seconds)
-    except OutOfTimeError as stopped:
+    except CheckStoppedError as stopped:
         return Outcome(check.name, Verdict.FAILED, str(stopped), out_of_time=True)
     except NotApplicableError as reason_why:
         return Outcome(check.name, Verdict.NOT_APPLICABLE, str(reason_why))

@@ -6,7 +6,7 @@ from typing import ClassVar
 import attrs
 import pytest
 
-from contactlab.testing import Verdict, checks_for, examine, limits, outcome
+from contactlab.testing import CheckFailedError, Verdict, checks_for, examine, limits, outcome
 from tests.conformance.fresh_sound import HardSphere, Press, Slider
 
 #: Seconds that a check may take here: enough for any that does not hang.
@@ -78,6 +78,12 @@ def test_a_law_that_hangs_is_told_check_time_and_place(law, name, words):
         assert found.sentence.startswith(told)
         assert words in found.sentence
         assert found.sentence.endswith("the law hangs, or crawls.")
+
+
+def test_a_check_that_is_stopped_fails_and_does_not_end_the_process():
+    check = next(check for check in checks_for(Sleeps()) if check.name == "impact_odd")
+    with pytest.raises(CheckFailedError, match="check impact_odd was stopped after"):
+        check(Sleeps(), seconds=SECONDS)
 
 
 def test_a_law_that_swallows_the_interruption_is_interrupted_again(monkeypatch):
