@@ -235,7 +235,7 @@ class Heun(Integrator):
         state = law.start(scene, normal)
         velocity = scene.slip_velocity + np.zeros(shape)
         force, work, change = 0.0 * velocity, 0.0 * velocity, 0.0 * velocity
-        before = self._at(normal, 0.0)
+        before, settled = self._at(normal, 0.0), np.ones(shape, dtype=bool)
         for step in range(self.steps):
             after = self._at(normal, (step + 1.0) / self.steps)
             kick = after.time - before.time
@@ -247,7 +247,7 @@ class Heun(Integrator):
                     moved = kick * (velocity - 0.25 * (force + ahead) * kick / mass)
                 given = Increment(_plain(moved), _plain(velocity), _plain(load), _plain(kick))
                 answer, new = law.advance(state, given, before.contact, after.contact)
-                ahead = answer.force
+                ahead, settled = answer.force, settled & answer.settled
             slowed = 0.5 * (force + ahead) * kick / mass
             change, work = change - slowed, work + answer.friction_work
             velocity = scene.slip_velocity + change
@@ -264,10 +264,12 @@ class Heun(Integrator):
                         fields=lambda: law.fields(state),  # noqa: B023
                     )
                 )
+        status = np.where(settled, _Status.SUCCESS, _Status.UNSETTLED).astype(object)
         return TangentialMotion(
             slip_velocity_change=_plain(change),
             friction_work=_plain(work),
-            **({"status": np.full(shape, _SUCCESS)} if shape else {}),
+            status=status if shape else status.item(),
+            detail="" if settled.all() else "In some step the friction law found no answer.",
         )
 
     @staticmethod
@@ -282,5 +284,3 @@ def _plain(value):
 
 
 from contactlab import Status as _Status  # noqa: E402
-
-_SUCCESS = _Status.SUCCESS

@@ -21,6 +21,7 @@ from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
+from contactlab.testing import limits
 from contactlab.testing.check import hold
 from contactlab.testing.units import Units
 
@@ -64,6 +65,23 @@ def scene(
 def bodies(*shape: int) -> Any:
     """Return what makes each body of a batch another one."""
     return np.linspace(0.6, 1.6, math.prod(shape)).reshape(shape)
+
+
+#: What the contacts of a batch may differ in.
+QUANTITIES = (
+    "friction_coefficient", "normal_speed", "radius", "effective_modulus",
+    "effective_shear_modulus", "normal_mass", "tangential_mass",
+)  # fmt: skip
+
+
+def varied(quantity: str, *, count: int = 3) -> Scene:
+    """Return a batch of central impacts of heavy bodies that differ in one quantity only."""
+    one = scene(0.0, HEAVY)
+    factors = np.linspace(0.6, 1.6, count)
+    if quantity in ("friction_coefficient", "normal_speed"):
+        return attrs.evolve(one, **{quantity: getattr(one, quantity) * factors})
+    pair = attrs.evolve(one.pair, **{quantity: getattr(one.pair, quantity) * factors})
+    return attrs.evolve(one, pair=pair)
 
 
 class Path(NamedTuple):
@@ -113,7 +131,7 @@ class Bench:
         slip = given.friction_coefficient * approach / given.pair.stiffness_ratio
         return cls(given, normal, force, radius, approach, slip, normal.duration)
 
-    def alone(self, place: int) -> Bench:
+    def alone(self, place: int | tuple[int, ...]) -> Bench:
         """Return the bench of one contact of a batch."""
         return Bench.along(self.normal.take(place))
 
@@ -173,8 +191,10 @@ def continue_from(
     duration = locked(bench.time / (count or len(path.slip)))
     before = bench.contact(level)
     forces, works = [], []
+    limits.begin(f"a path of {len(path.slip)} steps")
     for now, depth in zip(_rows(path.slip), _rows(path.level), strict=True):
         after = bench.contact(depth)
+        limits.DOING.steps += 1
         response, state = law.advance(
             state, bench.increment(now - slip, after, duration), before, after
         )

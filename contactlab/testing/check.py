@@ -10,12 +10,17 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import Law
+from contactlab.testing.limits import SECONDS, OutOfTimeError, limited
 
 Function: TypeAlias = Callable[[Any], None]
 
 
 class CheckFailedError(AssertionError):
     """A law does not do what its contract says; the message is one sentence."""
+
+
+class CheckStoppedError(CheckFailedError):
+    """A check ran out of time: the law hangs, or crawls."""
 
 
 class NotApplicableError(unittest.SkipTest):
@@ -49,16 +54,27 @@ class Check:
         """What it holds, in one line: the first of the function's docstring."""
         return str(self.function.__doc__).strip().splitlines()[0]
 
-    def __call__(self, law: Law) -> None:
+    def __call__(self, law: Law, *, seconds: float = SECONDS) -> None:
         """Put ``law`` through it; NaN and infinity are given on purpose.
+
+        Parameters
+        ----------
+        law : Law
+        seconds : float
+            Time that the check may take; see ``contactlab.testing.limits.limited``.
 
         Raises
         ------
         NotApplicableError
             If it does not apply: nothing was tried, so nothing was passed.
+        CheckStoppedError
+            If the law hangs or crawls.
         """
-        with np.errstate(all="ignore"):
-            self.function(law)
+        try:
+            with np.errstate(all="ignore"), limited(self.name, law, seconds):
+                self.function(law)
+        except OutOfTimeError as stopped:
+            raise CheckStoppedError(str(stopped)) from None
 
 
 #: Every check, in the order in which they are run.

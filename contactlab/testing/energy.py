@@ -7,7 +7,15 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab.testing.bench import Bench, Path, drive, slack, straight, wandering
+from contactlab.testing.bench import (
+    Bench,
+    Path,
+    continue_from,
+    drive,
+    slack,
+    straight,
+    wandering,
+)
 from contactlab.testing.check import check, hold
 
 #: Trapezium rule on the steps of these paths, over mu P_max times the unit of slip.
@@ -99,3 +107,19 @@ def books(law: Any) -> None:
             f"{work:.4g} was put in and {lost:.4g} lost to friction: {off:.1%} of it is not in "
             f"the books (seed {seed}).",
         )
+
+
+@check(SteppedTangentialLaw)
+def work_in_its_step(law: Any) -> None:
+    """A small step back after long ones in gross slip has friction work of its own size only."""
+    bench, level, long, short = Bench.of(), 0.7, 0.1, 0.002
+    slid = drive(law, bench, straight((0.0, level), (4.0, level), steps=40)).state
+    back = Path(np.array([4.0 - short]), np.array([level]))
+    work = float(continue_from(law, bench, slid, back, slip=4.0, level=level, count=40).work[0])
+    most = level**1.5 * short
+    hold(
+        work <= (1.0 + slack(law)) * most,
+        f"A step back by {short} in gross slip has a friction work of {work:.2g}; mu P times its "
+        f"displacement is {most:.2g}, and that of the step before, of {long}, "
+        f"{level**1.5 * long:.2g}.",
+    )

@@ -79,6 +79,22 @@ class FailingSpring(SteppedTangentialLaw):
 
 
 @attrs.frozen(kw_only=True)
+class UnsettledSpring(FailingSpring):
+    """A law without force that finds no answer from the seventh step on."""
+
+    def advance(
+        self,
+        state: int,
+        increment: Increment,
+        before: NormalContact,
+        after: NormalContact,
+    ) -> tuple[TangentialResponse, int]:
+        """Answer with no force, and say that it is none."""
+        nothing = 0.0 * increment.displacement
+        return TangentialResponse(nothing, nothing, state + 1 < self.at), state + 1
+
+
+@attrs.frozen(kw_only=True)
 class Unyielding(SteppedTangentialLaw):
     """A law without force that says it is stiffer than any number of steps resolves."""
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import NormalContact, SteppedTangentialLaw
+from contactlab.numeric.arrays import locked
 from contactlab.testing.bench import STEPS_TO_KNOT, Bench, Path, drive, slack, straight, wandering
 from contactlab.testing.check import check, hold
 from contactlab.testing.units import ODD_UNITS, in_units
@@ -15,6 +16,10 @@ from contactlab.testing.units import ODD_UNITS, in_units
 #: Forces that should agree to rounding, over mu P_max.
 ROUNDING = 1e-9
 SEEDS = (11, 12, 13)
+#: A long slip, in units of the slip at which gross slip begins.
+FAR = 1e4
+#: Work of gross slip may be off force times slip by this, over it.
+PAID = 1e-6
 
 
 @check(SteppedTangentialLaw)
@@ -29,6 +34,14 @@ def odd_in_slip(law: Any) -> None:
         hold(gap <= ROUNDING, f"Reversed slip gives a force that differs by {gap:.1e} mu P_max.")
         gap = _worst(there.work - back.work)
         hold(gap <= ROUNDING, "Reversed slip gives another friction work.")
+    far = straight((0.0, 0.5), (FAR, 0.9), (FAR - 1.0, 0.7))
+    ahead = drive(law, bench, far).force
+    gap = _worst(ahead + drive(law, bench, Path(-far.slip, far.level)).force)
+    hold(
+        gap <= ROUNDING,
+        f"Reversed slip, as far as {FAR:g} units, gives a force that differs by {gap:.1e} "
+        "mu P_max.",
+    )
 
 
 @check(SteppedTangentialLaw)
@@ -55,11 +68,15 @@ def coulomb_limit(law: Any) -> None:
     """The force is within mu P, always (TangentialLaw, 1)."""
     for seed in SEEDS:
         path = wandering(seed)
-        over = np.abs(drive(law, Bench.of(), path).force) - path.level**1.5
+        force, limit = np.abs(drive(law, Bench.of(), path).force), path.level**1.5
+        over = force - limit
+        worst = int(over.argmax())
+        late = worst > 0 and abs(force[worst] - limit[worst - 1]) <= ROUNDING
         hold(
             over.max() <= slack(law),
             f"abs(F) exceeds mu P by {over.max():.2g} of mu P_max, at zeta = "
-            f"{path.level[over.argmax()]:.2g}.",
+            f"{path.level[worst]:.2g}"
+            + (": it is mu times the load at the start of the step." if late else "."),
         )
 
 
@@ -97,8 +114,9 @@ def gross_slip(law: Any) -> None:
     work = float(np.sum(found.work[2 * STEPS_TO_KNOT :]))
     paid = 4.0 * float(found.force[-1])
     hold(
-        abs(work - paid) <= max(slack(law), 1e-6) * paid,
-        f"Friction work {work:.4g} in slip by 4.0 at a force of {found.force[-1]:.4g}.",
+        abs(work - paid) <= PAID * paid,
+        f"Friction work of gross slip by 4.0 is {work / paid:.7g} times force times slip: "
+        f"{work:.4g} at a force of {found.force[-1]:.4g}.",
     )
 
 
@@ -121,6 +139,34 @@ def non_finite(law: Any) -> None:
             continue
         clean = bool(response.settled) and math.isfinite(response.force)
         hold(not clean, f"NaN as {what} gives F = {response.force!r}, as if nothing were wrong.")
+    _non_finite_in_a_batch(law)
+
+
+def _non_finite_in_a_batch(law: Any) -> None:
+    """Hold that NaN as the slip of one contact of a batch is refused, or comes out there alone."""
+    bench = Bench.of((3,))
+    before = bench.contact(locked(np.full(3, 0.7)))
+    slip = np.array([0.1, 0.2, 0.3])
+    state, given = bench.start(law), bench.increment(locked(slip), before, bench.time / 16.0)
+    spoiled = np.where([False, True, False], math.nan, slip)
+    ill = bench.increment(locked(spoiled), before, bench.time / 16.0)
+    sound, _ = law.advance(state, given, before, before)
+    try:
+        response, _ = law.advance(state, ill, before, before)
+    except (ValueError, ArithmeticError):
+        return
+    force = np.asarray(response.force)
+    clean = np.broadcast_to(response.settled, 3) & np.isfinite(force)
+    hold(
+        not clean[1],
+        f"NaN as the slip of one contact of a batch gives F = {force[1]:.3g} N there, as if "
+        "nothing were wrong.",
+    )
+    others = [0, 2]
+    hold(
+        np.array_equal(force[others], np.asarray(sound.force)[others]),
+        "NaN as the slip of one contact of a batch changes the force of the others.",
+    )
 
 
 @check(SteppedTangentialLaw)

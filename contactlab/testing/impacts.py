@@ -54,7 +54,10 @@ def impact_units(law: Any) -> None:
             here, _, work = meet(way, psi1, chi)
             there, _, other = meet(converted, psi1, chi, units=ODD_UNITS)
             gap = max(abs(here - there), abs(work - other)) / max(1.0, psi1)
-            hold(gap <= 1e-8, f"psi1 = {psi1}, chi = {chi}: differs by {gap:.1e} ({way}).")
+            hold(
+                gap <= 1e-8,
+                f"psi1 = {psi1}, chi = {chi}: in other units psi2 differs by {gap:.1e} ({way}).",
+            )
 
 
 @check(TangentialLaw)
@@ -129,6 +132,8 @@ def impact_repeatable(law: Any) -> None:
         meet(way, 3.5, 3.0)
         again = meet(way, 1.2, 1.44)[1]
         hold(same(first, again), f"The same impact, run twice, ends differently ({way}).")
+        once, twice = (meet(way, 40.0, 1.44)[1] for _ in range(2))
+        hold(same(once, twice), f"An impact that slips, run twice, ends differently ({way}).")
         hold(same(kept, law), f"A run changed the law ({way}).")
         watched = course(way, 1.2, 1.44)[1]
         gap = abs(watched.slip_velocity_change - first.slip_velocity_change)
@@ -149,6 +154,26 @@ def impact_batch(law: Any) -> None:
             gap = max(abs(float(change[place]) - alone), abs(float(work[place]) - lost))
             gap /= max(1.0, abs(float(psi1[place])))
             hold(gap <= 1e-8, f"Impact {place} of a batch is off by {gap:.1e} in psi ({way}).")
+
+
+@check(TangentialLaw)
+def impact_after_another(law: Any) -> None:
+    """An impact does not depend on the scenes that were run before it (Law, 1)."""
+    one = scene(1.2, CHI[1])
+    other = scene(2.0, CHI[2], bodies=1.6, friction=0.6)
+    stacked = scene(
+        *(np.full((1, 1, 1), number) for number in (2.0, CHI[2])), bodies=1.6, friction=0.6
+    )
+    for way in ways(law):
+        way.run(one)
+        alone, _, _ = way.run(other)
+        gap = abs(float(np.ravel(way.run(stacked).change)[0]) - float(alone))
+        hold(
+            gap <= 1e-8,
+            f"An impact of other bodies, run after another scene of its shape, is {gap:.2g} off in "
+            f"psi: alone in a batch of shape (1, 1, 1) it ends otherwise. Is something kept from "
+            f"one scene for the next ({way})?",
+        )
 
 
 @check(TangentialLaw, claim="partial_slip")

@@ -13,6 +13,7 @@ from contactlab.testing.faulty_laws import (
     FailingSpring,
     SpoiledHertz,
     TooManyCallsError,
+    UnsettledSpring,
     Unyielding,
 )
 from contactlab.testing.integrators import CHI, fitting, marched_impact
@@ -23,8 +24,13 @@ NONE_FIT = "None of the faulty laws of the kit fits it."
 
 @check(Integrator)
 def faults_reported(integrator: Any) -> None:
-    """A law that answers NaN or raises gives a status, with the history so far (Integrator, 1)."""
-    faulty = (FailingSpring(), FailingSpring(raises=True), SlidingForEver(fails=True))
+    """A law that answers NaN, finds no answer or raises gives a status and the history so far."""
+    faulty = (
+        FailingSpring(),
+        FailingSpring(raises=True),
+        UnsettledSpring(),
+        SlidingForEver(fails=True),
+    )
     _reported([*fitting(integrator, faulty, "normal.hertz")], least=1)
 
 
@@ -78,6 +84,5 @@ def _reported(simulations: list[Simulation], *, least: int) -> None:
         who = f"{type(simulation.normal).__name__} and {type(simulation.tangential).__name__}"
         hold(not result.status, f"A fault in {who} reads as success.")
         hold(result.motion.detail, f"{result.status.name} says nothing of what and where: {who}.")
-        hold(result.history is not None, "There is no history.")
         instants = len(result.history.time) if result.history is not None else 0
         hold(instants >= least, f"{instants} instants of the history are left ({who}).")

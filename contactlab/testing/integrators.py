@@ -16,6 +16,7 @@ from contactlab.compose.simulation import Simulation
 from contactlab.contracts import Integrator, TangentialMotion
 from contactlab.contracts.status import Status
 from contactlab.outcome.history import Recorder
+from contactlab.testing import limits
 from contactlab.testing.bench import bodies, scene
 from contactlab.testing.check import check, hold
 from contactlab.testing.compare import same
@@ -58,6 +59,7 @@ def marched_impact(
 
 def marched(simulation: Simulation, given: Any, recorder: Any = None) -> TangentialMotion:
     """Return the motion of a scene by the integrator alone."""
+    limits.begin(f"an impact under {type(simulation.tangential).__name__}")
     normal = normal_motion(simulation.normal, given)
     return simulation.integrator.integrate(normal, simulation.tangential, given, recorder)
 
@@ -125,6 +127,29 @@ def integrator_pure(integrator: Any) -> None:
             "The same impact, run twice, ends differently.",
         )
         hold(same(kept, integrator), "A run changed the integrator.")
+
+
+@check(Integrator)
+def mirror_images(integrator: Any) -> None:
+    """An impact from the other side is followed as the mirror image (TangentialLaw, 2)."""
+    for simulation in sound(integrator):
+        for psi1 in (0.3, 2.0, 12.0):
+            there, back = (marched_impact(simulation, sense * psi1) for sense in (1.0, -1.0))
+            change, other = (float(np.asarray(one.slip_velocity_change)) for one in (there, back))
+            lost = float(np.asarray(back.friction_work)) - float(np.asarray(there.friction_work))
+            gap = max(abs(other / change + 1.0), abs(lost) / _energy(psi1))
+            name = type(simulation.tangential).__name__
+            hold(
+                gap <= 1e-9,
+                f"psi1 = -{psi1}: the motion is {gap:.1e} off the mirror image of that of {psi1} "
+                f"({name}).",
+            )
+
+
+def _energy(psi1: float) -> float:
+    """Return the kinetic energy of slip of a scene of the kit, in J."""
+    given: Any = scene(psi1, CHI)
+    return float(0.5 * given.pair.tangential_mass * given.slip_velocity**2)
 
 
 @check(Integrator)

@@ -22,6 +22,7 @@ from contactlab.contracts import (
     SteppedTangentialLaw,
     TangentialResponse,
 )
+from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 
@@ -224,3 +225,41 @@ class SoftHertz(DampedHertz):
         """Return the contact."""
         contact, state = super().respond(state, approach, 0.0 * rate)
         return contact._replace(force=0.1 * contact.force), state
+
+
+@attrs.frozen(kw_only=True)
+class StronglyDampedHertz(DampedHertz):
+    """The same with a restitution of about a half."""
+
+    damping: ClassVar[float] = 0.9
+
+
+@attrs.frozen(kw_only=True)
+class PullingHertz(NormalLaw):
+    """Hertz's force less a twentieth of its maximum; the friction load is Hertz's.
+
+    It pulls near first touch and near separation, so that the impulse of the friction load is
+    not mu (1 + e) M_n v1.
+    """
+
+    api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
+    pull: ClassVar[float] = 0.05
+
+    def start(self, scene: Scene) -> tuple[Any, Any, Any]:
+        """Return stiffness, radius and pull."""
+        pair = scene.pair
+        stiffness = (4.0 / 3.0) * pair.effective_modulus * pair.radius**0.5
+        return stiffness, pair.radius, self.pull * hertz_scales(scene).force
+
+    def respond(
+        self, state: tuple[Any, Any, Any], approach: Real, rate: Real
+    ) -> tuple[NormalContact, Any]:
+        """Return the contact."""
+        stiffness, radius, pull = state
+        touching: Any = approach > 0.0
+        inside = approach * touching
+        load = stiffness * inside**1.5
+        return NormalContact(
+            load - pull * touching, (radius * inside) ** 0.5, approach, load
+        ), state

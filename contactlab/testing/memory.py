@@ -7,11 +7,15 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab.testing.bench import Bench, drive, slack, straight
+from contactlab.testing.bench import Bench, Path, continue_from, drive, slack, straight
 from contactlab.testing.check import check, hold
 
 LEVEL = 0.8
 STEPS = 40
+#: Steps out of contact before the bodies meet again.
+APART = (1, 2, 5)
+#: Steps of a contact that is held still.
+STILL = 400
 
 
 @check(SteppedTangentialLaw)
@@ -48,4 +52,45 @@ def cattaneo_mindlin(law: Any) -> None:
     hold(
         gap.max() <= slack(law, 1e-3),
         f"F/(mu P) is {gap.max():.2g} off Cattaneo and Mindlin's, at xi = {xi[gap.argmax()]:.2g}.",
+    )
+
+
+@check(SteppedTangentialLaw)
+def contact_again(law: Any) -> None:
+    """After separation, of one step or of more, a contact begins without memory (stepped, 1)."""
+    bench = Bench.of()
+    touched = straight((0.0, LEVEL), (0.5, LEVEL), steps=16)
+    sheared = drive(law, bench, touched)
+    again = straight((0.0, LEVEL), (0.3, LEVEL), steps=16)
+    fresh = drive(law, bench, again).force
+    for apart in APART:
+        away = Path(np.full(apart, 0.5), np.full(apart, -0.1))
+        gone = continue_from(
+            law, bench, sheared.state, away, slip=0.5, level=LEVEL, count=len(again.slip)
+        )
+        back = continue_from(law, bench, gone.state, again, level=-0.1).force
+        pressed, gap = (float(np.max(np.abs(part))) for part in (back[:16], back - fresh))
+        hold(
+            gap <= slack(law, 1e-9),
+            f"After {apart} step(s) out of contact, contact is made again: pressing alone gives "
+            f"F = {pressed:.2g} mu P_max, and the force is {gap:.2g} off that of a first contact. "
+            "The memory of the contact before is still there.",
+        )
+
+
+@check(SteppedTangentialLaw)
+def held_still(law: Any) -> None:
+    """A contact that is held still keeps its force, however many steps are taken.
+
+    From the second step on: the force of a dashpot goes in the first.
+    """
+    bench = Bench.of()
+    sheared = drive(law, bench, straight((0.0, LEVEL), (0.3, LEVEL), steps=16)).state
+    still = Path(np.full(STILL, 0.3), np.full(STILL, LEVEL))
+    force = continue_from(law, bench, sheared, still, slip=0.3, level=LEVEL).force
+    gap = float(np.max(np.abs(force - force[1])[1:]))
+    hold(
+        gap <= slack(law, 1e-9),
+        f"Held still for {STILL} steps, the force of {force[1]:.3g} mu P_max changes by "
+        f"{gap:.2g}: it depends on the number of steps, not on the displacement.",
     )

@@ -34,7 +34,11 @@ def motion_agrees(law: Any) -> None:
         gap = float(np.max(apart)) / scale
         hold(gap <= 1e-8, f"The {name} of the motion is {gap:.1e} off that of respond.")
     start = motion.at(0.0)
-    hold(abs(start.rate / speed - 1.0) <= 1e-12, f"It starts at {start.rate!r} m/s, not {speed!r}.")
+    rate_at_touch = float(start.rate)
+    hold(
+        abs(rate_at_touch / speed - 1.0) <= 1e-12,
+        f"It starts at {rate_at_touch!r} m/s, not {speed!r}.",
+    )
     touches = abs(float(start.approach)) <= 1e-12 * motion.maximum_approach
     hold(touches, "It does not start at touch.")
 

@@ -12,7 +12,8 @@ from contactlab.contracts import NormalContact, NormalLaw
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
-from contactlab.testing.bench import bodies, scene
+from contactlab.testing import limits
+from contactlab.testing.bench import bodies, scene, varied
 from contactlab.testing.check import check, hold
 from contactlab.testing.compare import same, well_formed
 from contactlab.testing.units import ODD_UNITS, Units, in_units
@@ -21,14 +22,18 @@ from contactlab.testing.units import ODD_UNITS, Units, in_units
 STEPS = 60
 ROUNDING = 1e-9
 ENTRIES = NormalContact._fields
+#: What contacts of a batch may differ in, and which of the depths are tried then.
+DIFFERENT, SPARSE = ("normal_speed", "radius", "effective_modulus", "normal_mass"), 4
 
 
-def strokes(units: Units | None = None, *, bodies: Any = 1.0) -> tuple[Scene, Any, Any]:
+def strokes(
+    units: Units | None = None, *, bodies: Any = 1.0, given: Scene | None = None
+) -> tuple[Scene, Any, Any]:
     """Return a scene, and approach and rate along a press and a release.
 
     From first touch to out of contact, as in an impact: before first touch nobody asks.
     """
-    given = scene(0.0, 1.0, units=units, bodies=bodies)
+    given = given or scene(0.0, 1.0, units=units, bodies=bodies)
     x = np.linspace(0.0, 1.05 * math.pi, 2 * STEPS + 1)
     approach = np.multiply.outer(np.sin(x), hertz_scales(given).approach)
     return given, approach, np.multiply.outer(np.cos(x), given.normal_speed)
@@ -45,7 +50,9 @@ def respond(law: Any, given: Scene, approach: Any, rate: Any) -> Any:
         In m and m/s, one after the other.
     """
     state, rows = law.start(given), []
+    limits.begin(f"a course of {len(approach)} depths")
     for depth, speed in zip(_rows(approach), _rows(rate), strict=True):
+        limits.DOING.steps += 1
         contact, state = law.respond(state, depth, speed)
         rows.append([np.broadcast_to(part, given.shape) for part in _complete(contact)])
     return np.moveaxis(np.array(rows, dtype=np.float64), 1, 0)
@@ -80,15 +87,39 @@ def contacts(law: Any) -> None:
 @check(NormalLaw)
 def contacts_batch(law: Any) -> None:
     """A batch of unlike bodies answers as its contacts do one by one (NormalLaw, 3)."""
+    for quantity in DIFFERENT:
+        given, approach, rate = strokes(given=varied(quantity))
+        words = f"of a batch that differs in {quantity} only"
+        _alike(law, given, approach[::SPARSE], rate[::SPARSE], words)
     given, approach, rate = strokes(bodies=bodies(3))
     factors = np.array([0.3, 0.7, 1.0])
-    approach, rate = approach * factors, rate * factors
+    _alike(law, given, approach * factors, rate * factors, "of a batch")
+    _alike(law, *strokes(bodies=bodies(2, 3)), "of a batch of shape (2, 3)")
+
+
+def _alike(law: Any, given: Scene, approach: Any, rate: Any, words: str) -> None:
+    """Hold that the contacts of a batch answer as each does alone.
+
+    Parameters
+    ----------
+    law : NormalLaw
+    given : Scene
+        A batch.
+    approach, rate : array, shape (K, ...)
+        In m and m/s; broadcast to the batch shape.
+    words : str
+        Which batch, for the sentence.
+    """
+    shape = (len(approach), *given.shape)
+    approach, rate = (np.broadcast_to(column.T, shape[::-1]).T for column in (approach, rate))
     together = respond(law, given, approach, rate)
-    for place in range(len(factors)):
-        alone = respond(law, given.take(place), approach[:, place], rate[:, place])
+    for place in np.ndindex(given.shape):
+        at = (slice(None), *place)
+        alone = respond(law, given.take(place), approach[at], rate[at])
         scale = np.maximum(np.abs(alone).max(axis=1, keepdims=True), 1e-300)
-        gap = float(np.max(np.abs(together[:, :, place] - alone) / scale))
-        hold(gap <= ROUNDING, f"Contact {place} of a batch is off by {gap:.1e}.")
+        gap = float(np.max(np.abs(together[(slice(None), *at)] - alone) / scale))
+        name = place[0] if len(place) == 1 else place
+        hold(gap <= ROUNDING, f"Contact {name} {words} is off by {gap:.1e}.")
 
 
 @check(NormalLaw)
@@ -152,3 +183,11 @@ def contacts_non_finite(law: Any) -> None:
         hold(math.isnan(force), f"An approach of NaN gives a force of {force!r}.")
         hold(not overlap <= 0.0, "An approach of NaN is taken for no contact.")
         hold(math.isnan(load), f"An approach of NaN gives a friction load of {load!r}.")
+    try:
+        force, *_ = law.respond(law.start(given), depth, math.nan)[0].complete
+        at_rest, *_ = law.respond(law.start(given), depth, 0.0)[0].complete
+        moving, *_ = law.respond(law.start(given), depth, speed)[0].complete
+    except (ValueError, ArithmeticError):
+        return
+    if at_rest != moving:  # a force that does not depend on the rate need not look at it
+        hold(math.isnan(force), f"A rate of NaN gives a force of {float(force)!r}, as if at rest.")

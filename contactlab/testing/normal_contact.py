@@ -74,6 +74,13 @@ def radius(law: Any) -> None:
     force, found, _, _ = respond(law, given, approach, rate)
     pressed = (force > 1e-6 * force.max()) & (approach > 0.0)
     hold(np.all(found[pressed] > 0.0), "It offers 'radius', and has none where it presses.")
+    deepest = int(approach.argmax())
+    share = float(found[deepest] ** 2) / (given.pair.radius * float(approach[deepest]))
+    hold(
+        ELASTIC - ROOM <= share <= GEOMETRIC + ROOM,
+        f"b² is {share:.3g} R z at greatest compression: {ELASTIC:g} of an elastic sphere (2), "
+        f"and {GEOMETRIC:g}, the section of sphere and plane, at most.",
+    )
 
 
 @check(NormalLaw, claim="hertzian_pressure")

@@ -11,6 +11,7 @@ from scipy.integrate import trapezoid
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
 from contactlab.contracts.status import Status
+from contactlab.testing import limits
 from contactlab.testing.bench import bodies, scene
 from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.normal import respond, strokes
@@ -69,6 +70,7 @@ def impacts(law: Any) -> Iterator[NormalMotion]:
             None, None, ball.friction_coefficient, factor * ball.normal_speed, 0.0, pair=ball.pair
         )
         for each in (_Stepwise(law), law):
+            limits.begin(f"a normal motion at {factor} times the speed")
             motion = normal_motion(each, given)
             if motion.status is Status.NOT_SEPARATED and _pulls(motion):
                 continue  # adhesion holds what comes so slowly
@@ -146,8 +148,10 @@ def ends_unloaded(law: Any) -> None:
 def motion_batch(law: Any) -> None:
     """A batch of unlike bodies moves as each impact does alone (Integrator, 5)."""
     given = scene(0.0, 1.0, bodies=bodies(4))
+    limits.begin("the normal motion of a batch")
     together = normal_motion(law, given)
     for place in range(4):
+        limits.begin(f"the normal motion of impact {place} of a batch, alone")
         alone = normal_motion(law, given.take(place))
         for name in (
             "duration", "maximum_radius", "maximum_approach", "maximum_force", "final_rate",

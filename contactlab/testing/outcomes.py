@@ -10,7 +10,14 @@ import attrs
 
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import Law
-from contactlab.testing.check import CHECKS, Check, CheckFailedError, NotApplicableError
+from contactlab.testing.check import (
+    CHECKS,
+    Check,
+    CheckFailedError,
+    CheckStoppedError,
+    NotApplicableError,
+)
+from contactlab.testing.limits import MOST_TIMEOUTS, SECONDS
 
 
 class Verdict(Enum):
@@ -31,11 +38,12 @@ class Verdict(Enum):
 
 @attrs.frozen
 class Outcome:
-    """One check of one law: its name, the verdict and a sentence."""
+    """One check of one law: its name, the verdict, a sentence, and whether time ran out."""
 
     check: str
     verdict: Verdict
     sentence: str
+    out_of_time: bool = False
 
 
 class ConformanceError(AssertionError):
@@ -58,13 +66,23 @@ def expected(law: Law) -> dict[str, str]:
     return dict(getattr(law, "expected_failures", {}))
 
 
-def outcome(law: Law, check: Check) -> Outcome:
-    """Put ``law`` through one check."""
+def outcome(law: Law, check: Check, *, seconds: float = SECONDS) -> Outcome:
+    """Put ``law`` through one check.
+
+    Parameters
+    ----------
+    law : Law
+    check : Check
+    seconds : float
+        Time that the check may take.
+    """
     if not claimed(law, check):
         return Outcome(check.name, Verdict.NOT_CLAIMED, f"The law does not offer {check.claim!r}.")
     reason = expected(law).get(check.name)
     try:
-        check(law)
+        check(law, seconds=seconds)
+    except CheckStoppedError as stopped:
+        return Outcome(check.name, Verdict.FAILED, str(stopped), out_of_time=True)
     except NotApplicableError as reason_why:
         return Outcome(check.name, Verdict.NOT_APPLICABLE, str(reason_why))
     except CheckFailedError as failure:
@@ -82,7 +100,10 @@ def outcome(law: Law, check: Check) -> Outcome:
 
 
 def examine(
-    law: Law | str, *, progress: Callable[[int, int], object] | None = None
+    law: Law | str,
+    *,
+    progress: Callable[[int, int], object] | None = None,
+    seconds: float = SECONDS,
 ) -> list[Outcome]:
     """Put a law through every check that applies to it, and return what came out.
 
@@ -92,26 +113,39 @@ def examine(
         An object, or the name of an installed law, which is made with its defaults.
     progress : callable, optional
         Called as ``progress(done, total)`` after each check.
+    seconds : float
+        Time that each check may take. After three that ran out of it the others are not tried.
     """
     made = made_law(law)
     checks = checks_for(made)
-    outcomes = []
+    outcomes: list[Outcome] = []
     for done, check in enumerate(checks, 1):
-        outcomes.append(outcome(made, check))
+        if sum(one.out_of_time for one in outcomes) >= MOST_TIMEOUTS:
+            left = f"Not tried: {MOST_TIMEOUTS} checks before it ran out of time."
+            outcomes.append(Outcome(check.name, Verdict.FAILED, left))
+        else:
+            outcomes.append(outcome(made, check, seconds=seconds))
         if progress is not None:
             progress(done, len(checks))
     return outcomes
 
 
-def check_law(law: Law | str) -> list[Outcome]:
+def check_law(law: Law | str, *, seconds: float = SECONDS) -> list[Outcome]:
     """Put a law through every check that applies to it, and refuse it if it is not as it says.
+
+    Parameters
+    ----------
+    law : Law or str
+        An object, or the name of an installed law, which is made with its defaults.
+    seconds : float
+        Time that each check may take: a law that hangs is told so.
 
     Raises
     ------
     ConformanceError
         Naming each check failed, or passed against expectation, with its sentence.
     """
-    outcomes = examine(law)
+    outcomes = examine(law, seconds=seconds)
     bad = [entry for entry in outcomes if not entry.verdict.good]
     if bad:
         lines = [f"{entry.check}: {entry.verdict.value}: {entry.sentence}" for entry in bad]

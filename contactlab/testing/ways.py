@@ -12,6 +12,7 @@ from contactlab.compose.simulation import Simulation
 from contactlab.contracts import (
     Integrator,
     NormalLaw,
+    NormalMotion,
     Observer,
     PhasedTangentialLaw,
     SteppedTangentialLaw,
@@ -22,12 +23,15 @@ from contactlab.contracts import (
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.outcome.history import History, Recorder
+from contactlab.testing import limits
 from contactlab.testing.bench import scene, slack
 from contactlab.testing.check import apply_if, hold
 from contactlab.testing.units import Units
 
 #: Steps of an impact; more if the law says that it needs more.
 STEPS = 200
+#: Steps of an impact beyond which a law is not followed: 200 become 700 at the most of ours.
+MOST_STEPS = 20_000
 #: What the integration may add to an error in psi: second order at 200 steps.
 INTEGRATION = 2e-3
 #: What rounding may add to an answer for a whole impact.
@@ -65,16 +69,33 @@ class Way(NamedTuple):
         those of a simulation.
         """
         motion: TangentialMotion
+        limits.begin(f"an impact, {_which(given)} ({self})")
         if self.integrator is None:
             motion = Simulation(normal=self.normal, tangential=self.law).run(given).motion
         else:
             normal = normal_motion(self.normal, given)
+            _followed(self, normal, given)
             motion = self.integrator.integrate(normal, self.law, given, recorder)
         if not np.all(np.asarray(motion.status) == Status.SUCCESS):
             hold(False, f"{_which(given)}: {_detail(motion)} ({self})")
         unit = given.pair.tangential_mass / np.square(given.psi_scale)
         change = given.psi(motion.slip_velocity_change)
         return Answer(change, motion, motion.friction_work / unit)
+
+
+def _followed(way: Way, normal: NormalMotion, given: Scene) -> None:
+    """Hold that the law asks for no more steps than ``MOST_STEPS``."""
+    assert way.integrator is not None
+    if not isinstance(way.law, SteppedTangentialLaw):
+        return
+    asked = float(np.max(way.integrator.resolution_for(normal, way.law, given)))
+    if asked > MOST_STEPS:
+        stiffness = float(np.max(way.law.stiffness(given, normal)))
+        hold(
+            False,
+            f"{_which(given)}: the stiffness that it states, {stiffness:.3g} N/m, asks for "
+            f"{asked:.3g} steps; {MOST_STEPS} are the limit of a check.",
+        )
 
 
 def _which(given: Scene) -> str:

@@ -22,8 +22,8 @@ from contactlab.testing.impacts import CHI, PSI1
 from contactlab.testing.laws import DampedHertz
 from contactlab.testing.ways import INTEGRATION, ROUNDING, Way, allowed, course, ways
 
-#: Angles of these checks: those of impacts, and where gross slip begins (46).
-ANGLES = (0.0, *PSI1, *(4.0 * chi for chi in CHI))
+#: Angles of these checks: those of impacts, where gross slip begins (46), and the other side.
+ANGLES = (0.0, *PSI1, *(4.0 * chi for chi in CHI), -0.3, -6.0)
 #: So much slip that no contact comes to rest, over 4 chi.
 GRAZING = 300.0
 #: Points along a course, and what the trapezium rule makes of it there.

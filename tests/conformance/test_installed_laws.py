@@ -39,8 +39,8 @@ def test_conformance(law, check):
 
 
 @pytest.mark.parametrize("law", CLAIMING, ids=repr)
-def test_a_law_that_claims_partial_slip_expects_no_failure(law):
-    assert not law.expected_failures
+def test_a_law_that_claims_partial_slip_expects_to_fail_under_damping_at_most(law):
+    assert set(law.expected_failures) <= {"coulomb_at_a_point_damped"}
 
 
 def test_the_laws_of_partial_slip_claim_it():

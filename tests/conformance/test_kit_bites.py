@@ -1,39 +1,32 @@
 """The kit catches each broken law by the check that is meant for it, and lets a sound one pass."""
 
-import importlib.util
-import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from contactlab.testing import CHECKS, ConformanceError, Verdict, check_law, checks_for, outcome
+from tests.conformance import broken_clauses as clauses
+from tests.conformance import broken_declarations as declarations
+from tests.conformance import broken_impacts as impacts
+from tests.conformance import broken_integrators as integrators
+from tests.conformance import broken_laws as laws
+from tests.conformance import broken_normal as normal
+from tests.conformance import fresh_faults
 
 pytestmark = pytest.mark.slow
 
 README = Path(__file__).parents[2] / "README.md"
 
 
-def _imported(stem):
-    """Import a file beside this one under a name of its own, so that its classes pickle."""
-    name = f"contactlab_{stem}"
-    if name not in sys.modules:
-        path = Path(__file__).with_name(f"{stem}.py")
-        spec = importlib.util.spec_from_file_location(name, path)
-        sys.modules[name] = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(sys.modules[name])
-    return sys.modules[name]
-
-
-laws = _imported("broken_laws")
-declarations = _imported("broken_declarations")
-impacts = _imported("broken_impacts")
-normal = _imported("broken_normal")
 BROKEN = [
     *laws.BROKEN,
     *declarations.BROKEN,
     *impacts.BROKEN,
     *normal.BROKEN,
-    *_imported("broken_integrators").BROKEN,
+    *integrators.BROKEN,
+    *clauses.BROKEN,
+    *fresh_faults.FAULTS,
 ]
 
 
@@ -67,6 +60,7 @@ def test_a_sound_law_passes_every_check(law):
 )
 def test_each_broken_law_is_caught_by_the_check_meant_for_it(broken, name, words):
     """For the fault it has: a check that only stumbles over it says something else."""
+    np.random.seed(1)  # noqa: NPY002 one of the faults draws from the global generator
     law = broken()
     check = next(check for check in checks_for(law) if check.name == name)
     found = outcome(law, check)

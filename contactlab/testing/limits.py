@@ -1,0 +1,103 @@
+"""A limit of time for a check: a law that hangs or crawls is told so, and nothing hangs."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any
+
+#: Seconds that a check may take; the longest of ours takes a few on a slow machine.
+SECONDS = 60.0
+#: Seconds after which a law that has swallowed the first interruption is interrupted again.
+AGAIN = 1.0
+#: Checks that may run out of time before the others are not tried any more.
+MOST_TIMEOUTS = 3
+
+
+class OutOfTimeError(KeyboardInterrupt):
+    """A check ran out of time; it passes through ``except Exception``, as Ctrl-C does."""
+
+
+class Doing:
+    """What the kit is at: words, and the steps of a path that were taken so far."""
+
+    what: str = ""
+    steps: int = 0
+
+
+#: What the check that runs is at.
+DOING = Doing()
+
+
+def begin(what: str) -> None:
+    """Note what is begun; steps are counted from here."""
+    DOING.what, DOING.steps = what, 0
+
+
+@contextmanager
+def limited(name: str, law: Any, seconds: float = SECONDS) -> Iterator[None]:
+    """Raise ``OutOfTimeError`` in the body after ``seconds``, with a sentence.
+
+    Only the main thread of a process can be interrupted, where the system has SIGALRM; elsewhere
+    there is no limit.
+
+    Parameters
+    ----------
+    name : str
+        Of the check.
+    law : Law
+    seconds : float
+    """
+    possible = hasattr(signal, "SIGALRM") and (
+        threading.current_thread() is threading.main_thread()
+    )
+    begin("")
+    if not possible:
+        yield
+        return
+
+    running = True
+
+    def stop(_: int, frame: FrameType | None) -> None:
+        if running:
+            raise OutOfTimeError(_sentence(name, law, seconds, frame))
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, seconds, AGAIN)
+    try:
+        try:
+            yield
+        finally:
+            running = False
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def _sentence(name: str, law: Any, seconds: float, frame: FrameType | None) -> str:
+    """Return which check was stopped, after how long, and where the law was.
+
+    Parameters
+    ----------
+    name : str
+        Of the check.
+    law : Law
+    seconds : float
+    frame : frame or None
+        What ran when the time was over.
+    """
+    what = f", in {DOING.what}" if DOING.what else ""
+    steps = f" at step {DOING.steps}" if DOING.steps else ""
+    where = ""
+    while frame is not None and not where:
+        owner = frame.f_locals.get("self")
+        if owner is law or type(owner) is type(law):
+            where = f", in {type(law).__name__}.{frame.f_code.co_name}, line {frame.f_lineno}"
+        frame = frame.f_back
+    return (
+        f"The check {name} was stopped after {seconds:g} s, its limit{what}{steps}"
+        f"{where}: the law hangs, or crawls."
+    )

@@ -1,0 +1,113 @@
+"""Coulomb's law at every point of the contact, of laws whose fields have tractions.
+
+A law tells its tractions by ``fields``: ``radius`` (m) with ``traction`` (Pa), or ``radius``,
+``displacement`` and ``limit`` (m) of springs, whose traction follows from Abel's integral.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.compose.registry import REGISTRY
+from contactlab.contracts import NormalLaw, SteppedTangentialLaw
+from contactlab.outcome.history import Recorder
+from contactlab.testing.bench import FRICTION, scene
+from contactlab.testing.check import NotApplicableError, apply_if, check, hold
+from contactlab.testing.laws import StronglyDampedHertz
+from contactlab.testing.ways import meet, ways
+
+Array = NDArray[np.float64]
+
+#: chi and psi1 of impacts in which stick and slip alternate.
+IMPACTS = ((1.4411764706, 0.5), (1.4411764706, 2.0), (3.0, 1.2), (3.0, 3.0))
+#: What a discretisation may add to the traction, over the mean of mu p.
+ROOM = 0.05
+#: Contacts smaller than this, over the largest, hold too few points.
+SMALL = 0.3
+
+
+@check(SteppedTangentialLaw)
+def coulomb_at_a_point(law: Any) -> None:
+    """In elastic Hertz impacts no traction exceeds mu p at its point, p the hemisphere (3)."""
+    _hold(law, REGISTRY.create("normal.hertz"))
+
+
+@check(SteppedTangentialLaw)
+def coulomb_at_a_point_damped(law: Any) -> None:
+    """The same under a damped normal law, where cutting each spring alone is not Coulomb's law."""
+    _hold(law, StronglyDampedHertz())
+
+
+def _hold(law: Any, normal_law: NormalLaw) -> None:
+    """Hold that abs(q) <= mu p along impacts under a normal law."""
+    try:
+        way = next(way for way in ways(law, normal_law) if way.integrator is not None)
+    except (NotApplicableError, StopIteration):
+        apply_if(False, f"No integrator runs it under {type(normal_law).__name__}.")
+        return
+    worst, where = -np.inf, ""
+    for chi, psi1 in IMPACTS:
+        recorder = Recorder((), with_fields=True)
+        meet(way, psi1, chi, recorder=recorder)
+        history = recorder.history()
+        fields = history.fields
+        springs = {"radius", "displacement", "limit"} <= set(fields)
+        apply_if(
+            springs or {"radius", "traction"} <= set(fields),
+            "It tells no tractions: fields has neither radius and traction, nor radius, "
+            "displacement and limit of springs.",
+        )
+        modulus = float(np.asarray(scene(psi1, chi).pair.effective_shear_modulus))
+        largest = float(history.contact_radius.max())
+        for row, edge in enumerate(history.contact_radius.tolist()):
+            if edge < SMALL * largest:
+                continue
+            places = np.asarray(fields["radius"][row], float)
+            if "traction" in fields:
+                inside = places < edge
+                radii, found = places[inside], np.asarray(fields["traction"][row], float)[inside]
+            else:
+                radii, found = springs_traction(
+                    places, np.asarray(fields["displacement"][row], float), edge, modulus
+                )
+            peak = 1.5 * FRICTION * float(history.normal_force[row]) / (np.pi * edge**2)
+            over = np.abs(found) - peak * np.sqrt(np.maximum(1.0 - (radii / edge) ** 2, 0.0))
+            most = float(np.max(over, initial=-np.inf)) / (2.0 / 3.0 * peak) if peak else -np.inf
+            if most > worst:
+                at = float(radii[int(over.argmax())]) / edge
+                worst, where = most, f"psi1 = {psi1}, chi = {chi:.3g}, r = {at:.2g} b"
+    hold(
+        worst <= ROOM,
+        f"The traction exceeds mu p by {worst:.2g} of the mean of mu p, at {where} under "
+        f"{type(normal_law).__name__}; {ROOM} is the bound. Coulomb's law holds at every point, "
+        "not in the sum only.",
+    )
+
+
+def springs_traction(
+    places: Array, displacement: Array, edge: float, modulus: float
+) -> tuple[Array, Array]:
+    """Return radii (m) and traction (Pa) of a bundle of springs.
+
+    q(r) = -(G*/pi) times the integral of w'(s)/sqrt(s² - r²) from r to b (Abel), exact for a w
+    that is linear in s² between springs and zero at b.
+
+    Parameters
+    ----------
+    places, displacement : array, shape (n,)
+        s and w of the springs, in m.
+    edge : float
+        b, the contact radius, in m.
+    modulus : float
+        G*, in Pa.
+    """
+    inside = places < edge
+    knots = np.append(places[inside], edge) ** 2
+    values = np.append(displacement[inside], 0.0)
+    radii = np.sqrt(0.5 * (knots[1:] + knots[:-1]))
+    slopes = np.diff(values) / np.diff(knots)
+    roots = np.sqrt(np.maximum(knots[None, :] - radii[:, None] ** 2, 0.0))
+    return radii, -(2.0 * modulus / np.pi) * (np.diff(roots, axis=1) @ slopes)

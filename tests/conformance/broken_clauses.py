@@ -1,0 +1,496 @@
+"""Small faults, one for each sentence of the kit that no other broken law brings about."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+
+import contactlab
+from contactlab import Status
+from contactlab.contracts import TangentialMotion, faults
+from tests.conformance.broken_impacts import AllAtOnce, Knowing, Whole
+from tests.conformance.broken_integrators import AsksTillItGives
+from tests.conformance.broken_laws import Sound
+from tests.conformance.broken_normal import MOTION, Altered, Moving, Stepwise
+from tests.conformance.fresh_faults import STEPS, Steps
+from tests.conformance.fresh_sound import HardSphere, Press
+
+NUMBERS: dict[str, Any] = {"force": 0.0, "calls": 0}
+
+
+# What a law declares.
+
+
+class OfNoKind(Sound):
+    kind: ClassVar[str] = "elastic"
+
+
+class OfAnotherKind(Sound):
+    kind: ClassVar[str] = "normal"
+
+
+class NeedsAsANormalLaw(Press):
+    needs: ClassVar[frozenset] = frozenset({"radius"})
+
+
+class NamesNoParameter(Sound):
+    resolution: ClassVar[str] = "fineness"
+
+
+class NeedsInAList(Sound):
+    needs: ClassVar[Any] = ["radius"]
+
+
+class OffersHertzWithoutAMotion(Press):
+    offers: ClassVar[frozenset] = frozenset({"radius", "elastic_hertz"})
+
+
+class ClaimsAndExpects(Sound):
+    offers: ClassVar[frozenset] = frozenset({"partial_slip"})
+    expected_failures: ClassVar[dict] = {"cattaneo_mindlin": "one spring for the whole contact"}
+
+
+class ExpectsOfAnother(Sound):
+    expected_failures: ClassVar[dict] = {"grows": "it is no normal law at all"}
+
+
+@attrs.frozen(kw_only=True)
+class RefusesNamelessly(Sound):
+    """A parameter that is refused without its name."""
+
+    extra: float = 1.0
+
+    def __attrs_post_init__(self):
+        if not np.isreal(self.extra) or isinstance(self.extra, str) or self.extra != 1.0:
+            raise ValueError("must be 1")
+
+
+@attrs.frozen(kw_only=True)
+class CopiesOtherwise(Sound):
+    """A copy has forgotten where it is from."""
+
+    origin: Any = attrs.field(default="made", eq=False)
+
+    def __copy__(self):
+        return attrs.evolve(self, origin="copied")
+
+
+# Stepped laws.
+
+
+@attrs.frozen(kw_only=True)
+class ChangesItself(Sound):
+    """Counts its calls in a dictionary of its own."""
+
+    calls: Any = attrs.field(factory=dict, eq=False)
+
+    def advance(self, state, increment, before, after):
+        self.calls["made"] = self.calls.get("made", 0) + 1
+        return super().advance(state, increment, before, after)
+
+
+class WritesIntoItsState(Sound):
+    """Notes the step in a list that came in; the answer does not depend on it."""
+
+    def start(self, scene, normal):
+        return super().start(scene, normal), []
+
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state[0], increment, before, after)
+        state[1].append(1)
+        return response, (new, state[1])
+
+
+class WearsByTheRun(Sound):
+    """A little stiffer with every start."""
+
+    def start(self, scene, normal):
+        NUMBERS["calls"] += 1
+        state = super().start(scene, normal)
+        return state._replace(stiffness=state.stiffness * (1.0 + 1e-9 * NUMBERS["calls"]))
+
+
+class ChangesTheScene(Sound):
+    """Rounds the speed of the scene that it is given."""
+
+    def start(self, scene, normal):
+        state = super().start(scene, normal)
+        object.__setattr__(scene, "normal_speed", np.round(scene.normal_speed, 1))
+        return state
+
+
+class FieldsWithoutNames(Sound):
+    def fields(self, state):
+        return {1: np.zeros(3)}
+
+
+class InfinitelyStiff(Sound):
+    def stiffness(self, scene, normal):
+        return np.inf * super().stiffness(scene, normal)
+
+    def start(self, scene, normal):
+        return super().start(scene, normal)._replace(stiffness=super().stiffness(scene, normal))
+
+
+class NeverSettles(Sound):
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state, increment, before, after)
+        return response._replace(settled=False), new
+
+
+class RemembersAClosedLoop(Sound):
+    """Weaker by a little from the second turn of the slip on: loading and unloading are alike."""
+
+    def start(self, scene, normal):
+        return super().start(scene, normal), (0.0, 0)
+
+    def advance(self, state, increment, before, after):
+        spring, (last, turns) = state
+        turns = turns + (last * increment.displacement < 0.0)
+        response, new = super().advance(spring, increment, before, after)
+        told = response._replace(force=np.where(turns > 1, 0.999, 1.0)[()] * response.force)
+        moved = np.where(increment.displacement == 0.0, last, increment.displacement)[()]
+        return told, (new, (moved, turns))
+
+
+class NeedsBodies(HardSphere):
+    """Twice the restitution where bodies are known."""
+
+    def restitution(self, scene):
+        return 0.2 if scene.sphere is None else 0.4
+
+
+class WeakerInABatch(AllAtOnce):
+    """Of a batch a little weaker where all steps are taken at once."""
+
+    def told(self, response):
+        share = 0.99 if response.force.ndim > 1 else 1.0
+        return response._replace(force=share * response.force)
+
+
+class HurriedForce(Knowing):
+    """The right change along the course, by twice the force."""
+
+    def told(self, known, scene):
+        def course(impulse, load):
+            change, force = known.course(impulse, load)
+            return change, 2.0 * force
+
+        return attrs.evolve(known, course=course)
+
+
+class CourseOfTheEnd(Whole):
+    """Its course has the end only."""
+
+    def told(self, known, scene):
+        def course(impulse, load):
+            change, force = known.course(impulse, load)
+            return np.ravel(change)[-1:], np.ravel(force)[-1:]
+
+        return attrs.evolve(known, course=course)
+
+
+@attrs.frozen(kw_only=True)
+class CountsItsImpacts(Whole):
+    """Counts the impacts in a dictionary of its own."""
+
+    calls: Any = attrs.field(factory=dict, eq=False)
+
+    def told(self, known, scene):
+        self.calls["made"] = self.calls.get("made", 0) + 1
+        return known
+
+
+# Normal laws.
+
+
+class AnswersANumber(Press):
+    def respond(self, state, approach, rate):
+        return 0.0 * approach, state
+
+
+@attrs.frozen(kw_only=True)
+class CountsItsCalls(Press):
+    calls: Any = attrs.field(factory=dict, eq=False)
+
+    def respond(self, state, approach, rate):
+        self.calls["made"] = self.calls.get("made", 0) + 1
+        return super().respond(state, approach, rate)
+
+
+class HeedsTheCallBefore(Press):
+    """A force from the approach of the call before, whichever state it was for."""
+
+    def respond(self, state, approach, rate):
+        contact, state = super().respond(state, approach, rate)
+        force = contact.force * (1.0 + 1e-3 * (NUMBERS["force"] > 1.2 * np.max(approach)))
+        NUMBERS["force"] = float(np.max(approach))
+        return contact._replace(force=force), state
+
+
+class ChangesTheSceneToo(Press):
+    def start(self, scene):
+        state = super().start(scene)
+        object.__setattr__(scene, "normal_speed", np.round(scene.normal_speed, 1))
+        return state
+
+
+class NanOverlap(Altered):
+    """An approach of NaN is out of contact; the force is NaN all the same."""
+
+    def alter(self, contact, approach, rate):
+        return contact._replace(overlap=np.where(np.isnan(approach), -1.0, contact.overlap)[()])
+
+
+class NanLoad(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(friction_load=np.nan_to_num(contact.friction_load)[()])
+
+
+class NegativeRadius(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(radius=-contact.radius)
+
+
+class WideWithoutContact(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(radius=contact.radius + 1e-9)
+
+
+class LoadedWithoutContact(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(friction_load=contact.friction_load + 1e-3)
+
+
+class NoForceAtAll(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(force=0.0 * contact.force, friction_load=0.0 * contact.force)
+
+
+class NeverEnds(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(overlap=1.0 + abs(contact.overlap))
+
+
+class NeverParts(Stepwise):
+    """A dashpot alone: the bodies come to rest in contact."""
+
+    def alter(self, contact, dashpot, rate):
+        return contact._replace(force=3.0 * dashpot * np.maximum(rate, 0.0))
+
+
+class Faulty(MOTION):
+    """Hertz's motion with something done to it."""
+
+
+class StartsSlower(Faulty):
+    def at(self, phase):
+        sample = super().at(phase)
+        return sample._replace(rate=sample.rate * (1.0 - 1e-9))
+
+
+class StartsApart(Faulty):
+    def at(self, phase):
+        sample = super().at(phase)
+        return sample._replace(approach=sample.approach - 1e-10 * self.maximum_approach)
+
+
+class HeavierScaled(Faulty):
+    @property
+    def scaled_mass(self):
+        return 0.81
+
+
+class WiderScaled(Faulty):
+    def scaled(self, phase):
+        return super().scaled(phase)._replace(radius=1.01 * super().scaled(phase).radius)
+
+
+class LaterAtARate(Faulty):
+    def phase_at_rate(self, rate):
+        return super().phase_at_rate(rate) + 1e-6
+
+
+class LaterAtAFraction(Faulty):
+    def phase(self, fraction):
+        return super().phase(fraction) * (1.0 + 1e-5)
+
+
+def moving(motion):
+    """Return Hertz's law with that motion."""
+    return type(f"With{motion.__name__}", (Moving,), {"moving": motion, "__module__": __name__})
+
+
+WithStartsSlower, WithStartsApart = moving(StartsSlower), moving(StartsApart)
+WithHeavierScaled, WithWiderScaled = moving(HeavierScaled), moving(WiderScaled)
+WithLaterAtARate, WithLaterAtAFraction = moving(LaterAtARate), moving(LaterAtAFraction)
+
+
+# Integrators.
+
+
+class ClaimsAccuracy(STEPS):
+    """Twenty steps, and an accuracy of 1e-9."""
+
+    accuracy: ClassVar[float] = 1e-9
+
+
+class GivesUp(Steps):
+    """Reports every impact as unresolved."""
+
+    def alter(self, motion, scene):
+        return attrs.evolve(motion, status=Status.UNRESOLVED) if not scene.shape else motion
+
+
+class SaysMore(Steps):
+    """A success with a remark."""
+
+    def alter(self, motion, scene):
+        return attrs.evolve(motion, detail="all is well") if not scene.shape else motion
+
+
+class WrongWay(Steps):
+    def alter(self, motion, scene):
+        return attrs.evolve(motion, slip_velocity_change=-motion.slip_velocity_change)
+
+
+class CountsInHalves(Steps):
+    def alter(self, motion, scene):
+        return attrs.evolve(motion, counters={"steps": 199.5})
+
+
+class SilentFault(Steps):
+    """A status without a word."""
+
+    def alter(self, motion, scene):
+        return attrs.evolve(motion, detail="") if not scene.shape else motion
+
+
+class ShowsInstantsTwice(STEPS):
+    def integrate(self, normal, tangential, scene, observer=None):
+        def twice(sample):
+            observer(sample)
+            observer(sample)
+
+        watched = twice if observer is not None else None
+        return super().integrate(normal, tangential, scene, watched)
+
+
+class ShowsTheFirstHalf(STEPS):
+    def integrate(self, normal, tangential, scene, observer=None):
+        half = 0.5 * float(np.max(normal.duration))
+
+        def early(sample):
+            if np.max(sample.time) < half:
+                observer(sample)
+
+        watched = early if observer is not None else None
+        return super().integrate(normal, tangential, scene, watched)
+
+
+@attrs.frozen(kw_only=True)
+class CountsItsRuns(Steps):
+    calls: Any = attrs.field(factory=dict, eq=False)
+
+    def alter(self, motion, scene):
+        self.calls["made"] = self.calls.get("made", 0) + 1
+        return motion
+
+
+class FailsInABatch(Steps):
+    """Of a batch the first impact is unresolved."""
+
+    def alter(self, motion, scene):
+        if not scene.shape:
+            return motion
+        status = np.array(motion.status, dtype=object)
+        status[(0,) * status.ndim] = Status.UNRESOLVED
+        return TangentialMotion(
+            slip_velocity_change=motion.slip_velocity_change,
+            friction_work=motion.friction_work,
+            status=status,
+        )
+
+
+class ReportsItsEndlessness(AsksTillItGives):
+    """Repeats a step of a stiff law until it raises, and reports that."""
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        try:
+            return super().integrate(normal, tangential, scene, observer)
+        except Exception as error:
+            detail = faults.raised(error)
+            return TangentialMotion.nothing(scene.shape, Status.LAW_RAISED, detail)
+
+
+EVENTS = contactlab.compose.registry.REGISTRY.law_class("integrator.events")
+
+
+class EndsTheEndless(EVENTS):
+    """Takes events without end for a success."""
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        motion = super().integrate(normal, tangential, scene, observer)
+        if scene.shape or motion.status is Status.SUCCESS:
+            return motion
+        return attrs.evolve(motion, status=Status.SUCCESS, detail="", slip_velocity_change=-1.0)
+
+
+#: Each with the check meant for it, and words of what the check says of it.
+BROKEN = [
+    (OfNoKind, "contract", "kind = 'elastic': must be one of"),
+    (OfAnotherKind, "contract", "A normal law must be a NormalLaw"),
+    (NeedsAsANormalLaw, "contract", "Only a tangential law needs something"),
+    (NamesNoParameter, "contract", "resolution = 'fineness': must name a parameter"),
+    (NeedsInAList, "contract", "needs = ['radius']: must be a frozenset of words"),
+    (OffersHertzWithoutAMotion, "contract", "offers 'elastic_hertz', and is no ClosedForm"),
+    (ClaimsAndExpects, "expected_failures", "It offers 'partial_slip' and expects to fail"),
+    (ExpectsOfAnother, "expected_failures", "'grows' is not a check of such a law"),
+    (RefusesNamelessly, "parameters", "extra = nan: refused without its name: must be 1"),
+    (CopiesOtherwise, "copies", "A copy differs: "),
+    (ChangesItself, "pure", "The law itself was changed by a run"),
+    (WritesIntoItsState, "pure", "The state that went in was changed at step 1."),
+    (WearsByTheRun, "repeatable", "gives other forces"),
+    (FieldsWithoutNames, "fields", "fields: 1 is not a name"),
+    (InfinitelyStiff, "stiffness", "stiffness = inf"),
+    (NeverSettles, "coulomb_limit", "The law found no answer on a straight load path"),
+    (RemembersAClosedLoop, "turning_points", "A closed loop at slip 0.3 is not forgotten"),
+    (NeedsBodies, "unlike_bodies", "off that of a scene with the same pair and no bodies"),
+    (WeakerInABatch, "all_steps", "A batch of shape (8,): differs by"),
+    (HurriedForce, "whole_impacts", "along the course the force is"),
+    (CourseOfTheEnd, "whole_impact_form", "its course answers shapes (1,), (1,) to (20001,)"),
+    (CountsItsImpacts, "impact_repeatable", "A run changed the law (as whole impacts)"),
+    (AnswersANumber, "grows", "respond returned "),
+    (CountsItsCalls, "contacts_pure", "The law itself was changed by a run"),
+    (HeedsTheCallBefore, "contacts_pure", "A step tried and thrown away changed the next one"),
+    (NanOverlap, "contacts_non_finite", "An approach of NaN is taken for no contact"),
+    (NanLoad, "contacts_non_finite", "An approach of NaN gives a friction load of 0.0"),
+    (NegativeRadius, "presses", "A contact radius of -"),
+    (WideWithoutContact, "presses", "There is a contact radius out of contact"),
+    (LoadedWithoutContact, "presses", "There is a friction load out of contact"),
+    (NoForceAtAll, "presses", "There is no force at any approach"),
+    (NeverEnds, "presses", "Far behind first touch the overlap says that there is still"),
+    (NeverParts, "rebounds", "An impact does not end: "),
+    (WithStartsSlower, "motion_agrees", "It starts at 0.8299"),
+    (WithStartsApart, "motion_agrees", "It does not start at touch"),
+    (WithHeavierScaled, "motion_obeys_newton", "The scaled mass is 1.3e-02 off"),
+    (WithWiderScaled, "motion_scaled", "The scaled radius is 1.0e-02 off"),
+    (WithLaterAtARate, "motion_scaled", "phase_at_rate is 1.0e-06 off"),
+    (WithLaterAtAFraction, "motion_scaled", "off the inverse of time"),
+    (ClaimsAccuracy, "finer_is_better", "off the exact solution"),
+    (GivesUp, "ends_well", "UNRESOLVED"),
+    (SaysMore, "ends_well", "A success says 'all is well'"),
+    (WrongWay, "ends_well", "m/s changes by 1.1"),
+    (CountsInHalves, "ends_well", "counters = {'steps': 199.5}: must be whole numbers"),
+    (SilentFault, "faults_reported", "says nothing of what and where"),
+    (ShowsInstantsTwice, "observer_changes_nothing", "called at times that do not increase"),
+    (ShowsTheFirstHalf, "observer_changes_nothing", "The last instant seen is at 0.4"),
+    (CountsItsRuns, "integrator_pure", "A run changed the integrator"),
+    (FailsInABatch, "impacts_batch", "An impact of a batch ends otherwise"),
+    (ChangesTheScene, "read_only", "The law changed the scene"),
+    (ChangesTheSceneToo, "contacts_read_only", "The law changed the scene"),
+    (ReportsItsEndlessness, "bounded", "Unyielding is asked without end"),
+    (EndsTheEndless, "bounded", "Events without end are said to have come to one"),
+]
