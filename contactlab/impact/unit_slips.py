@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
 
 #: Sphere radius in m from which millimetres are more likely.
 LARGE_RADIUS = 1.0
@@ -54,9 +54,9 @@ def unit_slips(scene: Scene) -> list[str]:
     return slips
 
 
-def _least(value: Real) -> float:
+def _least(value: Any) -> float:
     return value if isinstance(value, float) else float(np.min(value))
 
 
-def _most(value: Real) -> float:
+def _most(value: Any) -> float:
     return value if isinstance(value, float) else float(np.max(value))
