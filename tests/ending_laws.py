@@ -1,7 +1,8 @@
-"""Laws that do not let a worker live, and one that writes into what it is given."""
+"""Laws that end their process, wait for ever, raise or write into what they are given."""
 
 import os
 import signal
+import time
 from pathlib import Path
 from typing import ClassVar
 
@@ -47,3 +48,17 @@ class Raising(WholeImpactTangentialLaw):
                 raise RuntimeError("too much")
             scene.tangential_velocity[0] *= 0.5
         return (no_force(scene, where=True, reason="a test"),)
+
+
+@attrs.frozen(kw_only=True)
+class Waiting(WholeImpactTangentialLaw):
+    """Waits for ever, after it has left its process id in ``folder`` and printed a line."""
+
+    api_version: ClassVar[int] = 2
+    folder: str
+
+    def whole_impacts(self, scene, normal):
+        print("printed by a law", flush=True)
+        (Path(self.folder) / str(os.getpid())).touch()
+        while True:
+            time.sleep(0.01)

@@ -13,7 +13,8 @@ from __future__ import annotations
 import argparse
 import contextlib
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -109,19 +110,13 @@ def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | No
         print(f"{most} of {len(result)} impacts; all of them are in {out}")
 
 
-@contextlib.contextmanager
-def _executor(count: int | None) -> Iterator[Executor | None]:
+def _executor(count: int | None) -> AbstractContextManager[Executor | None]:
     """Return processes for the work; None for this one."""
     if count is None:
-        yield None
-        return
-    from contactlab.compose.workers import Workers  # only for those who ask for some
+        return contextlib.nullcontext()
+    from contactlab.compose.workers import processes  # only for those who ask for some
 
-    executor = Workers(count)
-    try:
-        yield executor
-    finally:
-        executor.shutdown(cancel_futures=True)  # after Ctrl-C nobody waits for the rest
+    return processes(count)
 
 
 def _folder(out: Path | None) -> Path:

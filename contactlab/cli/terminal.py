@@ -30,47 +30,26 @@ LETTERS = {
 }  # fmt: skip
 
 
+#: Held while a stream writes: a thread writes the line of progress.
+LOCK = threading.RLock()
+
+
 def safe(text: str) -> str:
     """Return text with the characters that a terminal obeys written out, ESC as ``x1b``."""
     return OBEYED.sub(lambda found: found[0].encode("unicode_escape").decode("ascii"), text)
 
 
 def fitting(text: str, encoding: str) -> str:
-    """Return text with what ``encoding`` has not put in letters."""
+    """Return text with symbols that ``encoding`` has not in letters, at worst a question mark."""
     try:
         text.encode(encoding)
     except UnicodeEncodeError:
-        return "".join(_letters(character, encoding) for character in text)
+        if len(text) > 1:
+            return "".join(fitting(character, encoding) for character in text)
+        parts = unicodedata.normalize("NFKD", LETTERS.get(text, text))
+        near = "".join(LETTERS.get(part, part) for part in parts)
+        return near.encode(encoding, "ignore").decode(encoding) or "?"
     return text
-
-
-def _letters(character: str, encoding: str) -> str:
-    """Return the nearest to a character that ``encoding`` has, at worst a question mark."""
-    with contextlib.suppress(UnicodeEncodeError):
-        character.encode(encoding)
-        return character
-    parts = unicodedata.normalize("NFKD", LETTERS.get(character, character))
-    near = "".join(LETTERS.get(part, part) for part in parts)
-    return near.encode(encoding, "ignore").decode(encoding) or "?"
-
-
-class Screen:
-    """What the two streams of a command share.
-
-    Attributes
-    ----------
-    lock : lock
-        Held while one of them writes: the line of progress is written by a thread.
-    progress : text stream or None
-        The stream with an unfinished line of progress, if there is one.
-    within_line : bool
-        Whether what was printed last is to go on in the same line.
-    """
-
-    def __init__(self) -> None:
-        self.lock = threading.RLock()
-        self.progress: TextIO | None = None
-        self.within_line = False
 
 
 class Printed:
@@ -79,44 +58,35 @@ class Printed:
     Parameters
     ----------
     stream : text stream
-        Where the text goes; of everything but ``write`` it decides.
-    screen : Screen
-        Shared by the two streams of a command, so that whatever is printed first wipes the line
-        of progress out.
+        Where the text goes.
+    other : Printed, optional
+        The stream of the same terminal that has the line of progress.
     """
 
-    def __init__(self, stream: TextIO, screen: Screen) -> None:
-        self._stream, self._screen = stream, screen
+    def __init__(self, stream: TextIO, other: Printed | None = None) -> None:
+        self._stream, self._liner = stream, other or self
+        self._line_shown = self._within_line = False
 
     def write(self, text: str) -> int:
         """Write text, after the line of progress has been wiped out."""
-        with self._screen.lock:
-            self.overwrite("")
+        with LOCK:
+            self._liner.overwrite("")
             self._stream.write(self._fit(text))
             if text:
-                self._screen.within_line = not text.endswith("\n")
+                self._liner._within_line = not text.endswith("\n")
         return len(text)
 
     def writelines(self, lines: Iterable[str]) -> None:
         """Write several texts."""
-        for line in lines:
-            self.write(line)
+        self.write("".join(lines))
 
     def overwrite(self, text: str) -> None:
-        """Put ``text`` in place of the last line of progress; an empty one leaves none.
-
-        In the middle of a line that is being printed nothing is put.
-        """
-        screen = self._screen
-        with screen.lock:
-            if screen.progress is not None:
-                screen.progress.write("\r\x1b[K")
-                screen.progress.flush()
-                screen.progress = None
-            if text and not screen.within_line:
-                screen.progress = self._stream
-                self._stream.write(self._fit(text))
+        """Put ``text`` in place of the line of progress, unless a printed line is unfinished."""
+        with LOCK:
+            if not self._within_line and (text or self._line_shown):
+                self._stream.write(("\r\x1b[K" if self._line_shown else "") + self._fit(text))
                 self._stream.flush()
+                self._line_shown = bool(text)
 
     def _fit(self, text: str) -> str:
         return fitting(safe(text), getattr(self._stream, "encoding", None) or "utf-8")
@@ -128,8 +98,8 @@ class Printed:
 @contextlib.contextmanager
 def fitted() -> Iterator[None]:
     """Put ``Printed`` over stdout and stderr inside a ``with`` block."""
-    screen = Screen()
     # A program without a terminal may have no streams; print would then take stdout for stderr.
-    out, err = (Printed(stream or io.StringIO(), screen) for stream in (sys.stdout, sys.stderr))
+    err = Printed(sys.stderr or io.StringIO())
+    out = Printed(sys.stdout or io.StringIO(), err)
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         yield

@@ -144,11 +144,12 @@ class Simulation:
             rounded up to whole blocks; one block by default. An interruption loses the chunks
             that are not done.
         executor : concurrent.futures.Executor, optional
-            Where chunks are solved, by its ``submit`` alone:
-            ``contactlab.compose.workers.Workers(4)`` (processes of this machine), dask's
-            ``client.get_executor()``, an ``MPIPoolExecutor``. Laws are found there by the
-            modules of their classes. A worker that dies costs its chunk a second try, then the
-            status ``WORKER_DIED``. None: this process.
+            Where chunks are solved; this process by default. Any object with a method ``submit``
+            that returns futures will do: ``ProcessPoolExecutor(4)``, dask's
+            ``client.get_executor()``, an ``MPIPoolExecutor``. Laws are found there by the modules
+            of their classes. A ``ProcessPoolExecutor`` that breaks is replaced, and a chunk that
+            ends its process twice has the status ``WORKER_DIED``, as has a chunk that another
+            executor loses.
         keep : str or Path, optional
             A folder where each chunk is kept as soon as it is done. The same sweep with the same
             folder goes on where it stopped; another scene or law is refused.

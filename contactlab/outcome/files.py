@@ -1,7 +1,7 @@
-"""Files: each is written beside its place and renamed, so that it is whole or not there.
+"""Files are written to a temporary file, then renamed: a file is whole or not there.
 
 Every file that contactlab writes goes through ``written``. A full disk, an error or a killed
-process leaves the file that was there before as it was; only a killed process leaves a file
+process leaves the old file as it was; only a killed process leaves a file
 ``.contactlab-*.part`` behind.
 """
 
@@ -10,16 +10,15 @@ from __future__ import annotations
 import contextlib
 import csv
 import os
+import shutil
 import stat
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-#: Permissions of a new file, before the umask takes its share.
-NEW_FILE = 0o666
 #: How text is written; a name of a file that is no UTF-8, or was not read as such, as it is.
 TEXT: dict[str, Any] = {
-    "mode": "w", "encoding": "utf-8", "errors": "surrogateescape", "newline": "",
+    "mode": "x", "encoding": "utf-8", "errors": "surrogateescape", "newline": "",
 }  # fmt: skip
 #: Most bytes of a file that people write, a scene or a table: a sweep of a million numbers fits.
 LARGEST = 32_000_000
@@ -73,29 +72,26 @@ def written(path: str | Path, *, binary: bool = False) -> Iterator[Any]:
     OSError
         With the path, if it cannot be written to the end; the old file then is as it was.
     """
-    why_not = unwritable(path)
-    if why_not:
+    if why_not := unwritable(path):
         raise OSError(f"{path}: {why_not}")
     target = os.path.realpath(path)
-    beside = os.path.join(os.path.dirname(target), f".contactlab-{os.urandom(6).hex()}.part")
+    part = os.path.join(os.path.dirname(target), f".contactlab-{os.urandom(6).hex()}.part")
+    form: Any = {"mode": "xb"} if binary else TEXT
     try:
-        handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, NEW_FILE)
-        form: Any = {"mode": "wb"} if binary else TEXT
-        try:
-            with open(handle, **form) as stream:
-                yield stream
-                stream.flush()
-                os.fsync(stream.fileno())
-            _resemble(beside, target)
-            os.replace(beside, target)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                os.unlink(beside)
-            raise
+        with open(part, **form) as stream:
+            yield stream
+            stream.flush()
+            os.fsync(stream.fileno())
+        with contextlib.suppress(OSError):  # no old file, or a file system without permissions
+            shutil.copymode(target, part)
+        os.replace(part, target)
     except OSError as error:
-        if error.errno is not None and error.filename in (None, beside):
+        if error.errno is not None and error.filename in (None, part):
             error.filename, error.filename2 = str(path), None
         raise
+    finally:
+        with contextlib.suppress(OSError):
+            os.unlink(part)
 
 
 def write_table(
@@ -117,9 +113,10 @@ def unwritable(path: str | Path) -> str:
             return "is not a regular file; give the name of a file"
         if not os.access(target, os.W_OK):
             return "is protected against writing"
-    except (OSError, ValueError) as error:  # what is not there yet may be written
-        if not isinstance(error, FileNotFoundError):
-            return str(getattr(error, "strerror", error))
+    except FileNotFoundError:
+        pass  # there is no old file
+    except OSError as error:
+        return str(error.strerror)
     if not os.path.isdir(folder):
         return f"there is no folder {folder}"
     if not os.access(folder, os.W_OK):
@@ -137,18 +134,8 @@ def distinct(outputs: Mapping[str, str | Path | None]) -> None:
     """
     seen: dict[str, str] = {}
     for name, path in outputs.items():
-        if path is None:
-            continue
-        place = os.path.normcase(os.path.realpath(path))
+        place = path and os.path.normcase(os.path.realpath(path))
         if place in seen:
             raise ValueError(f"{seen[place]}, {name}: {path} is the same file; give two")
-        seen[place] = name
-
-
-def _resemble(new: str, old: str) -> None:
-    """Give a new file the owner and the permissions of the old one, as far as is allowed."""
-    with contextlib.suppress(OSError, AttributeError):  # there may be no old one, or no chown
-        status = os.stat(old)
-        with contextlib.suppress(PermissionError):
-            os.chown(new, status.st_uid, status.st_gid)
-        os.chmod(new, stat.S_IMODE(status.st_mode))
+        if place:
+            seen[str(place)] = name

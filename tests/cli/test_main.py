@@ -118,9 +118,10 @@ def test_interrupted_sweep_reports_what_is_done(tmp_path):
     )
     # It waits for the signal after its first line, however fast it is.
     talkative = (
-        "import signal, sys; from contactlab.cli import main, progress; progress.QUIET = 0.0; "
+        "import signal, sys; from contactlab.cli import main, progress; progress.QUIET = 1e6; "
         "usual = progress.Progress.__call__; progress.Progress.__call__ = "
-        "lambda self, *counts: usual(self, *counts) or self.what == 'impacts' and signal.pause(); "
+        "lambda self, *counts: usual(self, *counts) or self._what == 'impacts' and "
+        "(self._put(self.line()), signal.pause()); "
     )
     command = [sys.executable, "-c", talkative + "sys.exit(main.main())", "run", path,
                "--progress", "--out", tmp_path / "part.npz", "--json"]  # fmt: skip

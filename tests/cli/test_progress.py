@@ -28,77 +28,41 @@ class Screen(io.StringIO):
 
 
 @pytest.fixture
-def work(monkeypatch):
-    """Return a function that does ``count`` things of ``each`` s and returns what is seen."""
+def begin(monkeypatch):
+    """Return a function that makes a terminal, or a file, and a clock that stands."""
 
-    def do(count, each, *, terminal, asked=None, each_time=lambda: None):
+    def screen_and_clock(*, terminal):
         clock = [100.0]
         screen = Screen(terminal=terminal)
         monkeypatch.setattr(sys, "stderr", screen)
         monkeypatch.setattr(sys, "stdout", screen)
         monkeypatch.setattr(module.time, "perf_counter", lambda: clock[0])
-        with fitted(), progress(asked, "things") as show:
-            for done in range(1, count + 1):
-                clock[0] += each
-                each_time()
-                if show is not None:
-                    show(done, count)
-        return screen.getvalue()
+        return screen, clock
 
-    return do
+    return screen_and_clock
 
 
 @pytest.mark.parametrize("terminal", [True, False])
-def test_short_work_says_nothing(work, terminal):
-    assert "things" not in work(100, 0.019, terminal=terminal, asked=True)
+def test_short_work_says_nothing(begin, terminal):
+    screen, clock = begin(terminal=terminal)
+    with fitted(), progress(True, "things") as show:
+        clock[0] += 1.9
+        show(100, 100)
+    assert screen.getvalue() == ""
 
 
-def test_one_line_on_a_terminal_wiped_out_at_the_end(work):
-    seen = work(100, 0.5, terminal=True)
-    assert "\n" not in seen
-    states = seen.split("\r\x1b[K")
-    assert "things: 10 % (10/100), 45 s left" in states
-    assert states[-1] == ""
-    assert 90 < len(states) < 110
-    assert len(work(10_000, 0.001, terminal=True).split("\r\x1b[K")) < 110  # not one an item
+def test_nothing_is_shown_unasked_elsewhere_and_where_it_is_not_wanted(begin):
+    for terminal, wanted in ((False, None), (True, False), (False, False)):
+        begin(terminal=terminal)
+        with progress(wanted, "things") as show:
+            assert show is None
 
 
-def test_what_is_printed_meanwhile_stands_by_itself(work):
-    seen = work(10, 1.0, terminal=True, each_time=lambda: print("done"))
-    assert "left\r\x1b[Kdone\n" in seen
-    assert "leftdone" not in seen
-
-
-def test_elsewhere_a_line_now_and_then_and_only_when_asked(work):
-    assert work(100, 0.5, terminal=False) == ""
-    lines = work(100, 0.5, terminal=False, asked=True).splitlines()
-    assert lines[0] == "things: 4 % (4/100), 48 s left"
-    assert lines[-1] == "things: 100 % (100/100), took 50 s"
-    assert len(lines) == 6
-    assert work(100, 0.5, terminal=True, asked=False) == ""
-
-
-@pytest.fixture
-def slowly(monkeypatch):
-    """Return a function that makes a terminal and a clock; no thread writes to it."""
-
-    def begin():
-        clock = [100.0]
-        screen = Screen(terminal=True)
-        monkeypatch.setattr(sys, "stderr", screen)
-        monkeypatch.setattr(module.time, "perf_counter", lambda: clock[0])
-        monkeypatch.setattr(module.Progress, "_keep_alive", lambda _: None)
-        return screen, clock
-
-    return begin
-
-
-def test_the_time_left_goes_on_while_one_thing_takes_long(slowly):
-    screen, clock = slowly()
-    with fitted(), progress(None, "things") as show:
+def test_the_time_left_goes_on_while_one_thing_takes_long(begin):
+    _, clock = begin(terminal=True)
+    with progress(None, "things") as show:
         for passed, done, expected in (
-            (1.0, None, ""),
-            (5.0, None, "things: 6 s so far"),
+            (6.0, None, "things: 6 s so far"),
             (2.0, 1, "things: 33 % (1/3), 16 s left"),
             (3.0, None, "things: 33 % (1/3), 13 s left"),
             (9.0, None, "things: 33 % (1/3), 8 s left"),  # it takes longer than the first
@@ -107,44 +71,90 @@ def test_the_time_left_goes_on_while_one_thing_takes_long(slowly):
             (4.0, 3, "things: 100 % (3/3), 41 s so far"),
         ):
             clock[0] += passed
-            if done is None:
-                show._show(clock[0])
-            else:
+            if done is not None:
                 show(done, 3)
-            assert screen.getvalue().rpartition("\r\x1b[K")[2] == expected
-    assert screen.getvalue().endswith("\r\x1b[K")
+            assert show.line() == expected
 
 
-def test_the_line_ends_with_an_interruption(slowly):
-    screen, clock = slowly()
+@pytest.fixture
+def shown(monkeypatch):
+    """Return an event that is set whenever the thread has shown a state; none of it waits."""
+    event = threading.Event()
+    put = module.Progress._put
+
+    def tell(self, text):
+        put(self, text)
+        if text:
+            event.set()
+
+    monkeypatch.setattr(module.Progress, "_put", tell)
+    for name in ("QUIET", "OFTEN", "SELDOM"):
+        monkeypatch.setattr(module, name, 0.001)
+    return event
+
+
+def wait_for(event):
+    event.clear()
+    assert event.wait(60.0)
+
+
+def test_one_line_on_a_terminal_wiped_out_at_the_end(begin, shown):
+    screen, clock = begin(terminal=True)
+    with fitted(), progress(None, "things") as show:
+        clock[0] += 5.0
+        show(1, 3)
+        wait_for(shown)
+        wait_for(shown)
+        print("done")
+        wait_for(shown)
+    states = screen.getvalue().split("\r\x1b[K")
+    assert states[-1] == ""
+    assert set(states) <= {"", *PLAIN, *(f"done\n{text}" for text in PLAIN)}
+    assert any(state.startswith("done\n") for state in states)
+
+
+#: States of the line of one thing of three, done after 5 s; before it was done too.
+PLAIN = ("things: 33 % (1/3), 10 s left", "things: 0 s so far", "things: 5 s so far")
+
+
+def test_elsewhere_a_line_now_and_then_and_one_at_the_end(begin, shown):
+    screen, clock = begin(terminal=False)
+    with fitted(), progress(True, "things") as show:
+        clock[0] += 5.0
+        show(1, 3)
+        wait_for(shown)
+        wait_for(shown)
+        show(3, 3)
+    lines = screen.getvalue().splitlines()
+    assert PLAIN[0] in lines
+    assert lines[-1] == "things: 100 % (3/3), took 5 s"
+
+
+def test_the_line_ends_with_an_interruption(begin, shown):
+    screen, clock = begin(terminal=True)
     with fitted():
         with contextlib.suppress(KeyboardInterrupt), progress(None, "things") as show:
             clock[0] += 5.0
             show(1, 3)
+            wait_for(shown)
             raise KeyboardInterrupt
         print("what is done", file=sys.stderr)
-    assert screen.getvalue() == "things: 33 % (1/3), 10 s left\r\x1b[Kwhat is done\n"
+    assert screen.getvalue().endswith("left\r\x1b[Kwhat is done\n")
 
 
-def test_a_line_that_is_being_printed_is_left_alone(slowly):
-    screen, clock = slowly()
-    with fitted(), progress(None, "things") as show:
-        clock[0] += 5.0
-        print("half a", end="", file=sys.stderr)
-        show._show(clock[0])
-        print(" line", file=sys.stderr)
+@pytest.mark.parametrize("stream", ["stdout", "stderr"])
+def test_a_line_that_is_being_printed_is_left_alone(begin, stream):
+    screen, _ = begin(terminal=True)
+    with fitted():
+        printed = getattr(sys, stream)
+        print("half a", end="", file=printed)
+        sys.stderr.overwrite("10 %")
+        print(" line", file=printed)
         assert screen.getvalue() == "half a line\n"
-
-
-def test_a_thread_keeps_it_alive(monkeypatch):
-    screen = Screen(terminal=True)
-    monkeypatch.setattr(sys, "stderr", screen)
-    monkeypatch.setattr(module, "QUIET", 0.0)
-    monkeypatch.setattr(module, "ALIVE", 0.001)
-    seen = threading.Event()
-    monkeypatch.setattr(module.Progress, "_overwrite", lambda _, text: text and seen.set())
-    with progress(None, "things"):
-        assert seen.wait(60.0)
+        sys.stderr.overwrite("20 %")
+        sys.stderr.overwrite("30 %")
+        print("next", file=printed)
+    assert screen.getvalue() == "half a line\n20 %\r\x1b[K30 %\r\x1b[Knext\n"
 
 
 def test_times():

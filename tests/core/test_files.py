@@ -124,6 +124,7 @@ def test_what_is_no_file_is_not_written_to(tmp_path):
     assert stat.S_ISCHR(os.stat(os.devnull).st_mode)
     assert unwritable(tmp_path / "none" / "a.csv") == f"there is no folder {tmp_path / 'none'}"
     assert unwritable(tmp_path / "a.csv") == ""
+    assert "too long" in unwritable(tmp_path / ("a" * 300))
 
 
 def test_a_folder_or_file_that_may_not_be_written(old, monkeypatch):

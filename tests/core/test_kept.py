@@ -124,7 +124,7 @@ def test_impacts_whose_worker_died_are_tried_again(tmp_path):
     (ends := tmp_path / "ends").mkdir()
     law = Ending(folder=str(ends), above=7.4, times=2)
     simulation = Simulation(tangential=law, integrator="symplectic")
-    with contactlab.compose.workers.Workers(1) as one:
+    with contactlab.compose.workers.processes(1) as one:
         first = simulation.sweep(scene(), executor=one, keep=tmp_path / "kept")
         assert "WORKER_DIED" in {status.name for status in first.status}
         assert simulation.sweep(scene(), executor=one, keep=tmp_path / "kept").check()

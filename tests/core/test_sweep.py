@@ -1,11 +1,16 @@
 """Sweeps: the same answers however the work is shared out, and whatever happens to workers."""
 
 import itertools
+import os
 import pickle
+import signal
+import subprocess
 import sys
+import time
 import types
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
+from pathlib import Path
 
 import attrs
 import numpy as np
@@ -15,8 +20,9 @@ import contactlab
 from contactlab import Scene, Simulation, Status
 from contactlab.compose import executors
 from contactlab.compose import sweep as sweeping
+from contactlab.compose import workers as workers_module
 from contactlab.compose.registry import REGISTRY
-from contactlab.compose.workers import WorkerDiedError, Workers
+from contactlab.compose.workers import processes
 from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.contracts.whole_impact import no_force
 from tests.ending_laws import Ending, Raising
@@ -50,7 +56,7 @@ def assert_same(one, other):
 
 @pytest.fixture(scope="module")
 def workers():
-    with Workers(2) as two:
+    with processes(2) as two:
         yield two
 
 
@@ -197,44 +203,73 @@ def test_a_law_that_raises_loses_those_impacts_as_in_one_process(monkeypatch, wo
     assert_same(there, here)
 
 
-def test_a_worker_that_dies_once_costs_a_retry(monkeypatch, workers, tmp_path):
+def ending(folder, **options):
+    return Simulation(tangential=Ending(folder=str(folder), **options), integrator="symplectic")
+
+
+@pytest.mark.parametrize("pool", [processes, ProcessPoolExecutor])
+def test_a_worker_that_dies_once_costs_a_retry(monkeypatch, tmp_path, pool):
     blocks_of(monkeypatch, 50)
-    law = Ending(folder=str(tmp_path), times=1)
-    result = Simulation(tangential=law, integrator="symplectic").sweep(scene(), executor=workers)
+    with pool(2) as two:
+        result = ending(tmp_path, times=1).sweep(scene(), executor=two)
     assert result.check().psi2 == pytest.approx(scene().psi1)
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_a_chunk_that_ends_its_workers_has_a_status(monkeypatch, workers, tmp_path):
+def test_a_chunk_that_ends_its_workers_has_a_status(monkeypatch, tmp_path):
     blocks_of(monkeypatch, 50)
-    law = Ending(folder=str(tmp_path), above=6.2)
-    result = Simulation(tangential=law, integrator="symplectic").sweep(scene(), executor=workers)
-    assert [status.name for status in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
-    assert "SIGKILL" in result.failures[100]
-    assert result.psi2[:100] == pytest.approx(scene().psi1[:100])
-    assert len(list(tmp_path.iterdir())) == executors.TRIES
-    assert Simulation(**RIGID).sweep(scene(), executor=workers).check()
+    with processes(2) as two:
+        result = ending(tmp_path, above=6.2).sweep(scene(), executor=two)
+        assert [status.name for status in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
+        assert "BrokenProcessPool" in result.failures[100]
+        assert result.psi2[:100] == pytest.approx(scene().psi1[:100])
+        assert len(list(tmp_path.iterdir())) == 2
+        assert Simulation(**RIGID).sweep(scene(), executor=two).check()  # it stays broken
 
 
-def test_an_executor_that_breaks_is_replaced(monkeypatch, tmp_path):
-    """A pool of the standard library is lost with any of its processes."""
+def test_a_poisoned_impact_of_ten_thousand_loses_its_chunk_only(monkeypatch, tmp_path):
+    """The pool breaks in the middle: the chunk beside it and the later ones are solved."""
+    blocks_of(monkeypatch, 100)
+    psi1 = np.linspace(0.3, 4.0, 10_000)
+    poisoned = [5_050, 5_150, 9_999]
+    psi1[poisoned] = 6.0
+    scenes = Scene.nondimensional(psi1=psi1, chi=CHI)
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        result = ending(tmp_path).sweep(scenes, executor=pool)
+    died = result.status == Status.WORKER_DIED
+    assert set(np.flatnonzero(died) // 100) == {impact // 100 for impact in poisoned}
+    assert died.sum() == 100 * len(poisoned)
+    assert result.psi2[~died] == pytest.approx(psi1[~died])
+
+
+def test_an_executor_that_loses_a_chunk_loses_no_other(monkeypatch):
     blocks_of(monkeypatch, 50)
-    law = Ending(folder=str(tmp_path), above=6.2)
-    simulation = Simulation(tangential=law, integrator="symplectic")
+
+    class Losing:
+        def submit(self, function, /, *arguments):
+            future = Future()
+            if arguments[2].first == 50:
+                future.set_exception(OSError("the machine went away"))
+            else:
+                future.set_result(function(*arguments))
+            return future
+
+    result = Simulation(**RIGID).sweep(scene(), executor=Losing())
+    assert np.flatnonzero(result.status == Status.WORKER_DIED).tolist() == list(range(50, 100))
+    assert "OSError: the machine went away" in result.failures[50]
+
+
+def test_processes_that_do_not_start_are_refused():
+    """As those of a script without ``if __name__ == "__main__"``: nothing is lost in silence."""
     with (
-        ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool,
-        pytest.warns(RuntimeWarning, match="through one process"),
+        ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=os.abort) as pool,
+        pytest.raises(ValueError, match=r"end as they start; .*__main__"),
     ):
-        result = simulation.sweep(scene(), executor=pool)
-    assert [status.name for status in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
+        Simulation(**RIGID).sweep(scene(3), executor=pool)
 
 
-def test_what_is_no_executor_is_refused(workers):
-    class Client:
-        def submit(self, function, *arguments):
-            raise AssertionError
-
-    for bad in (4, Client(), ThreadPoolExecutor):
+def test_what_is_no_executor_is_refused():
+    for bad in (4, "dask", ThreadPoolExecutor):
         with pytest.raises(ValueError, match=r"executor = .*get_executor"):
             Simulation(**RIGID).sweep(scene(), executor=bad)
     closed = ThreadPoolExecutor(1)
@@ -243,7 +278,7 @@ def test_what_is_no_executor_is_refused(workers):
         Simulation(**RIGID).sweep(scene(), executor=closed)
     for bad in (0, 1.5, True):
         with pytest.raises(ValueError, match="workers"):
-            Workers(bad)
+            processes(bad).__enter__()
 
 
 def local_law(kind="Local", module=None):
@@ -277,7 +312,8 @@ def test_a_law_that_is_not_there_is_named(workers, monkeypatch):
 
 def test_other_versions_there_are_refused(monkeypatch):
     versions = itertools.chain([{"normal": "hertz 1"}], itertools.repeat({"normal": "hertz 2"}))
-    monkeypatch.setattr(executors, "_versions", lambda _: next(versions))
+    monkeypatch.setattr(executors, "versions", lambda _: next(versions))
+    monkeypatch.setattr(workers_module, "versions", lambda _: next(versions))
     with (
         ThreadPoolExecutor(1) as executor,
         pytest.raises(ValueError, match=r"hertz 2.*hertz 1.*same versions"),
@@ -285,17 +321,68 @@ def test_other_versions_there_are_refused(monkeypatch):
         Simulation(**RIGID).sweep(scene(3), executor=executor)
 
 
-def test_workers_are_an_executor():
-    with Workers(2) as two:
-        assert list(two.map(abs, range(-3, 3))) == [3, 2, 1, 0, 1, 2]
-        assert two.submit(int, "7", base=8).result() == 7
-        with pytest.raises(ZeroDivisionError):
-            two.submit(divmod, 1, 0).result()
-        assert two.submit(print, "not between the answers").result() is None
-        for status in (3, 0):
-            with pytest.raises(WorkerDiedError, match=f"exit status {status}"):
-                two.submit(eval, f"__import__('os')._exit({status})").result()
-        assert two.submit(abs, -1).result() == 1
-        waiting = [two.submit(eval, "__import__('time').sleep(60)") for _ in range(3)]
-        two.shutdown(cancel_futures=True)
-    assert all(future.cancelled() or future.exception() for future in waiting)
+PROGRAM = """
+import os, signal, sys, time
+import numpy as np
+if __name__ == "__mp_main__":  # Ctrl-C while a process is being started
+    os.kill(os.getpid(), signal.SIGINT)
+if __name__ == "__main__":
+    from contactlab import Scene, Simulation
+    from contactlab.compose import sweep
+    from contactlab.compose.workers import processes
+    from tests.ending_laws import Waiting
+    sweep.block_of = lambda _: 10
+    scene = Scene.nondimensional(psi1=np.linspace(0.3, 9.0, 150), chi=1.4411764706)
+    simulation = Simulation(tangential=Waiting(folder=sys.argv[1]), integrator="symplectic")
+    with processes(2) as two:
+        result = simulation.sweep(scene, executor=two)
+    print([status.name for status in result.status].count("INTERRUPTED"))
+"""
+
+
+def waiting_program(tmp_path):
+    """Return a program whose two processes wait for ever in a law, and their process ids."""
+    program, folder = tmp_path / "program.py", tmp_path / "pids"
+    program.write_text(PROGRAM)
+    folder.mkdir()
+    running = subprocess.Popen(
+        [sys.executable, program, folder],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])},
+        start_new_session=True,
+    )
+    while len(pids := [int(path.name) for path in folder.iterdir()]) < 2:
+        assert running.poll() is None, running.communicate()
+        time.sleep(0.01)
+    return running, pids
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+@pytest.mark.parametrize("everybody", [True, False])
+def test_ctrl_c_ends_calls_and_processes(tmp_path, everybody):
+    """Of a terminal it reaches every process, and of ``kill`` the program alone."""
+    running, pids = waiting_program(tmp_path)
+    (os.killpg if everybody else os.kill)(running.pid, signal.SIGINT)
+    out, err = running.communicate(timeout=60)
+    assert (running.returncode, out, err) == (0, b"150\n", b"printed by a law\n" * 2)
+    assert not any(map(alive, pids))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_processes_end_with_a_program_that_is_killed(tmp_path):
+    running, pids = waiting_program(tmp_path)
+    running.kill()
+    running.communicate(timeout=60)  # until the last of them has closed stderr
+    deadline = time.monotonic() + 60.0
+    while any(map(alive, pids)):
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+
+def alive(pid):
+    """Whether a process runs; one that ended may wait for its parent to ask."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False

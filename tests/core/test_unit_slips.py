@@ -26,11 +26,7 @@ def steel(**changes):
         (attrs.evolve(BALL, sphere=Sphere(6.35e-3, steel(density=7.85))),
          "sphere.material.density = 7.85 kg/m³: is it in g/cm³?"),
         (attrs.evolve(BALL, target=HalfSpace(steel(young_modulus=207.0))), "is it in GPa?"),
-        (attrs.evolve(BALL, target=Sphere(1e-3, steel(young_modulus=207e12))),
-         "stiffer than diamond"),
-        (attrs.evolve(BALL, sphere=Sphere(6.35e-3, STEEL, mass=8.4)), "mean density"),
         (attrs.evolve(BALL, target=Sphere(40.0, STEEL)), "target.radius = 40 m"),
-        (attrs.evolve(BALL, friction_coefficient=15.0), "friction_coefficient = 15"),
         (attrs.evolve(BALL, spin=-9.5493 * 1.1 / 6.35e-3), "is it in turns a minute?"),
         (attrs.evolve(BALL, tangential_velocity=math.tan(math.radians(0.7854))),
          "45° are as many radians"),
@@ -47,8 +43,6 @@ def test_a_batch_is_judged_by_its_extremes():
     angles = np.radians(np.radians([5.0, 15.0, 45.0]))
     batch = attrs.evolve(BALL, tangential_velocity=np.tan(angles), friction_coefficient=0.1)
     assert "45°" in unit_slips(batch)[0]
-    frictions = attrs.evolve(BALL, friction_coefficient=np.array([0.1, 20.0]))
-    assert "friction_coefficient = 20" in unit_slips(frictions)[0]
 
 
 @pytest.mark.parametrize("name", materials.names())
@@ -82,4 +76,4 @@ def test_round_angles_and_scenes_without_bodies_are_not_cautioned():
 def test_extremes_of_what_a_float_holds_raise_nothing():
     with np.errstate(all="raise"):
         scene = Scene(Sphere(1e-150, STEEL, mass=1e-3), HalfSpace(STEEL), 0.1, 1.0, 1e150)
-        assert len(unit_slips(scene)) == 1
+        assert unit_slips(scene) == []
