@@ -54,7 +54,7 @@ def pieces_of(
     finished: SimpleQueue[Future[Reply]] = SimpleQueue()
     waiting: dict[Future[Reply], tuple[Any, Chunk]] = {}
     left, again = deque(chunks), set[Chunk]()
-    #: Executors with room for a chunk; None is a fresh pool, to be made when it is needed.
+    # Executors with room for a chunk; None is a fresh pool, to be made when it is needed.
     free: list[Any] = [executor] * (pool._max_workers if pool else len(chunks))
     try:
         while left or waiting:
@@ -69,7 +69,9 @@ def pieces_of(
             try:
                 answer = future.result()
             except Exception as error:  # of the executor: ``reply`` returns what it raises
-                free.append(None if pool else taker)
+                free.append(taker)
+                if pool:
+                    free = [None if each is taker else each for each in free]
                 if pool and chunk not in again:
                     again.add(chunk)
                     left.append(chunk)
