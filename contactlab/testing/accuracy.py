@@ -52,7 +52,10 @@ def finer_is_better(integrator: Any) -> None:
         exact = _exact(simulation, 7.0)
         unit = abs(scene(7.0, CHI).slip_velocity)
         off = abs(marched_impact(simulation, 7.0).slip_velocity_change - exact) / unit
-        hold(off <= (integrator.accuracy or 0.05), f"psi2 is {off:.1e} off the exact solution.")
+        hold(
+            off <= (integrator.accuracy or 0.05),
+            f"psi2 is {off:.1e} off the exact solution. Bound: {integrator.accuracy or 0.05:.2g}.",
+        )
         if integrator.resolution is None or integrator.accuracy is not None:
             continue
         value = getattr(integrator, integrator.resolution)
@@ -63,7 +66,8 @@ def finer_is_better(integrator: Any) -> None:
         )
         hold(
             left <= max(0.6 * off, 1e-12),
-            f"Made finer, the error goes from {off:.1e} to {left:.1e}.",
+            f"Made finer, the error goes from {off:.1e} to {left:.1e}."
+            f" Bound: {max(0.6 * off, 1e-12):.2g}.",
         )
 
 
@@ -90,7 +94,8 @@ def sliding_impulse_by(integrator: Any) -> None:
                 hold(
                     off <= room,
                     f"The impulse of sliding is {off:.2g} off mu (1 + e) v1 M_n under "
-                    f"{type(simulation.normal).__name__}.",
+                    f"{type(simulation.normal).__name__}."
+                    f" Bound: {room:.2g}.",
                 )
     apply_if(tried, "It runs neither of the sliding laws of the kit.")
 
@@ -106,7 +111,10 @@ def books_by(integrator: Any) -> None:
     for simulation in simulations:
         for psi1 in (0.5, 1.2, 2.0, 8.0):
             off = _imbalance(simulation, psi1)
-            hold(off <= BOOKS, f"psi1 = {psi1}: {off:.1%} of the energy is in no book.")
+            hold(
+                off <= BOOKS,
+                f"psi1 = {psi1}: {off:.1%} of the energy is in no book. Bound: {BOOKS:.2g}.",
+            )
         if isinstance(getattr(integrator, integrator.resolution or "", None), int):
             worst = max(_imbalance(simulation, psi1) for psi1 in (0.5, 1.2, 2.0))
             many = {integrator.resolution: 8 * getattr(integrator, integrator.resolution)}
@@ -115,7 +123,8 @@ def books_by(integrator: Any) -> None:
             hold(
                 left <= max(0.5 * worst, 1e-9),
                 f"With 8 times the steps {left:.2g} of the energy is in no book, not less "
-                f"than half the {worst:.2g} before.",
+                f"than half the {worst:.2g} before."
+                f" Bound: {max(0.5 * worst, 1e-9):.2g}.",
             )
 
 

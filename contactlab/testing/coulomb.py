@@ -43,7 +43,8 @@ def friction_coefficient(law: Any) -> None:
             abs(power - 1.0) <= POWER,
             f"The impulse of grazing impacts goes with mu to the power {power:.3g}, not 1: at mu = "
             f"{FRICTION[0]} and {FRICTION[-1]} it is {impulses[0]:.3g} and {impulses[-1]:.3g} N s "
-            f"({way}).",
+            f"({way})."
+            f" Bound: {POWER:.2g}.",
         )
 
 
@@ -64,7 +65,8 @@ def friction_load(law: Any) -> None:
             abs(force - share * full) <= slack(law, 1e-6),
             f"In gross slip F = {force:.4g} mu P_max, where mu times the friction load is "
             f"{share * full:.4g} and mu times the normal force {full:.4g}: Coulomb's limit is that "
-            "of the friction load.",
+            "of the friction load."
+            f" Bound: {slack(law, 1e-6):.2g}.",
         )
 
 
@@ -95,7 +97,8 @@ def load_impulse(law: Any) -> None:
                 off <= slack(law, 0.0) + INTEGRATION,
                 f"Under a normal law that pulls, chi = {chi:.3g}: the impulse of a grazing impact "
                 f"is {off:.2g} off mu times the impulse of the friction load ({how}). It is not "
-                "mu (1 + e) M_n v1 there.",
+                "mu (1 + e) M_n v1 there."
+                f" Bound: {slack(law, 0.0) + INTEGRATION:.2g}.",
             )
     apply_if(tried, "There is no way to run it under a normal law that pulls.")
 
@@ -124,5 +127,6 @@ def at_rest_stiffness(law: Any) -> None:
     hold(
         abs(mean - near) <= NEAR,
         f"dF/dD of a contact at rest is {mean:.4g} times 2 G* b, at every normal load: Mindlin's "
-        "stiffness is 1 times it, and 2/3 in some codes. Is it 8 G* b with the G* of the pair?",
+        "stiffness is 1 times it, and 2/3 in some codes. Is it 8 G* b with the G* of the pair?"
+        f" Bound: {NEAR:.2g}.",
     )

@@ -146,5 +146,6 @@ def resolution_told(integrator: Any) -> None:
             off <= ROUNDING,
             f"resolution_for says {integrator.resolution} = {told:g}, and with "
             f"{integrator.resolution} = {told:g} an impact ends {off:.2g} off: it gets another "
-            f"number by itself ({type(simulation.tangential).__name__}).",
+            f"number by itself ({type(simulation.tangential).__name__})."
+            f" Bound: {ROUNDING:.2g}.",
         )

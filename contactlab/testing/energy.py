@@ -46,7 +46,8 @@ def closed_cycles(law: Any) -> None:
             gain = work[24 * 5 - 1] - work[24 * 13 - 1]
             hold(
                 gain <= QUADRATURE,
-                f"Cycles of slip {size} between zeta = {low} and {high} give {gain:.2g} of energy.",
+                f"Cycles of slip {size} between zeta = {low} and {high} give {gain:.2g} of energy."
+                f" Bound: {QUADRATURE:.2g}.",
             )
 
 
@@ -105,7 +106,8 @@ def books(law: Any) -> None:
         hold(
             off <= slack(law, 0.01),
             f"{work:.4g} was put in and {lost:.4g} lost to friction: {off:.1%} of it is not in "
-            f"the books (seed {seed}).",
+            f"the books (seed {seed})."
+            f" Bound: {slack(law, 0.01):.2g}.",
         )
 
 
@@ -121,5 +123,6 @@ def work_in_its_step(law: Any) -> None:
         work <= (1.0 + slack(law)) * most,
         f"A step back by {short} in gross slip has a friction work of {work:.2g}; mu P times its "
         f"displacement is {most:.2g}, and that of the step before, of {long}, "
-        f"{level**1.5 * long:.2g}.",
+        f"{level**1.5 * long:.2g}."
+        f" Bound: {(1.0 + slack(law)) * most:.2g}.",
     )

@@ -31,16 +31,25 @@ def odd_in_slip(law: Any) -> None:
         there = drive(law, bench, path)
         back = drive(law, bench, Path(-path.slip, path.level))
         gap = _worst(there.force + back.force)
-        hold(gap <= ROUNDING, f"Reversed slip gives a force that differs by {gap:.1e} mu P_max.")
+        hold(
+            gap <= ROUNDING,
+            f"Reversed slip gives a force that differs by {gap:.1e} mu P_max."
+            f" Bound: {ROUNDING:.2g}.",
+        )
         gap = _worst(there.work - back.work)
-        hold(gap <= ROUNDING, "Reversed slip gives another friction work.")
+        hold(
+            gap <= ROUNDING,
+            f"Reversed slip gives a friction work that differs by {gap:.1e}."
+            f" Bound: {ROUNDING:.2g}.",
+        )
     far = straight((0.0, 0.5), (FAR, 0.9), (FAR - 1.0, 0.7))
     ahead = drive(law, bench, far).force
     gap = _worst(ahead + drive(law, bench, Path(-far.slip, far.level)).force)
     hold(
         gap <= ROUNDING,
         f"Reversed slip, as far as {FAR:g} units, gives a force that differs by {gap:.1e} "
-        "mu P_max.",
+        "mu P_max."
+        f" Bound: {ROUNDING:.2g}.",
     )
 
 
@@ -60,7 +69,10 @@ def units(law: Any) -> None:
         here = drive(law, Bench.of(), path)
         there = drive(other, Bench.of(units=ODD_UNITS), path)
         gap = max(_worst(here.force - there.force), _worst(here.work - there.work))
-        hold(gap <= ROUNDING, f"In other units the answer differs by {gap:.1e} of mu P_max.")
+        hold(
+            gap <= ROUNDING,
+            f"In other units the answer differs by {gap:.1e} of mu P_max. Bound: {ROUNDING:.2g}.",
+        )
 
 
 @check(SteppedTangentialLaw)
@@ -100,7 +112,8 @@ def normal_load_alone(law: Any) -> None:
     rise = _worst(held[sheared:]) - abs(held[sheared - 1])
     hold(
         rise <= slack(law),
-        f"Pressing on a contact that is sheared adds {rise:.2g} mu P_max to its force.",
+        f"Pressing on a contact that is sheared adds {rise:.2g} mu P_max to its force."
+        f" Bound: {slack(law):.2g}.",
     )
 
 
@@ -110,13 +123,18 @@ def gross_slip(law: Any) -> None:
     path = straight((0.0, 0.7), (4.0, 0.7), (8.0, 0.7))
     found = drive(law, Bench.of(), path)
     gap = abs(float(found.force[-1]) - 0.7**1.5)
-    hold(gap <= slack(law), f"F = {found.force[-1]:.4g} mu P_max where mu P is {0.7**1.5:.4g}.")
+    hold(
+        gap <= slack(law),
+        f"F = {found.force[-1]:.4g} mu P_max where mu P is {0.7**1.5:.4g}."
+        f" Bound: {slack(law):.2g}.",
+    )
     work = float(np.sum(found.work[2 * STEPS_TO_KNOT :]))
     paid = 4.0 * float(found.force[-1])
     hold(
         abs(work - paid) <= PAID * paid,
         f"Friction work of gross slip by 4.0 is {work / paid:.7g} times force times slip: "
-        f"{work:.4g} at a force of {found.force[-1]:.4g}.",
+        f"{work:.4g} at a force of {found.force[-1]:.4g}."
+        f" Bound: {PAID * paid:.2g}.",
     )
 
 
@@ -188,7 +206,11 @@ def last_step(law: Any) -> None:
             force = abs(float(response.force)) / bench.friction_force
             work = float(response.friction_work) / (bench.friction_force * bench.slip)
             most = (1.0 + slack(law)) * level**1.5
-            hold(force <= most, f"F = {force:.2g} mu P_max as the load falls to zeta = {left:.1g}.")
+            hold(
+                force <= most,
+                f"F = {force:.2g} mu P_max as the load falls to zeta = {left:.1g}."
+                f" Bound: {most:.2g}.",
+            )
             # No more slips than the step, and the stretch that the load held.
             hold(
                 -ROUNDING <= work <= most * (moved + level),

@@ -43,7 +43,11 @@ def impact_odd(law: Any) -> None:
             there, _, work = meet(way, psi1, chi)
             back, _, work_back = meet(way, -psi1, chi)
             gap = max(abs(there + back), abs(work - work_back)) / max(1.0, psi1)
-            hold(gap <= 1e-9, f"psi1 = -{psi1}, chi = {chi}: differs by {gap:.1e} ({way}).")
+            hold(
+                gap <= 1e-9,
+                f"psi1 = -{psi1}, chi = {chi}: differs by {gap:.1e} from the mirror image ({way})."
+                " Bound: 1e-9.",
+            )
 
 
 @check(TangentialLaw)
@@ -56,7 +60,8 @@ def impact_units(law: Any) -> None:
             gap = max(abs(here - there), abs(work - other)) / max(1.0, psi1)
             hold(
                 gap <= 1e-8,
-                f"psi1 = {psi1}, chi = {chi}: in other units psi2 differs by {gap:.1e} ({way}).",
+                f"psi1 = {psi1}, chi = {chi}: in other units psi2 differs by {gap:.1e} ({way})."
+                " Bound: 1e-8.",
             )
 
 
@@ -71,7 +76,8 @@ def impact_bounds(law: Any) -> None:
             hold(
                 abs(after) <= psi1 + room,
                 f"psi1 = {psi1}, chi = {chi}: |psi2| = {abs(after):.4g}, energy from nothing "
-                f"({way}).",
+                f"({way})."
+                f" Bound: {psi1 + room:.2g}.",
             )
             hold(
                 -change <= 4.0 * chi * (1.0 + room) and change <= 4.0 * chi * (1.0 + room),
@@ -90,7 +96,8 @@ def impact_books(law: Any) -> None:
             off = abs(loss - work) / (0.5 * max(psi1, 1.0) ** 2)
             hold(
                 off <= (1e-6 if way.exact else BOOKS),
-                f"psi1 = {psi1}, chi = {chi}: {off:.1%} of the energy is in no book ({way}).",
+                f"psi1 = {psi1}, chi = {chi}: {off:.1%} of the energy is in no book ({way})."
+                f" Bound: {1e-6 if way.exact else BOOKS:.2g}.",
             )
 
 
@@ -109,7 +116,8 @@ def impact_coulomb_limit(law: Any) -> None:
             over = float(np.max(np.abs(history.tangential_force) - limit)) / largest
             hold(
                 over <= allowed(way),
-                f"psi1 = {psi1}, chi = {chi}: abs(F) exceeds mu P by {over:.2g} of mu P_max.",
+                f"psi1 = {psi1}, chi = {chi}: abs(F) exceeds mu P by {over:.2g} of mu P_max."
+                f" Bound: {allowed(way):.2g}.",
             )
     apply_if(known, "It answers impacts as wholes, and gives no force along them.")
 
@@ -139,7 +147,10 @@ def impact_repeatable(law: Any) -> None:
         gap = abs(watched.slip_velocity_change - first.slip_velocity_change)
         gap /= abs(first.slip_velocity_change) or 1.0
         room = 1e-9 if isinstance(law, AllStepsTangentialLaw) else 0.0
-        hold(gap <= room, f"Watched, an impact ends differently, by {gap:.1e} ({way}).")
+        hold(
+            gap <= room,
+            f"Watched, an impact ends differently, by {gap:.1e} ({way}). Bound: {room:.2g}.",
+        )
 
 
 @check(TangentialLaw)
@@ -153,7 +164,10 @@ def impact_batch(law: Any) -> None:
             alone, _, lost = way.run(given.take(place))
             gap = max(abs(float(change[place]) - alone), abs(float(work[place]) - lost))
             gap /= max(1.0, abs(float(psi1[place])))
-            hold(gap <= 1e-8, f"Impact {place} of a batch is off by {gap:.1e} in psi ({way}).")
+            hold(
+                gap <= 1e-8,
+                f"Impact {place} of a batch is off by {gap:.1e} in psi ({way}). Bound: 1e-8.",
+            )
 
 
 @check(TangentialLaw)
@@ -172,7 +186,8 @@ def impact_after_another(law: Any) -> None:
             gap <= 1e-8,
             f"An impact of other bodies, run after another scene of its shape, is {gap:.2g} off in "
             f"psi: alone in a batch of shape (1, 1, 1) it ends otherwise. Is something kept from "
-            f"one scene for the next ({way})?",
+            f"one scene for the next ({way})?"
+            " Bound: 1e-8.",
         )
 
 
@@ -184,7 +199,8 @@ def impact_reference(law: Any) -> None:
             off = abs(psi1 + meet(way, psi1, chi)[0] - psi2)
             hold(
                 off <= (1e-8 if way.exact else allowed(way)),
-                f"psi1 = {psi1}, chi = {chi}: psi2 is {off:.2g} off ({way}).",
+                f"psi1 = {psi1}, chi = {chi}: psi2 is {off:.2g} off ({way})."
+                f" Bound: {1e-8 if way.exact else allowed(way):.2g}.",
             )
 
 
@@ -197,11 +213,11 @@ def all_steps(law: Any) -> None:
         _, watched = course(way, psi1, chi)
         # An integrator that is watched goes step by step.
         gap = abs(float(watched.slip_velocity_change / motion.slip_velocity_change) - 1.0)
-        hold(gap <= 1e-8, f"psi1 = {psi1}, chi = {chi}: differs by {gap:.1e}.")
+        hold(gap <= 1e-8, f"psi1 = {psi1}, chi = {chi}: differs by {gap:.1e}. Bound: 1e-8.")
     for various in (CHI[1], np.linspace(CHI[0], CHI[-1], len(PSI1))):
         given = scene(np.array(PSI1), various)
         at_once = way.run(given)
         stepped = way.run(given, Recorder(given.shape, with_fields=False))
         for one, other in ((at_once.change, stepped.change), (at_once.work, stepped.work)):
             gap = float(np.max(np.abs(one - other) / np.maximum(1.0, PSI1)))
-            hold(gap <= 1e-8, f"A batch of shape {given.shape}: differs by {gap:.1e}.")
+            hold(gap <= 1e-8, f"A batch of shape {given.shape}: differs by {gap:.1e}. Bound: 1e-8.")

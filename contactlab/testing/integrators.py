@@ -142,7 +142,8 @@ def mirror_images(integrator: Any) -> None:
             hold(
                 gap <= 1e-9,
                 f"psi1 = -{psi1}: the motion is {gap:.1e} off the mirror image of that of {psi1} "
-                f"({name}).",
+                f"({name})."
+                " Bound: 1e-9.",
             )
 
 
@@ -177,4 +178,7 @@ def impacts_batch(integrator: Any) -> None:
             ):
                 here, there = getattr(alone, name), float(getattr(together, name)[place])
                 gap = abs(here - there) / max(abs(here), least)
-                hold(gap <= 1e-9, f"The {name} of an impact of a batch is off by {gap:.1e}.")
+                hold(
+                    gap <= 1e-9,
+                    f"The {name} of an impact of a batch is off by {gap:.1e}. Bound: 1e-9.",
+                )

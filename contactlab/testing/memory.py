@@ -29,7 +29,8 @@ def turning_points(law: Any) -> None:
         gap = float(np.max(np.abs(loading[-1] - unloading - 2.0 * loading)))
         hold(
             gap <= 2.0 * slack(law, 1e-6),
-            f"Turned at slip {turn}, unloading is {gap:.2g} mu P_max off twice the loading curve.",
+            f"Turned at slip {turn}, unloading is {gap:.2g} mu P_max off twice the loading curve."
+            f" Bound: {2.0 * slack(law, 1e-6):.2g}.",
         )
         loop = [(0.4 * turn, LEVEL), (turn, LEVEL), (1.4 * turn, LEVEL)]
         looped = drive(law, bench, straight(press, (turn, LEVEL), *loop, steps=STEPS)).force
@@ -38,7 +39,8 @@ def turning_points(law: Any) -> None:
         gap = float(np.max(np.abs(looped[-STEPS:] - straight_on[-STEPS:])))
         hold(
             gap <= slack(law, 1e-6),
-            f"A closed loop at slip {turn} is not forgotten: {gap:.2g} mu P_max.",
+            f"A closed loop at slip {turn} is not forgotten: {gap:.2g} mu P_max."
+            f" Bound: {slack(law, 1e-6):.2g}.",
         )
 
 
@@ -51,7 +53,8 @@ def cattaneo_mindlin(law: Any) -> None:
     gap = np.abs(found - (1.0 - (1.0 - xi) ** 1.5))
     hold(
         gap.max() <= slack(law, 1e-3),
-        f"F/(mu P) is {gap.max():.2g} off Cattaneo and Mindlin's, at xi = {xi[gap.argmax()]:.2g}.",
+        f"F/(mu P) is {gap.max():.2g} off Cattaneo and Mindlin's, at xi = {xi[gap.argmax()]:.2g}."
+        f" Bound: {slack(law, 1e-3):.2g}.",
     )
 
 
@@ -74,7 +77,8 @@ def contact_again(law: Any) -> None:
             gap <= slack(law, 1e-9),
             f"After {apart} step(s) out of contact, contact is made again: pressing alone gives "
             f"F = {pressed:.2g} mu P_max, and the force is {gap:.2g} off that of a first contact. "
-            "The memory of the contact before is still there.",
+            "The memory of the contact before is still there."
+            f" Bound: {slack(law, 1e-9):.2g}.",
         )
 
 
@@ -92,5 +96,6 @@ def held_still(law: Any) -> None:
     hold(
         gap <= slack(law, 1e-9),
         f"Held still for {STILL} steps, the force of {force[1]:.3g} mu P_max changes by "
-        f"{gap:.2g}: it depends on the number of steps, not on the displacement.",
+        f"{gap:.2g}: it depends on the number of steps, not on the displacement."
+        f" Bound: {slack(law, 1e-9):.2g}.",
     )

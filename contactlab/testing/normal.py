@@ -119,7 +119,7 @@ def _alike(law: Any, given: Scene, approach: Any, rate: Any, words: str) -> None
         scale = np.maximum(np.abs(alone).max(axis=1, keepdims=True), 1e-300)
         gap = float(np.max(np.abs(together[(slice(None), *at)] - alone) / scale))
         name = place[0] if len(place) == 1 else place
-        hold(gap <= ROUNDING, f"Contact {name} {words} is off by {gap:.1e}.")
+        hold(gap <= ROUNDING, f"Contact {name} {words} is off by {gap:.1e}. Bound: {ROUNDING:.2g}.")
 
 
 @check(NormalLaw)
@@ -162,7 +162,10 @@ def contacts_units(law: Any) -> None:
         ENTRIES, here, there, (newton, length, length, newton), strict=True
     ):
         gap = float(np.max(np.abs(other / unit - one))) / max(float(np.max(np.abs(one))), 1e-300)
-        hold(gap <= ROUNDING, f"In other units the {name} differs by {gap:.1e}.")
+        hold(
+            gap <= ROUNDING,
+            f"In other units the {name} differs by {gap:.1e}. Bound: {ROUNDING:.2g}.",
+        )
 
 
 @check(NormalLaw)

@@ -61,7 +61,10 @@ def grows(law: Any) -> None:
     force, radius, _, load = respond(law, given, depths, steady)
     for name, column in (("force", force), ("radius", radius), ("friction load", load)):
         fall = -float(np.min(np.diff(column))) / max(float(column.max()), 1e-300)
-        hold(fall <= ROUNDING, f"The {name} falls by {fall:.2g} of its maximum in compression.")
+        hold(
+            fall <= ROUNDING,
+            f"The {name} falls by {fall:.2g} of its maximum in compression. Bound: {ROUNDING:.2g}.",
+        )
 
 
 @check(NormalLaw, claim="radius")
@@ -112,7 +115,8 @@ def hertzian_pressure(law: Any) -> None:
         hold(
             share <= GEOMETRIC + ROOM,
             f"{name} b² comes to {share:.3g} R z_max: 2 is the most, the section of sphere and "
-            "plane.",
+            "plane."
+            f" Bound: {GEOMETRIC + ROOM:.2g}.",
         )
         if name == "At rest":
             forgets = float(np.max(np.abs(force - force[::-1]))) <= ROUNDING * float(force.max())

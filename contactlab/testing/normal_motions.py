@@ -110,7 +110,8 @@ def normal_passive(law: Any) -> None:
         hold(
             gained <= QUADRATURE * put_in,
             f"A closed cycle at rates {rates} of v1 gives {gained:.3g} J from nothing, with "
-            f"{put_in:.3g} J moved to and fro.",
+            f"{put_in:.3g} J moved to and fro."
+            f" Bound: {QUADRATURE * put_in:.2g}.",
         )
     apply_if(closed, "Adhesion holds the surfaces far behind first touch: no cycle is closed.")
 
@@ -127,10 +128,16 @@ def rebounds(law: Any) -> None:
         load = np.asarray(sample.contact.friction_load)
         impulse = trapezoid(np.asarray(sample.contact.force), np.asarray(sample.time))
         gap = abs(float(impulse) / momentum - 1.0)
-        hold(gap <= QUADRATURE, f"The force adds up to an impulse that is {gap:.2g} off.")
+        hold(
+            gap <= QUADRATURE,
+            f"The force adds up to an impulse that is {gap:.2g} off. Bound: {QUADRATURE:.2g}.",
+        )
         gathered = float(trapezoid(load, np.asarray(sample.time)))
         gap = abs(gathered - float(motion.total_load_impulse)) / max(gathered, momentum)
-        hold(gap <= QUADRATURE, f"The friction load's impulse is {gap:.2g} off its integral.")
+        hold(
+            gap <= QUADRATURE,
+            f"The friction load's impulse is {gap:.2g} off its integral. Bound: {QUADRATURE:.2g}.",
+        )
 
 
 @check(NormalLaw)
@@ -140,7 +147,9 @@ def ends_unloaded(law: Any) -> None:
         last = motion.at(np.asarray(np.pi)).contact
         left = float(last.force) / float(motion.maximum_force)
         hold(
-            left <= END, f"Contact ends under load: the force is still {left:.2g} of the greatest."
+            left <= END,
+            f"Contact ends under load: the force is still {left:.2g} of the greatest."
+            f" Bound: {END:.2g}.",
         )
 
 
@@ -160,4 +169,8 @@ def motion_batch(law: Any) -> None:
             one = float(getattr(alone, name))
             other = float(np.broadcast_to(getattr(together, name), given.shape)[place])
             gap = abs(other - one) / max(abs(one), 1e-300)
-            hold(gap <= SOLVED, f"The {name} of impact {place} of a batch is off by {gap:.1e}.")
+            hold(
+                gap <= SOLVED,
+                f"The {name} of impact {place} of a batch is off by {gap:.1e}."
+                f" Bound: {SOLVED:.2g}.",
+            )

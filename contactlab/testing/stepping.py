@@ -88,7 +88,10 @@ def _alike(law: Any, whole: Bench, paths: list[Path], words: str) -> None:
         alone = drive(law, whole.alone(place), own)
         gap = _gap(alone.force, together.force[(slice(None), *place)])
         name = place[0] if len(place) == 1 else place
-        hold(gap <= ROUNDING, f"Contact {name} {words} is off by {gap:.1e} of mu P_max.")
+        hold(
+            gap <= ROUNDING,
+            f"Contact {name} {words} is off by {gap:.1e} of mu P_max. Bound: {ROUNDING:.2g}.",
+        )
 
 
 @check(SteppedTangentialLaw)

@@ -101,7 +101,8 @@ def tension(law: Any) -> None:
         hold(
             over <= slack(law) * max(limit, 0.1),
             f"Under tension abs(F) exceeds mu times a friction load of {limit:.2g} P_max by "
-            f"{over:.2g} mu P_max.",
+            f"{over:.2g} mu P_max."
+            f" Bound: {slack(law) * max(limit, 0.1):.2g}.",
         )
         hold(
             np.array_equal(there, -back),

@@ -75,14 +75,16 @@ def _hold_pairs(change: Callable[[Scene], Any], how: str) -> None:
             hold(
                 gap <= ROUNDING,
                 f"Balls unlike in {quantity}, psi1 = {psi1}: exchanged, psi2 differs by {gap:.2g} "
-                f"({how}). Take {PAIR[quantity]}, not the {quantity} of one body.",
+                f"({how}). Take {PAIR[quantity]}, not the {quantity} of one body."
+                f" Bound: {ROUNDING:.2g}.",
             )
     for quantity, (psi1, here, alone, expected) in pairs.items():
         gap = _gap(here, expected, change(alone))
         hold(
             gap <= ROUNDING,
             f"Balls unlike in {quantity}, psi1 = {psi1}: psi2 is {gap:.2g} off that of a scene "
-            f"with the same pair and no bodies ({how}).",
+            f"with the same pair and no bodies ({how})."
+            f" Bound: {ROUNDING:.2g}.",
         )
 
 
@@ -100,7 +102,8 @@ def _hold_spin(change: Callable[[Scene], Any], how: str) -> None:
             hold(
                 gap <= ROUNDING,
                 f"psi1 = {psi1}, of which spin is {1.0 - share:.2g}: psi2 differs by {gap:.2g} "
-                f"from an impact without spin ({how}). Take scene.slip_velocity, v + omega R.",
+                f"from an impact without spin ({how}). Take scene.slip_velocity, v + omega R."
+                f" Bound: {ROUNDING:.2g}.",
             )
 
 
@@ -172,7 +175,8 @@ def contacts_unlike(law: Any) -> None:
                 hold(
                     gap <= ROUNDING,
                     f"Balls unlike in {quantity}: {words} {name} differs by {gap:.2g} of its "
-                    f"maximum. Take {PAIR[quantity]}, not the {quantity} of one body.",
+                    f"maximum. Take {PAIR[quantity]}, not the {quantity} of one body."
+                    f" Bound: {ROUNDING:.2g}.",
                 )
 
 

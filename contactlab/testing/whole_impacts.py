@@ -69,14 +69,19 @@ def whole_impacts(law: Any) -> None:
         change = way.run(given).change
         room, unit = allowed(way), given.pair.tangential_mass / given.psi_scale**2
         off = abs(change - given.psi(float(np.asarray(answer.slip_velocity_change))))
-        hold(off <= room * 4.0 * chi, f"{each}: psi2 is {off:.2g} off the law's own run ({way}).")
+        hold(
+            off <= room * 4.0 * chi,
+            f"{each}: psi2 is {off:.2g} off the law's own run ({way})."
+            f" Bound: {room * 4.0 * chi:.2g}.",
+        )
         # Not the work that the march adds up: a law may be known to keep no books.
         lost = -change * (psi1 + 0.5 * change)
         off = abs(lost - float(np.asarray(answer.friction_work)) / unit)
         hold(
             off <= room * 4.0 * chi * max(psi1, 1.0),
             f"{each}: the friction work is {off:.2g} off the energy lost in the law's own run "
-            f"({way}).",
+            f"({way})."
+            f" Bound: {room * 4.0 * chi * max(psi1, 1.0):.2g}.",
         )
         if answer.course is not None:
             _courses_agree(way, each, room)
@@ -94,14 +99,16 @@ def _courses_agree(way: Way, each: Known, room: float) -> None:
     gap = float(np.max(np.abs(each.scene.psi(marched.slip_velocity - velocity))))
     hold(
         gap <= 2.0 * room * 4.0 * each.chi,
-        f"{each}: along the course psi is {gap:.2g} off the law's own run ({way}).",
+        f"{each}: along the course psi is {gap:.2g} off the law's own run ({way})."
+        f" Bound: {2.0 * room * 4.0 * each.chi:.2g}.",
     )
     acting = np.interp(marched.time, sample.time, force)
     gap = float(np.max(np.abs(marched.tangential_force - acting))) / largest
     hold(
         gap <= 2.0 * room,
         f"{each}: along the course the force is {gap:.2g} mu P_max off that of the law's own "
-        f"run ({way}).",
+        f"run ({way})."
+        f" Bound: {2.0 * room:.2g}.",
     )
 
 
@@ -134,18 +141,23 @@ def whole_impact_form(law: Any) -> None:
         )
         most = float(given.friction_coefficient) * float(each.normal.total_load_impulse)
         gap = abs(gained[-1] - change) * mass / most
-        hold(gap <= ROUNDING, f"{each}: its course ends {gap:.2g} off its answer.")
+        hold(
+            gap <= ROUNDING,
+            f"{each}: its course ends {gap:.2g} off its answer. Bound: {ROUNDING:.2g}.",
+        )
         added = -float(trapezoid(force, sample.time))
         hold(
             abs(added - mass * change) <= QUADRATURE * most,
             f"{each}: the force along its course gives an impulse of {added:.4g} N s, its "
-            f"answer one of {mass * change:.4g} N s.",
+            f"answer one of {mass * change:.4g} N s."
+            f" Bound: {QUADRATURE * most:.2g}.",
         )
         lost = float(trapezoid(force * (slip + gained), sample.time))
         hold(
             abs(lost - work) <= QUADRATURE * max(energy, most * abs(slip)),
             f"{each}: the force along its course does {lost:.4g} J of work, and its answer says "
-            f"{work:.4g} J.",
+            f"{work:.4g} J."
+            f" Bound: {QUADRATURE * max(energy, most * abs(slip)):.2g}.",
         )
 
 
@@ -175,7 +187,8 @@ def sliding_impulse(law: Any) -> None:
                 hold(
                     off <= room,
                     f"A grazing impact under {type(normal_law).__name__}, chi = {chi:.3g}, is "
-                    f"{off:.2g} off mu (1 + e) v1 M_n/M_t ({way}).",
+                    f"{off:.2g} off mu (1 + e) v1 M_n/M_t ({way})."
+                    f" Bound: {room:.2g}.",
                 )
             for _, answer in answers(given, normal, law, history=False):
                 change = spread(answer.slip_velocity_change, ())
@@ -183,6 +196,7 @@ def sliding_impulse(law: Any) -> None:
                 hold(
                     off <= 1e-6,
                     f"A grazing impact under {type(normal_law).__name__}, chi = {chi:.3g}, is "
-                    f"{off:.2g} off mu (1 + e) v1 M_n/M_t ({answer.reason}).",
+                    f"{off:.2g} off mu (1 + e) v1 M_n/M_t ({answer.reason})."
+                    " Bound: 1e-6.",
                 )
     apply_if(tried, "There is no way to run it.")

@@ -9,13 +9,14 @@ import numpy as np
 
 import contactlab
 from contactlab import Status
+from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import TangentialMotion, faults
 from tests.conformance.broken_impacts import AllAtOnce, Knowing, Whole
 from tests.conformance.broken_integrators import AsksTillItGives
 from tests.conformance.broken_laws import Sound
 from tests.conformance.broken_normal import MOTION, Altered, Moving, Stepwise
 from tests.conformance.fresh_faults import STEPS, Steps
-from tests.conformance.fresh_sound import HardSphere, Press
+from tests.conformance.fresh_sound import Brush, HardSphere, Press
 
 NUMBERS: dict[str, Any] = {"force": 0.0, "calls": 0}
 
@@ -153,6 +154,12 @@ class RemembersAClosedLoop(Sound):
         told = response._replace(force=np.where(turns > 1, 0.999, 1.0)[()] * response.force)
         moved = np.where(increment.displacement == 0.0, last, increment.displacement)[()]
         return told, (new, (moved, turns))
+
+
+class BundleUnderDamping(Brush):
+    """Springs cut alone, without a word of what that does under a damped normal law."""
+
+    expected_failures: ClassVar[dict] = {}
 
 
 class NeedsBodies(HardSphere):
@@ -331,6 +338,18 @@ WithLaterAtARate, WithLaterAtAFraction = moving(LaterAtARate), moving(LaterAtAFr
 # Integrators.
 
 
+class MassOfTheSphere(STEPS):
+    """2 m/7 of the sphere for M_t, as if it met a wall."""
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        if scene.sphere is not None:
+            mass = scene.sphere.mass / (1.0 + 1.0 / scene.sphere.gyration_ratio**2)
+            pair = attrs.evolve(scene.pair, tangential_mass=mass)
+            scene = attrs.evolve(scene, sphere=None, target=None, pair=pair)
+            normal = normal_motion(normal.law, scene)
+        return super().integrate(normal, tangential, scene, observer)
+
+
 class ClaimsAccuracy(STEPS):
     """Twenty steps, and an accuracy of 1e-9."""
 
@@ -457,6 +476,8 @@ BROKEN = [
     (InfinitelyStiff, "stiffness", "stiffness = inf"),
     (NeverSettles, "coulomb_limit", "The law found no answer on a straight load path"),
     (RemembersAClosedLoop, "turning_points", "A closed loop at slip 0.3 is not forgotten"),
+    (BundleUnderDamping, "coulomb_at_a_point_damped", "under StronglyDampedHertz"),
+    (MassOfTheSphere, "unlike_bodies_by", "Balls unlike in mass, psi1 = 0.5: exchanged, psi2"),
     (NeedsBodies, "unlike_bodies", "off that of a scene with the same pair and no bodies"),
     (WeakerInABatch, "all_steps", "A batch of shape (8,): differs by"),
     (HurriedForce, "whole_impacts", "along the course the force is"),
