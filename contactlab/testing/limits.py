@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import signal
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-#: Seconds that a check may take; the longest of ours takes a few on a slow machine.
+#: Seconds of computing that a check may take; the longest of ours takes a few on a slow machine.
 SECONDS = 60.0
-#: Seconds after which a law that has swallowed the first interruption is interrupted again.
+#: A law that waits is stopped after so many times that: a busy machine is no reason.
+WAITING = 10.0
+#: Seconds after which the clock is looked at again, and a law that swallowed the first
+#: interruption is interrupted again.
 AGAIN = 1.0
 #: Checks that may run out of time before the others are not tried any more.
 MOST_TIMEOUTS = 3
@@ -39,7 +43,7 @@ def begin(what: str) -> None:
 
 @contextmanager
 def limited(name: str, law: Any, seconds: float = SECONDS) -> Iterator[None]:
-    """Raise ``OutOfTimeError`` in the body after ``seconds``, with a sentence.
+    """Raise ``OutOfTimeError`` in the body after ``seconds`` of computing, with a sentence.
 
     Only the main thread of a process can be interrupted, where the system has SIGALRM; elsewhere
     there is no limit.
@@ -50,6 +54,7 @@ def limited(name: str, law: Any, seconds: float = SECONDS) -> Iterator[None]:
         Of the check.
     law : Law
     seconds : float
+        Of processor time; ten times that of waiting.
     """
     possible = hasattr(signal, "SIGALRM") and (
         threading.current_thread() is threading.main_thread()
@@ -60,10 +65,17 @@ def limited(name: str, law: Any, seconds: float = SECONDS) -> Iterator[None]:
         return
 
     running = True
+    begun, computed = time.monotonic(), time.process_time()
 
     def stop(_: int, frame: FrameType | None) -> None:
-        if running:
-            raise OutOfTimeError(_sentence(name, law, seconds, frame))
+        used, passed = time.process_time() - computed, time.monotonic() - begun
+        if running and used >= seconds:
+            after = f"{seconds:g} s of computing, its limit"
+        elif running and passed >= WAITING * seconds:
+            after = f"{passed:.2g} s, {used:.2g} s of them computing"
+        else:
+            return
+        raise OutOfTimeError(_sentence(name, law, after, frame))
 
     before = signal.signal(signal.SIGALRM, stop)
     signal.setitimer(signal.ITIMER_REAL, seconds, AGAIN)
@@ -77,7 +89,7 @@ def limited(name: str, law: Any, seconds: float = SECONDS) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
-def _sentence(name: str, law: Any, seconds: float, frame: FrameType | None) -> str:
+def _sentence(name: str, law: Any, after: str, frame: FrameType | None) -> str:
     """Return which check was stopped, after how long, and where the law was.
 
     Parameters
@@ -85,7 +97,8 @@ def _sentence(name: str, law: Any, seconds: float, frame: FrameType | None) -> s
     name : str
         Of the check.
     law : Law
-    seconds : float
+    after : str
+        How long it took.
     frame : frame or None
         What ran when the time was over.
     """
@@ -98,6 +111,5 @@ def _sentence(name: str, law: Any, seconds: float, frame: FrameType | None) -> s
             where = f", in {type(law).__name__}.{frame.f_code.co_name}, line {frame.f_lineno}"
         frame = frame.f_back
     return (
-        f"The check {name} was stopped after {seconds:g} s, its limit{what}{steps}"
-        f"{where}: the law hangs, or crawls."
+        f"The check {name} was stopped after {after}{what}{steps}{where}: the law hangs, or crawls."
     )
