@@ -47,8 +47,6 @@ TRUSTED = 1e8
 DOUBT, MOST_DOUBT = 10.0, 0.1
 #: A step is this much shorter than its error allows, and changes by no more than these factors.
 SAFETY, SHRINKAGE, GROWTH = 0.9, 0.2, 10.0
-#: Of the method.
-ORDER = 8
 #: Over the time since first touch: a step so short is lost in rounding.
 SHORTEST = 1e-15
 
@@ -116,9 +114,11 @@ class _Solver:
 
     def solve(self) -> SolvedMotion:
         """Return the motion."""
-        law, steps = self.law, []
+        law, steps = self.law, [self._step()]
         while law.active.any():
-            steps.append(self._step())
+            step = self._step()
+            if step[0].any():
+                steps.append(step)
         widths, values = (np.stack(column, axis=1) for column in zip(*steps, strict=True))
         # The steps that an item took come first, those that it tried in vain are dropped.
         vain = widths == 0.0
@@ -174,7 +174,8 @@ class _Solver:
         self.begun |= taken & (contacts[:, 2] > 0.0).any(axis=0)
         law.active &= ~ended
         rate, self.place = self.place[1], np.where(taken, course[-1], self.place)
-        law.remember(self.place)
+        if taken.any():
+            law.remember(self.place)
         self._give_up(rate, contacts[-1, 0], taken)
         return widths, np.where(taken[:, None, None], columns, columns[:, :1])
 
@@ -218,15 +219,18 @@ class _Solver:
         low = np.where(found, np.maximum(points[np.maximum(first - 1, 0)], start), 1.0)
         out = begun & ~(contacts[first, 2, np.arange(self.items)] > 0.0)
         for _ in range(HALVINGS):
-            if not ((high - low) * width > 0.1 * np.maximum(close, doubt * low * width)).any():
+            # Each item is halved as often as it would be alone.
+            wide = (high - low) * width > 0.1 * np.maximum(close, doubt * low * width)
+            if not wide.any():
                 break
-            middle = 0.5 * (low + high)
+            middle = np.where(wide, 0.5 * (low + high), low)
             here = _between(course, middle)
             _, _, overlap, load = law.contact(here)
-            self._refuse_nan(overlap, found)
+            self._refuse_nan(overlap, wide)
             before = quiet(here[1], overlap, load)
-            low, high = np.where(before, middle, low), np.where(before, high, middle)
-            out = np.where(before, out, begun & ~(overlap > 0.0))
+            low = np.where(before & wide, middle, low)
+            high = np.where(~before & wide, middle, high)
+            out = np.where(~before & wide, begun & ~(overlap > 0.0), out)
         return np.where(left, 0.0, low), left | (found & out)
 
     def _plan(self, error: Array, width: Array, until: Array, taken: Mask) -> None:
@@ -241,7 +245,9 @@ class _Solver:
         taken : array of bool, shape (items,)
         """
         active, missed, before = self.law.active, ~(error <= 1.0), until < 1.0
-        factor = SAFETY * np.maximum(np.nan_to_num(error, nan=math.inf), 1e-30) ** (-1.0 / ORDER)
+        # The eighth root by square roots: a power may depend on what stands beside it in an array.
+        root = np.sqrt(np.sqrt(np.sqrt(np.where(np.isnan(error), math.inf, error))))
+        factor = SAFETY / np.maximum(root, SAFETY / GROWTH)
         # A step cut short by an event, or one that failed over it, tells nothing of others.
         changes = active & np.where(missed, ~before, width == self.width)
         self.width = np.where(changes, width * np.clip(factor, SHRINKAGE, GROWTH), self.width)
@@ -298,7 +304,7 @@ class _Solver:
 
 def _between(course: Array, fraction: Array) -> Array:
     """Return the values, shape (3, items), at a fraction of each item's step."""
-    return np.asarray(np.einsum("in,nci->ci", rows(lobatto(NODES), fraction), course))
+    return np.asarray((rows(lobatto(NODES), fraction).T[:, None] * course).sum(axis=0))
 
 
 def _doubt(error: Array, width: Array) -> Array:
