@@ -99,6 +99,8 @@ class _Solver:
         Impacts that have been in contact: only those can end it.
     turns : array, shape (items,)
         Changes of sign of the rate so far.
+    tried : int
+        Steps so far, those tried in vain among them.
     """
 
     def __init__(self, law: NormalLaw, scene: Scene) -> None:
@@ -108,7 +110,7 @@ class _Solver:
         self.place[1] = 1.0
         self.time, self.turns = np.zeros(items), np.zeros(items)
         self.width, self.event = np.full(items, FIRST_STEP), np.full(items, math.inf)
-        self.begun = np.zeros(items, dtype=bool)
+        self.begun, self.tried = np.zeros(items, dtype=bool), 0
         self.status = np.full(items, Status.SUCCESS, dtype=object)
         self.detail = np.full(items, "", dtype=object)
 
@@ -146,7 +148,7 @@ class _Solver:
             Of the table.
         """
         law, points = self.law, lobatto(NODES).points
-        law.steps += 1
+        self.tried += 1
         law.time = float((self.time * law.unit).max())
         width = np.where(law.active, np.minimum(self.width, self.event), 0.0)
         tried = attempt(law.slope, self.place, width, tolerance=TOLERANCE, points=points)
@@ -175,6 +177,7 @@ class _Solver:
         law.active &= ~ended
         rate, self.place = self.place[1], np.where(taken, course[-1], self.place)
         if taken.any():
+            law.steps += 1
             law.remember(self.place)
         self._give_up(rate, contacts[-1, 0], taken)
         return widths, np.where(taken[:, None, None], columns, columns[:, :1])
@@ -291,7 +294,7 @@ class _Solver:
         rests = (np.abs(rate) < AT_REST) & (np.abs(gained) < AT_REST)
         deep = law.in_si(self.place)[0] > DEEPEST * law.radius
         lost = taken & ((self.turns > MOST_TURNS) | rests | deep)
-        if law.steps >= MOST_STEPS:
+        if self.tried >= MOST_STEPS:
             lost = law.active
         lost = lost & law.active
         for item in np.flatnonzero(lost).tolist():

@@ -41,7 +41,7 @@ class ScaledNormalLaw:
     finite : bool
         Whether the forces found last were.
     steps, time : int, float
-        Steps tried, and the time in s, for the sentence of a fault.
+        The step, from 1, and the time in s, for the sentence of a fault.
     """
 
     def __init__(self, law: NormalLaw, scene: Scene) -> None:
@@ -55,7 +55,7 @@ class ScaledNormalLaw:
         #: Change of the scaled rate in a unit of time under 1 N.
         self.response = self.unit / self.momentum
         self.active = np.ones(self.items, dtype=bool)
-        self.steps, self.time, self.finite = 0, 0.0, True
+        self.steps, self.time, self.finite = 1, 0.0, True
         with np.errstate(all="ignore"), faults.blaming(self.law):
             self.state = self.law.start(self.scene)
 
@@ -86,7 +86,7 @@ class ScaledNormalLaw:
 
     def fault(self, status: Status, what: str) -> faults.LawFaultError:
         """Return the error of a law that failed."""
-        detail = faults.sentence(self.law, what, max(self.steps, 1), self.time)
+        detail = faults.sentence(self.law, what, self.steps, self.time)
         return faults.LawFaultError(status, detail)
 
     def _respond(self, scaled: Array) -> tuple[NormalContact, Any]:
