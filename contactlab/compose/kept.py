@@ -70,6 +70,8 @@ class Kept:
             "options": fingerprint(laws),
             "block": block,
         }
+        #: Stands in every piece, so that a piece of another sweep is known as such.
+        self.sweep = fingerprint(about)
         self._check(about)
 
     def _check(self, about: Mapping[str, Any]) -> None:
@@ -98,9 +100,8 @@ class Kept:
         """Write a piece, unless there is something in it to be tried again."""
         if any(status in TRIED_AGAIN for status in piece.motion.status):
             return
-        first, stop = piece.chunk
-        with written(self.folder / PIECES.replace("*", f"{first}-{stop}"), binary=True) as stream:
-            np.savez(stream, **_arrays(piece))
+        with written(self.folder / _name(piece.chunk), binary=True) as stream:
+            np.savez(stream, **_arrays(piece), sweep=np.array(self.sweep))
 
     def pieces(self) -> list[Piece]:
         """Return the pieces that are there, no impact in two of them.
@@ -110,7 +111,8 @@ class Kept:
         Raises
         ------
         ValueError
-            If a file is damaged.
+            If a file is damaged, or its content is that of other impacts than its name says, or
+            of another sweep.
         """
         found: list[Piece] = []
         for path in sorted(self.folder.glob(PIECES), key=_first):
@@ -118,10 +120,19 @@ class Kept:
                 continue
             try:
                 with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as content:
-                    found.append(_piece(path, content))
+                    piece, sweep = _piece(content), str(content["sweep"])
             except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
                 rule = f"is damaged: {error}"
                 raise refuse("keep", str(path), rule, "delete this file") from error
+            first, stop = piece.chunk
+            if path.name != _name(piece.chunk):
+                rule = f"holds impacts {first} to {stop} by its content, others by its name"
+                remedy = f"call it {_name(piece.chunk)} again, or delete this file"
+                raise refuse("keep", str(path), rule, remedy)
+            if sweep != self.sweep:
+                rule = f"holds impacts {first} to {stop} of another sweep"
+                raise refuse("keep", str(path), rule, "delete this file")
+            found.append(piece)
         return found
 
 
@@ -173,8 +184,9 @@ def _feed(tree: Any, update: Any) -> None:
 
 def _arrays(piece: Piece) -> dict[str, Any]:
     """Return what a piece is made of as arrays of numbers and text."""
-    _, plan, motion = piece
+    chunk, plan, motion = piece
     arrays: dict[str, Any] = {name: getattr(motion, name) for name in motion.numbers()}
+    arrays["place"] = np.array(chunk)
     arrays["status"] = np.array([status.name for status in motion.status])
     arrays["detail"] = np.array(list(motion.detail), dtype=np.str_)
     arrays["counters"] = np.array(json.dumps(dict(motion.counters)))
@@ -193,9 +205,14 @@ def _first(path: Path) -> int:
     return int(first) if first.isdigit() else 0
 
 
-def _piece(path: Path, content: Mapping[str, Any]) -> Piece:
+def _name(chunk: Chunk) -> str:
+    """Return the name of a chunk's file."""
+    return PIECES.replace("*", f"{chunk.first}-{chunk.stop}")
+
+
+def _piece(content: Mapping[str, Any]) -> Piece:
     """Return the piece that arrays were made of."""
-    first, stop = map(int, path.stem.split("-")[1:])
+    first, stop = content["place"].tolist()
     kinds = {
         kind: tuple(
             Sentence(str(text), where)
@@ -210,6 +227,6 @@ def _piece(path: Path, content: Mapping[str, Any]) -> Piece:
         counters=json.loads(str(content["counters"])),
     )
     if motion.status.shape != (stop - first,):
-        raise ValueError(f"{stop - first} impacts by its name, {motion.status.size} in it")
+        raise ValueError(f"{stop - first} impacts by its place, {motion.status.size} in it")
     plan = Plan(**kinds, marched=content["marched"], psi2_error=content["psi2_error"])
     return Piece(Chunk(first, stop), plan, motion)

@@ -22,8 +22,9 @@ Array = NDArray[np.float64]
 class ScaledNormalLaw:
     """A normal law and its memory in the course of the impacts of a scene.
 
-    Scaled approaches (over the normal speed times ``unit``) and rates (over the normal speed) of
-    all impacts stand in one array, shape (2 items,), approaches first.
+    Scaled approaches (over the normal speed times ``unit``), rates (over the normal speed) and
+    impulses of the friction load (over the momentum at first touch) of all impacts stand in one
+    array, shape (3, items).
 
     Attributes
     ----------
@@ -32,15 +33,15 @@ class ScaledNormalLaw:
     speed, mass, radius : array, shape (items,)
         Normal speed (m/s), and normal mass (kg) and radius (m) of the pair.
     unit : array, shape (items,)
-        Of time, in s: the duration of a Hertz impact, until ``set_unit`` changes it.
+        Of time, in s: the duration of a Hertz impact.
+    momentum : array, shape (items,)
+        At first touch, in N s.
     active : array of bool, shape (items,)
-        Impacts still in contact: the others move on without a force.
-    remembers : bool
-        Whether the law has changed its state so far.
+        Impacts still in contact: the others stand still.
     finite : bool
-        Whether the last force found was.
+        Whether the forces found last were.
     steps, time : int, float
-        Steps taken, and the time in s, for the sentence of a fault.
+        The step, from 1, and the time in s, for the sentence of a fault.
     """
 
     def __init__(self, law: NormalLaw, scene: Scene) -> None:
@@ -49,50 +50,43 @@ class ScaledNormalLaw:
         self.speed = self._one_an_item(scene.normal_speed)
         self.mass = self._one_an_item(scene.pair.normal_mass)
         self.radius = self._one_an_item(scene.pair.radius)
-        self.set_unit(self._one_an_item(hertz_scales(scene).duration))
-        self.time, self.finite = 0.0, True
-        self.start()
-
-    def start(self) -> None:
-        """Begin all impacts: ask the law for its state before first touch."""
+        self.unit = self._one_an_item(hertz_scales(scene).duration)
+        self.length, self.momentum = self.speed * self.unit, self.mass * self.speed
+        #: Change of the scaled rate in a unit of time under 1 N.
+        self.response = self.unit / self.momentum
+        self.active = np.ones(self.items, dtype=bool)
+        self.steps, self.time, self.finite = 1, 0.0, True
         with np.errstate(all="ignore"), faults.blaming(self.law):
             self.state = self.law.start(self.scene)
-        self.active = np.ones(self.items, dtype=bool)
-        self.steps, self.remembers = 0, False
-
-    def set_unit(self, unit: Array) -> None:
-        """Measure time in ``unit``, in s, from now on."""
-        self.unit, self.length = unit, self.speed * unit
-        #: Change of the scaled rate in a unit of time under 1 N.
-        self.response = unit / (self.mass * self.speed)
 
     def in_si(self, scaled: Array) -> tuple[Array, Array]:
         """Return approach (m) and rate (m/s), shape (..., items) each."""
-        return scaled[..., : self.items] * self.length, scaled[..., self.items :] * self.speed
+        return scaled[..., 0, :] * self.length, scaled[..., 1, :] * self.speed
 
-    def slope(self, _: float, scaled: Array) -> Array:
-        """Return the derivatives of scaled approach and rate."""
+    def slope(self, scaled: Array) -> Array:
+        """Return the derivatives of scaled approach, rate and impulse, shape (3, items)."""
         if not self.shape:  # as floats: several times faster
-            force = float(self._respond(scaled)[0].force)
-            self.finite = math.isfinite(force)
-            return np.array([scaled[1], -force * self.response.item()])
-        forces = self.contact(scaled)[0]
-        self.finite = bool(np.isfinite(forces).all())
-        return np.concatenate([scaled[self.items :], -forces * self.response * self.active])
+            contact = self._respond(scaled)[0].complete
+            one, other = float(contact.force), float(contact.friction_load)
+            self.finite = math.isfinite(one) and math.isfinite(other)
+            response = self.response.item()
+            return np.array([scaled[1], [-one * response], [other * response]])
+        force, _, _, load = self.contact(scaled)
+        self.finite = bool(np.isfinite(np.where(self.active, force + load, 0.0)).all())
+        slope = np.stack([scaled[1], -force * self.response, load * self.response])
+        return np.where(self.active, slope, 0.0)
 
     def contact(self, scaled: Array) -> tuple[Array, Array, Array, Array]:
         """Return force, radius, overlap and friction load, shape (items,) each."""
         return tuple(self._one_an_item(entry) for entry in self._respond(scaled)[0].complete)
 
     def remember(self, scaled: Array) -> None:
-        """Replace the state by the one that the law has at the end of a step."""
-        state = self._respond(scaled)[1]
-        self.remembers = self.remembers or state is not self.state
-        self.state = state
+        """Replace the state by the one that the law has where the impacts are."""
+        self.state = self._respond(scaled)[1]
 
     def fault(self, status: Status, what: str) -> faults.LawFaultError:
         """Return the error of a law that failed."""
-        detail = faults.sentence(self.law, what, max(self.steps, 1), self.time)
+        detail = faults.sentence(self.law, what, self.steps, self.time)
         return faults.LawFaultError(status, detail)
 
     def _respond(self, scaled: Array) -> tuple[NormalContact, Any]:

@@ -38,6 +38,7 @@ class Prepared(NamedTuple):
     plan: Plan
 
 
+@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
 def outcome(
     laws: Laws, scene: Scene, history: bool | str, recorder: Recorder | None
 ) -> tuple[Plan, Motion]:

@@ -26,6 +26,8 @@ ACCURACY = 1e-7
 NODES = 8
 #: Points between nodes at which maxima are looked for.
 FINE = 129
+#: A cubic rises throughout if its slopes are at most this times the mean one.
+STEEPEST = 3.0
 #: Columns of the table; the radius is squared, which is smooth where the radius begins as a root.
 APPROACH, RATE, FORCE, RADIUS_SQUARED, LOAD, LOAD_IMPULSE = range(6)
 
@@ -38,12 +40,11 @@ class MotionTable:
     ----------
     shape : tuple of int
         Of the items; () where one motion serves a whole batch.
-    edges : array, shape (S + 1,)
-        Ends of the steps, in units of ``unit``; common to the items.
+    edges : array, shape (items, S + 1)
+        Ends of the steps, in units of ``unit``. Each item has its own; the steps that it takes
+        less than another have no width, and stand at separation.
     unit : array, shape (items,)
         Of time, in s.
-    ends : array, shape (items,)
-        Time of separation, in units of ``unit``; the step that holds it is cut there.
     values : array, shape (items, S, NODES, 6)
         Approach, rate, force, radius², friction load and its impulse, in SI.
     last, largest : array, shape (items, 6)
@@ -54,7 +55,6 @@ class MotionTable:
     shape: tuple[int, ...]
     edges: Array
     unit: Array
-    ends: Array
     values: Array
     last: Array
     largest: Array
@@ -67,19 +67,40 @@ class MotionTable:
         table = cls(**entries, last=np.empty(0), largest=_largest(entries["values"]))
         return attrs.evolve(table, last=table.at(table.ends))
 
+    @property
+    def ends(self) -> Array:
+        """Time of separation, shape (items,), in units of ``unit``."""
+        return np.asarray(self.edges[:, -1])
+
     def at(self, times: Array) -> Array:
-        """Return the six columns at scaled ``times``, shape (..., items); shape (..., items, 6)."""
-        index = np.clip(self.edges.searchsorted(times) - 1, 0, len(self.edges) - 2)
-        left = self.edges[index]
-        width = np.minimum(self.edges[index + 1], self.ends) - left
+        """Return the six columns at scaled ``times``, shape (..., items); shape (..., items, 6).
+
+        The load impulse never falls: between nodes it is a cubic whose slopes are the loads, less
+        where it would turn back.
+        """
+        item = np.arange(len(self.unit))
+        index = self._step(times)
+        left = self.edges[item, index]
+        width = self.edges[item, index + 1] - left
         fraction = np.clip((times - left) / np.where(width > 0.0, width, 1.0), 0.0, 1.0)
-        weights = rows(lobatto(NODES), fraction)
-        found = self.values[np.arange(len(self.unit)), index]
-        return np.asarray(np.einsum("...n,...nc->...c", weights, found))
+        steps = self.values[item, index]
+        found = np.einsum("...n,...nc->...c", rows(lobatto(NODES), fraction), steps)
+        found[..., LOAD_IMPULSE] = _rising(fraction, width * self.unit, steps)
+        return np.asarray(found)
+
+    def _step(self, times: Array) -> NDArray[np.intp]:
+        """Return the step that holds each of ``times``: one search over the edges of all items."""
+        count = self.edges.shape[1]
+        span = np.where(self.ends > 0.0, self.ends, 1.0)
+        item = np.arange(len(span))
+        # Shares of the duration, those of each item apart from those of the others.
+        listed = (self.edges / span[:, None] + 2.0 * item[:, None]).reshape(-1)
+        found = listed.searchsorted(times / span + 2.0 * item) - count * item
+        return np.asarray(np.clip(found - 1, 0, count - 2))
 
     def take(self, index: NDArray[np.intp]) -> MotionTable:
         """Return the table of the items that ``index`` counts, which has the shape of ``index``."""
-        columns = ("unit", "ends", "values", "last", "largest", "status", "detail")
+        columns = ("edges", "unit", "values", "last", "largest", "status", "detail")
         taken = {name: getattr(self, name)[np.ravel(index)] for name in columns}
         return attrs.evolve(self, shape=np.shape(index), **taken)
 
@@ -88,16 +109,50 @@ class MotionTable:
         return values.reshape(self.shape) if self.shape else values.item()
 
 
+def _rising(fraction: Array, width: Array, steps: Array) -> Array:
+    """Return the load impulse at a fraction of a step, by a cubic that never falls.
+
+    Parameters
+    ----------
+    fraction : array, shape (...)
+        Of the steps.
+    width : array, shape (...)
+        Of the steps, in s.
+    steps : array, shape (..., NODES, 6)
+        Values at the nodes of the steps.
+    """
+    points = lobatto(NODES).points
+    node = np.clip(points.searchsorted(fraction) - 1, 0, NODES - 2)
+    part = points[node + 1] - points[node]
+    share = np.clip((fraction - points[node]) / part, 0.0, 1.0)
+    begin, end = (
+        np.take_along_axis(steps[..., LOAD:], which[..., None, None], axis=-2)[..., 0, :]
+        for which in (node, node + 1)
+    )
+    start, gained = begin[..., 1], end[..., 1] - begin[..., 1]
+    first, last = (
+        np.clip(each[..., 0] * part * width, 0.0, STEEPEST * gained) for each in (begin, end)
+    )
+    rest = 1.0 - share
+    rise = gained * share * share * (1.0 + 2.0 * rest)
+    rise = rise + share * rest * (first * rest - last * share)
+    return np.asarray(start + np.clip(rise, 0.0, gained))
+
+
 def _largest(values: Array) -> Array:
     """Return the largest value of each column, shape (items, 6), looked for between nodes too."""
-    largest = values.max(axis=(1, 2))
     finer = rows(lobatto(NODES), np.linspace(0.0, 1.0, FINE))
-    steps = np.unique(values.max(axis=2).argmax(axis=1))
-    near = np.unique(np.clip(steps[:, None] + (-1, 0, 1), 0, values.shape[1] - 1))
-    for step in near:
-        found = np.einsum("mn,inc->imc", finer, values[:, step])
-        np.maximum(largest, found.max(axis=1), out=largest)
-    return np.asarray(largest)
+    steps = values.max(axis=2).argmax(axis=1)  # of each item and column
+    near = np.clip(steps + np.array([-1, 0, 1])[:, None, None], 0, values.shape[1] - 1)
+    item, column = np.arange(len(values))[:, None], np.arange(values.shape[-1])
+    found = finer @ np.moveaxis(values[item, near, :, column], -1, 2)
+    at = np.clip(found.argmax(axis=2), 1, FINE - 2)[:, :, None]
+    before, here, after = (np.take_along_axis(found, at + k, axis=2) for k in (-1, 0, 1))
+    bend = 2.0 * here - before - after
+    peaked = (here >= before) & (here >= after) & (bend > 0.0)
+    # The vertex of the parabola through the greatest and its neighbours.
+    here = here + np.where(peaked, (after - before) ** 2 / (8.0 * bend), 0.0)
+    return np.asarray(np.maximum(values.max(axis=(1, 2)), here.max(axis=(0, 2))))
 
 
 class SolvedMotion(NormalMotion):
@@ -116,6 +171,7 @@ class SolvedMotion(NormalMotion):
         self.status = batch.filled(table.shaped(table.status), scene.shape)
         self.detail = batch.filled(table.shaped(table.detail), scene.shape)
 
+    @np.errstate(under="ignore")  # interpolation on a node leaves the others a share of 1e-290
     def at(self, phase: Real) -> NormalSample:
         """Return the motion at ``phase`` in [0, pi], by interpolation."""
         shape = self.table.shape

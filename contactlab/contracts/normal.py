@@ -84,7 +84,8 @@ class NormalLaw(Law):
        without memory.
     2. ``respond(state, approach, rate)`` returns ``(NormalContact, state)``. It is pure:
        the state that goes in is not changed, a new one comes out, so that a step may be
-       tried and thrown away.
+       tried and thrown away. Asked again where it stands, a law leaves its state as it is: in a
+       batch some impacts move while others stand still.
     3. ``approach`` (m) grows in compression and is zero at first touch; ``rate`` (m/s) is its
        time derivative, positive in compression. Both are floats for one impact, or arrays
        of the batch shape; arithmetic that serves both keeps one code path.

@@ -104,10 +104,36 @@ def test_damaged_files_are_refused(tmp_path):
             simulation.sweep(scene(), keep=folder)
     piece.write_bytes(whole)
     piece.rename(piece.with_name("impacts-40-90.npz"))
-    with pytest.raises(ValueError, match="is damaged"):
+    with pytest.raises(ValueError, match=r"by its content.* again, or delete this file"):
         simulation.sweep(scene(), keep=folder)
     (folder / "sweep.json").write_text("[")
     with pytest.raises(ValueError, match="cannot be read"):
+        simulation.sweep(scene(), keep=folder)
+
+
+def test_pieces_in_the_wrong_place_are_refused(tmp_path):
+    """Two files that changed names resumed with the answers of each other's impacts."""
+    simulation, folder = Simulation(**RIGID), tmp_path / "kept"
+    interrupted(simulation, folder)
+    first, second = sorted(folder.glob("*.npz"))
+    contents = first.read_bytes(), second.read_bytes()
+    first.write_bytes(contents[1])
+    second.write_bytes(contents[0])
+    with pytest.raises(ValueError, match=r"impacts 40 to 80 by its content.*impacts-40-80\.npz"):
+        simulation.sweep(scene(), keep=folder)
+    first.write_bytes(contents[0])
+    second.write_bytes(contents[1])
+    assert_same(simulation.sweep(scene(), keep=folder), simulation.sweep(scene()))
+
+
+def test_a_piece_of_another_sweep_is_refused(tmp_path):
+    simulation, folder, other = Simulation(**RIGID), tmp_path / "kept", tmp_path / "other"
+    interrupted(simulation, folder)
+    changed = Scene.nondimensional(psi1=-scene().psi1, chi=CHI)
+    interrupted(simulation, other, scenes=changed)
+    piece = sorted(other.glob("*.npz"))[0]
+    piece.replace(folder / piece.name)
+    with pytest.raises(ValueError, match=r"holds impacts 0 to 40 of another sweep; delete"):
         simulation.sweep(scene(), keep=folder)
 
 

@@ -148,3 +148,29 @@ def test_the_stages_are_as_many_as_the_theory_page_says(chis, most):
     assert max(len(each) for each in found) == most
     longest = max(found, key=len)
     assert all((0 in pair) and pair != (0, 0) for pair in itertools.pairwise(longest))
+
+
+@pytest.mark.parametrize(("normal", "speed"), [("jkr", 0.08), ("dmt", 0.05), ("jkr", 1.0)])
+def test_restitution_under_adhesion_is_that_of_the_motion(normal, speed):
+    """e of the friction load's impulse, 1.285 for .997, gave psi2 .715 for .107."""
+    steel = contactlab.Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
+    slips = speed * np.array([0.1, 0.5, 1.0, 2.0])
+    body = contactlab.Sphere(1e-5, steel)
+    scene = Scene(body, contactlab.HalfSpace(steel), 0.3, speed, slips)
+    simulation = Simulation(normal=normal, tangential="stronge")
+    result = simulation.run(scene).check()
+    e = result.normal_restitution[0]
+    assert e <= 1.0 + 1e-8
+    expected = [rebound(psi1, np.sqrt(2.0 * scene.chi), e).change for psi1 in scene.psi1]
+    assert result.psi_change == pytest.approx(expected, abs=1e-9)
+    load = simulation.normal_motion(scene).total_load_impulse
+    ratio = np.max(load) / (scene.pair.normal_mass * speed * (1.0 + e))
+    assert ratio > 1.004
+    assert any(f"up to {ratio:.3g} times the impulse" in str(text) for text in result.plan.cautions)
+
+
+def test_no_caution_of_a_pull_where_the_normal_law_has_none():
+    for normal in ("hertz", "tsuji", "thornton"):
+        scene = Scene.nondimensional(psi1=0.7, chi=1.2)
+        plan = Simulation(normal=normal, tangential="stronge").plan(scene)
+        assert not any("does not pull" in str(text) for text in plan.cautions)

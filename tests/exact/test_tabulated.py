@@ -346,3 +346,13 @@ def test_the_error_over_the_scenes_of_the_benchmark_is_that_of_the_theory_page()
         known = float(Simulation(integrator=integrator).run(scene).check().psi2)
         found = contactlab.rebound(float(scene.psi1), float(scene.chi))
         assert found == pytest.approx(known, abs=1.5e-11)
+
+
+def test_derivatives_at_the_edge_of_slip_below_chi_of_one_half():
+    """At psi1 = 1 exactly the derivative by psi1 was 0/0; slip throughout begins there, with 1."""
+    for chi in (0.02, 0.1, 0.3, 0.45):
+        _, by_psi1, by_chi = rebound(
+            np.array([1.0 - 1e-12, 1.0, 1.0 + 1e-12]), chi, derivatives=True
+        )
+        assert by_psi1 == pytest.approx(1.0, abs=1e-7)
+        assert by_chi == pytest.approx(-4.0, abs=1e-7)

@@ -44,6 +44,7 @@ def tabulated(chi: Any, restitution: Any) -> Any:
     return inside & (restitution >= RESTITUTION[0]) & (restitution <= RESTITUTION[1])
 
 
+@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
 def rebound(psi1: Array, chi: Array, restitution: float) -> Array:
     """Return psi2 of spheres under Tsuji's law, to 2e-4; odd in psi1 to the last bit.
 

@@ -15,6 +15,8 @@ from contactlab_laws.stronge.lumped import Rebound, rebound
 
 #: Of the energy books, over the energy at the start.
 ROUNDING = 1e-9
+#: Share by which the friction load's impulse may exceed that of the spring without a caution.
+PULL = 1e-3
 #: Above this ratio of the frequencies the oscillations of one impact are not followed: chi = 5e7.
 MOST_FREQUENCY = 1e4
 
@@ -43,6 +45,7 @@ class Stronge(WholeImpactTangentialLaw):
     api_version: ClassVar[int] = 2
     expected_failures: ClassVar[Mapping[str, str]] = {
         "impact_reference": "one spring for the whole contact: there is no partial slip",
+        "load_impulse": "the normal spring of the lumped contact does not pull",
     }
 
     stiffness_ratio: float | None = quantity("1", rule=POSITIVE, default=None)
@@ -60,8 +63,8 @@ class Stronge(WholeImpactTangentialLaw):
             unit: Any = scene.friction_coefficient * scene.normal_speed / ratio
             incidence = np.abs(scene.slip_velocity) / unit
             frequency = np.sqrt(ratio * pair.normal_mass / pair.tangential_mass)
-            # The impulse of restitution over that of compression; not below zero by rounding.
-            bounce = normal.total_load_impulse / (pair.normal_mass * scene.normal_speed) - 1.0
+            # e of the motion. The friction load's impulse is another number under adhesion.
+            bounce = -normal.final_rate / scene.normal_speed
         known = super().whole_impacts(scene, normal)
         change, work = _of_each(incidence, frequency, np.maximum(bounce, 0.0), scene.shape)
         answer = WholeImpact(
@@ -73,11 +76,25 @@ class Stronge(WholeImpactTangentialLaw):
         return (*known, answer)
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return that the contact is lumped."""
-        return (
+        """Return that the contact is lumped, and that its normal spring does not pull."""
+        lumped = (
             "lumped contact: springs that do not know the contact's area, and no partial slip, "
-            "which moves psi2 of solid spheres by up to about 0.4 (model, not numerical error)",
+            "which moves psi2 of solid spheres by up to about 0.4 (model, not numerical error)"
         )
+        return (lumped, *_pull(scene, normal))
+
+
+def _pull(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+    """Return the caution of a friction load that is not the force of the normal spring."""
+    momentum = scene.pair.normal_mass * (scene.normal_speed - normal.final_rate)
+    largest = float(np.max(normal.total_load_impulse / momentum))
+    if not largest > 1.0 + PULL:
+        return ()
+    return (
+        f"lumped contact: its normal spring does not pull; the friction load of the normal law has "
+        f"up to {largest:.3g} times the impulse (1 + e) M_n v1 of that spring (model, not "
+        "numerical error)",
+    )
 
 
 def _of_each(incidence: Any, frequency: Any, bounce: Any, shape: tuple[int, ...]) -> Rebound:

@@ -34,6 +34,8 @@ Array = NDArray[np.float64]
 
 #: A place nearer to a cut than this, in its region's root, is taken to be this far: the limit.
 NEAREST = 1e-9
+#: Least t beside psi1 = 1, where the derivative by psi1 is a limit: delta is 1e-15 epsilon there.
+LEAST_T = 1e-3
 
 
 class Slopes(NamedTuple):
@@ -53,6 +55,9 @@ def gradient(table: Table, speed: Array, chi: Array) -> tuple[Array, Array]:
         if not here.who.size:
             continue
         np.maximum(here.b, NEAREST, out=here.b)
+        for region, part in here.parts():
+            if region == SMALL_NEAR:
+                here.a[part] = np.maximum(here.a[part], LEAST_T)
         slopes = _slopes(table, here)
         for region, part in here.parts():
             who = first + here.who[part]

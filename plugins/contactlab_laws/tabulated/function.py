@@ -80,6 +80,7 @@ def rebound(
     return _any(psi1, chi, derivatives)
 
 
+@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
 def _any(psi1: object, chi: object, derivatives: bool) -> Real | tuple[Real, Real, Real]:
     """Return what ``rebound`` returns, for anything."""
     incidence = real(

@@ -22,11 +22,11 @@ SHARE = Rule(
 
 @attrs.frozen(kw_only=True)
 class Walton(WholeImpactTangentialLaw):
-    """The lesser of two tangential impulses: mu times the normal one, (1 + beta_0) M_t v_x.
+    """The lesser of two tangential impulses: mu times the load's, (1 + beta_0) M_t v_x.
 
-    Of the three parameters the restitution e is that of the normal law, whatever it is: the
-    impulse of slip is mu (1 + e) M_n v1, that of the friction load. It says nothing of the
-    course of an impact.
+    The normal law gives the third parameter of hard spheres, the restitution e. The impulse of
+    slip, in N s, is mu times that of the friction load: mu (1 + e) M_n v1 where the normal law
+    does not pull, and more under adhesion. The law says nothing of the course of an impact.
 
     Parameters
     ----------
