@@ -33,7 +33,8 @@ class Law(ABC):
     4. ``resolution`` names the parameter that makes answers finer, if there is one: a count
        (``steps``, ``annuli``) that grows, or ``tolerance``, which shrinks.
     5. Words in the names of parameters; each is checked when the object is made and
-       refused with a ``ValueError`` that names it.
+       refused with a ``ValueError`` that names it. A ``quantity`` of a law is one number: it
+       refuses arrays (``plain_options``).
     6. ``expected_failures`` names the checks of ``contactlab.testing`` that the law fails by
        its nature, each with the reason: a class variable, or a property if it depends on the
        parameters.
@@ -45,6 +46,7 @@ class Law(ABC):
     needs: ClassVar[frozenset[str]] = frozenset()
     offers: ClassVar[frozenset[str]] = frozenset()
     resolution: ClassVar[str | None] = None
+    plain_options: ClassVar[bool] = True
 
     @property
     def expected_failures(self) -> Mapping[str, str]:

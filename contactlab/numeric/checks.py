@@ -201,11 +201,16 @@ def unit_remedy(unit: str) -> str:
     return "it has no unit" if unit == "1" else f"give it in {unit}"
 
 
-def _checked(value: object, field: attrs.Attribute[Any]) -> Real | None:
+def _checked(value: object, owner: object, field: attrs.Attribute[Any]) -> Real | None:
+    """Return the checked value of a field; ``owner`` is the object that is being made."""
     if value is None and field.default is None:
         return None
     meta = field.metadata
-    return real(field.name, value, rule=meta["rule"], remedy=unit_remedy(meta["unit"]))
+    number = real(field.name, value, rule=meta["rule"], remedy=unit_remedy(meta["unit"]))
+    if isinstance(number, np.ndarray) and getattr(type(owner), "plain_options", False):
+        rule = "must be one number: an option of a law holds for every impact"
+        raise refuse(field.name, value, rule, "make a law for each value")
+    return number
 
 
 def key(value: Real | None) -> object:
@@ -221,7 +226,8 @@ def quantity(
 ) -> Any:
     """Return an attrs field for a checked real quantity with its unit in the metadata.
 
-    A default of None makes it optional: None may be given too.
+    A default of None makes it optional: None may be given too. A body or a scene takes an array,
+    one value for each impact; a law (``Law.plain_options``) refuses arrays.
 
     Parameters
     ----------
@@ -237,7 +243,7 @@ def quantity(
     return attrs.field(
         default=default,
         **keywords,
-        converter=attrs.Converter(_checked, takes_field=True),
+        converter=attrs.Converter(_checked, takes_self=True, takes_field=True),
         eq=key,
         metadata={"unit": unit, "rule": rule, "range": rule.sentence},
     )
