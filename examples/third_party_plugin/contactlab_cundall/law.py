@@ -47,8 +47,7 @@ class CundallStrack(SteppedTangentialLaw):
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return k."""
-        mindlin = 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
-        return self.stiffness_ratio * mindlin
+        return self.stiffness_ratio * scene.pair.tangential_stiffness(normal.maximum_radius)
 
     def start(self, scene: Scene, normal: NormalMotion) -> Spring:
         """Return the spring unloaded."""

@@ -185,7 +185,8 @@ class MindlinCap(SteppedTangentialLaw):
         return self._modulus(scene) * normal.maximum_radius
 
     def _modulus(self, scene: Scene) -> Real:
-        return 2.0 * self.stiffness_factor * scene.pair.effective_shear_modulus
+        """Return the stiffness per metre of contact radius, in Pa."""
+        return self.stiffness_factor * scene.pair.tangential_stiffness(1.0)
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return a spring at rest."""
