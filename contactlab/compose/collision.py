@@ -279,7 +279,12 @@ def collide(
         raise encounter.separate()
     if not np.any(met):
         return _collision(encounter, impulses.moved(encounter), simulation=simulation)
-    known = _run(simulation, (encounter if np.all(met) else encounter.take(met)).scene)
+    if np.all(met):
+        scene = encounter.scene
+    else:  # an impact keeps its place in the whole batch
+        places = np.arange(np.size(met)).reshape(np.shape(met))[met]
+        scene = encounter.take(met).scene.numbered(places)
+    known = _run(simulation, scene)
     moved = impulses.moved(encounter, _columns(encounter, known, met))
     return _collision(encounter, moved, simulation=simulation, known=known)
 

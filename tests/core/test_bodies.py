@@ -68,7 +68,7 @@ def test_tangential_stiffness_is_mindlins_8_g_a_of_discrete_element_codes():
 
 
 def test_tangential_stiffness_is_the_slope_of_the_annulus_methods_first_force():
-    """The kernel of eqs (13), (14) knows nothing of Mindlin's formula; in a contact held at rest."""
+    """The kernel of eqs (13), (14) knows nothing of the formula; the load is held."""
     bench = Bench.of()
     law = contactlab.create("tangential.annulus", annuli=200)
     slip = 1e-3

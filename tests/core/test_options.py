@@ -39,7 +39,7 @@ def test_a_refusal_says_the_rule_that_is_told(name):
 
 @pytest.mark.parametrize("name", LAWS)
 def test_an_option_of_a_law_is_one_number(name):
-    """An array, one value for each impact, was taken by eleven laws, and some answers were shifted."""
+    """An array, one value for each impact, was taken by eleven laws."""
     for option in options(REGISTRY.law_class(name)):
         value = 0.5 if option.default is None else option.default
         alone = {option.name: np.array(value)[()]} if isinstance(value, float) else {}
