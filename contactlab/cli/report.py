@@ -14,6 +14,7 @@ import contextlib
 import sys
 
 from contactlab.cli import arguments as shared
+from contactlab.compose.names import full_name, short_name
 from contactlab.outcome.files import written
 from contactlab.scene_file import read_scene
 from contactlab.study.compare import compare
@@ -51,7 +52,8 @@ def execute(arguments: argparse.Namespace) -> int:
     own = file.laws.resolved()
     simulations = {str(own.tangential): own.simulation()}
     for name in arguments.tangential or DEFAULT_LAWS:
-        if name.removeprefix("tangential.") in simulations:
+        name = short_name(full_name("tangential", name))
+        if name in simulations:
             continue
         try:
             simulations[name] = file.laws.choose(tangential=name).suited().simulation()

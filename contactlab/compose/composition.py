@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from contactlab.compose.loading import outdated
+from contactlab.compose.names import full_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.law import Law
@@ -40,7 +41,7 @@ class Laws(NamedTuple):
 def law(kind: str, value: object) -> Any:
     """Return the law of ``kind`` that ``value`` names or already is."""
     if isinstance(value, str):
-        return REGISTRY.create(value if value.startswith(f"{kind}.") else f"{kind}.{value}")
+        return REGISTRY.create(full_name(kind, value))
     if isinstance(value, Law) and value.kind == kind:
         if (complaint := outdated(type(value))) is not None:
             raise ValueError(f"{kind} = {complaint}")
@@ -151,7 +152,7 @@ def _candidates(kind: str) -> Iterator[tuple[str, Any]]:
         if info.kind != kind or info.blocked or not REGISTRY.at_hand(info):
             continue
         try:
-            yield info.name, REGISTRY.create(info.name)
+            yield info.known_as, REGISTRY.create(info.known_as)
         except (PluginError, ValueError):
             continue
 

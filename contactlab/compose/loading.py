@@ -14,9 +14,8 @@ import pluggy
 
 from contactlab.compose import hookspecs
 from contactlab.compose.installed import GROUP, short
+from contactlab.compose.names import KINDS
 from contactlab.contracts.law import API_VERSION, Law
-
-KINDS = ("normal", "tangential", "integrator")
 
 
 class PluginError(RuntimeError):
@@ -25,13 +24,34 @@ class PluginError(RuntimeError):
 
 @attrs.frozen
 class PluginInfo:
-    """One installed law, as the listing shows it; nothing has been imported."""
+    """One installed law, as the listing shows it; nothing has been imported.
+
+    Attributes
+    ----------
+    name, distribution, version, module : str
+        What the entry point says, and whose it is.
+    blocked : bool
+        Whether it is not to be used: ``Registry`` says how.
+    meant : bool
+        Whether the name without a distribution means this law.
+    """
 
     name: str
     distribution: str
     version: str
     module: str
     blocked: bool
+    meant: bool = True
+
+    @property
+    def qualified(self) -> str:
+        """The name that no other distribution has: ``"my-laws:normal.hertz"``."""
+        return f"{self.distribution}:{self.name}"
+
+    @property
+    def known_as(self) -> str:
+        """The shortest name that means this law."""
+        return self.name if self.meant else self.qualified
 
     @property
     def kind(self) -> str:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.compose.clashes import BLOCK_VARIABLE, blocks
+from contactlab.compose.hookspecs import PROJECT
 from contactlab.contracts.restitution import RESTITUTION
 from contactlab.numeric.checks import POSITIVE, Real, Rule, paired, real, refuse
 
@@ -198,17 +201,34 @@ def damped(restitution: float) -> Simulation:
 
 def _table(name: str = TABLE) -> Callable[..., Any] | None:
     """Return a tabulated rebound, if one is installed and not blocked."""
-    from contactlab.compose.registry import blocked_names
-
-    return None if f"rebound.{name}" in blocked_names() else _installed(name)
+    return _installed(name, os.environ.get(BLOCK_VARIABLE, ""))
 
 
 @cache
-def _installed(name: str) -> Callable[..., Any] | None:
+def _installed(name: str, blocking: str) -> Callable[..., Any] | None:
+    """Return the function of an entry point, of contactlab where several distributions offer one.
+
+    Parameters
+    ----------
+    name : str
+    blocking : str
+        What is blocked.
+    """
     from importlib import metadata  # 20 ms that only those who look for plug-ins pay
 
-    found = metadata.entry_points(group=GROUP, name=name)
-    return next((point.load() for point in found), None)
+    entries, found = set(blocking.replace(",", " ").split()), {}
+    for point in metadata.entry_points(group=GROUP, name=name):
+        distribution = point.dist.name if point.dist is not None else "unknown"
+        if not blocks(entries, f"rebound.{name}", distribution):
+            found[distribution] = point
+    if not found:
+        return None
+    if len(found) > 1 and PROJECT not in found:
+        whose = ", ".join(sorted(found))
+        rule = "is offered by several distributions"
+        raise refuse(f"{GROUP}: {name}", whose, rule, f"block all but one: {BLOCK_VARIABLE}")
+    point = found.get(PROJECT) or next(iter(found.values()))
+    return cast("Callable[..., Any]", point.load())
 
 
 def _exact(psi1: Array, chi: Array) -> Array:

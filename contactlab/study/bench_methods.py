@@ -7,6 +7,7 @@ from typing import Any
 
 import attrs
 
+from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import WholeImpactTangentialLaw
@@ -79,7 +80,7 @@ class Method:
                 count = value if isinstance(value, int) else round(value**-0.5)
                 least = 2 if isinstance(value, int) else LEAST_PARTS
                 options["tangential"][law] = max(count // per_part, least)
-            if _accepted(f"integrator.{self.integrator}", options["integrator"]):
+            if _accepted(full_name("integrator", self.integrator), options["integrator"]):
                 found.append(options)
         if not quick:
             return found
@@ -92,8 +93,12 @@ class Method:
         """Return the composition at one resolution."""
         return Simulation(
             normal=normal,
-            tangential=REGISTRY.create(f"tangential.{self.tangential}", **options["tangential"]),
-            integrator=REGISTRY.create(f"integrator.{self.integrator}", **options["integrator"]),
+            tangential=REGISTRY.create(
+                full_name("tangential", self.tangential), **options["tangential"]
+            ),
+            integrator=REGISTRY.create(
+                full_name("integrator", self.integrator), **options["integrator"]
+            ),
         )
 
 
@@ -115,13 +120,13 @@ def methods(laws: Iterable[str] | None = None) -> list[Method]:
     ValueError
         If a law named is not installed, or fits no integrator.
     """
-    named = None if laws is None else [_short(law) for law in laws]
+    named = None if laws is None else [short_name(law) for law in laws]
     found = []
-    for tangential in named or [_short(name) for name in REGISTRY.names("tangential")]:
+    for tangential in named or [short_name(name) for name in REGISTRY.names("tangential")]:
         try:
             if named is None and _makes_no_force(tangential):
                 continue
-            integrators = [_short(name) for name in REGISTRY.names("integrator")]
+            integrators = [short_name(name) for name in REGISTRY.names("integrator")]
             fitting = [
                 Method(tangential=tangential, integrator=integrator)
                 for integrator in integrators
@@ -168,8 +173,4 @@ def _accepted(name: str, options: dict[str, Any]) -> bool:
 
 
 def _law(kind: str, name: str) -> Any:
-    return REGISTRY.law_class(f"{kind}.{name}")
-
-
-def _short(name: str) -> str:
-    return name.partition(".")[2] or name
+    return REGISTRY.law_class(full_name(kind, name))

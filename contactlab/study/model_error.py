@@ -12,6 +12,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.compose.names import full_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import TangentialLaw, WholeImpactTangentialLaw
@@ -53,7 +54,7 @@ def model_error(law: str, chis: Sequence[float], incidences: Sequence[float]) ->
     """
     if law in CONTINUUM:
         return None
-    tangential = REGISTRY.create(f"tangential.{law}")
+    tangential = REGISTRY.create(full_name("tangential", law))
     off = [[_off(law, tangential, psi1, chi) for psi1 in incidences] for chi in chis]
     return ModelError(law=law, chis=tuple(chis), error=np.fmax.reduce(off, axis=1))
 

@@ -8,6 +8,7 @@ from typing import Any
 import attrs
 
 from contactlab.compose.composition import misfit
+from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.impact.scene import Scene
 from contactlab.study.bench_methods import Method
@@ -53,8 +54,8 @@ class Case:
 
 def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
     """Iterate over the cases of a method, under Hertz's law and then under the others."""
-    law = REGISTRY.law_class(f"tangential.{method.tangential}")
-    integrator = REGISTRY.law_class(f"integrator.{method.integrator}")
+    law = REGISTRY.law_class(full_name("tangential", method.tangential))
+    integrator = REGISTRY.law_class(full_name("integrator", method.integrator))
     for scene in extreme_scenes(quick=quick):
         yield _case(method, scene, {})
         if method.whole:
@@ -76,10 +77,10 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
 
 def other_normal_laws(method: Method) -> Iterator[str]:
     """Iterate over the installed normal laws but Hertz's that fit a method."""
-    tangential = REGISTRY.create(f"tangential.{method.tangential}")
-    integrator = REGISTRY.create(f"integrator.{method.integrator}")
+    tangential = REGISTRY.create(full_name("tangential", method.tangential))
+    integrator = REGISTRY.create(full_name("integrator", method.integrator))
     for name in REGISTRY.names("normal"):
-        short = name.partition(".")[2]
+        short = short_name(name)
         if short == HERTZ:
             continue
         try:
@@ -129,7 +130,7 @@ def _ladder(
 
 
 def _class(method: Method) -> Any:
-    return REGISTRY.law_class(f"integrator.{method.integrator}")
+    return REGISTRY.law_class(full_name("integrator", method.integrator))
 
 
 def _case(method: Method, scene: Extreme, options: Options, *, planned: bool = True) -> Case:

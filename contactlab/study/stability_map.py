@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.compose.names import full_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.impact.scene import Scene
 from contactlab.study.bench_methods import Method
@@ -150,7 +151,7 @@ def region(
 def _word(method: Method) -> str | None:
     if method.whole:
         return None
-    found: str | None = REGISTRY.law_class(f"integrator.{method.integrator}").resolution
+    found: str | None = REGISTRY.law_class(full_name("integrator", method.integrator)).resolution
     return found
 
 
@@ -167,7 +168,7 @@ def _case(method: Method, word: str, fine: float, psi1: float, chi: float) -> Ca
     psi1, chi : float
     """
     options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {word: fine}}
-    if hasattr(REGISTRY.law_class(f"integrator.{method.integrator}"), "refine"):
+    if hasattr(REGISTRY.law_class(full_name("integrator", method.integrator)), "refine"):
         options["integrator"]["refine"] = False  # what the steps asked for are worth
     scene = Extreme("map", "", lambda: Scene.nondimensional(psi1=psi1, chi=chi))
     return Case(

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.compose.names import full_name
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
@@ -71,7 +72,7 @@ def _another(normal: NormalLaw, name: str) -> Reference:
 @lru_cache(maxsize=4096)
 def _fine_under(scene: Scene, normal: NormalLaw, name: str) -> float | None:
     """Return the change under ``normal`` by a fine law of the continuum; None if none settles."""
-    law: Any = REGISTRY.law_class(f"tangential.{name}")
+    law: Any = REGISTRY.law_class(full_name("tangential", name))
     width = range_of(scene).width
     before = np.inf
     for parts in FINE_PARTS * 2 ** np.arange(DOUBLINGS + 1):
