@@ -10,6 +10,7 @@ import contactlab
 from contactlab import PluginError
 from contactlab.compose import rebound as rebounds
 from contactlab.compose.installed import PluginWarning
+from contactlab.compose.loading import Loader
 from contactlab.compose.names import full_name, kind_of, short_name
 from contactlab.compose.registry import REGISTRY
 
@@ -154,7 +155,8 @@ def test_a_distribution_cannot_take_over_a_built_in_name(
 
 def test_a_strangers_normal_hertz_leaves_the_program_as_it_was(registry, install, monkeypatch):
     """The whole program was disabled by it: every default names this law."""
-    monkeypatch.setattr(REGISTRY, "_loaded", {})
+    for name, nothing in (("_loaded", {}), ("_loader", Loader()), ("_meant", {})):
+        monkeypatch.setattr(REGISTRY, name, nothing)
     install("usurper", "usurper_law", NORMAL_LAW, "normal.hertz")
     scene = contactlab.Scene.nondimensional(psi1=1.2, chi=1.4412)
     assert contactlab.Simulation().run(scene).psi2 == pytest.approx(-0.18048, abs=1e-5)
