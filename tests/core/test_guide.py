@@ -171,7 +171,7 @@ def test_dois_are_well_formed():
 
 @pytest.mark.parametrize("topic", TOPICS)
 def test_topics_named_in_the_guide_exist(topic):
-    named = re.findall(r"`contactlab guide ([a-z-]+)", text(topic))
+    named = re.findall(r"`contactlab guide ([a-z0-9-]+)", text(topic))
     assert set(named) <= set(TOPICS)
 
 

@@ -355,6 +355,57 @@ def test_wrong_interface_version_wrong_kind_and_abstract_laws(registry, install,
         registry.create("tangential.half")
 
 
+@pytest.mark.parametrize(
+    ("lines", "wanted"),
+    [
+        ("from contactlab.contracts import Problem", "Problem of contactlab.contracts"),
+        ("from contactlab.contracts.tangential import Run", "Run of contactlab.contracts.tang"),
+        ("from contactlab.checks import quantity", "contactlab.checks"),
+        ("import contactlab.status", "contactlab.status"),
+        ("import contactlab\ncontactlab.closed_forms.x", "closed_forms of contactlab"),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law():\n"
+            "    from contactlab.contracts import RunningTangentialLaw",
+            "RunningTangentialLaw of contactlab.contracts",
+        ),
+    ],
+)
+def test_a_plugin_of_an_older_contactlab_gets_one_sentence_that_says_what_to_do(
+    registry, install, lines, wanted
+):
+    install("old", "old_law", lines, MINE)
+    with pytest.raises(PluginError, match=f"it uses {wanted}.*, which is not there") as caught:
+        registry.create(MINE)
+    told = str(caught.value)
+    assert told.startswith("'tangential.mine' of old 1.5 was written for another version")
+    assert "`contactlab guide version-2` says what has changed" in told
+    assert "Error" not in told
+    assert caught.value.__suppress_context__  # no traceback of an import that cannot be helped
+    assert registry.create("tangential.coulomb") is not None
+
+
+def test_a_missing_package_of_somebody_else_is_no_older_contactlab(registry, install):
+    for number, lines in enumerate(
+        ("import contactlab_of_mine", "from math import nothing", "import math\nmath.nothing")
+    ):
+        install(f"other{number}", f"other_law{number}", lines, f"tangential.other{number}")
+        with pytest.raises(PluginError, match=r"could not be imported: .*Error"):
+            registry.create(f"tangential.other{number}")
+
+
+def test_a_law_of_version_1_gets_one_sentence_whatever_it_lacks(registry, install, law_source):
+    """Its version is told, not the methods that it lacks: they had other names."""
+    source = law_source.replace("int] = 2", "int] = 1").replace("def start", "def begin")
+    install("old", "old_law", source, MINE)
+    with pytest.raises(PluginError) as caught:
+        registry.create(MINE)
+    assert str(caught.value) == (
+        "'tangential.mine' of old 1.5: Mine was written for version 1 of the contracts, "
+        "contactlab has 2; `contactlab guide version-2` says what has changed and what to write; "
+        "then write api_version: ClassVar[int] = 2 in its class"
+    )
+
+
 def test_blocked_names_are_refused_and_not_imported(registry, install, monkeypatch):
     install("broken", "broken_law", "1/0", MINE)
     monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", f"{MINE}, normal.other")

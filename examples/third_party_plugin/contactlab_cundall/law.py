@@ -8,14 +8,16 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import (
+    POSITIVE,
     Increment,
     NormalContact,
     NormalMotion,
+    Real,
+    Scene,
     SteppedTangentialLaw,
     TangentialResponse,
+    quantity,
 )
-from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import POSITIVE, Real, quantity
 
 
 class Spring(NamedTuple):
