@@ -26,6 +26,13 @@ PREFERRED = {
     "tangential": ("fronts", "springs", "coulomb"),
     "integrator": ("events", "symplectic"),
 }
+#: What the core and the studies ask for by its use, with the names above all that they name:
+#: exact answers between elastic spheres, fixed steps, a restitution, and the law with the answers
+#: of ``contactlab.rebound``.
+EXACT = {"tangential": "fronts", "integrator": "events"}
+FIXED_STEPS = "symplectic"
+RESTITUTION = {"normal": "tsuji", "tangential": "springs"}
+OF_REBOUND = "tabulated"
 #: The ways in which a tangential law can be run: one of them it must be.
 WAYS = (SteppedTangentialLaw, PhasedTangentialLaw, WholeImpactTangentialLaw)
 
@@ -38,10 +45,10 @@ class Laws(NamedTuple):
     integrator: Integrator
 
 
-def law(kind: str, value: object) -> Any:
-    """Return the law of ``kind`` that ``value`` names or already is."""
+def law(kind: str, value: object, **options: Any) -> Any:
+    """Return the law of ``kind`` that ``value`` names, with its options, or already is."""
     if isinstance(value, str):
-        return REGISTRY.create(full_name(kind, value))
+        return REGISTRY.create(full_name(kind, value), **options)
     if isinstance(value, Law) and value.kind == kind:
         if (complaint := outdated(type(value))) is not None:
             raise ValueError(f"{kind} = {complaint}")
@@ -50,6 +57,26 @@ def law(kind: str, value: object) -> Any:
     if isinstance(value, type) and issubclass(value, Law):
         remedy = f"this is the class; make one: {value.__name__}()"
     raise refuse(kind, value, f"must be a name or a {kind} law", remedy)
+
+
+def exact(tolerance: float) -> dict[str, Any]:
+    """Return the laws of the exact answers between elastic spheres, for ``Simulation(**laws)``.
+
+    Parameters
+    ----------
+    tolerance : float
+        Error of psi2 aimed at, over max(1, abs(psi1)).
+    """
+    return {
+        "tangential": law("tangential", EXACT["tangential"]),
+        "integrator": law("integrator", EXACT["integrator"], tolerance=tolerance),
+    }
+
+
+def fixed_steps(steps: int) -> Integrator:
+    """Return the integrator of so many fixed steps."""
+    made: Integrator = law("integrator", FIXED_STEPS, steps=steps)
+    return made
 
 
 def compose(normal: object, tangential: object, integrator: object) -> Laws:

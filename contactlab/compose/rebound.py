@@ -8,6 +8,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
+import attrs
 import numpy as np
 from numpy.typing import NDArray
 
@@ -188,14 +189,17 @@ def _damped(psi1: Array, chi: Array, restitution: float) -> Array:
 
 
 def damped(restitution: float) -> Simulation:
-    """Return the laws of a restitution below 1: Tsuji's, and partial slip by springs."""
-    from contactlab.compose.registry import REGISTRY  # no law before it is needed
+    """Return the laws of a restitution below 1: ``composition.RESTITUTION``, in fixed steps."""
+    from contactlab.compose import composition  # no law before it is needed
     from contactlab.compose.simulation import Simulation
 
+    fine = composition.law("tangential", composition.RESTITUTION["tangential"])
     return Simulation(
-        normal=REGISTRY.create("normal.tsuji", restitution=restitution),
-        tangential=REGISTRY.create("tangential.springs", springs=SPRINGS),
-        integrator=REGISTRY.create("integrator.symplectic", steps=4 * SPRINGS),
+        normal=composition.law(
+            "normal", composition.RESTITUTION["normal"], restitution=restitution
+        ),
+        tangential=attrs.evolve(fine, **{str(fine.resolution): SPRINGS}),
+        integrator=composition.fixed_steps(4 * SPRINGS),
     )
 
 
@@ -233,12 +237,11 @@ def _installed(name: str, blocking: str) -> Callable[..., Any] | None:
 
 def _exact(psi1: Array, chi: Array) -> Array:
     """Return psi2, shape (impacts,), without any table: the exact solution for abs(psi1)."""
-    from contactlab.compose.registry import REGISTRY  # no law before it is needed
+    from contactlab.compose import composition  # no law before it is needed
     from contactlab.compose.simulation import Simulation
 
-    integrator = REGISTRY.create("integrator.events", tolerance=EXACT)
     speed = np.abs(psi1)
-    change = _change(Simulation(tangential="fronts", integrator=integrator), psi1, chi)
+    change = _change(Simulation(**composition.exact(EXACT)), psi1, chi)
     # no impact gains energy, nor more impulse than full slip gives: not even by an error
     change = np.clip(change, np.maximum(-2.0 * speed, -4.0 * chi), 0.0)
     return np.asarray(np.copysign(1.0, psi1) * (speed + change))

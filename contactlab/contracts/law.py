@@ -27,7 +27,11 @@ class Law(ABC):
        ``hertzian_pressure``     pressure is a hemisphere over that radius, eq. (3)
        ``elastic_hertz``         the normal motion is the elastic impact of eqs (2)-(7)
        ``partial_slip``          the contact slips from its edge inwards: at fixed normal
-                                 load its force is Cattaneo and Mindlin's
+                                 load its force is Cattaneo and Mindlin's; elastic impacts
+                                 end as the axisymmetric continuum's, the finer the closer
+       ``rigid``                 bodies do not deform tangentially: an impact slips until its
+                                 slip stops, if it does, and then rolls without a force
+       ``no_friction``           the law makes no force
        ========================  ====================================================
 
     4. ``resolution`` names the parameter that makes answers finer, if there is one: a count

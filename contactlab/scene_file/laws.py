@@ -79,9 +79,11 @@ class LawChoice:
         """Return the choice with every law named."""
         choice = attrs.evolve(self, normal=self.normal or composition.DEFAULT_NORMAL)
         made = [choice.made("normal")]
+        named = () if self.integrator is None else (choice.made("integrator"),)
         for kind in ("tangential", "integrator"):
             if getattr(choice, kind) is None:
-                choice = choice.choose(**{kind: composition.preferred(kind, *made)})
+                name = composition.preferred(kind, *made, after=named)
+                choice = choice.choose(**{kind: name})
             made.append(choice.made(kind))
         return choice
 

@@ -34,7 +34,7 @@ from contactlab.testing.parametrize import parametrize_with_checks
 #: Modules with checks: each enters its own, in the order in which they are run.
 ORDER = (
     "every_law", "normal", "normal_contact", "normal_motions", "motion", "stepping", "friction",
-    "stiffness", "energy", "memory", "point", "impacts", "whole_impacts", "coulomb", "unlike",
+    "stiffness", "energy", "memory", "point", "impacts", "whole_impacts", "coulomb", "rigid_bodies", "unlike",
     "integrators", "integrator_faults", "accuracy", "declared",
 )  # fmt: skip
 for _module in ORDER:
