@@ -1,11 +1,10 @@
 """The three contracts: what a normal law, a tangential law and an integrator promise.
 
 Authors of laws import from here alone: besides the contracts, the fields of checked options, the
-restitution as an option, statuses, faults and the model of a declared error.
+restitution as an option, statuses and faults.
 """
 
 from contactlab.contracts import faults
-from contactlab.contracts.error_model import ErrorModel
 from contactlab.contracts.integrator import Integrator, Observer, Sample, TangentialMotion
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.contracts.motion import (
@@ -68,7 +67,6 @@ __all__ = [
     "ClosedFormNormalLaw",
     "ClosedPhase",
     "DenseOutput",
-    "ErrorModel",
     "Increment",
     "Integrator",
     "Law",

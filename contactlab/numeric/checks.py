@@ -45,7 +45,15 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
 
 
 class Rule(NamedTuple):
-    """A condition on a number and the sentence that states it."""
+    """A condition on a number and the sentence that states it.
+
+    Attributes
+    ----------
+    holds : callable
+        Takes a number or an array; True where the condition holds.
+    sentence : str
+        What a refusal says: ``"must be positive"``.
+    """
 
     holds: Callable[[Any], Any]
     sentence: str
@@ -272,7 +280,14 @@ def _option(checked: Callable[[str, object], Any], default: Any, **metadata: Any
 
 
 def choice(*words: str, default: str) -> Any:
-    """Return an attrs field for one of a few words."""
+    """Return an attrs field for one of a few words.
+
+    Parameters
+    ----------
+    *words : str
+    default : str
+        One of them.
+    """
     rule = f"must be one of {', '.join(map(repr, words))}"
 
     def checked(name: str, value: object) -> str:
@@ -284,7 +299,12 @@ def choice(*words: str, default: str) -> Any:
 
 
 def flag(*, default: bool) -> Any:
-    """Return an attrs field for True or False."""
+    """Return an attrs field for True or False.
+
+    Parameters
+    ----------
+    default : bool
+    """
     rule = "must be True or False"
 
     def checked(name: str, value: object) -> bool:
@@ -296,7 +316,14 @@ def flag(*, default: bool) -> Any:
 
 
 def count(*, default: Any = attrs.NOTHING, least: int = 1, most: int = 10_000_000) -> Any:
-    """Return an attrs field for a checked whole number."""
+    """Return an attrs field for a checked whole number.
+
+    Parameters
+    ----------
+    default : int, optional
+    least, most : int
+        The range, both ends in it.
+    """
 
     def checked(name: str, value: object) -> int:
         return whole(name, value, least=least, most=most)
