@@ -34,8 +34,8 @@ from contactlab.testing.parametrize import parametrize_with_checks
 #: Modules with checks: each enters its own, in the order in which they are run.
 ORDER = (
     "every_law", "normal", "normal_contact", "normal_motions", "motion", "stepping", "friction",
-    "stiffness", "energy", "memory", "point", "impacts", "whole_impacts", "coulomb", "rigid_bodies", "unlike",
-    "integrators", "integrator_faults", "accuracy", "declared",
+    "stiffness", "energy", "memory", "point", "impacts", "whole_impacts", "coulomb", "unlike",
+    "rigid_bodies", "integrators", "integrator_faults", "accuracy", "declared",
 )  # fmt: skip
 for _module in ORDER:
     importlib.import_module(f"contactlab.testing.{_module}")

@@ -9,7 +9,7 @@ import pytest
 import contactlab
 from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere, collide
 from contactlab.compose import sweep as sweeping
-from contactlab.compose.workers import Workers
+from contactlab.compose.workers import processes
 from tests.random_laws import RandomNormal, RandomStepped, RandomWhole, draws
 
 SIZE = 12
@@ -69,7 +69,7 @@ def test_the_place_is_no_part_of_what_a_scene_is():
 
 @pytest.fixture(scope="module")
 def workers():
-    with Workers(1) as one:
+    with processes(1) as one:
         yield one
 
 

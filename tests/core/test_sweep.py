@@ -236,7 +236,7 @@ def test_a_law_that_leaves_its_process_is_told(monkeypatch, tmp_path, status):
     assert [one.name for one in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
     assert np.isnan(result.psi2[100:]).all()
     assert len(list(tmp_path.iterdir())) == 2  # tried once more
-    with pytest.raises(contactlab.ImpactError, match="impact 100: .*BrokenProcessPool"):
+    with pytest.raises(contactlab.ImpactError, match=r"impact 100: .*BrokenProcessPool"):
         result.check()
 
 
