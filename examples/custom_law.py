@@ -19,7 +19,7 @@ from contactlab.figures.files import save
 class Spring(NamedTuple):
     """The state: two constants of the scene, and the force, which is all the memory."""
 
-    shear_modulus: float
+    stiffness_per_radius: float
     friction_coefficient: float
     force: float
 
@@ -43,11 +43,11 @@ class MindlinCap(SteppedTangentialLaw):
 
     def start(self, scene, normal):
         """Return the spring unloaded."""
-        return Spring(scene.pair.effective_shear_modulus, scene.friction_coefficient, 0.0)
+        return Spring(scene.pair.tangential_stiffness(1.0), scene.friction_coefficient, 0.0)
 
     def advance(self, state, increment, before, after):
         """Return the force after the step, and the work of friction in it."""
-        stiffness = 2.0 * state.shear_modulus * after.radius
+        stiffness = state.stiffness_per_radius * after.radius
         softness = 1.0 / (stiffness + (stiffness == 0.0))
         # As the contact shrinks the force shrinks with it: otherwise a softer spring would
         # hold the same force, and store energy that nobody gave it.
@@ -64,7 +64,7 @@ class MindlinCap(SteppedTangentialLaw):
 
     def stiffness(self, scene, normal):
         """Return the stiffness of the largest contact."""
-        return 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
+        return scene.pair.tangential_stiffness(normal.maximum_radius)
 
 
 if __name__ == "__main__":

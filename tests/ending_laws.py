@@ -17,19 +17,23 @@ from contactlab.contracts.whole_impact import no_force
 class Ending(WholeImpactTangentialLaw):
     """No force; ends its process where psi1 is more than ``above``, ``times`` times.
 
-    ``folder`` counts the ends, for no process lives to do so.
+    ``folder`` counts the ends, for no process lives to do so. With a ``status`` the law calls
+    ``os._exit`` with it, which runs nobody's handlers; without, the process is killed.
     """
 
     api_version: ClassVar[int] = 2
     folder: str
     above: float = 5.0
     times: int = 1000
+    status: int | None = None
 
     def whole_impacts(self, scene, normal):
         if np.max(scene.psi1) > self.above:
             ends = Path(self.folder)
             if len(list(ends.iterdir())) < self.times:
                 (ends / os.urandom(8).hex()).touch()
+                if self.status is not None:
+                    os._exit(self.status)
                 os.kill(os.getpid(), signal.SIGKILL)
         return (no_force(scene, where=True, reason="a test"),)
 

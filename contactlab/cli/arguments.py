@@ -171,7 +171,8 @@ def add_report(parser: argparse.ArgumentParser) -> None:
         "--law",
         action="append",
         metavar="NAME",
-        help="a tangential law, installed or of a plug-in; may be repeated (default: all)",
+        help="a law, installed or of a plug-in, such as tangential.mine, integrator.mine or "
+        "normal.mine; may be repeated (default: all of a kind, under Hertz's normal law)",
     )
     parser.add_argument("--quick", action="store_true", help="fewer scenes and resolutions")
     parser.add_argument(

@@ -21,19 +21,20 @@ import itertools
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from contactlab.cli import arguments as shared
 from contactlab.cli import side_by_side
 from contactlab.cli.scene import add_ranges, check_alone
-from contactlab.compose.registry import KINDS, REGISTRY
+from contactlab.compose.names import KINDS, full_name, kind_of, short_name
+from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import nearest
 from contactlab.outcome.columns import quantity_named
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
+from contactlab.scene_file.laws import same_law
 from contactlab.study.compare import Comparison, compare
 from contactlab.study.compare_export import plain_score, to_dict, write_csv
 from contactlab.study.scores import DEFAULT_SCENE, candidates, scores
@@ -173,7 +174,7 @@ def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation
             "and --integrator, and name one normal law at most"
         )
     for path, _ in arguments.settings:
-        if path.count(".") < 2 and not path.startswith("normal."):
+        if path.count(".") < 2 and kind_of(path) != "normal":
             example = "--set integrator.symplectic.steps=400"
             raise ValueError(f"--set {path}: with --all say of which law, such as {example}")
     if not file.scene.shape:
@@ -196,7 +197,7 @@ def simulations(arguments: argparse.Namespace, laws: LawChoice) -> dict[str, Sim
     """
     asked = {kind: getattr(arguments, kind) or [getattr(laws, kind)] for kind in KINDS}
     asked = {
-        kind: [name and name.removeprefix(f"{kind}.") for name in names]
+        kind: [name and short_name(full_name(kind, name)) for name in names]
         for kind, names in asked.items()
     }
     several = [kind for kind in KINDS if len(asked[kind]) > 1] or ["tangential"]
@@ -235,14 +236,14 @@ def _knows(choice: LawChoice, path: str, used: set[str], offered: set[str]) -> b
         Paths that the laws would take; added to.
     """
     owner, _, option = path.rpartition(".")
-    kind, _, name = owner.partition(".")
+    kind = kind_of(owner)
     if kind not in KINDS:
         used.add(path)
         return True  # let the choice refuse it, with the remedy
-    chosen: Any = getattr(choice, kind)
-    options = inspect.signature(REGISTRY.law_class(f"{kind}.{chosen}")).parameters
+    chosen = full_name(kind, getattr(choice, kind))
+    options = inspect.signature(REGISTRY.law_class(chosen)).parameters
     offered.update(f"{kind}.{each}" for each in options)
-    if name not in ("", chosen):
+    if owner != kind and not same_law(owner, chosen):
         return False
     known = option in options
     used.update([path] if known else [])

@@ -19,7 +19,7 @@ from contactlab.numeric.checks import refuse
 #: Topics in the order in which a newcomer reads them; each is a file of ``contactlab/guide``.
 TOPICS = (
     "getting-started", "units-and-signs", "choosing", "how-far-to-trust", "plans-and-statuses",
-    "for-a-paper", "command-line", "fitting", "extending", "theory", "glossary",
+    "for-a-paper", "command-line", "fitting", "extending", "version-2", "theory", "glossary",
 )  # fmt: skip
 #: The heading of a numbered section, as in ``## 5. The slip front``.
 SECTION = re.compile(r"^## (\d+)\. ", re.MULTILINE)

@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import inspect
 import json
+import sys
 import textwrap
 from collections import Counter
 from typing import Any
@@ -32,7 +33,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     show = actions.add_parser("show", help="the same of one law, what it does and its options")
     check = actions.add_parser("check", help="put a law through its contract; exit 1 if it fails")
     for action in (show, check):
-        action.add_argument("name", metavar="NAME", help="such as tangential.annulus")
+        action.add_argument(
+            "name", metavar="NAME", help="such as tangential.annulus, or my-laws:tangential.annulus"
+        )
     add_progress(check)
     for action in (listing, show, check):
         action.add_argument("--json", action="store_true", help="print JSON")
@@ -45,12 +48,15 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.action == "show":
         return _show(arguments)
     entries = [_entry(info) for info in REGISTRY.installed()]
+    for sentence in REGISTRY.clashes():
+        print(f"contactlab: warning: {sentence}", file=sys.stderr)
     if arguments.json:
         print(json.dumps(entries, indent=2))
         return OK
     keys = ("name", "kind", "distribution", "version")
     rows = [[str(entry[key]) for key in keys] for entry in entries]
     for row, entry in zip(rows, entries, strict=True):
+        row[0] = str(entry["known_as"])
         for word in ("blocked", "malformed"):
             row[0] += f" ({word})" if entry[word] else ""
     print(table(keys, rows))
@@ -126,6 +132,7 @@ def _check(arguments: argparse.Namespace) -> int:
 def _entry(info: PluginInfo) -> dict[str, str | bool]:
     return {
         "name": info.name,
+        "known_as": info.known_as,
         "kind": info.kind,
         "distribution": info.distribution,
         "version": info.version,

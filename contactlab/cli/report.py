@@ -14,6 +14,7 @@ import contextlib
 import sys
 
 from contactlab.cli import arguments as shared
+from contactlab.compose.names import full_name, short_name
 from contactlab.outcome.files import written
 from contactlab.scene_file import read_scene
 from contactlab.study.compare import compare
@@ -32,6 +33,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="tangential laws to compare with the file's own (default: those of "
         "fronts, coulomb that fit its normal law)",
     )
+    parser.add_argument("--normal", metavar="NAME", help="normal law in place of the file's own")
+    parser.add_argument(
+        "--integrator", metavar="NAME", help="integrator in place of the file's own"
+    )
     parser.add_argument(
         "--measured",
         metavar="DATA.csv",
@@ -48,13 +53,16 @@ def execute(arguments: argparse.Namespace) -> int:
         from contactlab.fitting import read_measurements, with_measurements  # when asked for
 
         file = with_measurements(file, read_measurements(arguments.measured))
-    own = file.laws.resolved()
+    laws = file.laws.choose(normal=arguments.normal, integrator=arguments.integrator)
+    own = laws.resolved()
     simulations = {str(own.tangential): own.simulation()}
     for name in arguments.tangential or DEFAULT_LAWS:
-        if name.removeprefix("tangential.") in simulations:
+        name = short_name(full_name("tangential", name))
+        if name in simulations:
             continue
         try:
-            simulations[name] = file.laws.choose(tangential=name).suited().simulation()
+            chosen = laws.choose(tangential=name)
+            simulations[name] = (chosen if arguments.integrator else chosen.suited()).simulation()
         except ValueError:  # a default that does not fit the file's normal law is left out
             if arguments.tangential:
                 raise

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.compose import impulses
 from contactlab.compose.collision_plan import by_rebound, collision_plan
+from contactlab.compose.composition import OF_REBOUND
 from contactlab.compose.rebound import damped
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.restitution import RESTITUTION
@@ -26,9 +27,6 @@ from contactlab.outcome.result import ImpactResult
 
 Array = NDArray[np.float64]
 
-#: The law with the answers of ``rebound``, for plans and results of collisions without one of
-#: their own; where it is not installed the default takes its place.
-SAME_ANSWERS = "tangential.tabulated"
 SEPARATING = ("refuse", "pass")
 #: Vectors after a collision: name and unit.
 VECTORS = (
@@ -211,7 +209,7 @@ class Collision:
         if self.restitution != 1.0:
             return damped(self.restitution)
         try:
-            return Simulation(tangential=SAME_ANSWERS)
+            return Simulation(tangential=OF_REBOUND)
         except ValueError:  # blocked, or not installed
             return Simulation()
 
@@ -279,7 +277,12 @@ def collide(
         raise encounter.separate()
     if not np.any(met):
         return _collision(encounter, impulses.moved(encounter), simulation=simulation)
-    known = _run(simulation, (encounter if np.all(met) else encounter.take(met)).scene)
+    if np.all(met):
+        scene = encounter.scene
+    else:  # an impact keeps its place in the whole batch
+        places = np.arange(np.size(met)).reshape(np.shape(met))[met]
+        scene = encounter.take(met).scene.numbered(places)
+    known = _run(simulation, scene)
     moved = impulses.moved(encounter, _columns(encounter, known, met))
     return _collision(encounter, moved, simulation=simulation, known=known)
 

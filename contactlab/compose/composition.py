@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from contactlab.compose.loading import outdated
+from contactlab.compose.names import full_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.law import Law
@@ -25,6 +26,13 @@ PREFERRED = {
     "tangential": ("fronts", "springs", "coulomb"),
     "integrator": ("events", "symplectic"),
 }
+#: What the core and the studies ask for by its use, with the names above all that they name:
+#: exact answers between elastic spheres, fixed steps, a restitution, and the law with the answers
+#: of ``contactlab.rebound``.
+EXACT = {"tangential": "fronts", "integrator": "events"}
+FIXED_STEPS = "symplectic"
+RESTITUTION = {"normal": "tsuji", "tangential": "springs"}
+OF_REBOUND = "tabulated"
 #: The ways in which a tangential law can be run: one of them it must be.
 WAYS = (SteppedTangentialLaw, PhasedTangentialLaw, WholeImpactTangentialLaw)
 
@@ -37,10 +45,10 @@ class Laws(NamedTuple):
     integrator: Integrator
 
 
-def law(kind: str, value: object) -> Any:
-    """Return the law of ``kind`` that ``value`` names or already is."""
+def law(kind: str, value: object, **options: Any) -> Any:
+    """Return the law of ``kind`` that ``value`` names, with its options, or already is."""
     if isinstance(value, str):
-        return REGISTRY.create(value if value.startswith(f"{kind}.") else f"{kind}.{value}")
+        return REGISTRY.create(full_name(kind, value), **options)
     if isinstance(value, Law) and value.kind == kind:
         if (complaint := outdated(type(value))) is not None:
             raise ValueError(f"{kind} = {complaint}")
@@ -49,6 +57,26 @@ def law(kind: str, value: object) -> Any:
     if isinstance(value, type) and issubclass(value, Law):
         remedy = f"this is the class; make one: {value.__name__}()"
     raise refuse(kind, value, f"must be a name or a {kind} law", remedy)
+
+
+def exact(tolerance: float) -> dict[str, Any]:
+    """Return the laws of the exact answers between elastic spheres, for ``Simulation(**laws)``.
+
+    Parameters
+    ----------
+    tolerance : float
+        Error of psi2 aimed at, over max(1, abs(psi1)).
+    """
+    return {
+        "tangential": law("tangential", EXACT["tangential"]),
+        "integrator": law("integrator", EXACT["integrator"], tolerance=tolerance),
+    }
+
+
+def fixed_steps(steps: int) -> Integrator:
+    """Return the integrator of so many fixed steps."""
+    made: Integrator = law("integrator", FIXED_STEPS, steps=steps)
+    return made
 
 
 def compose(normal: object, tangential: object, integrator: object) -> Laws:
@@ -151,7 +179,7 @@ def _candidates(kind: str) -> Iterator[tuple[str, Any]]:
         if info.kind != kind or info.blocked or not REGISTRY.at_hand(info):
             continue
         try:
-            yield info.name, REGISTRY.create(info.name)
+            yield info.known_as, REGISTRY.create(info.known_as)
         except (PluginError, ValueError):
             continue
 

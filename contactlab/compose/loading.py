@@ -14,9 +14,9 @@ import pluggy
 
 from contactlab.compose import hookspecs
 from contactlab.compose.installed import GROUP, short
+from contactlab.compose.names import KINDS
+from contactlab.compose.older import REMEDY, other_version
 from contactlab.contracts.law import API_VERSION, Law
-
-KINDS = ("normal", "tangential", "integrator")
 
 
 class PluginError(RuntimeError):
@@ -25,13 +25,34 @@ class PluginError(RuntimeError):
 
 @attrs.frozen
 class PluginInfo:
-    """One installed law, as the listing shows it; nothing has been imported."""
+    """One installed law, as the listing shows it; nothing has been imported.
+
+    Attributes
+    ----------
+    name, distribution, version, module : str
+        What the entry point says, and whose it is.
+    blocked : bool
+        Whether it is not to be used: ``Registry`` says how.
+    meant : bool
+        Whether the name without a distribution means this law.
+    """
 
     name: str
     distribution: str
     version: str
     module: str
     blocked: bool
+    meant: bool = True
+
+    @property
+    def qualified(self) -> str:
+        """The name that no other distribution has: ``"my-laws:normal.hertz"``."""
+        return f"{self.distribution}:{self.name}"
+
+    @property
+    def known_as(self) -> str:
+        """The shortest name that means this law."""
+        return self.name if self.meant else self.qualified
 
     @property
     def kind(self) -> str:
@@ -64,12 +85,12 @@ class Loader:
         source = f"{info.name!r} of {info.distribution} {info.version}"
         from importlib import metadata
 
-        with _guarded(f"{source} could not be imported"):
+        with _guarded(source, "could not be imported"):
             module = metadata.EntryPoint(info.name, info.module, GROUP).load()
         self._register(module, info, source)
         others = [plugin for plugin in self._manager.get_plugins() if plugin is not module]
         ask = self._manager.subset_hook_caller("contactlab_law", others)
-        with _guarded(f"{source} raised when asked for its law"):
+        with _guarded(source, "raised when asked for its law"):
             law = ask(name=info.name)
         return _checked(law, info, source)
 
@@ -93,11 +114,12 @@ class Loader:
 
 
 @contextlib.contextmanager
-def _guarded(failed: str) -> Iterator[None]:
+def _guarded(source: str, failed: str) -> Iterator[None]:
     """Keep a plug-in's code from ending the program, writing among data or changing settings.
 
-    Whatever it raises but an interruption becomes a ``PluginError``; what it prints goes to
-    stderr, for stdout may be read by a program; numpy's handling of errors is put back.
+    Whatever it raises but an interruption becomes a ``PluginError``, one sentence alone where the
+    plug-in is of another version; what it prints goes to stderr, for stdout may be read by a
+    program; numpy's handling of errors is put back.
     """
     try:
         with np.errstate(), contextlib.redirect_stdout(sys.stderr):
@@ -105,7 +127,9 @@ def _guarded(failed: str) -> Iterator[None]:
     except KeyboardInterrupt:
         raise
     except BaseException as error:
-        raise PluginError(f"{failed}: {short(error)}") from error
+        if (sentence := other_version(error)) is not None:
+            raise PluginError(f"{source} {sentence}") from None
+        raise PluginError(f"{source} {failed}: {short(error)}") from error
 
 
 def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
@@ -117,11 +141,11 @@ def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
             f"{source} returned {law.__name__}, a {law.kind} law; "
             "each entry point needs a module of its own with a function contactlab_law"
         )
+    if (complaint := outdated(law)) is not None:
+        raise PluginError(f"{source}: {complaint}")
     if law.__abstractmethods__:
         missing = ", ".join(sorted(law.__abstractmethods__))
         raise PluginError(f"{source}: {law.__name__} does not define {missing}")
-    if (complaint := outdated(law)) is not None:
-        raise PluginError(f"{source}: {complaint}")
     return law
 
 
@@ -130,7 +154,13 @@ def outdated(law: type[Law]) -> str | None:
     version = getattr(law, "api_version", None)
     if version == API_VERSION:
         return None
+    written = f"write api_version: ClassVar[int] = {API_VERSION} in its class"
+    if isinstance(version, int) and version < API_VERSION:
+        return (
+            f"{law.__name__} was written for version {version} of the contracts, contactlab has "
+            f"{API_VERSION}; {REMEDY}; then {written}"
+        )
     return (
         f"{law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}; if the law "
-        f"keeps to these contracts, write api_version: ClassVar[int] = {API_VERSION} in its class"
+        f"keeps to these contracts, {written}"
     )

@@ -71,11 +71,36 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
     if scene.shape and all(isinstance(quantity, float) for quantity in quantities):
         one = attrs.evolve(scene, friction_coefficient=0.0, tangential_velocity=0.0, spin=0.0)
         if not one.shape:  # the impacts of the batch differ in their tangential motion only
-            common = normal_motion(law, one)
+            watched = _Watched.of(one)
+            common = normal_motion(law, watched)
             assert isinstance(common, SolvedMotion)
-            return SolvedMotion(law, scene, common.table)
+            if not watched.was_read:
+                return SolvedMotion(law, scene, common.table)
     with np.errstate(all="ignore"):
         return _Solver(law, scene).solve()
+
+
+class _Watched(Scene):
+    """A single impact that keeps whether its index was read: then its motion is nobody else's."""
+
+    __slots__ = ("was_read",)
+    was_read: bool
+
+    @classmethod
+    def of(cls, scene: Scene) -> _Watched:
+        """Return the scene, watched."""
+        found = object.__new__(cls)
+        for field in attrs.fields(Scene):
+            if field.name != "index":
+                object.__setattr__(found, field.name, getattr(scene, field.name))
+        object.__setattr__(found, "was_read", False)
+        return found
+
+    @property
+    def index(self) -> int:
+        """Return 0, and keep that it was asked for."""
+        object.__setattr__(self, "was_read", True)
+        return 0
 
 
 class _Solver:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
+import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.compose.clashes import BLOCK_VARIABLE, blocks
+from contactlab.compose.hookspecs import PROJECT
 from contactlab.contracts.restitution import RESTITUTION
 from contactlab.numeric.checks import POSITIVE, Real, Rule, paired, real, refuse
 
@@ -185,40 +189,59 @@ def _damped(psi1: Array, chi: Array, restitution: float) -> Array:
 
 
 def damped(restitution: float) -> Simulation:
-    """Return the laws of a restitution below 1: Tsuji's, and partial slip by springs."""
-    from contactlab.compose.registry import REGISTRY  # no law before it is needed
+    """Return the laws of a restitution below 1: ``composition.RESTITUTION``, in fixed steps."""
+    from contactlab.compose import composition  # no law before it is needed
     from contactlab.compose.simulation import Simulation
 
+    fine = composition.law("tangential", composition.RESTITUTION["tangential"])
     return Simulation(
-        normal=REGISTRY.create("normal.tsuji", restitution=restitution),
-        tangential=REGISTRY.create("tangential.springs", springs=SPRINGS),
-        integrator=REGISTRY.create("integrator.symplectic", steps=4 * SPRINGS),
+        normal=composition.law(
+            "normal", composition.RESTITUTION["normal"], restitution=restitution
+        ),
+        tangential=attrs.evolve(fine, **{str(fine.resolution): SPRINGS}),
+        integrator=composition.fixed_steps(4 * SPRINGS),
     )
 
 
 def _table(name: str = TABLE) -> Callable[..., Any] | None:
     """Return a tabulated rebound, if one is installed and not blocked."""
-    from contactlab.compose.registry import blocked_names
-
-    return None if f"rebound.{name}" in blocked_names() else _installed(name)
+    return _installed(name, os.environ.get(BLOCK_VARIABLE, ""))
 
 
 @cache
-def _installed(name: str) -> Callable[..., Any] | None:
+def _installed(name: str, blocking: str) -> Callable[..., Any] | None:
+    """Return the function of an entry point, of contactlab where several distributions offer one.
+
+    Parameters
+    ----------
+    name : str
+    blocking : str
+        What is blocked.
+    """
     from importlib import metadata  # 20 ms that only those who look for plug-ins pay
 
-    found = metadata.entry_points(group=GROUP, name=name)
-    return next((point.load() for point in found), None)
+    entries, found = set(blocking.replace(",", " ").split()), {}
+    for point in metadata.entry_points(group=GROUP, name=name):
+        distribution = point.dist.name if point.dist is not None else "unknown"
+        if not blocks(entries, f"rebound.{name}", distribution):
+            found[distribution] = point
+    if not found:
+        return None
+    if len(found) > 1 and PROJECT not in found:
+        whose = ", ".join(sorted(found))
+        rule = "is offered by several distributions"
+        raise refuse(f"{GROUP}: {name}", whose, rule, f"block all but one: {BLOCK_VARIABLE}")
+    point = found.get(PROJECT) or next(iter(found.values()))
+    return cast("Callable[..., Any]", point.load())
 
 
 def _exact(psi1: Array, chi: Array) -> Array:
     """Return psi2, shape (impacts,), without any table: the exact solution for abs(psi1)."""
-    from contactlab.compose.registry import REGISTRY  # no law before it is needed
+    from contactlab.compose import composition  # no law before it is needed
     from contactlab.compose.simulation import Simulation
 
-    integrator = REGISTRY.create("integrator.events", tolerance=EXACT)
     speed = np.abs(psi1)
-    change = _change(Simulation(tangential="fronts", integrator=integrator), psi1, chi)
+    change = _change(Simulation(**composition.exact(EXACT)), psi1, chi)
     # no impact gains energy, nor more impulse than full slip gives: not even by an error
     change = np.clip(change, np.maximum(-2.0 * speed, -4.0 * chi), 0.0)
     return np.asarray(np.copysign(1.0, psi1) * (speed + change))

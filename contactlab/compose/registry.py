@@ -9,9 +9,13 @@ from functools import cached_property
 from typing import Any
 from weakref import WeakKeyDictionary
 
+import attrs
+
 from contactlab.compose import hookspecs
+from contactlab.compose.clashes import BLOCK_VARIABLE, blocked_names, blocks, clash, meant
 from contactlab.compose.installed import PluginWarning, entry_points, stamp
-from contactlab.compose.loading import KINDS, Loader, PluginError, PluginInfo
+from contactlab.compose.loading import Loader, PluginError, PluginInfo
+from contactlab.compose.names import KINDS, kind_of, parted, same_distribution
 from contactlab.contracts.law import Law
 from contactlab.numeric.checks import nearest, refuse
 
@@ -25,7 +29,6 @@ __all__ = [
     "blocked_names",
 ]
 
-BLOCK_VARIABLE = "CONTACTLAB_BLOCK_PLUGINS"
 #: Names that are not of laws, and may be blocked too.
 OTHER_GROUPS = ("rebound.",)
 
@@ -35,11 +38,20 @@ class Registry:
 
     Entry points of the group ``contactlab`` are read when they are needed first; a module is
     imported only when one of its laws is made, so that a broken plug-in stops no other.
+
+    Names
+    -----
+    1. Each law has a name that no other has, ``distribution:kind.name``.
+    2. ``kind.name`` alone means the law of the distribution ``contactlab`` where that has one;
+       else the law of the one distribution that does. Where several others do it is refused.
+    3. ``CONTACTLAB_BLOCK_PLUGINS`` takes names of either form, and names of distributions: all
+       laws of those are blocked. What is blocked does not count in rule 2.
     """
 
     def __init__(self) -> None:
         self._loader = Loader()
         self._loaded: dict[str, tuple[type[Law], PluginInfo]] = {}
+        self._meant: dict[tuple[str, str], str] = {}
         self._warned: set[str] = set()
         self._found: set[tuple[str, str, str, str]] = set()
         self._stamp: object = None
@@ -48,57 +60,80 @@ class Registry:
     @cached_property
     def _modules(self) -> list[tuple[str, str]]:
         """Names and modules of the laws found at first; reading entry points takes a while."""
-        return [(info.name, info.module) for info in self.installed()]
+        return [(info.qualified, info.module) for info in self.installed()]
 
     def installed(self) -> list[PluginInfo]:
         """Return every law found, sorted by kind and name, without importing any."""
         now = stamp()
         if now != self._stamp:
             self._found, self._stamp = entry_points(), now
-        blocked = blocked_names()
-        infos = {
-            PluginInfo(name, distribution, version, module, name in blocked)
+        blocking = blocked_names()
+        infos = [
+            PluginInfo(name, distribution, version, module, blocks(blocking, name, distribution))
             for name, distribution, version, module in self._found
-        }
-        self._warn_of_unknown({info.name for info in infos})
-        return sorted(infos, key=lambda info: (_rank(info.kind), info.name, info.distribution))
+        ]
+        self._warn_of_unknown(infos)
+        offers: dict[str, list[PluginInfo]] = {}
+        for info in infos:
+            offers.setdefault(info.name, []).append(info)
+        found = [
+            attrs.evolve(info, meant=info is meant(rivals))
+            for rivals in offers.values()
+            for info in rivals
+        ]
+        return sorted(found, key=lambda info: (_rank(info.kind), info.name, info.distribution))
 
-    def _warn_of_unknown(self, known: set[str]) -> None:
+    def _warn_of_unknown(self, infos: list[PluginInfo]) -> None:
         """Warn once of each name that is blocked and not installed: misspelt, it blocks nothing."""
-        others = {name for name in blocked_names() if name.startswith(OTHER_GROUPS)}
-        unknown = blocked_names() - known - others - self._warned
+        unknown = {
+            entry
+            for entry in blocked_names() - self._warned
+            if not parted(entry)[1].startswith(OTHER_GROUPS)
+            and not any(blocks({entry}, info.name, info.distribution) for info in infos)
+        }
         self._warned |= unknown
+        known = {text for info in infos for text in (info.name, info.qualified, info.distribution)}
         for name in sorted(unknown):
             hint = nearest(name, known).strip()
             text = f"{BLOCK_VARIABLE} names {name!r}, which is not installed; {hint}"
             warnings.warn(text.rstrip("; "), PluginWarning, stacklevel=4)
 
     def names(self, kind: str | None = None) -> list[str]:
-        """Return the names of laws that may be made, of one kind or of all."""
+        """Return the shortest names of laws that may be made, of one kind or of all."""
         return sorted(
             {
-                info.name
+                info.known_as
                 for info in self.installed()
                 if not (info.blocked or info.malformed) and kind in (None, info.kind)
             }
         )
 
+    def clashes(self) -> list[str]:
+        """Return a sentence for each name that several distributions offer: which one it means."""
+        offers: dict[str, list[PluginInfo]] = {}
+        for info in self.installed():
+            if not (info.blocked or info.malformed):
+                offers.setdefault(info.name, []).append(info)
+        return [clash(rivals) for rivals in offers.values() if len(rivals) > 1]
+
     def info(self, name: str) -> PluginInfo:
-        """Return the one installed law called ``name``.
+        """Return the one installed law that ``name`` means.
 
         Raises
         ------
         ValueError
-            If there is none (with the nearest match) or it is blocked.
+            If there is none (with the nearest match), it is blocked, or several distributions
+            offer it and none of them is ``contactlab``.
         PluginError
-            If two distributions offer it.
+            If the name in the entry point is malformed.
         """
-        found = [info for info in self.installed() if info.name == name]
-        if len(found) > 1:
-            both = " and ".join(f"{info.distribution} {info.version}" for info in found)
-            raise PluginError(
-                f"{name!r} is offered by {both}: uninstall one, or set {BLOCK_VARIABLE}"
-            )
+        distribution, plain = parted(name)
+        installed = self.installed()
+        found = [info for info in installed if info.name == name] or [
+            info
+            for info in installed
+            if info.name == plain and same_distribution(info.distribution, distribution)
+        ]
         if not found:
             raise self._unknown(name)
         if found[0].malformed:
@@ -106,20 +141,27 @@ class Registry:
             raise PluginError(
                 f"{source}: the name must be one of {', '.join(KINDS)}, a dot, a name"
             )
-        if found[0].blocked:
+        usable = [info for info in found if not info.blocked]
+        if not usable:
             raise refuse("name", name, f"is blocked by {BLOCK_VARIABLE}", "unset it to use the law")
-        return found[0]
+        law = meant(usable)
+        if law is None:
+            raise ValueError(clash(usable))
+        return law
 
     def at_hand(self, info: PluginInfo) -> bool:
         """Return whether a law is of this distribution, or its plug-in was imported already."""
-        return info.distribution == hookspecs.PROJECT or info.name in self._loaded
+        return info.distribution == hookspecs.PROJECT or info.qualified in self._loaded
 
     def law_class(self, name: str) -> type[Law]:
         """Import the plug-in that offers ``name`` and return the law's class."""
-        if name not in self._loaded or name in blocked_names():
+        key = name, os.environ.get(BLOCK_VARIABLE, "")  # what is blocked changes what is meant
+        if self._meant.get(key) not in self._loaded:
             info = self.info(name)
-            self._loaded[name] = (self._loader.law_class(info), info)
-        return self._loaded[name][0]
+            if info.qualified not in self._loaded:
+                self._loaded[info.qualified] = (self._loader.law_class(info), info)
+            self._meant[key] = info.qualified
+        return self._loaded[self._meant[key]][0]
 
     def create(self, name: str, **options: Any) -> Any:
         """Return a new law: ``create("tangential.annulus", annuli=50)``.
@@ -145,7 +187,7 @@ class Registry:
             if parameter.default is parameter.empty and option not in options:
                 raise ValueError(
                     f"{name}: {option} must be given; in Python create({name!r}, {option}=...), "
-                    f"on the command line --set {name.partition('.')[0]}.{option}=..."
+                    f"on the command line --set {kind_of(name)}.{option}=..."
                 )
         try:
             return law(**options)
@@ -171,26 +213,33 @@ class Registry:
         return next((info for known, info in self._loaded.values() if known is law_class), None)
 
     def _unknown(self, name: str) -> ValueError:
-        kind, _, short = str(name).rpartition(".")
+        """Return the refusal of a name that is not installed, with the nearest that is."""
+        distribution, plain = parted(str(name))
+        kind, _, short = plain.rpartition(".")
         names = self.names(kind if kind in KINDS else None)
         others = [known for known in self.names() if known.endswith(f".{short}")]
-        if kind in KINDS and others:
+        if distribution:
+            known = {info.distribution for info in self.installed()}
+            offering = sorted(info.qualified for info in self.installed() if info.name == plain)
+            if offering:
+                hint = f"{plain!r} is offered as {' and '.join(map(repr, offering))}; "
+            elif not any(same_distribution(one, distribution) for one in known):
+                hint = f"no distribution {distribution!r} has laws; {nearest(distribution, known)}"
+            else:
+                hint = ""
+        elif kind in KINDS and others:
             hint = f"{short!r} is a law of another kind, {others[0]!r}; "
         else:
             # The kind, which all of them begin with, would make any two names alike.
             import difflib  # only for those who misspell
 
-            known = {full.rpartition(".")[2]: full for full in others or names}
-            found = difflib.get_close_matches(short, known, n=1, cutoff=0.0 if others else 0.5)
-            hint = f"did you mean {known[found[0]]!r}? " if found else ""
+            known_as = {full.rpartition(".")[2]: full for full in others or names}
+            cutoff = 0.0 if others else 0.5
+            found = difflib.get_close_matches(short, known_as, n=1, cutoff=cutoff)
+            hint = f"did you mean {known_as[found[0]]!r}? " if found else ""
         return refuse(
             "name", name, "no such law is installed", f"{hint}installed: {', '.join(names)}"
         )
-
-
-def blocked_names() -> set[str]:
-    """Return the names in ``CONTACTLAB_BLOCK_PLUGINS``, separated by commas or blanks."""
-    return set(os.environ.get(BLOCK_VARIABLE, "").replace(",", " ").split())
 
 
 def _rank(kind: str) -> int:

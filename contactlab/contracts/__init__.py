@@ -1,5 +1,10 @@
-"""The three contracts: what a normal law, a tangential law and an integrator promise."""
+"""The three contracts: what a normal law, a tangential law and an integrator promise.
 
+Authors of laws import from here alone: besides the contracts, the fields of checked options, the
+restitution as an option, statuses and faults.
+"""
+
+from contactlab.contracts import faults
 from contactlab.contracts.integrator import Integrator, Observer, Sample, TangentialMotion
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.contracts.motion import (
@@ -25,6 +30,8 @@ from contactlab.contracts.phases import (
     PhaseSample,
     PhaseState,
 )
+from contactlab.contracts.restitution import restitution
+from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import (
     AllStepsResponse,
     AllStepsTangentialLaw,
@@ -36,9 +43,24 @@ from contactlab.contracts.tangential import (
     WholeImpactTangentialLaw,
 )
 from contactlab.contracts.whole_impact import WholeImpact, no_force, sliding
+from contactlab.impact.bodies import Pair
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import (
+    NON_NEGATIVE,
+    POSITIVE,
+    Mask,
+    Real,
+    Rule,
+    choice,
+    count,
+    flag,
+    quantity,
+)
 
 __all__ = [
     "API_VERSION",
+    "NON_NEGATIVE",
+    "POSITIVE",
     "AllStepsResponse",
     "AllStepsTangentialLaw",
     "ClosedFormMotion",
@@ -50,18 +72,24 @@ __all__ = [
     "Law",
     "ManyImpacts",
     "ManyPhasedTangentialLaw",
+    "Mask",
     "NormalContact",
     "NormalLaw",
     "NormalMotion",
     "NormalSample",
     "Observer",
+    "Pair",
     "Phase",
     "PhaseResponse",
     "PhaseSample",
     "PhaseState",
     "PhasedTangentialLaw",
+    "Real",
+    "Rule",
     "Sample",
     "ScaledContact",
+    "Scene",
+    "Status",
     "SteppedTangentialLaw",
     "Steps",
     "TangentialLaw",
@@ -69,7 +97,13 @@ __all__ = [
     "TangentialResponse",
     "WholeImpact",
     "WholeImpactTangentialLaw",
+    "choice",
+    "count",
+    "faults",
+    "flag",
     "no_force",
+    "quantity",
+    "restitution",
     "sliding",
     "without_tension",
 ]

@@ -27,13 +27,18 @@ class Law(ABC):
        ``hertzian_pressure``     pressure is a hemisphere over that radius, eq. (3)
        ``elastic_hertz``         the normal motion is the elastic impact of eqs (2)-(7)
        ``partial_slip``          the contact slips from its edge inwards: at fixed normal
-                                 load its force is Cattaneo and Mindlin's
+                                 load its force is Cattaneo and Mindlin's; elastic impacts
+                                 end as the axisymmetric continuum's, the finer the closer
+       ``rigid``                 bodies do not deform tangentially: an impact slips until its
+                                 slip stops, if it does, and then rolls without a force
+       ``no_friction``           the law makes no force
        ========================  ====================================================
 
     4. ``resolution`` names the parameter that makes answers finer, if there is one: a count
        (``steps``, ``annuli``) that grows, or ``tolerance``, which shrinks.
     5. Words in the names of parameters; each is checked when the object is made and
-       refused with a ``ValueError`` that names it.
+       refused with a ``ValueError`` that names it. A ``quantity`` of a law is one number: it
+       refuses arrays (``plain_options``).
     6. ``expected_failures`` names the checks of ``contactlab.testing`` that the law fails by
        its nature, each with the reason: a class variable, or a property if it depends on the
        parameters.
@@ -45,6 +50,7 @@ class Law(ABC):
     needs: ClassVar[frozenset[str]] = frozenset()
     offers: ClassVar[frozenset[str]] = frozenset()
     resolution: ClassVar[str | None] = None
+    plain_options: ClassVar[bool] = True
 
     @property
     def expected_failures(self) -> Mapping[str, str]:

@@ -18,7 +18,13 @@ RESTITUTION = Rule(
 
 
 def restitution(*, default: Any) -> Any:
-    """Return an attrs field for a coefficient of normal restitution; optional if None."""
+    """Return an attrs field for a coefficient of normal restitution; optional if None.
+
+    Parameters
+    ----------
+    default : float or None
+        From 0.01 to 1.
+    """
     return quantity("1", rule=RESTITUTION, default=default)
 
 

@@ -181,7 +181,9 @@ class Pair:
     effective_modulus : float or array
         E* in Pa.
     effective_shear_modulus : float or array
-        G* in Pa.
+        G* in Pa, 1/G* = sum of (2-nu)/(4 G): four times the G* of discrete-element codes.
+        Those have 1/G* = sum of (2-nu)/G and the stiffness 8 G* a; here it is 2 G* a, which
+        ``tangential_stiffness`` returns.
     normal_mass : float or array
         M_n in kg, of the approach of the centres.
     tangential_mass : float or array
@@ -206,6 +208,20 @@ class Pair:
     def inertia_ratio(self) -> Real:
         """Chi = (kappa/2) M_n/M_t, eq. (38) generalised to unlike bodies."""
         return 0.5 * self.stiffness_ratio * (self.normal_mass / self.tangential_mass)
+
+    def tangential_stiffness(self, radius: Real) -> Real:
+        """Return Mindlin's stiffness without slip, 2 G* a, in N/m, shape of ``radius`` and pair.
+
+        Parameters
+        ----------
+        radius : float or array
+            Contact radius a in m, of a shape that broadcasts with the pair's numbers.
+
+        References
+        ----------
+        Mindlin, J. Appl. Mech. 16 (1949) 259-268.
+        """
+        return 2.0 * self.effective_shear_modulus * radius
 
     @classmethod
     def of(cls, sphere: Sphere, target: Sphere | HalfSpace) -> Pair:

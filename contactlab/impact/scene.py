@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -77,6 +78,9 @@ class Scene:
     )
     #: Batch shape: () for one impact.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
+    #: Place of each impact in the whole batch, whole numbers of the batch shape; 0 of one impact.
+    #: ``take``, blocks, chunks and workers keep it: a key for the random draws of a law.
+    index: Any = attrs.field(init=False, eq=False, repr=False)
 
     def __attrs_post_init__(self) -> None:
         if self.sphere is not None and self.target is not None:
@@ -99,6 +103,8 @@ class Scene:
             remedy="give numbers, or arrays of equal length",
         )
         object.__setattr__(self, "shape", shape)
+        places = batch.locked(np.arange(math.prod(shape)).reshape(shape)) if shape else 0
+        object.__setattr__(self, "index", places)
         real("tangential_velocity + spin * radius", self.slip_velocity)
         self._check_scales()
 
@@ -287,7 +293,8 @@ class Scene:
     def take(self, part: Any) -> Scene:
         """Return the scene of some of the impacts: a slice, mask or indices, or the index of one.
 
-        What all impacts share stays a plain number: laws are faster then.
+        What all impacts share stays a plain number: laws are faster then. Each impact keeps its
+        ``index`` in the whole batch.
 
         Parameters
         ----------
@@ -301,8 +308,30 @@ class Scene:
         object.__setattr__(taken, "shape", np.broadcast_shapes(*map(np.shape, numbers)))
         if taken.shape or isinstance(part, int | tuple):
             return taken
-        count = np.shape(np.broadcast_to(0.0, self.shape)[part])
-        return attrs.evolve(taken, normal_speed=np.full(count, taken.normal_speed))
+        count = np.shape(taken.index)
+        spread = attrs.evolve(taken, normal_speed=np.full(count, taken.normal_speed))
+        return spread.numbered(taken.index)
+
+    def numbered(self, index: Any) -> Scene:
+        """Return the scene with other places in the whole batch.
+
+        Parameters
+        ----------
+        index : int or array of int
+            Of the batch shape.
+
+        Raises
+        ------
+        ValueError
+            If the shape or the kind of the numbers is another one.
+        """
+        places = np.array(index)
+        if places.shape != self.shape or places.dtype.kind not in "iu":
+            rule = f"must be whole numbers of the shape {self.shape}"
+            raise refuse("index", index, rule, "such as scene.index of the whole batch")
+        found = copy.copy(self)
+        object.__setattr__(found, "index", batch.locked(places) if self.shape else int(places))
+        return found
 
     @property
     def slip_velocity(self) -> Real:

@@ -45,7 +45,15 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
 
 
 class Rule(NamedTuple):
-    """A condition on a number and the sentence that states it."""
+    """A condition on a number and the sentence that states it.
+
+    Attributes
+    ----------
+    holds : callable
+        Takes a number or an array; True where the condition holds.
+    sentence : str
+        What a refusal says: ``"must be positive"``.
+    """
 
     holds: Callable[[Any], Any]
     sentence: str
@@ -201,11 +209,16 @@ def unit_remedy(unit: str) -> str:
     return "it has no unit" if unit == "1" else f"give it in {unit}"
 
 
-def _checked(value: object, field: attrs.Attribute[Any]) -> Real | None:
+def _checked(value: object, owner: object, field: attrs.Attribute[Any]) -> Real | None:
+    """Return the checked value of a field; ``owner`` is the object that is being made."""
     if value is None and field.default is None:
         return None
     meta = field.metadata
-    return real(field.name, value, rule=meta["rule"], remedy=unit_remedy(meta["unit"]))
+    number = real(field.name, value, rule=meta["rule"], remedy=unit_remedy(meta["unit"]))
+    if isinstance(number, np.ndarray) and getattr(type(owner), "plain_options", False):
+        rule = "must be one number: an option of a law holds for every impact"
+        raise refuse(field.name, value, rule, "make a law for each value")
+    return number
 
 
 def key(value: Real | None) -> object:
@@ -221,7 +234,8 @@ def quantity(
 ) -> Any:
     """Return an attrs field for a checked real quantity with its unit in the metadata.
 
-    A default of None makes it optional: None may be given too.
+    A default of None makes it optional: None may be given too. A body or a scene takes an array,
+    one value for each impact; a law (``Law.plain_options``) refuses arrays.
 
     Parameters
     ----------
@@ -237,7 +251,7 @@ def quantity(
     return attrs.field(
         default=default,
         **keywords,
-        converter=attrs.Converter(_checked, takes_field=True),
+        converter=attrs.Converter(_checked, takes_self=True, takes_field=True),
         eq=key,
         metadata={"unit": unit, "rule": rule, "range": rule.sentence},
     )
@@ -266,7 +280,14 @@ def _option(checked: Callable[[str, object], Any], default: Any, **metadata: Any
 
 
 def choice(*words: str, default: str) -> Any:
-    """Return an attrs field for one of a few words."""
+    """Return an attrs field for one of a few words.
+
+    Parameters
+    ----------
+    *words : str
+    default : str
+        One of them.
+    """
     rule = f"must be one of {', '.join(map(repr, words))}"
 
     def checked(name: str, value: object) -> str:
@@ -278,7 +299,12 @@ def choice(*words: str, default: str) -> Any:
 
 
 def flag(*, default: bool) -> Any:
-    """Return an attrs field for True or False."""
+    """Return an attrs field for True or False.
+
+    Parameters
+    ----------
+    default : bool
+    """
     rule = "must be True or False"
 
     def checked(name: str, value: object) -> bool:
@@ -290,7 +316,14 @@ def flag(*, default: bool) -> Any:
 
 
 def count(*, default: Any = attrs.NOTHING, least: int = 1, most: int = 10_000_000) -> Any:
-    """Return an attrs field for a checked whole number."""
+    """Return an attrs field for a checked whole number.
+
+    Parameters
+    ----------
+    default : int, optional
+    least, most : int
+        The range, both ends in it.
+    """
 
     def checked(name: str, value: object) -> int:
         return whole(name, value, least=least, most=most)

@@ -19,7 +19,8 @@ from contactlab.outcome.motion import Motion
 #: that an explicit one takes leave e - 1 = 3e-3.
 LARGEST_RESTITUTION = 1.02
 #: Slip faster at the end than this many times the slip at the start is energy from nothing too:
-#: the capped spring of discrete-element codes, which makes some by its nature, stays below.
+#: the capped spring of discrete-element codes, which makes some by its nature, stays below it
+#: between elastic spheres, and passes it under strongly damped normal laws.
 LARGEST_SLIP = 1.1
 
 

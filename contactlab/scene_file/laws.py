@@ -8,7 +8,8 @@ from typing import Any
 import attrs
 
 from contactlab.compose import composition
-from contactlab.compose.registry import KINDS, REGISTRY
+from contactlab.compose.names import KINDS, full_name, kind_of, parted, short_name
+from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.scene_file.table import Table, flattened, nearest_of
 
@@ -22,8 +23,8 @@ class LawChoice:
     Attributes
     ----------
     normal, tangential, integrator : str or None
-        Names without their kind; None for the best that fits the others, the exact solution if
-        nothing else is asked for.
+        Names without their kind, such as ``"springs"`` or ``"my-laws:springs"``; None for the best
+        that fits the others, the exact solution if nothing else is asked for.
     options : mapping of str to mapping
         Options by kind, for the law chosen here (``{"tangential": {"annuli": 50}}``), or by
         full name, for that law whenever it is chosen (``{"tangential.annulus": ...}``).
@@ -40,7 +41,9 @@ class LawChoice:
         Options given for a kind are the old law's: they go where its law goes.
         """
         chosen = {
-            kind: name.removeprefix(f"{kind}.") for kind, name in names.items() if name is not None
+            kind: short_name(full_name(kind, name))
+            for kind, name in names.items()
+            if name is not None
         }
         changed = [kind for kind, name in chosen.items() if getattr(self, kind) not in (None, name)]
         kept = {key: value for key, value in self.options.items() if key not in changed}
@@ -51,8 +54,8 @@ class LawChoice:
         options = {key: dict(value) for key, value in self.options.items()}
         for path, value in settings.items():
             owner, _, option = path.rpartition(".")
-            if owner.partition(".")[0] not in KINDS or not option:
-                hint = nearest_of(owner.partition(".")[0], KINDS)
+            if kind_of(owner) not in KINDS or not option:
+                hint = nearest_of(kind_of(owner), KINDS)
                 raise ValueError(f"{path}: is not an option of a law; {OPTION_REMEDY}; {hint}")
             options.setdefault(owner, {})[option] = value
         return attrs.evolve(self, options=options)
@@ -76,9 +79,11 @@ class LawChoice:
         """Return the choice with every law named."""
         choice = attrs.evolve(self, normal=self.normal or composition.DEFAULT_NORMAL)
         made = [choice.made("normal")]
+        named = () if self.integrator is None else (choice.made("integrator"),)
         for kind in ("tangential", "integrator"):
             if getattr(choice, kind) is None:
-                choice = choice.choose(**{kind: composition.preferred(kind, *made)})
+                name = composition.preferred(kind, *made, after=named)
+                choice = choice.choose(**{kind: name})
             made.append(choice.made(kind))
         return choice
 
@@ -97,9 +102,19 @@ class LawChoice:
 
     def made(self, kind: str) -> Any:
         """Return the law of one kind with its options."""
-        name = f"{kind}.{getattr(self, kind)}"
-        options = {**self.options.get(kind, {}), **self.options.get(name, {})}
+        name = full_name(kind, getattr(self, kind))
+        options = dict(self.options.get(kind, {}))
+        for other, values in self.options.items():
+            if other not in KINDS and same_law(other, name):
+                options |= values
         return REGISTRY.create(name, **options)
+
+
+def same_law(one: str, other: str) -> bool:
+    """Return whether two full names mean one installed law: with and without its distribution."""
+    if one == other or parted(one)[1] != parted(other)[1]:
+        return one == other
+    return REGISTRY.info(one) == REGISTRY.info(other)
 
 
 def read_laws(content: object) -> LawChoice:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 import attrs
 
+from contactlab.compose.composition import DEFAULT_NORMAL
+from contactlab.compose.names import KINDS, full_name, kind_of, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.impact.bodies import HalfSpace, Material, Sphere
 from contactlab.impact.scene import Scene
+from contactlab.testing.bench import scene as ball
 
 #: psi1 and chi of the scenes: every regime of theory §2 short of slip throughout, which the
 #: plan answers in closed form whatever the law.
@@ -24,29 +28,29 @@ NONDIMENSIONAL = (
 #: Those that a quick benchmark takes.
 QUICK = ((0.5, 49 / 34), (1.2, 49 / 34), (3.0, 49 / 34), (1.2, 3.0))
 
-#: Ladders. A law's own resolution is the number of steps over ``STEPS_PER_PART``.
+#: Ladders. A law's own resolution is the number of steps over ``STEPS_PER_PART``, or over the
+#: proportion of the two defaults: ten for the paper's steps and annuli.
 STEPS = (25, 50, 100, 200, 400)
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
 QUICK_RESOLUTIONS = 3
 STEPS_PER_PART = 4
 #: Parts under a tolerance, however coarse.
 LEAST_PARTS = 10
-#: The paper's steps are paired with annuli as in its own proportion, ten to one.
-PAPER_STEPS_PER_PART = 10
 
 
 @attrs.frozen(kw_only=True)
 class Method:
-    """A tangential law under an integrator, with Hertz's normal law unless another is named.
+    """A tangential law under an integrator and a normal law.
 
     Attributes
     ----------
-    tangential, integrator : str
+    tangential, integrator, normal : str
         Names without the kind.
     """
 
     tangential: str
     integrator: str
+    normal: str = DEFAULT_NORMAL
 
     @property
     def whole(self) -> bool:
@@ -55,10 +59,9 @@ class Method:
 
     @property
     def name(self) -> str:
-        """``law / integrator``, or the law alone if it needs none."""
-        if self.whole:
-            return self.tangential
-        return f"{self.tangential} / {self.integrator}"
+        """``law / integrator``, or the law alone if it needs none; and a normal law if named."""
+        name = self.tangential if self.whole else f"{self.tangential} / {self.integrator}"
+        return name if self.normal == DEFAULT_NORMAL else f"{name}, {self.normal}"
 
     def resolutions(self, *, quick: bool = False) -> list[dict[str, dict[str, Any]]]:
         """Return options of the two laws, coarse to fine."""
@@ -69,7 +72,7 @@ class Method:
             values = TOLERANCES
         elif law or steps:
             values = STEPS
-        per_part = PAPER_STEPS_PER_PART if self.integrator == "paper" else STEPS_PER_PART
+        per_part = self._steps_per_part(law, steps)
         found: list[dict[str, dict[str, Any]]] = []
         for value in values:
             options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {}}
@@ -79,69 +82,128 @@ class Method:
                 count = value if isinstance(value, int) else round(value**-0.5)
                 least = 2 if isinstance(value, int) else LEAST_PARTS
                 options["tangential"][law] = max(count // per_part, least)
-            if _accepted(f"integrator.{self.integrator}", options["integrator"]):
+            if _accepted(full_name("integrator", self.integrator), options["integrator"]):
                 found.append(options)
         if not quick:
             return found
         # Of steps every other one; a tolerance of 1e-6 would take minutes with rings to match.
         return found[:: 1 if values is TOLERANCES else 2][:QUICK_RESOLUTIONS]
 
+    def _steps_per_part(self, part: str | None, steps: str | None) -> int:
+        """Return the default steps over the default parts; ``STEPS_PER_PART`` if not known."""
+        if part is None or steps is None:
+            return STEPS_PER_PART
+        many = inspect.signature(_law("integrator", self.integrator)).parameters[steps].default
+        few = inspect.signature(_law("tangential", self.tangential)).parameters[part].default
+        if isinstance(many, int) and isinstance(few, int):
+            return max(1, round(many / few))
+        return STEPS_PER_PART
+
     def simulation(
-        self, options: dict[str, dict[str, Any]], *, normal: str = "hertz"
+        self, options: dict[str, dict[str, Any]], *, normal: str | None = None
     ) -> Simulation:
-        """Return the composition at one resolution."""
+        """Return the composition at one resolution, under another normal law if one is given."""
         return Simulation(
-            normal=normal,
-            tangential=REGISTRY.create(f"tangential.{self.tangential}", **options["tangential"]),
-            integrator=REGISTRY.create(f"integrator.{self.integrator}", **options["integrator"]),
+            normal=normal or self.normal,
+            tangential=REGISTRY.create(
+                full_name("tangential", self.tangential), **options["tangential"]
+            ),
+            integrator=REGISTRY.create(
+                full_name("integrator", self.integrator), **options["integrator"]
+            ),
         )
 
 
-def scenes(*, quick: bool = False) -> list[Scene]:
-    """Return the fixed scenes: the paper's two parameters, and one in SI with spin."""
+def scenes(*, quick: bool = False, sized: bool = False) -> list[Scene]:
+    """Return the fixed scenes: the paper's two parameters, and one in SI with spin.
+
+    Parameters
+    ----------
+    quick : bool
+        Fewer of them.
+    sized : bool
+        All in SI, of a ball like one of steel: for normal laws with options in SI.
+    """
     pairs = QUICK if quick else NONDIMENSIONAL
-    found = [Scene.nondimensional(psi1=psi1, chi=chi) for psi1, chi in pairs]
+    if sized:
+        found = [ball(psi1, chi) for psi1, chi in pairs]
+    else:
+        found = [Scene.nondimensional(psi1=psi1, chi=chi) for psi1, chi in pairs]
     steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
     return [*found, Scene(Sphere(6.35e-3, steel), HalfSpace(steel), 0.15, 1.93, 0.9, -40.0)]
 
 
 def methods(laws: Iterable[str] | None = None) -> list[Method]:
-    """Return every installed composition that fits, or those of the tangential laws named.
+    """Return every installed composition that fits, or those of the laws named.
 
     Laws that make no force are left out, broken plug-ins too unless asked for by name.
+
+    Parameters
+    ----------
+    laws : iterable of str, optional
+        Names of any kind, ``"integrator.mine"``; without a kind, tangential laws. Of the kinds
+        that are not named all are taken, and the default normal law.
 
     Raises
     ------
     ValueError
-        If a law named is not installed, or fits no integrator.
+        If a law named is not installed, or fits no other.
     """
-    named = None if laws is None else [_short(law) for law in laws]
-    found = []
-    for tangential in named or [_short(name) for name in REGISTRY.names("tangential")]:
-        try:
-            if named is None and _makes_no_force(tangential):
-                continue
-            integrators = [_short(name) for name in REGISTRY.names("integrator")]
-            fitting = [
-                Method(tangential=tangential, integrator=integrator)
-                for integrator in integrators
-                if _fits(tangential, integrator)
-            ]
-            if issubclass(_law("tangential", tangential), WholeImpactTangentialLaw):
-                fitting = fitting[:1]  # no integrator is asked
-        except PluginError:
-            if named is not None:
-                raise
-            continue
-        if named is not None and not fitting:
-            raise ValueError(f"--law {tangential}: fits no installed integrator under normal.hertz")
-        found += fitting
+    named: dict[str, list[str]] = {kind: [] for kind in KINDS}
+    for law in laws or ():
+        kind = kind_of(law) if kind_of(law) in KINDS else "tangential"
+        named[kind].append(short_name(full_name(kind, law)))
+        _law(kind, named[kind][-1])  # refused here if it is not installed
+    found: list[Method] = []
+    for normal in named["normal"] or [DEFAULT_NORMAL]:
+        for tangential in named["tangential"] or _installed("tangential"):
+            fitting = _fitting(normal, tangential, named)
+            if not fitting and named["tangential"]:
+                asked = ", ".join(named["integrator"])
+                beside = f"does not fit {asked}" if asked else "fits no installed integrator"
+                under = full_name("normal", normal)
+                raise ValueError(f"--law {tangential}: {beside} under {under}")
+            found += fitting
+    if laws is not None and not found:
+        told = ", ".join(name for names in named.values() for name in names)
+        raise ValueError(f"--law {told}: no installed tangential law fits")
     return found
 
 
-def _fits(tangential: str, integrator: str) -> bool:
+def _fitting(normal: str, tangential: str, named: dict[str, list[str]]) -> list[Method]:
+    """Return the methods of one normal and one tangential law.
+
+    Parameters
+    ----------
+    normal, tangential : str
+    named : mapping of str to list of str
+        The laws asked for, by kind. A plug-in that is broken is left out unless it is one.
+    """
     try:
-        Simulation(normal="hertz", tangential=tangential, integrator=integrator)
+        whole = issubclass(_law("tangential", tangential), WholeImpactTangentialLaw)
+        if not named["tangential"] and (
+            _makes_no_force(tangential) or (whole and named["integrator"])
+        ):
+            return []
+        found = [
+            Method(tangential=tangential, integrator=integrator, normal=normal)
+            for integrator in named["integrator"] or _installed("integrator")
+            if _fits(normal, tangential, integrator)
+        ]
+        return found[:1] if whole else found  # no integrator is asked
+    except PluginError:
+        if any(named.values()):
+            raise
+        return []
+
+
+def _installed(kind: str) -> list[str]:
+    return [short_name(name) for name in REGISTRY.names(kind)]
+
+
+def _fits(normal: str, tangential: str, integrator: str) -> bool:
+    try:
+        Simulation(normal=normal, tangential=tangential, integrator=integrator)
     except (ValueError, TypeError):
         return False
     return True
@@ -168,8 +230,4 @@ def _accepted(name: str, options: dict[str, Any]) -> bool:
 
 
 def _law(kind: str, name: str) -> Any:
-    return REGISTRY.law_class(f"{kind}.{name}")
-
-
-def _short(name: str) -> str:
-    return name.partition(".")[2] or name
+    return REGISTRY.law_class(full_name(kind, name))

@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 
 from contactlab.compose.composition import DEFAULT_NORMAL
+from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.scene_file import SceneFile, read_scene
@@ -157,12 +158,12 @@ def simulations_over(
     left_out: dict[str, str] = {}
     for normal, options in normals.items():
         for full in REGISTRY.names("tangential"):
-            name = full.partition(".")[2]
+            name = short_name(full)
             if normal != DEFAULT_NORMAL:
                 told = ", ".join(f"{key}={value}" for key, value in options.items())
                 name += f", {normal} {told}".rstrip()
             try:
-                pressing = REGISTRY.create(f"normal.{normal}", **options)
+                pressing = REGISTRY.create(full_name("normal", normal), **options)
                 found[name] = Simulation(normal=pressing, tangential=full)
             except (ValueError, PluginError) as error:
                 left_out[name] = str(error)

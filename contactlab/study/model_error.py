@@ -12,12 +12,13 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.compose.names import full_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import TangentialLaw, WholeImpactTangentialLaw
 from contactlab.contracts.error_model import range_of
 from contactlab.impact.scene import Scene
-from contactlab.study.stability_references import CONTINUUM, continuum, reference_for
+from contactlab.study.stability_references import continuum, converges, reference_for
 
 Array = NDArray[np.float64]
 
@@ -51,25 +52,18 @@ def model_error(law: str, chis: Sequence[float], incidences: Sequence[float]) ->
     chis, incidences : sequence of float
         chi, and the psi1 of which the worst is taken at each.
     """
-    if law in CONTINUUM:
+    tangential = REGISTRY.create(full_name("tangential", law))
+    if converges(tangential):
         return None
-    tangential = REGISTRY.create(f"tangential.{law}")
-    off = [[_off(law, tangential, psi1, chi) for psi1 in incidences] for chi in chis]
+    off = [[_off(tangential, psi1, chi) for psi1 in incidences] for chi in chis]
     return ModelError(law=law, chis=tuple(chis), error=np.fmax.reduce(off, axis=1))
 
 
-def _off(name: str, law: TangentialLaw, psi1: float, chi: float) -> float:
-    """Return the model error of one impact, over the range of psi2; NaN if it is not known.
-
-    Parameters
-    ----------
-    name : str
-    law : TangentialLaw
-        The law of that name.
-    psi1, chi : float
-    """
+def _off(law: TangentialLaw, psi1: float, chi: float) -> float:
+    """Return the model error of one impact, over the range of psi2; NaN if it is not known."""
     scene = Scene.nondimensional(psi1=psi1, chi=chi)
-    exact, own = continuum(scene, law), reference_for(name)(scene, law)
+    normal = Simulation(tangential=law).normal
+    exact, own = continuum(scene, law), reference_for(law, normal)(scene, law)
     if own is None and isinstance(law, WholeImpactTangentialLaw):
         result = Simulation(tangential=law).run(scene)
         own = float(result.motion.slip_velocity_change) if result.status else None

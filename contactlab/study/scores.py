@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 
 from contactlab.compose import composition
+from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import SteppedTangentialLaw, TangentialLaw, WholeImpactTangentialLaw
@@ -68,12 +69,12 @@ def candidates(laws: LawChoice) -> Candidates:
     """
     normal = laws.resolved().made("normal")
     first = composition.preferred("tangential", normal)
-    names = [name.partition(".")[2] for name in REGISTRY.names("tangential")]
+    names = [short_name(name) for name in REGISTRY.names("tangential")]
     simulations: dict[str, Simulation] = {}
     left_out: dict[str, str] = {}
     for name in [first, *(other for other in names if other != first)]:
         try:
-            law = REGISTRY.create(f"tangential.{name}")
+            law = REGISTRY.create(full_name("tangential", name))
         except (PluginError, ValueError) as error:
             left_out[name] = str(error)
             continue

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 import attrs
 import numpy as np
 
+from contactlab.compose.composition import DEFAULT_NORMAL
 from contactlab.contracts.error_model import COARSE
 from contactlab.study.bench_methods import Method
 from contactlab.study.model_error import ModelError, model_error
@@ -107,7 +108,8 @@ def stability(
     started = time.perf_counter()
     listed = [list(cases(method, quick=quick)) for method in methods]
     cells = [region_cells(method, quick=quick) for method in methods]
-    laws = list(dict.fromkeys(method.tangential for method in methods))
+    elastic = [method for method in methods if method.normal == DEFAULT_NORMAL]
+    laws = list(dict.fromkeys(method.tangential for method in elastic))
     total = sum(map(len, listed)) + sum(map(len, cells)) + len(laws)
     outcomes: list[Outcome] = []
     regions: list[Region] = []

@@ -7,7 +7,8 @@ from typing import Any
 
 import attrs
 
-from contactlab.compose.composition import misfit
+from contactlab.compose.composition import DEFAULT_NORMAL, misfit
+from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.impact.scene import Scene
 from contactlab.study.bench_methods import Method
@@ -23,9 +24,6 @@ LADDER = ((0.3, 0.3), (0.5, CHI), (1.2, CHI), (3.0, CHI), (1.2, 30.0), (0.3, 1e3
 QUICK_LADDER = ((1.2, CHI), (1.2, 30.0))
 #: Steps over sqrt(chi) at the stability limit, and how many times that follow a large chi.
 LIMIT, ABOVE_LIMIT = 2.85, 8
-
-#: The normal law under which most is tried, and the only one with an exact solution.
-HERTZ = "hertz"
 
 Options = dict[str, dict[str, Any]]
 
@@ -48,13 +46,19 @@ class Case:
     options: Options
     scene: Extreme = attrs.field(repr=False)
     planned: bool = True
-    normal: str = HERTZ
+    normal: str = DEFAULT_NORMAL
 
 
 def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
-    """Iterate over the cases of a method, under Hertz's law and then under the others."""
-    law = REGISTRY.law_class(f"tangential.{method.tangential}")
-    integrator = REGISTRY.law_class(f"integrator.{method.integrator}")
+    """Iterate over the cases of a method, under its normal law and then under the others.
+
+    Of a method whose normal law is not the default, only what is tried under every normal law.
+    """
+    if method.normal != DEFAULT_NORMAL:
+        yield from _under(method, method.normal, quick=quick)
+        return
+    law = REGISTRY.law_class(full_name("tangential", method.tangential))
+    integrator = REGISTRY.law_class(full_name("integrator", method.integrator))
     for scene in extreme_scenes(quick=quick):
         yield _case(method, scene, {})
         if method.whole:
@@ -65,22 +69,27 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
             steps = int(ABOVE_LIMIT * LIMIT * float(scene.make().chi) ** 0.5) + 8
             yield _case(method, scene, {"integrator": {"steps": steps}})
     for normal in other_normal_laws(method):
-        for scene in normal_scenes(quick=quick):
-            case = _case(method, scene, {})
-            yield attrs.evolve(case, normal=normal, label=f"{normal}: {case.label}")
+        yield from _under(method, normal, quick=quick)
     if method.whole:
         return
     for psi1, chi in QUICK_LADDER if quick else LADDER:
         yield from _ladder(method, law.resolution, integrator.resolution, psi1, chi, quick=quick)
 
 
+def _under(method: Method, normal: str, *, quick: bool) -> Iterator[Case]:
+    """Iterate over the cases that are tried under every normal law."""
+    for scene in normal_scenes(quick=quick):
+        case = _case(method, scene, {})
+        yield attrs.evolve(case, normal=normal, label=f"{normal}: {case.label}")
+
+
 def other_normal_laws(method: Method) -> Iterator[str]:
-    """Iterate over the installed normal laws but Hertz's that fit a method."""
-    tangential = REGISTRY.create(f"tangential.{method.tangential}")
-    integrator = REGISTRY.create(f"integrator.{method.integrator}")
+    """Iterate over the installed normal laws, but the default, that fit a method."""
+    tangential = REGISTRY.create(full_name("tangential", method.tangential))
+    integrator = REGISTRY.create(full_name("integrator", method.integrator))
     for name in REGISTRY.names("normal"):
-        short = name.partition(".")[2]
-        if short == HERTZ:
+        short = short_name(name)
+        if short == DEFAULT_NORMAL:
             continue
         try:
             normal = REGISTRY.create(name)
@@ -129,7 +138,7 @@ def _ladder(
 
 
 def _class(method: Method) -> Any:
-    return REGISTRY.law_class(f"integrator.{method.integrator}")
+    return REGISTRY.law_class(full_name("integrator", method.integrator))
 
 
 def _case(method: Method, scene: Extreme, options: Options, *, planned: bool = True) -> Case:

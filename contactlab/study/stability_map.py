@@ -10,12 +10,14 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.compose.composition import DEFAULT_NORMAL
+from contactlab.compose.names import full_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.impact.scene import Scene
 from contactlab.study.bench_methods import Method
 from contactlab.study.stability_cases import Case
 from contactlab.study.stability_outcome import ANSWERED, RAISED, WRONG, Outcome, judge
-from contactlab.study.stability_references import CONTINUUM
+from contactlab.study.stability_references import converges
 from contactlab.study.stability_scenes import Extreme
 
 Array = NDArray[np.float64]
@@ -78,7 +80,7 @@ class Region:
 def region_cells(method: Method, *, quick: bool = False) -> list[tuple[float, float]]:
     """Return (resolution, chi) of every cell; none for a method without steps or tolerance."""
     word = _word(method)
-    if word is None:
+    if word is None or method.normal != DEFAULT_NORMAL:  # the map is judged by exact answers
         return []
     if word == "steps":
         resolutions: tuple[float, ...] = QUICK_STEPS if quick else STEPS
@@ -141,7 +143,7 @@ def region(
         error=error,
         state=state,
         tried=tried,
-        converges=method.tangential in CONTINUUM,
+        converges=converges(REGISTRY.law_class(full_name("tangential", method.tangential))),
         failures=tuple(failures),
         complete=complete,
     )
@@ -150,7 +152,7 @@ def region(
 def _word(method: Method) -> str | None:
     if method.whole:
         return None
-    found: str | None = REGISTRY.law_class(f"integrator.{method.integrator}").resolution
+    found: str | None = REGISTRY.law_class(full_name("integrator", method.integrator)).resolution
     return found
 
 
@@ -167,7 +169,7 @@ def _case(method: Method, word: str, fine: float, psi1: float, chi: float) -> Ca
     psi1, chi : float
     """
     options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {word: fine}}
-    if hasattr(REGISTRY.law_class(f"integrator.{method.integrator}"), "refine"):
+    if hasattr(REGISTRY.law_class(full_name("integrator", method.integrator)), "refine"):
         options["integrator"]["refine"] = False  # what the steps asked for are worth
     scene = Extreme("map", "", lambda: Scene.nondimensional(psi1=psi1, chi=chi))
     return Case(

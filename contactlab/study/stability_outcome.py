@@ -19,7 +19,7 @@ from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.result import ImpactResult
 from contactlab.study.stability_bounds import LARGEST_NORMAL, broken_invariants
-from contactlab.study.stability_cases import HERTZ, Case
+from contactlab.study.stability_cases import Case
 from contactlab.study.stability_references import (
     SETTLED,
     Reference,
@@ -70,8 +70,8 @@ def judge(case: Case) -> Outcome:
         simulation = case.method.simulation(case.options, normal=case.normal)
     except (ValueError, PluginError) as error:
         return _outcome(case, REFUSED, note=f"bad input: {error}")
-    normal = None if case.normal == HERTZ else simulation.normal
-    return judge_run(case, simulation, scene, reference_for(case.method.tangential, normal))
+    reference = reference_for(simulation.tangential, simulation.normal)
+    return judge_run(case, simulation, scene, reference)
 
 
 def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Reference) -> Outcome:
@@ -151,10 +151,10 @@ def _judged(
     declared = float(result.plan.psi2_error) * unit
     bound = min(declared / width + ROUNDING, LARGEST_SHARE) if width > 0.0 else ROUNDING
     held = True
+    elastic = "elastic_hertz" in simulation.normal.offers
     if np.isnan(bound):  # nothing is declared: under Hertz's law only the invariants are held
         bound = UNDECLARED
-        held = case.normal != HERTZ
-    elastic = "elastic_hertz" in simulation.normal.offers
+        held = not elastic
     passive = "books" not in simulation.tangential.expected_failures
     books = simulation.tangential.books_bound
     wrong = broken_invariants(
@@ -168,7 +168,7 @@ def _judged(
     if expected is not None:
         away = abs(float(result.motion.slip_velocity_change) - expected)
         error = away / width if width > 0.0 else (0.0 if away == 0.0 else np.inf)
-        if case.normal != HERTZ and error > UNDECLARED and np.isnan(declared):
+        if not elastic and error > UNDECLARED and np.isnan(declared):
             told = float(np.asarray(estimated(simulation, result))) * unit / width
             bound = min(max(bound, ESTIMATED * told), LARGEST_SHARE)
         if held and not error <= bound + known_to:

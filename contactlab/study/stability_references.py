@@ -13,16 +13,18 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.compose.composition import PREFERRED, exact, fixed_steps, misfit
+from contactlab.compose.hookspecs import PROJECT
+from contactlab.compose.names import full_name, kind_of
 from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.registry import REGISTRY
+from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
-from contactlab.contracts import NormalLaw, SteppedTangentialLaw, TangentialLaw
+from contactlab.contracts import Law, NormalLaw, SteppedTangentialLaw, TangentialLaw
 from contactlab.contracts.error_model import range_of
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
 
-#: Laws that converge to the axisymmetric continuum as their resolution grows.
-CONTINUUM = frozenset({"annulus", "fronts", "springs", "sharp_annulus", "tabulated"})
+KIND = "tangential"
 #: Closer than the default, so that the default can be judged.
 REFERENCE_TOLERANCES = (1e-11, 1e-9)
 #: Steps that a law's own reference begins with: this many times the stability limit, and no
@@ -40,19 +42,26 @@ AGREED = 3e-3
 Reference = Callable[[Scene, TangentialLaw], float | None]
 
 
-def reference_for(name: str, normal: NormalLaw | None = None) -> Reference:
-    """Return how answers of the tangential law called ``name`` are judged.
+def converges(law: Law | type[Law]) -> bool:
+    """Return whether a law converges to the axisymmetric continuum, by what it claims."""
+    return "partial_slip" in law.offers
 
-    Under a ``normal`` law that is not Hertz's there is no exact solution: laws that converge to
-    the continuum are judged by another of them, a rigid body by the impulse of the load.
+
+def reference_for(law: TangentialLaw, normal: NormalLaw) -> Reference:
+    """Return how answers of a tangential law under a normal law are judged.
+
+    Under a normal law that is not elastic Hertz contact there is no exact solution: laws that
+    converge to the continuum are judged by another of them, a rigid body by the impulse of the
+    load.
     """
-    if normal is not None:
-        if name in CONTINUUM:
-            return _another(normal, "springs" if name == "sharp_annulus" else "sharp_annulus")
-        return {"coulomb": _rigid_under(normal), "frictionless": none}.get(name, nothing)
-    if name in CONTINUUM:
-        return continuum
-    return {"coulomb": rigid, "frictionless": none}.get(name, itself)
+    elastic = "elastic_hertz" in normal.offers
+    if "no_friction" in law.offers:
+        return none
+    if "rigid" in law.offers:
+        return rigid if elastic else _rigid_under(normal)
+    if converges(law):
+        return continuum if elastic else _another(normal, type(law))
+    return itself if elastic else nothing
 
 
 def none(scene: Scene, law: TangentialLaw) -> float:  # noqa: ARG001
@@ -64,19 +73,39 @@ def nothing(scene: Scene, law: TangentialLaw) -> None:
     """Return that there is nothing to judge by."""
 
 
-def _another(normal: NormalLaw, name: str) -> Reference:
-    return lambda scene, _: _fine_under(scene, normal, name)
+def _another(normal: NormalLaw, judged: type[TangentialLaw]) -> Reference:
+    name = another_of_the_continuum(normal, judged)
+    return nothing if name is None else lambda scene, _: fine_under(scene, normal, name)
+
+
+def another_of_the_continuum(normal: NormalLaw, judged: type[TangentialLaw]) -> str | None:
+    """Return a stepped law of the continuum that fits ``normal`` and is another than ``judged``.
+
+    It needs nothing of the normal contact but its radius. The defaults come first, then the other
+    laws of contactlab by name; None if there is none.
+    """
+    ours = [info.name for info in REGISTRY.installed() if info.distribution == PROJECT]
+    for name in (*PREFERRED["tangential"], *(name for name in ours if kind_of(name) == KIND)):
+        try:
+            found = REGISTRY.create(full_name(KIND, name))
+        except (ValueError, PluginError):  # blocked, broken, or it needs options
+            continue
+        refines = isinstance(found, SteppedTangentialLaw) and found.resolution is not None
+        suits = converges(found) and found.needs <= {"radius"} and misfit(normal, found) is None
+        if refines and suits and type(found) is not judged:
+            return name
+    return None
 
 
 @lru_cache(maxsize=4096)
-def _fine_under(scene: Scene, normal: NormalLaw, name: str) -> float | None:
+def fine_under(scene: Scene, normal: NormalLaw, name: str) -> float | None:
     """Return the change under ``normal`` by a fine law of the continuum; None if none settles."""
-    law: Any = REGISTRY.law_class(f"tangential.{name}")
+    law: Any = REGISTRY.law_class(full_name("tangential", name))
     width = range_of(scene).width
     before = np.inf
     for parts in FINE_PARTS * 2 ** np.arange(DOUBLINGS + 1):
         fine = law(**{law.resolution: int(parts)})
-        march = REGISTRY.create("integrator.symplectic", steps=STEPS_A_PART * int(parts))
+        march = fixed_steps(STEPS_A_PART * int(parts))
         result = Simulation(normal=normal, tangential=fine, integrator=march).run(scene)
         if not result.status:
             return None
@@ -124,9 +153,7 @@ def continuum(scene: Scene, law: TangentialLaw) -> float | None:  # noqa: ARG001
 @lru_cache(maxsize=4096)
 def _exact(scene: Scene) -> float | None:
     for tolerance in REFERENCE_TOLERANCES:
-        result = Simulation(
-            integrator=REGISTRY.create("integrator.events", tolerance=tolerance)
-        ).run(scene)
+        result = Simulation(**exact(tolerance)).run(scene)
         if result.status:
             return float(result.motion.slip_velocity_change)
     return None
@@ -140,7 +167,7 @@ def itself(scene: Scene, law: TangentialLaw) -> float | None:
 @lru_cache(maxsize=4096)
 def _fine(scene: Scene, law: SteppedTangentialLaw) -> float | None:
     """Return the extrapolated limit of second order, or None if it is not reached."""
-    coarse: Any = Simulation(tangential=law, integrator="symplectic")
+    coarse = Simulation(tangential=law, integrator=fixed_steps(FEWEST))
     normal = coarse.normal_motion(scene)
     frequency = np.sqrt(law.stiffness(scene, normal) / scene.pair.tangential_mass)
     steps = max(FINE * (int(0.5 * frequency * normal.duration) + 1), FEWEST)
@@ -148,9 +175,7 @@ def _fine(scene: Scene, law: SteppedTangentialLaw) -> float | None:
     answers: list[float] = []
     limits: list[float] = []
     while steps <= MOST:
-        fine = Simulation(
-            tangential=law, integrator=REGISTRY.create("integrator.symplectic", steps=steps)
-        ).run(scene)
+        fine = Simulation(tangential=law, integrator=fixed_steps(steps)).run(scene)
         if not fine.status:
             return None
         answers.append(float(fine.motion.slip_velocity_change))

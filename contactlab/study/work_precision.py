@@ -9,24 +9,25 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.registry import REGISTRY
+from contactlab.compose import composition
 from contactlab.compose.simulation import Simulation
+from contactlab.contracts import TangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.outcome.result import ImpactResult
 from contactlab.study.bench_methods import Method, scenes
 from contactlab.study.interrupts import uninterrupted
+from contactlab.study.stability_references import another_of_the_continuum, fine_under
 
 Array = NDArray[np.float64]
 
-#: The composition that gives the exact answers, and how exact: so that at its default
-#: tolerance it is measured too.
-EXACT, EXACT_TOLERANCE = ("fronts", "events"), 1e-12
+#: Of the exact answers: so that their laws at the default tolerance are measured too.
+EXACT_TOLERANCE = 1e-12
 #: Repeats of a timed run; fewer once ``LONG`` seconds have gone into a method's resolution.
 REPEATS, LONG = 5, 1.0
 #: Impacts in the sweep whose cost per impact is timed, where a sweep is expected to take
@@ -149,8 +150,7 @@ def bench(
     Benchmark
         Interrupting (Ctrl-C) keeps the resolutions that are done.
     """
-    given = scenes(quick=quick)
-    exact = [_exact(scene) for scene in given]
+    truths = {normal: _truths(normal, quick=quick) for normal in {each.normal for each in methods}}
     resolutions = [
         (method, resolution) for method in methods for resolution in method.resolutions(quick=quick)
     ]
@@ -164,7 +164,7 @@ def bench(
             rows.append(
                 _left_out(method, resolution)
                 if method.name in slow
-                else _row(method, resolution, given, exact)
+                else _row(method, resolution, truths[method.normal])
             )
             if rows[-1].time_s > limit:
                 slow.add(method.name)
@@ -184,18 +184,33 @@ def bench(
     )
 
 
-def _exact(scene: Scene) -> ImpactResult:
-    integrator = REGISTRY.create(f"integrator.{EXACT[1]}", tolerance=EXACT_TOLERANCE)
-    sim = Simulation(normal="hertz", tangential=EXACT[0], integrator=integrator)
-    return sim.run(scene, history=True).check()
+class Truth(NamedTuple):
+    """A scene, its true change of psi (NaN if unknown), and the result with history if exact."""
+
+    scene: Scene
+    psi_change: float
+    result: ImpactResult | None
 
 
-def _row(
-    method: Method,
-    resolution: dict[str, dict[str, Any]],
-    given: list[Scene],
-    exact: list[ImpactResult],
-) -> Row:
+def _truths(normal: str, *, quick: bool) -> list[Truth]:
+    """Return scenes and true answers: exact, or by a fine law of the continuum under ``normal``."""
+    law = composition.law("normal", normal)
+    found = []
+    elastic = "elastic_hertz" in law.offers
+    name = None if elastic else another_of_the_continuum(law, TangentialLaw)
+    for scene in scenes(quick=quick, sized=normal != composition.DEFAULT_NORMAL):
+        if elastic:
+            exact = Simulation(normal=law, **composition.exact(EXACT_TOLERANCE))
+            result = exact.run(scene, history=True).check()
+            found.append(Truth(scene, float(np.asarray(result.psi_change)), result))
+            continue
+        change = None if name is None else fine_under(scene, law, name)
+        known = np.nan if change is None else float(np.asarray(scene.psi(change)))
+        found.append(Truth(scene, known, None))
+    return found
+
+
+def _row(method: Method, resolution: dict[str, dict[str, Any]], truths: list[Truth]) -> Row:
     """Return error and cost of a method at one resolution.
 
     Parameters
@@ -203,19 +218,18 @@ def _row(
     method : Method
     resolution : mapping of str to mapping
         Options of tangential law and integrator, by kind: one resolution.
-    given : list of Scene
-    exact : list of ImpactResult
-        Of the same scenes, with history.
+    truths : list of Truth
     """
     simulation = method.simulation(resolution)
+    given = [truth.scene for truth in truths]
     results = [simulation.run(scene, history=True) for scene in given]
     failed = [result for result in results if not result.status]
     good = not failed
     errors: Any = np.array(
-        [result.psi_change - true.psi_change for result, true in zip(results, exact, strict=True)]
+        [result.psi_change - true.psi_change for result, true in zip(results, truths, strict=True)]
     )
     forces = (
-        [_force_error(result, true) for result, true in zip(results, exact, strict=True)]
+        [_force_error(result, true.result) for result, true in zip(results, truths, strict=True)]
         if good
         else [np.nan]
     )
@@ -254,8 +268,10 @@ def _words(resolution: dict[str, dict[str, Any]]) -> str:
     return ", ".join(f"{key}={value:g}" for key, value in options.items())
 
 
-def _force_error(result: ImpactResult, exact: ImpactResult) -> float:
-    """Return the rms over the contact of the force's error, over mu P_max."""
+def _force_error(result: ImpactResult, exact: ImpactResult | None) -> float:
+    """Return the rms over the contact of the force's error, over mu P_max; NaN if not known."""
+    if exact is None:
+        return np.nan
     history, true = result.history, exact.history
     assert history is not None
     assert true is not None

@@ -137,7 +137,7 @@ class Yielding(SteppedTangentialLaw):
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a."""
-        return 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
+        return scene.pair.tangential_stiffness(normal.maximum_radius)
 
     def start(self, scene: Scene, normal: NormalMotion) -> Yield:
         """Return the spring at rest."""

@@ -77,6 +77,7 @@ class SpoiledSprings(Spoiled):
     """The same of the springs, which run under any normal law with a radius."""
 
     needs: ClassVar[frozenset] = frozenset({"radius"})
+    offers: ClassVar[frozenset] = frozenset({"partial_slip"})  # by what it claims it is judged
 
     @property
     def law(self):
@@ -172,7 +173,7 @@ def test_laws_under_other_normal_laws_are_judged_by_another_law(normal, factor):
     pressing = contactlab.create(f"normal.{normal}")
     spoiled = SpoiledSprings(factor=factor)
     simulation = Simulation(normal=pressing, tangential=spoiled, integrator="symplectic")
-    outcome = judge_run(case, simulation, scene.make(), reference_for("springs", pressing))
+    outcome = judge_run(case, simulation, scene.make(), reference_for(spoiled, pressing))
     assert outcome.outcome == (ANSWERED if factor == 1.0 else WRONG)
     assert np.isfinite(outcome.error)
 
@@ -323,5 +324,6 @@ def test_references_under_another_normal_law_agree_where_inertia_is_heavy(normal
     """Springs and sharp annuli, neither of which knows the other, settle on one answer."""
     scene = Scene.nondimensional(psi1=0.3, chi=1e3)
     law = contactlab.create(f"normal.{normal}")
-    found = [reference_for(name, law)(scene, None) for name in ("springs", "sharp_annulus")]
+    laws = [contactlab.create(f"tangential.{name}") for name in ("springs", "sharp_annulus")]
+    found = [reference_for(one, law)(scene, None) for one in laws]
     assert found[0] == pytest.approx(found[1], abs=0.004 * 0.6)

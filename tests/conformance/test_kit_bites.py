@@ -12,6 +12,7 @@ from tests.conformance import broken_impacts as impacts
 from tests.conformance import broken_integrators as integrators
 from tests.conformance import broken_laws as laws
 from tests.conformance import broken_normal as normal
+from tests.conformance import broken_rigid as rigid
 from tests.conformance import fresh_faults
 
 pytestmark = pytest.mark.slow
@@ -27,6 +28,7 @@ BROKEN = [
     *integrators.BROKEN,
     *clauses.BROKEN,
     *fresh_faults.FAULTS,
+    *rigid.BROKEN,
 ]
 
 

@@ -6,7 +6,9 @@ import pickle
 import numpy as np
 import pytest
 
+import contactlab
 from contactlab import HalfSpace, Material, Pair, Scene, Sphere
+from contactlab.testing.bench import Bench, drive, straight
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 
@@ -48,6 +50,32 @@ def test_unlike_bodies_add_their_compliances():
     shear = (2 - 0.23) * 1.23 / (2 * 380e9) + (2 - 0.25) * 1.25 / (2 * 70e9)
     assert pair.effective_modulus == pytest.approx(1 / normal, rel=1e-14)
     assert pair.effective_shear_modulus == pytest.approx(1 / shear, rel=1e-14)
+
+
+def test_tangential_stiffness_is_mindlins_8_g_a_of_discrete_element_codes():
+    """k = 8 a / sum((2 - nu)/G), Mindlin (1949), by the moduli of the materials alone."""
+    ball = Material(young_modulus=380e9, poisson_ratio=0.23, density=4000.0)
+    glass = Material(young_modulus=70e9, poisson_ratio=0.25, density=2500.0)
+    pair = Pair.of(Sphere(2.5e-3, ball), HalfSpace(glass))
+    of_codes = 1 / ((2 - 0.23) / (380e9 / 2.46) + (2 - 0.25) / (70e9 / 2.5))
+    radii = np.array([1e-5, 3e-5, 1e-4])
+    np.testing.assert_allclose(pair.tangential_stiffness(radii), 8 * of_codes * radii, rtol=1e-14)
+    assert pair.tangential_stiffness(1e-4) == pytest.approx(8 * of_codes * 1e-4, rel=1e-14)
+    assert pair.effective_shear_modulus == pytest.approx(4 * of_codes, rel=1e-14)
+    batch = Pair.of(Sphere(np.array([1e-3, 2e-3, 4e-3]), ball), HalfSpace(glass))
+    assert batch.tangential_stiffness(radii).shape == (3,)
+    assert np.isnan(pair.tangential_stiffness(math.nan))
+
+
+def test_tangential_stiffness_is_the_slope_of_the_annulus_methods_first_force():
+    """The kernel of eqs (13), (14) knows nothing of the formula; the load is held."""
+    bench = Bench.of()
+    law = contactlab.create("tangential.annulus", annuli=200)
+    slip = 1e-3
+    force = drive(law, bench, straight((0.0, 1.0), (slip, 1.0))).force[-1]
+    slope = force * bench.friction_force / (slip * bench.slip)
+    pair = bench.scene.pair
+    assert slope == pytest.approx(pair.tangential_stiffness(bench.radius), rel=0.01)
 
 
 @pytest.mark.parametrize(

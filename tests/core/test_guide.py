@@ -28,7 +28,7 @@ BLOCKS = re.compile(r"```python\n(.*?)```\n(?:```text\n(.*?)```\n)?", re.DOTALL)
 #: "theory §5", "theory §§1 and 4", also where a line ends between the two.
 CITATION = re.compile(r"\btheory(?:\.md`?)?\s+(?:#:?\s*)?(§§?\s*\d+(?:(?:,| and| to)\s+§?\d+)*)")
 DOI = re.compile(r"10\.\d{4,9}/[^\s,;]+")
-LAWS = ("Viscoelastic", "Brush", "HardSphere", "SlipThenRoll", "Leapfrog")
+LAWS = ("Viscoelastic", "Brush", "HardSphere", "RoughSphere", "SlipThenRoll", "Leapfrog")
 #: Where names in the tables of the guide are looked for.
 NAMESPACES = (
     contactlab, contracts, bodies, plan, history, motion, energy, normal_motion, result,
@@ -171,7 +171,7 @@ def test_dois_are_well_formed():
 
 @pytest.mark.parametrize("topic", TOPICS)
 def test_topics_named_in_the_guide_exist(topic):
-    named = re.findall(r"`contactlab guide ([a-z-]+)", text(topic))
+    named = re.findall(r"`contactlab guide ([a-z0-9-]+)", text(topic))
     assert set(named) <= set(TOPICS)
 
 

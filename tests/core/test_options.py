@@ -2,13 +2,16 @@
 
 import json
 import re
+from typing import ClassVar
 
 import attrs
+import numpy as np
 import pytest
 
 import contactlab
 from contactlab.compose.options import meanings, options
 from contactlab.compose.registry import REGISTRY
+from contactlab.contracts import NormalLaw
 from contactlab.numeric.checks import choice, count, flag, quantity
 
 LAWS = [info.name for info in REGISTRY.installed() if info.distribution == "contactlab"]
@@ -32,6 +35,37 @@ def test_a_refusal_says_the_rule_that_is_told(name):
     for option in options(REGISTRY.law_class(name)):
         with pytest.raises(ValueError, match=re.escape(option.rule.removesuffix(", if given"))):
             contactlab.create(name, **{option.name: -7.5})
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_an_option_of_a_law_is_one_number(name):
+    """An array, one value for each impact, was taken by eleven laws."""
+    for option in options(REGISTRY.law_class(name)):
+        value = 0.5 if option.default is None else option.default
+        alone = {option.name: np.array(value)[()]} if isinstance(value, float) else {}
+        assert contactlab.create(name, **alone) is not None
+        with pytest.raises(ValueError, match=rf"{option.name} = .*must be"):
+            contactlab.create(name, **{option.name: np.array([value, value])})
+
+
+def test_an_array_for_an_option_of_a_strangers_law_is_refused_with_the_remedy():
+    @attrs.frozen(kw_only=True)
+    class Theirs(NormalLaw):
+        api_version: ClassVar[int] = 2
+        stiffness: float = quantity("N/m", default=1.0)
+
+        def start(self, scene):
+            return None
+
+        def respond(self, state, approach, rate):
+            raise NotImplementedError
+
+    assert Theirs(stiffness=[3.0][0]).stiffness == 3.0
+    with pytest.raises(
+        ValueError,
+        match=r"stiffness = \[1.0, 2.0\]: must be one number: .*; make a law for each value",
+    ):
+        Theirs(stiffness=[1.0, 2.0])
 
 
 @attrs.frozen(kw_only=True)

@@ -227,6 +227,19 @@ def test_a_chunk_that_ends_its_workers_has_a_status(monkeypatch, tmp_path):
         assert Simulation(**RIGID).sweep(scene(), executor=two).check()  # it stays broken
 
 
+@pytest.mark.parametrize("status", [0, 3])
+def test_a_law_that_leaves_its_process_is_told(monkeypatch, tmp_path, status):
+    """``os._exit(0)`` runs nobody's handlers, and looks like a process that ended well."""
+    blocks_of(monkeypatch, 50)
+    with processes(2) as two:
+        result = ending(tmp_path, above=6.2, status=status).sweep(scene(), executor=two)
+    assert [one.name for one in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
+    assert np.isnan(result.psi2[100:]).all()
+    assert len(list(tmp_path.iterdir())) == 2  # tried once more
+    with pytest.raises(contactlab.ImpactError, match=r"impact 100: .*BrokenProcessPool"):
+        result.check()
+
+
 def test_a_poisoned_impact_of_ten_thousand_loses_its_chunk_only(monkeypatch, tmp_path):
     """The pool breaks in the middle: the chunk beside it and the later ones are solved."""
     blocks_of(monkeypatch, 100)

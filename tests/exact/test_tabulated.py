@@ -5,6 +5,7 @@ import pytest
 from numpy.polynomial.polynomial import polyder, polygrid2d, polyval, polyval2d
 
 import contactlab
+import contactlab_laws.tabulated
 from contactlab import Simulation
 from contactlab.compose import rebound as rebounds
 from contactlab.study.work_precision import scenes
@@ -309,7 +310,10 @@ def test_contactlab_rebound_uses_the_table_up_to_its_tolerance(monkeypatch):
     def refuse_to_answer(*_, **__):
         raise AssertionError("the table was asked")
 
-    monkeypatch.setattr(rebounds, "_installed", lambda _: refuse_to_answer)
+    monkeypatch.setattr(rebounds, "_installed", rebounds._installed.__wrapped__)  # not kept
+    monkeypatch.setattr(contactlab_laws.tabulated, "rebound", refuse_to_answer)
+    with pytest.raises(AssertionError, match="the table was asked"):
+        contactlab.rebound(psi1, chi)
     assert np.abs(contactlab.rebound(psi1, chi, tolerance=1e-9) - mixture).max() < 1e-5
     monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "rebound.elastic")
     assert np.abs(contactlab.rebound(psi1, chi) - mixture).max() < 1e-5

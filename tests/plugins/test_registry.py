@@ -8,9 +8,32 @@ import pytest
 
 import contactlab
 from contactlab import PluginError
+from contactlab.compose import rebound as rebounds
 from contactlab.compose.installed import PluginWarning
+from contactlab.compose.loading import Loader
+from contactlab.compose.names import full_name, kind_of, short_name
+from contactlab.compose.registry import REGISTRY
 
 MINE = "tangential.mine"
+NORMAL_LAW = """
+from typing import ClassVar
+import attrs
+import contactlab
+from contactlab.contracts import NormalContact, NormalLaw
+
+@attrs.frozen(kw_only=True)
+class Soft(NormalLaw):
+    api_version: ClassVar[int] = 2
+    def start(self, scene):
+        return scene.pair.effective_modulus * scene.pair.radius
+    def respond(self, state, approach, rate):
+        inside = approach * (approach > 0.0)
+        return NormalContact(force=state * inside, radius=0.0 * inside, overlap=approach), state
+
+@contactlab.hookimpl
+def contactlab_law(name):
+    return Soft
+"""
 
 
 def test_every_declared_entry_point_loads(registry):
@@ -75,15 +98,118 @@ def test_where_a_law_comes_from_does_not_hang_on_how_it_was_made(registry):
 def test_two_distributions_with_one_name_are_refused_naming_both(registry, install, law_source):
     install("first", "first_law", law_source, MINE)
     install("second", "second_law", law_source, MINE)
-    with pytest.raises(PluginError, match=r"first 1.5 and second 1.5"):
+    with pytest.raises(ValueError, match=r"first 1.5 and second 1.5") as caught:
         registry.create(MINE)
+    assert "'first:tangential.mine' or 'second:tangential.mine'" in str(caught.value)
     assert registry.create("tangential.coulomb") is not None
+    for name in ("first", "second"):
+        law = registry.create(f"{name}:{MINE}")
+        assert registry.describe(law) == f"mine ({name} 1.5)"
+        assert type(law).__module__ == f"{name}_law"
+    assert [name for name in registry.names() if MINE in name] == [
+        f"first:{MINE}",
+        f"second:{MINE}",
+    ]
 
 
-def test_a_distribution_cannot_take_over_a_built_in_name(registry, install, law_source):
+@pytest.mark.parametrize("blocking", ["second", f"second:{MINE}", "Second", "other, second"])
+def test_the_advised_block_leaves_the_other_law(
+    registry, install, law_source, monkeypatch, blocking
+):
+    for name in ("first", "second", "other"):
+        install(name, f"{name}_law", law_source, MINE if name != "other" else "tangential.other")
+    with pytest.raises(ValueError, match="block all laws of one: CONTACTLAB_BLOCK_PLUGINS=second"):
+        registry.create(MINE)
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", blocking)
+    assert registry.describe(registry.create(MINE)) == "mine (first 1.5)"
+    assert MINE in registry.names()
+    with pytest.raises(ValueError, match="blocked"):
+        registry.create(f"second:{MINE}")
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", MINE)
+    with pytest.raises(ValueError, match="blocked"):
+        registry.create(MINE)
+
+
+def test_a_distribution_cannot_take_over_a_built_in_name(
+    registry, install, law_source, monkeypatch
+):
     install("usurper", "usurper_law", law_source, "tangential.coulomb")
-    with pytest.raises(PluginError, match=r"contactlab .* and usurper 1.5"):
-        registry.create("tangential.coulomb")
+    assert registry.describe(registry.create("tangential.coulomb")).startswith(
+        "coulomb (contactlab "
+    )
+    ours = registry.create("contactlab:tangential.coulomb")
+    assert type(ours) is type(registry.create("tangential.coulomb"))
+    theirs = registry.create("usurper:tangential.coulomb")
+    assert registry.describe(theirs) == "coulomb (usurper 1.5)"
+    assert {"tangential.coulomb", "usurper:tangential.coulomb"} <= set(registry.names())
+    (sentence,) = registry.clashes()
+    assert (
+        "it means 'contactlab:tangential.coulomb'; write 'usurper:tangential.coulomb'" in sentence
+    )
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "contactlab:tangential.coulomb")
+    assert type(registry.create("tangential.coulomb")) is type(theirs)
+    assert registry.clashes() == []
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "usurper")
+    assert type(registry.create("tangential.coulomb")) is type(ours)
+
+
+def test_a_strangers_normal_hertz_leaves_the_program_as_it_was(registry, install, monkeypatch):
+    """The whole program was disabled by it: every default names this law."""
+    for name, nothing in (("_loaded", {}), ("_loader", Loader()), ("_meant", {})):
+        monkeypatch.setattr(REGISTRY, name, nothing)
+    install("usurper", "usurper_law", NORMAL_LAW, "normal.hertz")
+    scene = contactlab.Scene.nondimensional(psi1=1.2, chi=1.4412)
+    assert contactlab.Simulation().run(scene).psi2 == pytest.approx(-0.18048, abs=1e-5)
+    for name in ("usurper:hertz", "usurper:normal.hertz", "Usurper:hertz"):
+        theirs = contactlab.Simulation(normal=name, tangential="coulomb")
+        assert type(theirs.normal).__name__ == "Soft"
+        assert theirs.run(scene).laws["normal"] == "hertz (usurper 1.5)"
+
+
+def test_names_of_no_law_with_a_distribution_are_refused_with_what_is_meant(
+    registry, install, law_source
+):
+    install("my-laws", "my_law", law_source, MINE)
+    assert registry.create(f"My_Laws:{MINE}") is not None  # spellings of one distribution
+    with pytest.raises(ValueError, match=r"'tangential.mine' is offered as 'my-laws:tangential"):
+        registry.create(f"contactlab:{MINE}")
+    with pytest.raises(ValueError, match=r"no distribution 'my-law' .* did you mean 'my-laws'"):
+        registry.create("my-law:tangential.other")
+    with pytest.raises(ValueError, match="no such law is installed"):
+        registry.create("my-laws:tangential.miner")
+
+
+def test_a_blocked_distribution_that_is_not_installed_is_warned_of(registry, install, monkeypatch):
+    install("my-laws", "my_law", "", MINE)
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "my-lawz my-laws")
+    with pytest.warns(PluginWarning, match=r"'my-lawz', .* did you mean 'my-laws'"):
+        assert MINE not in registry.names()
+
+
+def test_names_are_taken_apart_and_put_together():
+    assert full_name("normal", "hertz") == "normal.hertz"
+    assert full_name("normal", "a.b:hertz") == full_name("normal", "a.b:normal.hertz")
+    assert full_name("normal", "a.b:hertz") == "a.b:normal.hertz"
+    for name in ("normal.hertz", "a.b:normal.hertz", "tangential.normal"):
+        assert full_name(kind_of(name), short_name(name)) == name
+    assert short_name("a.b:normal.hertz") == "a.b:hertz"
+    assert short_name("hertz") == "hertz"
+
+
+def test_a_rebound_of_a_stranger_takes_the_place_of_ours_only_where_ours_is_blocked(
+    install, tmp_path, monkeypatch
+):
+    install("usurper", "usurper_rebound", "def rebound(*_, **__):\n    return 7.0\n")
+    path = tmp_path / "usurper-1.5.dist-info" / "entry_points.txt"
+    path.write_text("[contactlab.rebound]\nelastic = usurper_rebound:rebound\n")
+    rebounds._installed.cache_clear()
+    try:
+        assert contactlab.rebound(1.2, 49 / 34) == pytest.approx(-0.18052, abs=1e-5)
+        for blocking in ("contactlab:rebound.elastic", "contactlab:rebound.elastic usurp"):
+            monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", blocking)
+            assert contactlab.rebound(1.2, 49 / 34) == 7.0
+    finally:
+        rebounds._installed.cache_clear()
 
 
 @pytest.mark.parametrize(
@@ -227,6 +353,57 @@ def test_wrong_interface_version_wrong_kind_and_abstract_laws(registry, install,
         registry.create("normal.odd")
     with pytest.raises(PluginError, match="does not define start"):
         registry.create("tangential.half")
+
+
+@pytest.mark.parametrize(
+    ("lines", "wanted"),
+    [
+        ("from contactlab.contracts import Problem", "Problem of contactlab.contracts"),
+        ("from contactlab.contracts.tangential import Run", "Run of contactlab.contracts.tang"),
+        ("from contactlab.checks import quantity", "contactlab.checks"),
+        ("import contactlab.status", "contactlab.status"),
+        ("import contactlab\ncontactlab.closed_forms.x", "closed_forms of contactlab"),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law():\n"
+            "    from contactlab.contracts import RunningTangentialLaw",
+            "RunningTangentialLaw of contactlab.contracts",
+        ),
+    ],
+)
+def test_a_plugin_of_an_older_contactlab_gets_one_sentence_that_says_what_to_do(
+    registry, install, lines, wanted
+):
+    install("old", "old_law", lines, MINE)
+    with pytest.raises(PluginError, match=f"it uses {wanted}.*, which is not there") as caught:
+        registry.create(MINE)
+    told = str(caught.value)
+    assert told.startswith("'tangential.mine' of old 1.5 was written for another version")
+    assert "`contactlab guide version-2` says what has changed" in told
+    assert "Error" not in told
+    assert caught.value.__suppress_context__  # no traceback of an import that cannot be helped
+    assert registry.create("tangential.coulomb") is not None
+
+
+def test_a_missing_package_of_somebody_else_is_no_older_contactlab(registry, install):
+    for number, lines in enumerate(
+        ("import contactlab_of_mine", "from math import nothing", "import math\nmath.nothing")
+    ):
+        install(f"other{number}", f"other_law{number}", lines, f"tangential.other{number}")
+        with pytest.raises(PluginError, match=r"could not be imported: .*Error"):
+            registry.create(f"tangential.other{number}")
+
+
+def test_a_law_of_version_1_gets_one_sentence_whatever_it_lacks(registry, install, law_source):
+    """Its version is told, not the methods that it lacks: they had other names."""
+    source = law_source.replace("int] = 2", "int] = 1").replace("def start", "def begin")
+    install("old", "old_law", source, MINE)
+    with pytest.raises(PluginError) as caught:
+        registry.create(MINE)
+    assert str(caught.value) == (
+        "'tangential.mine' of old 1.5: Mine was written for version 1 of the contracts, "
+        "contactlab has 2; `contactlab guide version-2` says what has changed and what to write; "
+        "then write api_version: ClassVar[int] = 2 in its class"
+    )
 
 
 def test_blocked_names_are_refused_and_not_imported(registry, install, monkeypatch):

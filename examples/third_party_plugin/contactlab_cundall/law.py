@@ -8,14 +8,16 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import (
+    POSITIVE,
     Increment,
     NormalContact,
     NormalMotion,
+    Real,
+    Scene,
     SteppedTangentialLaw,
     TangentialResponse,
+    quantity,
 )
-from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import POSITIVE, Real, quantity
 
 
 class Spring(NamedTuple):
@@ -47,8 +49,7 @@ class CundallStrack(SteppedTangentialLaw):
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return k."""
-        mindlin = 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
-        return self.stiffness_ratio * mindlin
+        return self.stiffness_ratio * scene.pair.tangential_stiffness(normal.maximum_radius)
 
     def start(self, scene: Scene, normal: NormalMotion) -> Spring:
         """Return the spring unloaded."""

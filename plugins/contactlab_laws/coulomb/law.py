@@ -34,6 +34,7 @@ class Coulomb(WholeImpactTangentialLaw):
     """
 
     api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"rigid"})
     expected_failures: ClassVar[Mapping[str, str]] = {
         "impact_reference": "the exact solution is that of bodies which deform tangentially",
     }
@@ -64,6 +65,7 @@ class Frictionless(WholeImpactTangentialLaw):
     """No tangential force at all: the null object, and the yardstick for cost."""
 
     api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"no_friction"})
     expected_failures: ClassVar[Mapping[str, str]] = {
         "impact_reference": "the exact solution is that of bodies with friction",
         "sliding_impulse": "there is no friction, however large the slip",

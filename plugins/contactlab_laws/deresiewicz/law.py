@@ -74,7 +74,7 @@ class MindlinDeresiewicz(SteppedTangentialLaw):
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, of the largest contact."""
-        return 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
+        return scene.pair.tangential_stiffness(normal.maximum_radius)
 
     @property
     def books_bound(self) -> float:
@@ -83,7 +83,7 @@ class MindlinDeresiewicz(SteppedTangentialLaw):
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return contacts without force."""
-        modulus = 2.0 * scene.pair.effective_shear_modulus
+        modulus = scene.pair.tangential_stiffness(1.0)
         memories = (Memory(),) * math.prod(scene.shape)
         return State(modulus, scene.friction_coefficient, memories, scene.shape)
 

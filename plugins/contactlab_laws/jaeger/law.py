@@ -109,7 +109,7 @@ class ProfileLaw(AllStepsTangentialLaw):
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""
-        return 2.0 * scene.pair.effective_shear_modulus * normal.maximum_radius
+        return scene.pair.tangential_stiffness(normal.maximum_radius)
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return contacts without traction."""

@@ -33,7 +33,7 @@ FAILURES: Mapping[str, Mapping[str, str]] = {
         "random_paths": "energy in the spring grows with the radius, and is given back",
         "partial_unloading": "sheared and then pressed more, the stiffer spring gives more back",
         "books": _NO_BOOK,
-        "impact_bounds": "light bodies come out faster than they came in, by up to 5 %",
+        "impact_bounds": "bodies may slip faster than they met, by up to 6.4 %",
         "impact_books": _NO_BOOK,
     },
     "displacement_rescaled": {
@@ -52,7 +52,8 @@ FAILURES: Mapping[str, Mapping[str, str]] = {
     },
     "increment_rescaled": {"books": _NO_BOOK, "impact_books": _NO_BOOK},
 }
-#: Those that pass with a stiffness of two thirds, which takes less from the growing contact.
+#: Those whose scenes miss the gain with a stiffness of two thirds: at a psi1 and a chi the law then
+#: does what it does with a factor of 1 at two thirds of both.
 SOFTER = frozenset({"impact_bounds"})
 #: Those that pass with a dashpot that takes what the spring gives back, of 0.2 and more.
 TAKEN = frozenset({"closed_cycles", "random_paths", "partial_unloading", "impact_bounds"})
@@ -65,10 +66,24 @@ PARTIAL_SLIP = (
     "one spring: no part of the contact slips before the whole does, which moves psi2 of "
     "solid spheres by up to about 0.7 (model, not numerical error)"
 )
-ENERGY_MADE = (
+_MADE = (
     "energy from nothing: as the contact grows and shrinks, this form of the spring may give back "
-    "more than it took (model, not numerical error)"
+    "more than it took, {} (model, not numerical error)"
 )
+#: How much the forms that make energy make, whatever the factor: between elastic spheres, and under
+#: damped normal laws. Measured over 12,000 impacts a form, chi up to 300, and 60,000 damped ones,
+#: chi up to 30, under the five normal laws that take a restitution.
+ELASTIC = {
+    "displacement": _MADE.format("and bodies slip up to 6.4 % faster than they met"),
+    "displacement_rescaled": _MADE.format("by up to 7.5 % of the energy of slip"),
+    "increment": _MADE.format("and bodies slip up to 5.2 % faster than they met"),
+}
+_DAMPED = "and bodies slip faster than they met: by up to {} under damped normal laws of e = 0.5"
+DAMPED_GAIN = {
+    "displacement": _MADE.format(_DAMPED.format("14 % (26 % for chi near 30)")),
+    "displacement_rescaled": _MADE.format(_DAMPED.format("11 %")),
+    "increment": _MADE.format(_DAMPED.format("15 %")),
+}
 
 #: Measured over 100 runs of 29 impacts against the law's own limit, see ``ErrorModel``.
 ERRORS = ErrorModel(
@@ -135,8 +150,9 @@ class MindlinCap(SteppedTangentialLaw):
         return {**failed, **(DAMPED if self.damping else {})}
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return that partial slip is left out, and of forms without rescaling what that makes."""
-        made = () if self.form.endswith("rescaled") else (ENERGY_MADE,)
+        """Return that partial slip is left out, and how much energy the form makes, if any."""
+        gains = ELASTIC if "elastic_hertz" in normal.offers else DAMPED_GAIN
+        made = [gains[self.form]] if self.form in gains else []
         return (*super().cautions(scene, normal), PARTIAL_SLIP, *made)
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
@@ -185,7 +201,8 @@ class MindlinCap(SteppedTangentialLaw):
         return self._modulus(scene) * normal.maximum_radius
 
     def _modulus(self, scene: Scene) -> Real:
-        return 2.0 * self.stiffness_factor * scene.pair.effective_shear_modulus
+        """Return the stiffness per metre of contact radius, in Pa."""
+        return self.stiffness_factor * scene.pair.tangential_stiffness(1.0)
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return a spring at rest."""

@@ -1,0 +1,34 @@
+"""What is said of a plug-in that was written for another version of contactlab."""
+
+from __future__ import annotations
+
+import re
+
+#: Errors of an import or of a name that another version had, and what they name.
+MISSING = (
+    re.compile(r"cannot import name '(?P<name>\w+)' from '(?P<module>contactlab[\w.]*)'"),
+    re.compile(r"No module named '(?P<module>contactlab\.[\w.]*)'"),
+    re.compile(r"module '(?P<module>contactlab[\w.]*)' has no attribute '(?P<name>\w+)'"),
+)
+REMEDY = "`contactlab guide version-2` says what has changed and what to write"
+
+
+def other_version(error: BaseException) -> str | None:
+    """Return the sentence for an error of an import from contactlab; None for any other error.
+
+    Parameters
+    ----------
+    error : BaseException
+        What the plug-in raised as it was imported or asked for its law.
+    """
+    if not isinstance(error, ImportError | AttributeError):
+        return None
+    for pattern in MISSING:
+        if (found := pattern.search(str(error))) is not None:
+            parts = found.groupdict()
+            wanted = f"{parts['name']} of {parts['module']}" if "name" in parts else parts["module"]
+            return (
+                f"was written for another version of contactlab: it uses {wanted}, which is not "
+                f"there; {REMEDY}"
+            )
+    return None
