@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from contactlab.fitting.measurements import Measurements
 from contactlab.fitting.model import Model
+from contactlab.fitting.parameters import Parameter
 
 Array = NDArray[np.float64]
 
@@ -128,13 +129,9 @@ def starting(problem: Problem) -> list[Array]:
     One quantity of one impact, as a rule, has the same value at two coefficients of friction, and
     a search goes no further than the minimum that is next.
     """
-    parameters = problem.model.parameters
-    most = int(GRID ** (1.0 / len(parameters)) + 1e-9)
-    axes = [_some(sorted(set(parameter.starts)), most) for parameter in parameters]
-    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    points = grid.reshape(-1, len(parameters))
-    weighted = problem.weighted(points, problem.scales())
-    costs = np.sum(weighted**2, axis=1).reshape(grid.shape[:-1])
+    points = _points(problem.model.parameters)
+    weighted = problem.weighted(grid(problem.model.parameters), problem.scales())
+    costs = np.sum(weighted**2, axis=1).reshape(points.shape[:-1])
     least = np.ones(costs.shape, dtype=bool)
     for axis in range(costs.ndim):
         ends = [(1, 1) if other == axis else (0, 0) for other in range(costs.ndim)]
@@ -144,7 +141,19 @@ def starting(problem: Problem) -> list[Array]:
         least &= np.take(steps, range(1, count + 1), axis) >= 0.0
     least.flat[int(np.argmin(costs))] = True  # also on a plain, where nothing is lower
     order = np.argsort(costs[least], kind="stable")[:SEARCHES]
-    return list(grid[least][order])
+    return list(points[least][order])
+
+
+def grid(parameters: tuple[Parameter, ...]) -> Array:
+    """Return the points among which searches begin, shape (m, parameters)."""
+    return _points(parameters).reshape(-1, len(parameters))
+
+
+def _points(parameters: tuple[Parameter, ...]) -> Array:
+    """Return the starts of all parameters combined, an axis for each, and one of the values."""
+    most = int(GRID ** (1.0 / len(parameters)) + 1e-9)
+    axes = [_some(sorted(set(parameter.starts)), most) for parameter in parameters]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
 
 
 def _some(starts: list[float], most: int) -> Array:
@@ -161,18 +170,21 @@ def solved(problem: Problem, start: Array) -> Array:
     """
     unknown = [name for name in problem.measured if name not in problem.errors]
     scales = problem.scales()
-    values = _minimum(problem, start, scales)
+    values = minimum(problem, start, scales)
     if len(problem.measured) == 1 or not unknown:
         return values  # the one error, or none, changes nothing
     for _ in range(ROUNDS):
         before, scales = scales, problem.scales(problem.residuals(values[None]))
-        values = _minimum(problem, values, scales)
+        values = minimum(problem, values, scales)
         if all(np.allclose(scales[name], before[name], rtol=STEADY, atol=0.0) for name in unknown):
             break
     return values
 
 
-def _minimum(problem: Problem, start: Array, scales: Mapping[str, Any]) -> Array:
+def minimum(
+    problem: Problem, start: Array, scales: Mapping[str, Any], *, loss: str = "linear"
+) -> Array:
+    """Return the values at the least sum of a loss of residuals over scales, from a start on."""
     from scipy.optimize import least_squares  # only those who fit pay for it
 
     known: dict[bytes, tuple[Array, Array]] = {}
@@ -201,5 +213,6 @@ def _minimum(problem: Problem, start: Array, scales: Mapping[str, Any]) -> Array
         xtol=TOLERANCE,
         ftol=TOLERANCE**2,
         gtol=TOLERANCE**2,
+        loss=loss,
     )
     return np.asarray(found.x)

@@ -81,11 +81,15 @@ class Outcome(NamedTuple):
 
 
 def outcome(one):
-    """Return how the fit of a draw went; None where it is refused."""
+    """Return how the fit of a draw went; nothing is covered where it is refused.
+
+    A refusal of what the data cannot determine is no word on the measurement.
+    """
     try:
         found = fit(one.columns, BODIES, parameters=list(one.truth))
     except ValueError as error:
-        return Outcome({}, (f"refused: {error}",))
+        told, undetermined, _ = str(error).rpartition("the data do not determine")
+        return Outcome({}, (told,) if told or not undetermined else ())
     held = {
         name: found.parameters[name].interval[0] <= truth <= found.parameters[name].interval[1]
         for name, truth in one.truth.items()
@@ -94,6 +98,6 @@ def outcome(one):
 
 
 def figures(outcomes):
-    """Return shares: intervals that hold the truth, and draws that something was said of."""
+    """Return shares: intervals that hold the truth, and draws whose measurement is accused."""
     held = [value for one in outcomes for value in one.covered.values()]
     return float(np.mean(held)), float(np.mean([bool(one.notes) for one in outcomes]))
