@@ -17,11 +17,12 @@ from contactlab.outcome.tables import heading
 
 def describe(found: Fit) -> str:
     """Return parameters with their intervals, and residuals, as tables."""
-    headings = ["parameter", "value", "standard error", "95 % from", "to"]
+    headings = ["parameter", "value", "standard error", "95 % from", "to", "robust"]
     rows: list[list[Any]] = []
     for one in found.parameters.values():
         name = heading(one.name, one.unit)
-        rows.append([name, one.value, one.standard_error, *one.interval, *(one.bootstrap or ())])
+        second = (one.robust, *(one.bootstrap or ()))
+        rows.append([name, one.value, one.standard_error, *one.interval, *second])
     if any(one.bootstrap for one in found.parameters.values()):
         headings += ["bootstrap from", "to"]
     measured = found.measurements.measured

@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 
 #: Chance with which normal scatter under the right law is told to follow a column.
 CHANCE = 1e-3
+#: Beside outliers, which explain the residuals better, a pattern is told below this chance.
+POSSIBLE = 1e-5
 
 
 @attrs.frozen(kw_only=True)
@@ -83,6 +85,8 @@ def _others(
     seen = patterns.pattern(problem, values, scales, table.given)
     if far.places and far.chance <= seen.chance:
         found += outliers.told(problem, far)
+        if seen.chance < POSSIBLE:
+            found.append(f"or, with every number kept, {seen.words}")
         problem, values = far.rest, far.values
         scales = problem.scales(problem.residuals(values[None]))
         seen = patterns.pattern(problem, values, scales, table.given)

@@ -20,6 +20,7 @@ from contactlab.fitting.outcome import Estimate, Fit
 from contactlab.fitting.parameters import Setup, parameter_named
 from contactlab.fitting.plausible import unlikely_parameters
 from contactlab.fitting.problem import Problem, solved, starting
+from contactlab.fitting.slips import slips
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
 from contactlab.scene_file import SceneFile
@@ -70,7 +71,8 @@ def fit(
     seed : int
         Of the bootstrap's random numbers.
     progress : callable, optional
-        Called as ``progress(done, total)`` after each sample.
+        Called as ``progress(done, total)`` after each sample; without a bootstrap after each
+        search, and after the diagnosis.
 
     Returns
     -------
@@ -102,16 +104,17 @@ def fit(
     laws = simulation_of(simulation)
     problem = Problem.of(_model(table, scene, parameters, laws), table)
     determinacy.check_enough(problem)
-    values, *others = _solutions(problem)
-    diagnosis = diagnosed(problem, table, values)
+    counted = None if samples else progress
+    values, *others = _solutions(problem, counted)
     told: tuple[str, ...] = ()
+    slipped: list[str] = []
     if idle := determinacy.idle(problem, values):
         told = (f"{', '.join(idle)}: not met, for no parameter moves it under these laws",)
+        slipped, _ = slips(problem, table.given, values, problem.measured)
         table = table.only([name for name in table.measured if name not in idle])
         problem = Problem.of(_model(table, scene, parameters, laws), table)
         values, *others = _solutions(problem)
-        rest = diagnosed(problem, table, values)
-        diagnosis = attrs.evolve(rest, slips=diagnosis.slips or rest.slips)
+    diagnosis = diagnosed(problem, table, values)
     try:
         determinacy.check_scatter(problem)
         determinacy.check_determined(problem, values)
@@ -119,11 +122,13 @@ def fit(
         determinacy.check_precise(problem, values, reaches)
         determinacy.check_single(problem, [values, *others])
     except ValueError as error:
-        said = (*diagnosis.sentences, *_of_errors(problem, values))
+        said = (*slipped, *diagnosis.sentences, *_of_errors(problem, values))
         if not said:
             raise
         raise ValueError(f"{'. '.join(said)}. As it is, {error}") from None
-    found = attrs.evolve(found, notes=(*told, *found.notes))
+    found = attrs.evolve(found, notes=(*told, *slipped, *found.notes))
+    if counted is not None:
+        counted(1, 1)
     if not samples:
         return found
     return _with_bootstrap(found, problem, values, samples, seed=seed, progress=progress)
@@ -179,11 +184,16 @@ def _model(
     return Model(setup=setup, parameters=found)
 
 
-def _solutions(problem: Problem) -> list[Array]:
+def _solutions(
+    problem: Problem, progress: Callable[[int, int], object] | None = None
+) -> list[Array]:
     """Return the minima that searches from several starts have come to, the best first."""
     found: list[Array] = []
-    for start in starting(problem):
+    starts = starting(problem)
+    for done, start in enumerate(starts, start=1):
         values = solved(problem, start)
+        if progress is not None:
+            progress(done, len(starts) + 1)  # the diagnosis is the last
         if not any(np.allclose(values, known, rtol=SAME, atol=SAME) for known in found):
             found.append(values)
     return sorted(found, key=problem.criterion) if len(found) > 1 else found
@@ -267,7 +277,8 @@ def _of_errors(problem: Problem, values: Array) -> list[str]:
                 f"{name}: residuals are {ratio:.2g} times the errors given: these are too small, "
                 "or the law is not that of the data; intervals are widened by as much"
             )
-        if ratio < SMALL_RATIO and chdtr(freedom, square) < CHANCE:
+        alike = np.nanmin(problem.measured[name]) == np.nanmax(problem.measured[name])
+        if ratio < SMALL_RATIO and not alike and chdtr(freedom, square) < CHANCE:
             found.append(
                 f"{name}: residuals are {ratio:.2g} times the errors given: these are too large; "
                 f"look at the unit of {name}_error, and whether they are standard errors"

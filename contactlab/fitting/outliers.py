@@ -45,7 +45,7 @@ class Outliers(NamedTuple):
     """
 
     chance: float
-    places: Mapping[str, Array]
+    places: Mapping[str, NDArray[np.intp]]
     rest: Problem
     values: Array
 
@@ -118,7 +118,7 @@ def outliers(problem: Problem, values: Array, scales: Mapping[str, Any]) -> Outl
     if number < LEAST + parameters - 1:
         return none(problem, values)
     least = sum((NUMERICAL * size / np.min(scales[q])) ** 2 for q, size in problem.sizes().items())
-    whole = _square(problem, minimum(problem, values, scales), scales)
+    whole = math.nan
     best = none(problem, values)
     for count in sorted({int(np.sum(flat > cut)) for cut in CUTS} - {0}):
         freedom = number - count - parameters
@@ -131,6 +131,8 @@ def outliers(problem: Problem, values: Array, scales: Mapping[str, Any]) -> Outl
             break
         again = minimum(rest, values, scales)
         square = _square(rest, again, scales)
+        if math.isnan(whole):
+            whole = _square(problem, minimum(problem, values, scales), scales)
         ratio = (whole - square) / count / ((square + least) / freedom)
         ways = gammaln(number + 1) - gammaln(count + 1) - gammaln(number - count + 1)
         chance = float(fdtrc(count, freedom, max(ratio, 0.0)) * math.exp(min(ways, 500.0)))
@@ -177,7 +179,7 @@ def _square(problem: Problem, values: Array, scales: Mapping[str, Any]) -> float
     return float(weighted @ weighted)
 
 
-def _without(problem: Problem, places: Mapping[str, Array]) -> Problem:
+def _without(problem: Problem, places: Mapping[str, NDArray[np.intp]]) -> Problem:
     """Return the problem without some numbers."""
     measured = {}
     for name, values in problem.measured.items():

@@ -68,9 +68,11 @@ def pattern(
                 f"{name}: residuals follow {column}: look at that column, at what else has changed "
                 "with it, and at other laws"
             )
-            chance = _chance(residuals, slopes, terms[:, 1:], least[name])
+            chance = chance_of(residuals, slopes, terms[:, 1:], least[name])
             tests.append(Pattern(chance, words))
     tests += _changes(problem, weighted, jacobian, max(least.values()))
+    if not tests:
+        return Pattern(1.0, "")
     found = min(tests)
     return found._replace(chance=found.chance * len(tests))
 
@@ -95,7 +97,7 @@ def _changes(problem: Problem, weighted: Array, jacobian: Array, least: float) -
                 f"{parameter.name} is another up to impact {last} than from impact {last + 1} on, "
                 f"in the order of the rows: what has changed meanwhile?"
             )
-            found.append(Pattern(_chance(weighted, jacobian, terms, least), words))
+            found.append(Pattern(chance_of(weighted, jacobian, terms, least), words))
     return found
 
 
@@ -134,7 +136,7 @@ def _alike(one: Array, other: Array) -> bool:
     return abs(float(np.corrcoef(one, other)[0, 1])) > 0.99
 
 
-def _chance(residuals: Array, slopes: Array, terms: Array, least: float) -> float:
+def chance_of(residuals: Array, slopes: Array, terms: Array, least: float) -> float:
     """Return the chance with which normal scatter follows terms as well as residuals do.
 
     Parameters
@@ -153,7 +155,7 @@ def _chance(residuals: Array, slopes: Array, terms: Array, least: float) -> floa
     if freedom < SPARE:
         return 1.0
     plain, curved = _left(residuals, slopes), _left(residuals, np.hstack([slopes, terms]))
-    ratio = (plain - curved) / added / (curved / freedom + least)
+    ratio = (plain - curved) / added / (curved / freedom + least + np.finfo(float).tiny)
     return float(fdtrc(added, freedom, max(ratio, 0.0)))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 import attrs
 import numpy as np
@@ -15,12 +15,15 @@ from contactlab.fitting.model import Model
 from contactlab.fitting.parameters import Parameter
 
 Array = NDArray[np.float64]
+Loss = Literal["linear", "soft_l1"]
 
 #: Step of a derivative, of the parameter's size: the table of psi2 is good to 1e-9, steps of
 #: an integrator make answers uneven by less than that, and the third derivative costs 1e-6.
 STEP = 1e-3
 #: Share of a parameter to which it is found: far below any scatter, far above the table's error.
 TOLERANCE = 1e-6
+#: The same of a robust fit, which is there to be compared.
+ROUGHLY = 1e-4
 #: Points of the grid on which searches begin, and most searches.
 GRID, SEARCHES = 400, 4
 #: Most rounds in which the errors of several quantities are taken from their own residuals, and
@@ -162,14 +165,14 @@ def _some(starts: list[float], most: int) -> Array:
     return np.array([starts[place] for place in sorted(set(places.round().astype(int).tolist()))])
 
 
-def solved(problem: Problem, start: Array) -> Array:
+def solved(problem: Problem, start: Array, scales: Mapping[str, Any] | None = None) -> Array:
     """Return the values of the parameters that meet the measurements best.
 
     Where several quantities have unknown errors, each is weighted by its own residuals, round
-    after round: the maximum of likelihood.
+    after round, from ``scales`` on: the maximum of likelihood.
     """
     unknown = [name for name in problem.measured if name not in problem.errors]
-    scales = problem.scales()
+    scales = problem.scales() if scales is None else scales
     values = minimum(problem, start, scales)
     if len(problem.measured) == 1 or not unknown:
         return values  # the one error, or none, changes nothing
@@ -182,7 +185,7 @@ def solved(problem: Problem, start: Array) -> Array:
 
 
 def minimum(
-    problem: Problem, start: Array, scales: Mapping[str, Any], *, loss: str = "linear"
+    problem: Problem, start: Array, scales: Mapping[str, Any], *, loss: Loss = "linear"
 ) -> Array:
     """Return the values at the least sum of a loss of residuals over scales, from a start on."""
     from scipy.optimize import least_squares  # only those who fit pay for it
@@ -210,8 +213,8 @@ def minimum(
         jac=slopes,
         bounds=(low, high),
         x_scale=np.array([abs(v) or 1.0 for v in start.tolist()]),
-        xtol=TOLERANCE,
-        ftol=TOLERANCE**2,
+        xtol=TOLERANCE if loss == "linear" else ROUGHLY,
+        ftol=TOLERANCE**2 if loss == "linear" else ROUGHLY**2,
         gtol=TOLERANCE**2,
         loss=loss,
     )

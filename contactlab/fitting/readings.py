@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping
+from functools import partial
 from typing import Any, NamedTuple
 
 import attrs
@@ -36,6 +37,8 @@ MISTAKEN = {
     },
 }  # fmt: skip
 MISTAKEN["rad"] = MISTAKEN["deg"]
+#: Fewer numbers of a quantity than this show no shift by a row.
+ROWS = 6
 SURFACE, SIGN = "measured from the surface, not from the normal", "of the opposite sign"
 #: Quantities that are taken for each other: of the centre, and of the contact point.
 TAKEN_FOR = {
@@ -99,7 +102,9 @@ def _impacts(scene: Scene, given: Collection[str]) -> Iterator[tuple[str, Scene]
             "tangential_velocity": ("tangential_velocity",),
         }.items():
             if name in given:
-                faster = {field: factor * np.asarray(getattr(scene, field)) for field in fields}
+                faster: dict[str, Any] = {
+                    field: factor * np.asarray(getattr(scene, field)) for field in fields
+                }
                 yield f"{name} looks as if {way}", attrs.evolve(scene, **faster)
     if np.any(scene.spin):
         for way, factor in (MISTAKEN["rad/s"] | {SIGN: -1.0}).items():
@@ -144,10 +149,12 @@ def _numbers(problem: Problem) -> Iterator[Reading]:
                 yield Reading(f"{one} and {two} look as if exchanged", read, {})
     listed = " and ".join(names)
     look = "looks" if len(names) == 1 else "look"
+    if min(problem.counts.values()) < ROWS:
+        return
     for way, step in (("low", -1), ("high", 1)):
         read = problem
         for name in names:
-            read = _with(read, name, lambda values, step=step: _shifted(values, step))
+            read = _with(read, name, partial(_shifted, step=step))
         kept = {name: _shifted(_shifted(v, step), -step) for name, v in measured.items()}
         yield Reading(f"{listed} {look} as if written a row too {way}", read, {}, kept)
 

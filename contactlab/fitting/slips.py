@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from contactlab.fitting.model import Model
 from contactlab.fitting.parameters import Parameter, Setup, parameter_named
+from contactlab.fitting.patterns import chance_of
 from contactlab.fitting.problem import Problem, grid, solved
 from contactlab.fitting.readings import Reading, readings, turned
 from contactlab.numeric.checks import Real
@@ -26,6 +27,10 @@ SMALLER, CERTAIN = 2.0, 20.0
 WORTH_FITTING = 3.0
 #: Readings about as good as the best are told beside it: this many in all at most.
 TOLD, ALIKE = 3, 6.0
+#: Numbers beyond parameters that it takes: fewer are met by chance.
+SPARE = 3
+#: A tilt is fitted if normal scatter follows its derivative as well with less than this chance.
+WORTH_TILTING = 1e-2
 #: Angles of incidence are off by no more than this, in degrees.
 TILT = 15.0
 #: Residuals below this share of the largest number are numerical error.
@@ -58,7 +63,8 @@ def slips(
     kept : mapping of str to array, shape (n,)
         The numbers that are no outliers.
     """
-    if problem.model.setup.scene.sphere is None:
+    number = sum(problem.counts.values())
+    if problem.model.setup.scene.sphere is None or number < len(values) + SPARE:
         return [], []
     quick = _elastic(problem)
     start = values if quick is problem else solved(quick, _first(quick))
@@ -196,13 +202,17 @@ def tilted(problem: Problem, given: Collection[str], values: Array) -> tuple[flo
 
     counts, sizes = list(problem.counts.values()), _sizes(problem)
     freedom = sum(counts) - len(values) - 1
-    if problem.model.setup.scene.sphere is None or freedom < 3:
+    if problem.model.setup.scene.sphere is None or freedom < SPARE:
         return 1.0, ""
     name = "angle_deg" if "angle_deg" in given else "the angle of incidence"
     offset = AngleOffset(name=name, unit="deg", least=-TILT, most=TILT, starts=(0.0,))
     model = attrs.evolve(problem.model, parameters=(*problem.model.parameters, offset))
     wider = attrs.evolve(problem, model=model)
-    found = solved(wider, np.append(values, 0.0))
+    at = np.append(values, 0.0)
+    weighted, slopes = wider.linearised(at, problem.scales(problem.residuals(values[None])))
+    if chance_of(weighted, slopes[:, :-1], slopes[:, -1:], 0.0) > WORTH_TILTING:
+        return 1.0, ""
+    found = solved(wider, at)
     own, other = (
         float(_scores(Reading("", one, {}), point[None], counts, sizes)[0])
         for one, point in ((problem, values), (wider, found))
