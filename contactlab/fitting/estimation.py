@@ -143,7 +143,17 @@ def _with_bootstrap(
     seed: int,
     progress: Callable[[int, int], object] | None,
 ) -> Fit:
-    """Return the fit with the intervals of the bootstrap beside the others; arguments as of fit."""
+    """Return the fit with the intervals of the bootstrap beside the others.
+
+    Parameters
+    ----------
+    found : Fit
+    problem : Problem
+    values : array, shape (parameters,)
+        The best values.
+    samples, seed, progress
+        As ``bootstrap``, ``seed`` and ``progress`` of ``fit``.
+    """
     intervals, done = bootstrapped(
         problem, values, samples, seed=seed, tail=TAIL, progress=progress
     )
@@ -202,7 +212,16 @@ def _solutions(
 def _outcome(
     problem: Problem, table: Measurements, values: Array, diagnosis: Diagnosis
 ) -> tuple[Fit, Array]:
-    """Return the fit with intervals from the covariance, and their half-widths."""
+    """Return the fit with intervals from the covariance, and their half-widths.
+
+    Parameters
+    ----------
+    problem : Problem
+    table : Measurements
+    values : array, shape (parameters,)
+        The best values.
+    diagnosis : Diagnosis
+    """
     from scipy.special import stdtrit  # only those who fit pay for it
 
     parameters = problem.model.parameters

@@ -196,7 +196,19 @@ def _known(setup: Setup) -> dict[str, Callable[[], Parameter]]:
 
 
 def _option(kind: str, field: attrs.Attribute[Any], value: float, *, tabled: bool) -> LawOption:
-    """Return an option of a law; searches begin where the table holds if there is one."""
+    """Return an option of a law.
+
+    Parameters
+    ----------
+    kind : str
+        "normal" or "tangential".
+    field : attrs.Attribute
+        Of the law's class, with unit and rule.
+    value : float
+        That the law has.
+    tabled : bool
+        Whether a table of rebounds answers: searches for a restitution begin where it holds.
+    """
     least, most = _range(field.metadata.get("rule"), value)
     finite = math.isfinite(least) and math.isfinite(most)
     first = max(least, DAMPED_RESTITUTION) if tabled and field.name == "restitution" else least

@@ -187,7 +187,17 @@ def solved(problem: Problem, start: Array, scales: Mapping[str, Any] | None = No
 def minimum(
     problem: Problem, start: Array, scales: Mapping[str, Any], *, loss: Loss = "linear"
 ) -> Array:
-    """Return the values at the least sum of a loss of residuals over scales, from a start on."""
+    """Return the values at the least sum of a loss of residuals.
+
+    Parameters
+    ----------
+    problem : Problem
+    start : array, shape (parameters,)
+    scales : mapping of str to float or array
+        Errors that residuals are taken over, by quantity.
+    loss : str
+        Of ``scipy.optimize.least_squares``: "soft_l1" hardly feels a few far numbers.
+    """
     from scipy.optimize import least_squares  # only those who fit pay for it
 
     known: dict[bytes, tuple[Array, Array]] = {}

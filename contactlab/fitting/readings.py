@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from contactlab.fitting.problem import Problem
 from contactlab.impact.scene import Scene
-from contactlab.outcome.quantities import QUANTITIES
+from contactlab.outcome.columns import QUANTITIES
 
 Array = NDArray[np.float64]
 

@@ -147,6 +147,15 @@ def _scores(reading: Reading, points: Array, counts: list[int], sizes: list[floa
     """Return -2 log likelihood of the numbers as they were measured, shape (points,).
 
     The scatter of each quantity is that of its residuals; errors that are given weigh the numbers.
+
+    Parameters
+    ----------
+    reading : Reading
+    points : array, shape (points, parameters)
+    counts : list of int
+        Numbers that were measured, by quantity.
+    sizes : list of float
+        Size of the numbers of each quantity.
     """
     problem = reading.problem
     scores = np.zeros(len(points))

@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 
 from contactlab import HalfSpace, Scene, Simulation, Sphere, fit
-from contactlab.outcome.quantities import QUANTITIES
+from contactlab.outcome.columns import QUANTITIES
 from tests.fitting.impacts import STEEL
 
 CLEAN, WITH_OUTLIERS = 200, 100

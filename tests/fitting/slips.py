@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab import HalfSpace, Scene, Simulation, Sphere, create, fit
-from contactlab.outcome.quantities import QUANTITIES
+from contactlab.outcome.columns import QUANTITIES
 from tests.fitting.impacts import STEEL
 
 FRICTION, RESTITUTION = 0.12, 0.9

@@ -78,15 +78,14 @@ def test_the_chance_of_outliers_is_that_of_the_f_test():
 
 
 def test_the_chance_of_a_pattern_is_that_of_the_f_test():
-    """Of a curve over the angle, which varies alone: one test of a cubic, eight of a change."""
-    bend = np.linspace(-1.0, 1.0, 12) ** 2
-    values = 1.0 - 0.1 * SLOPE + SCATTER + 0.02 * bend
+    """Of a curve over the angle, which varies alone: one test of a cubic, seven of a change."""
+    rank = np.linspace(-1.0, 1.0, 12)
+    values = 1.0 - 0.1 * SLOPE + SCATTER + 0.03 * (2.5 * rank**3 - 1.5 * rank)
     problem = problem_of(table(values, SLIPPING))
     best = np.array([fit(table(values, SLIPPING), BODIES)["friction_coefficient"]])
     columns = {"angle_deg": SLIPPING, "speed": np.full(12, 2.0)}
     found = patterns.pattern(problem, best, problem.sizes(), columns)
     plain = square(SLOPE[:, None], 1.0 - values)
-    rank = np.linspace(-1.0, 1.0, 12)
     terms = (rank, 1.5 * rank**2 - 0.5, 2.5 * rank**3 - 1.5 * rank)
     curves = np.column_stack([SLOPE, *terms])
     left = square(curves, 1.0 - values)
