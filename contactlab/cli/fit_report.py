@@ -17,14 +17,17 @@ from contactlab.outcome.tables import heading
 
 def describe(found: Fit) -> str:
     """Return parameters with their intervals, and residuals, as tables."""
-    headings = ["parameter", "value", "standard error", "95 % from", "to", "robust"]
+    headings = ["parameter", "value", "standard error", "95 % from", "to"]
     rows: list[list[Any]] = []
     for one in found.parameters.values():
         name = heading(one.name, one.unit)
-        second = (one.robust, *(one.bootstrap or ()))
-        rows.append([name, one.value, one.standard_error, *one.interval, *second])
+        robust = () if one.robust is None else (one.robust,)
+        more = (*(one.bootstrap or ()), *robust)
+        rows.append([name, one.value, one.standard_error, *one.interval, *more])
     if any(one.bootstrap for one in found.parameters.values()):
         headings += ["bootstrap from", "to"]
+    if any(one.robust is not None for one in found.parameters.values()):
+        headings.append("robust")
     measured = found.measurements.measured
     residuals = [
         [name, QUANTITIES[name].unit, found.counts[name], found.rms[name],

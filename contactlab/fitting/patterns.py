@@ -70,14 +70,17 @@ def pattern(
             )
             chance = chance_of(residuals, slopes, terms[:, 1:], least[name])
             tests.append(Pattern(chance, words))
-    tests += _changes(problem, weighted, jacobian, max(least.values()))
+    same = [name for name in ranks if ORDER not in ranks and _in_order(ranks[name])]
+    tests += _changes(problem, weighted, jacobian, max(least.values()), same)
     if not tests:
         return Pattern(1.0, "")
     found = min(tests)
     return found._replace(chance=found.chance * len(tests))
 
 
-def _changes(problem: Problem, weighted: Array, jacobian: Array, least: float) -> list[Pattern]:
+def _changes(
+    problem: Problem, weighted: Array, jacobian: Array, least: float, same: list[str]
+) -> list[Pattern]:
     """Return how likely it is by chance that a parameter has changed between two rows.
 
     Parameters
@@ -87,7 +90,15 @@ def _changes(problem: Problem, weighted: Array, jacobian: Array, least: float) -
         Residuals over the scatter, and their derivatives.
     least : float
         Square of the numerical error, in units of the scatter.
+    same : list of str
+        Columns that grow or fall along the rows.
     """
+    why = f"{ORDER}: what has changed meanwhile?"
+    if same:
+        why = (
+            f"{ORDER}, which is that of {same[0]}: has something changed meanwhile, or do the laws "
+            "not hold throughout?"
+        )
     rows = np.concatenate([np.flatnonzero(np.isfinite(v)) for v in problem.measured.values()])
     found = []
     for parameter, slope in zip(problem.model.parameters, jacobian.T, strict=True):
@@ -95,7 +106,7 @@ def _changes(problem: Problem, weighted: Array, jacobian: Array, least: float) -
             terms = (slope * (rows >= last))[:, None]
             words = (
                 f"{parameter.name} is another up to impact {last} than from impact {last + 1} on, "
-                f"in the order of the rows: what has changed meanwhile?"
+                f"in {why}"
             )
             found.append(Pattern(chance_of(weighted, jacobian, terms, least), words))
     return found
@@ -127,13 +138,14 @@ def _ranked(columns: Mapping[str, Array], count: int) -> dict[str, Array]:
         if np.ptp(values) > VARIES * np.max(np.abs(values)) and rank.max() >= DEGREE:
             found[name] = rank.reshape(-1).astype(float)
     order = np.arange(count, dtype=float)
-    if count > DEGREE and not any(_alike(order, rank) for rank in found.values()):
+    if count > DEGREE and not any(_in_order(rank) for rank in found.values()):
         found[ORDER] = order
     return found
 
 
-def _alike(one: Array, other: Array) -> bool:
-    return abs(float(np.corrcoef(one, other)[0, 1])) > 0.99
+def _in_order(rank: Array) -> bool:
+    """Return whether a column grows or falls along the rows."""
+    return abs(float(np.corrcoef(np.arange(len(rank)), rank)[0, 1])) > 0.99
 
 
 def chance_of(residuals: Array, slopes: Array, terms: Array, least: float) -> float:
