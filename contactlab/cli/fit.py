@@ -92,8 +92,9 @@ def execute(arguments: argparse.Namespace) -> int:
     found: Fit | None = None
     interrupted = False
     try:
+        with shared.progress(arguments.progress, "searches") as progress:
+            found = fit(impacts, path, simulation=simulations[first], progress=progress, **asked)
         with shared.progress(arguments.progress, "laws") as progress:
-            found = fit(impacts, path, simulation=simulations[first], **asked)
             for done, name in enumerate(others, start=1):
                 if progress is not None:
                     progress(done, len(simulations))

@@ -21,9 +21,13 @@ def describe(found: Fit) -> str:
     rows: list[list[Any]] = []
     for one in found.parameters.values():
         name = heading(one.name, one.unit)
-        rows.append([name, one.value, one.standard_error, *one.interval, *(one.bootstrap or ())])
+        robust = () if one.robust is None else (one.robust,)
+        more = (*(one.bootstrap or ()), *robust)
+        rows.append([name, one.value, one.standard_error, *one.interval, *more])
     if any(one.bootstrap for one in found.parameters.values()):
         headings += ["bootstrap from", "to"]
+    if any(one.robust is not None for one in found.parameters.values()):
+        headings.append("robust")
     measured = found.measurements.measured
     residuals = [
         [name, QUANTITIES[name].unit, found.counts[name], found.rms[name],

@@ -52,6 +52,7 @@ def bootstrapped(
     """
     generator = np.random.default_rng(seed)
     residuals = {name: rows[0] for name, rows in problem.residuals(values[None]).items()}
+    scales = problem.scales(residuals)
     numbers = sum(problem.counts.values())
     wider = math.sqrt(numbers / max(numbers - len(values), 1))
     found: list[Array] = []
@@ -62,7 +63,7 @@ def bootstrapped(
                 name: numbers_measured + (signs - 1.0) * residuals[name]
                 for name, numbers_measured in problem.measured.items()
             }
-            found.append(solved(attrs.evolve(problem, measured=measured), values))
+            found.append(solved(attrs.evolve(problem, measured=measured), values, scales))
             if progress is not None:
                 progress(len(found), samples)
     except KeyboardInterrupt:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import attrs
@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import determinacy
 from contactlab.fitting.bootstrap import bootstrapped
+from contactlab.fitting.diagnosis import CHANCE, Diagnosis, diagnosed
 from contactlab.fitting.measurements import Measurements, read_measurements
 from contactlab.fitting.model import Model, scene_of, simulation_of
 from contactlab.fitting.outcome import Estimate, Fit
 from contactlab.fitting.parameters import Setup, parameter_named
+from contactlab.fitting.plausible import unlikely_parameters
 from contactlab.fitting.problem import Problem, solved, starting
-from contactlab.fitting.suspects import suspects
+from contactlab.fitting.slips import slips
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
 from contactlab.scene_file import SceneFile
@@ -29,6 +31,8 @@ Array = NDArray[np.float64]
 TAIL = 0.025
 #: A reduced chi square beyond this says that errors, or the law, do not fit the data.
 LARGE_CHI_SQUARE = 2.0
+#: Residuals below this share of the errors given say that these are in another unit, or limits.
+SMALL_RATIO = 0.5
 #: Searches that end so near to each other have found one minimum.
 SAME = 1e-3
 #: Nearness, of its range, of a value to the end of it.
@@ -67,7 +71,8 @@ def fit(
     seed : int
         Of the bootstrap's random numbers.
     progress : callable, optional
-        Called as ``progress(done, total)`` after each sample.
+        Called as ``progress(done, total)`` after each sample; without a bootstrap after each
+        search, and after the diagnosis.
 
     Returns
     -------
@@ -94,28 +99,61 @@ def fit(
         scene = measurements
     if scene is None:
         raise refuse("scene", None, "must be given", "a Scene, or a TOML file with the bodies")
-    table = read_measurements(measurements).only(quantities)
-    model = _model(table, scene, parameters, simulation_of(simulation))
-    problem = Problem.of(model, table)
-    determinacy.check_enough(problem)
-    values, *others = _solutions(problem)
-    idle = determinacy.idle(problem, values)
-    if idle:
-        left = [name for name in table.measured if name not in idle]
-        found = fit(
-            table, scene, parameters=parameters, simulation=simulation, quantities=left,
-            bootstrap=bootstrap, seed=seed, progress=progress,
-        )  # fmt: skip
-        told = f"{', '.join(idle)}: not met, for no parameter moves it under these laws"
-        return attrs.evolve(found, notes=(told, *found.notes))
-    determinacy.check_scatter(problem)
-    determinacy.check_determined(problem, values)
-    found, reaches = _outcome(problem, table, values)
-    determinacy.check_precise(problem, values, reaches)
-    determinacy.check_single(problem, [values, *others])
     samples = whole("bootstrap", bootstrap, least=0, most=100_000)
+    table = read_measurements(measurements).only(quantities)
+    laws = simulation_of(simulation)
+    problem = Problem.of(_model(table, scene, parameters, laws), table)
+    determinacy.check_enough(problem)
+    counted = None if samples else progress
+    values, *others = _solutions(problem, counted)
+    told: tuple[str, ...] = ()
+    slipped: list[str] = []
+    if idle := determinacy.idle(problem, values):
+        told = (f"{', '.join(idle)}: not met, for no parameter moves it under these laws",)
+        slipped, _ = slips(problem, table.given, values, problem.measured)
+        table = table.only([name for name in table.measured if name not in idle])
+        problem = Problem.of(_model(table, scene, parameters, laws), table)
+        values, *others = _solutions(problem)
+    diagnosis = diagnosed(problem, table, values)
+    try:
+        determinacy.check_scatter(problem)
+        determinacy.check_determined(problem, values)
+        found, reaches = _outcome(problem, table, values, diagnosis)
+        determinacy.check_precise(problem, values, reaches)
+        determinacy.check_single(problem, [values, *others])
+    except ValueError as error:
+        said = (*slipped, *diagnosis.sentences, *_of_errors(problem, values))
+        if not said:
+            raise
+        raise ValueError(f"{'. '.join(said)}. As it is, {error}") from None
+    found = attrs.evolve(found, notes=(*told, *slipped, *found.notes))
+    if counted is not None:
+        counted(1, 1)
     if not samples:
         return found
+    return _with_bootstrap(found, problem, values, samples, seed=seed, progress=progress)
+
+
+def _with_bootstrap(
+    found: Fit,
+    problem: Problem,
+    values: Array,
+    samples: int,
+    *,
+    seed: int,
+    progress: Callable[[int, int], object] | None,
+) -> Fit:
+    """Return the fit with the intervals of the bootstrap beside the others.
+
+    Parameters
+    ----------
+    found : Fit
+    problem : Problem
+    values : array, shape (parameters,)
+        The best values.
+    samples, seed, progress
+        As ``bootstrap``, ``seed`` and ``progress`` of ``fit``.
+    """
     intervals, done = bootstrapped(
         problem, values, samples, seed=seed, tail=TAIL, progress=progress
     )
@@ -156,18 +194,34 @@ def _model(
     return Model(setup=setup, parameters=found)
 
 
-def _solutions(problem: Problem) -> list[Array]:
+def _solutions(
+    problem: Problem, progress: Callable[[int, int], object] | None = None
+) -> list[Array]:
     """Return the minima that searches from several starts have come to, the best first."""
     found: list[Array] = []
-    for start in starting(problem):
+    starts = starting(problem)
+    for done, start in enumerate(starts, start=1):
         values = solved(problem, start)
+        if progress is not None:
+            progress(done, len(starts) + 1)  # the diagnosis is the last
         if not any(np.allclose(values, known, rtol=SAME, atol=SAME) for known in found):
             found.append(values)
     return sorted(found, key=problem.criterion) if len(found) > 1 else found
 
 
-def _outcome(problem: Problem, table: Measurements, values: Array) -> tuple[Fit, Array]:
-    """Return the fit with intervals from the covariance, and their half-widths."""
+def _outcome(
+    problem: Problem, table: Measurements, values: Array, diagnosis: Diagnosis
+) -> tuple[Fit, Array]:
+    """Return the fit with intervals from the covariance, and their half-widths.
+
+    Parameters
+    ----------
+    problem : Problem
+    table : Measurements
+    values : array, shape (parameters,)
+        The best values.
+    diagnosis : Diagnosis
+    """
     from scipy.special import stdtrit  # only those who fit pay for it
 
     parameters = problem.model.parameters
@@ -192,6 +246,7 @@ def _outcome(problem: Problem, table: Measurements, values: Array) -> tuple[Fit,
             value=value,
             standard_error=float(errors[place]),
             interval=ends if off == off else (math.nan, math.nan),
+            robust=diagnosis.robust[place],
         )
     deviation = np.sqrt(np.diag(covariance))
     predicted = problem.model.predicted(values[None], list(problem.measured))
@@ -204,26 +259,54 @@ def _outcome(problem: Problem, table: Measurements, values: Array) -> tuple[Fit,
         aic=problem.criterion(values),
         reduced_chi_square=mean_square if known else None,
         notes=(
-            *suspects(table.measured, {name: rows[0] for name, rows in predicted.items()}),
-            *_notes(problem, values, mean_square if known else None, freedom),
+            *diagnosis.sentences,
+            *unlikely_parameters(problem, {n: one.interval for n, one in estimates.items()}),
+            *(() if diagnosis.sentences else _moved(estimates)),
+            *_of_errors(problem, values),
+            *_notes(problem, values, freedom),
         ),
     )
     return found, reaches
 
 
-def _notes(problem: Problem, values: Array, chi_square: float | None, freedom: int) -> list[str]:
-    """Return what a reader of the estimates should be wary of, a sentence each.
+def _moved(estimates: Mapping[str, Estimate]) -> list[str]:
+    """Return a sentence for each parameter whose robust value lies outside of its interval."""
+    return [
+        f"a robust fit, which a few far numbers hardly move, gives {name} = {one.robust:.4g}, "
+        "outside of the interval: look at the impacts that are farthest off"
+        for name, one in estimates.items()
+        if one.robust is not None and not one.interval[0] <= one.robust <= one.interval[1]
+    ]
 
-    Parameters
-    ----------
-    problem : Problem
-    values : array, shape (parameters,)
-        Estimates, each in its parameter's unit.
-    chi_square : float or None
-        Over the degrees of freedom; None if no errors were given.
-    freedom : int
-        Numbers measured less parameters.
-    """
+
+def _of_errors(problem: Problem, values: Array) -> list[str]:
+    """Return a sentence for each quantity whose scatter is not that of the errors given."""
+    from scipy.special import chdtr, chdtrc  # only those who fit pay for it
+
+    found = []
+    for name in problem.errors.keys() & problem.measured.keys():
+        rows = problem.residuals(values[None])[name][0] / problem.errors[name]
+        freedom = problem.counts[name] - len(values)
+        if freedom < 1:
+            continue
+        square = float(np.nansum(rows**2))
+        ratio = math.sqrt(square / freedom)
+        if ratio**2 > LARGE_CHI_SQUARE and chdtrc(freedom, square) < CHANCE:
+            found.append(
+                f"{name}: residuals are {ratio:.2g} times the errors given: these are too small, "
+                "or the law is not that of the data; intervals are widened by as much"
+            )
+        alike = np.nanmin(problem.measured[name]) == np.nanmax(problem.measured[name])
+        if ratio < SMALL_RATIO and not alike and chdtr(freedom, square) < CHANCE:
+            found.append(
+                f"{name}: residuals are {ratio:.2g} times the errors given: these are too large; "
+                f"look at the unit of {name}_error, and whether they are standard errors"
+            )
+    return found
+
+
+def _notes(problem: Problem, values: Array, freedom: int) -> list[str]:
+    """Return what a reader of the estimates should be wary of, a sentence each."""
     found = []
     for parameter, value in zip(problem.model.parameters, values.tolist(), strict=True):
         near = AT_END * parameter.width
@@ -234,9 +317,4 @@ def _notes(problem: Problem, values: Array, chi_square: float | None, freedom: i
             )
     if freedom == 0:
         found.append("as many numbers as parameters: nothing is left to tell the scatter by")
-    if chi_square is not None and chi_square > LARGE_CHI_SQUARE:
-        found.append(
-            f"residuals are {math.sqrt(chi_square):.2g} times the errors given: these are too "
-            "small, or the law is not that of the data; intervals are widened by as much"
-        )
     return found

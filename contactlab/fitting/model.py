@@ -9,17 +9,12 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.rebound import rebound
 from contactlab.compose.simulation import Simulation
-from contactlab.contracts.status import Status
+from contactlab.fitting import tabulated
 from contactlab.fitting.parameters import Parameter, Setup
-from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import QUANTITIES
-from contactlab.outcome.motion import Motion
-from contactlab.outcome.plan import Plan
-from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.study.interrupts import uninterrupted
 
@@ -37,7 +32,14 @@ class Model:
 
     setup: Setup
     parameters: tuple[Parameter, ...]
+    tabled: bool = attrs.field(init=False)
     _repeated: dict[int, Scene] = attrs.field(factory=dict, init=False, repr=False)
+
+    @tabled.default
+    def _(self) -> bool:
+        """Return whether a table answers: also for other numbers of its normal law."""
+        kinds = {getattr(one, "kind", "normal") for one in self.parameters}
+        return kinds <= {"normal"} and tabulated.holds(self.setup.simulation)
 
     def predicted(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
         """Return quantities of all impacts, shape (m, n), at m points of the parameters.
@@ -73,8 +75,8 @@ class Model:
             each = parameter.batched and many > 1
             value = np.repeat(column, count) if each else float(column[0])
             setup = parameter.applied(setup, value)
-        if setup.simulation is None:
-            result = _tabulated(setup.scene)
+        if self.tabled or setup.simulation is None:
+            result = tabulated.impacts(setup.scene, setup.simulation)
         else:
             result = uninterrupted(setup.simulation.sweep(setup.scene)).check()
         return {name: QUANTITIES[name].of(result).reshape(many, count) for name in quantities}
@@ -100,26 +102,9 @@ class Model:
         simulation = setup.simulation
         if simulation is None:
             return TABULATED
+        if self.tabled:
+            return f"{simulation.normal!r}, partial slip (tabulated rebound)"
         return f"{simulation.normal!r}, {simulation.tangential!r}, {simulation.integrator!r}"
-
-
-def _tabulated(scene: Scene) -> ImpactResult:
-    """Return elastic impacts from the table of psi2; the friction work is not worked out."""
-    shape = scene.shape
-    change: Any = (rebound(scene.psi1, scene.chi) - scene.psi1) / np.asarray(scene.psi_scale)
-    scales = hertz_scales(scene)
-    motion = Motion(
-        slip_velocity_change=change,
-        friction_work=np.full(shape, np.nan),
-        status=np.full(shape, Status.SUCCESS, dtype=object),
-        duration=np.broadcast_to(scales.duration, shape),
-        normal_velocity=-np.broadcast_to(scene.normal_speed, shape),
-        maximum_radius=np.broadcast_to(scales.radius, shape),
-        maximum_approach=np.broadcast_to(scales.approach, shape),
-        maximum_force=np.broadcast_to(scales.force, shape),
-    )
-    plan = Plan(computed=(), left_out=(), marched=np.zeros(shape, dtype=bool))
-    return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
 
 
 def scene_of(scene: object, given: Mapping[str, Array], count: int) -> Scene:

@@ -32,6 +32,8 @@ class Estimate:
         95 % interval from the covariance and Student's t.
     bootstrap : tuple of float or None
         95 % interval of the bootstrap, if one was made.
+    robust : float or None
+        Value of a second fit, which a few far numbers hardly move; None for too few numbers.
     """
 
     name: str
@@ -40,6 +42,7 @@ class Estimate:
     standard_error: float
     interval: Interval
     bootstrap: Interval | None = None
+    robust: float | None = None
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False)
@@ -114,6 +117,7 @@ class Fit:
                     "standard_error": json_value(one.standard_error),
                     "interval_95": [json_value(end) for end in one.interval],
                     "bootstrap_95": list(one.bootstrap) if one.bootstrap else None,
+                    "robust": one.robust,
                 }
                 for name, one in self.parameters.items()
             },

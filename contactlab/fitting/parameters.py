@@ -12,8 +12,10 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
+from contactlab.compose.rebound import DAMPED_RESTITUTION
 from contactlab.compose.registry import KINDS, REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
+from contactlab.fitting import tabulated
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule, nearest
@@ -188,19 +190,34 @@ def _known(setup: Setup) -> dict[str, Callable[[], Parameter]]:
             value = getattr(law, field.name)
             if field.init and isinstance(value, float) and kind != "integrator":
                 full = f"{kind}.{field.name}"
-                found[full] = partial(_option, kind, field, value)
+                tabled = tabulated.holds(setup.simulation)
+                found[full] = partial(_option, kind, field, value, tabled=tabled)
     return found
 
 
-def _option(kind: str, field: attrs.Attribute[Any], value: float) -> LawOption:
+def _option(kind: str, field: attrs.Attribute[Any], value: float, *, tabled: bool) -> LawOption:
+    """Return an option of a law.
+
+    Parameters
+    ----------
+    kind : str
+        "normal" or "tangential".
+    field : attrs.Attribute
+        Of the law's class, with unit and rule.
+    value : float
+        That the law has.
+    tabled : bool
+        Whether a table of rebounds answers: searches for a restitution begin where it holds.
+    """
     least, most = _range(field.metadata.get("rule"), value)
     finite = math.isfinite(least) and math.isfinite(most)
+    first = max(least, DAMPED_RESTITUTION) if tabled and field.name == "restitution" else least
     return LawOption(
         name=f"{kind}.{field.name}",
         unit=field.metadata.get("unit", "1"),
         least=least,
         most=most,
-        starts=(value, *(_evenly(least, most) if finite else ())),
+        starts=(value, *(_evenly(first, most) if finite else ())),
         kind=kind,
         option=field.name,
     )

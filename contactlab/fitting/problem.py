@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 import attrs
 import numpy as np
@@ -12,14 +12,18 @@ from numpy.typing import NDArray
 
 from contactlab.fitting.measurements import Measurements
 from contactlab.fitting.model import Model
+from contactlab.fitting.parameters import Parameter
 
 Array = NDArray[np.float64]
+Loss = Literal["linear", "soft_l1"]
 
 #: Step of a derivative, of the parameter's size: the table of psi2 is good to 1e-9, steps of
 #: an integrator make answers uneven by less than that, and the third derivative costs 1e-6.
 STEP = 1e-3
 #: Share of a parameter to which it is found: far below any scatter, far above the table's error.
 TOLERANCE = 1e-6
+#: The same of a robust fit, which is there to be compared.
+ROUGHLY = 1e-4
 #: Points of the grid on which searches begin, and most searches.
 GRID, SEARCHES = 400, 4
 #: Most rounds in which the errors of several quantities are taken from their own residuals, and
@@ -128,13 +132,9 @@ def starting(problem: Problem) -> list[Array]:
     One quantity of one impact, as a rule, has the same value at two coefficients of friction, and
     a search goes no further than the minimum that is next.
     """
-    parameters = problem.model.parameters
-    most = int(GRID ** (1.0 / len(parameters)) + 1e-9)
-    axes = [_some(sorted(set(parameter.starts)), most) for parameter in parameters]
-    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    points = grid.reshape(-1, len(parameters))
-    weighted = problem.weighted(points, problem.scales())
-    costs = np.sum(weighted**2, axis=1).reshape(grid.shape[:-1])
+    points = _points(problem.model.parameters)
+    weighted = problem.weighted(grid(problem.model.parameters), problem.scales())
+    costs = np.sum(weighted**2, axis=1).reshape(points.shape[:-1])
     least = np.ones(costs.shape, dtype=bool)
     for axis in range(costs.ndim):
         ends = [(1, 1) if other == axis else (0, 0) for other in range(costs.ndim)]
@@ -144,7 +144,19 @@ def starting(problem: Problem) -> list[Array]:
         least &= np.take(steps, range(1, count + 1), axis) >= 0.0
     least.flat[int(np.argmin(costs))] = True  # also on a plain, where nothing is lower
     order = np.argsort(costs[least], kind="stable")[:SEARCHES]
-    return list(grid[least][order])
+    return list(points[least][order])
+
+
+def grid(parameters: tuple[Parameter, ...]) -> Array:
+    """Return the points among which searches begin, shape (m, parameters)."""
+    return _points(parameters).reshape(-1, len(parameters))
+
+
+def _points(parameters: tuple[Parameter, ...]) -> Array:
+    """Return the starts of all parameters combined, an axis for each, and one of the values."""
+    most = int(GRID ** (1.0 / len(parameters)) + 1e-9)
+    axes = [_some(sorted(set(parameter.starts)), most) for parameter in parameters]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
 
 
 def _some(starts: list[float], most: int) -> Array:
@@ -153,26 +165,39 @@ def _some(starts: list[float], most: int) -> Array:
     return np.array([starts[place] for place in sorted(set(places.round().astype(int).tolist()))])
 
 
-def solved(problem: Problem, start: Array) -> Array:
+def solved(problem: Problem, start: Array, scales: Mapping[str, Any] | None = None) -> Array:
     """Return the values of the parameters that meet the measurements best.
 
     Where several quantities have unknown errors, each is weighted by its own residuals, round
-    after round: the maximum of likelihood.
+    after round, from ``scales`` on: the maximum of likelihood.
     """
     unknown = [name for name in problem.measured if name not in problem.errors]
-    scales = problem.scales()
-    values = _minimum(problem, start, scales)
+    scales = problem.scales() if scales is None else scales
+    values = minimum(problem, start, scales)
     if len(problem.measured) == 1 or not unknown:
         return values  # the one error, or none, changes nothing
     for _ in range(ROUNDS):
         before, scales = scales, problem.scales(problem.residuals(values[None]))
-        values = _minimum(problem, values, scales)
+        values = minimum(problem, values, scales)
         if all(np.allclose(scales[name], before[name], rtol=STEADY, atol=0.0) for name in unknown):
             break
     return values
 
 
-def _minimum(problem: Problem, start: Array, scales: Mapping[str, Any]) -> Array:
+def minimum(
+    problem: Problem, start: Array, scales: Mapping[str, Any], *, loss: Loss = "linear"
+) -> Array:
+    """Return the values at the least sum of a loss of residuals.
+
+    Parameters
+    ----------
+    problem : Problem
+    start : array, shape (parameters,)
+    scales : mapping of str to float or array
+        Errors that residuals are taken over, by quantity.
+    loss : str
+        Of ``scipy.optimize.least_squares``: "soft_l1" hardly feels a few far numbers.
+    """
     from scipy.optimize import least_squares  # only those who fit pay for it
 
     known: dict[bytes, tuple[Array, Array]] = {}
@@ -198,8 +223,9 @@ def _minimum(problem: Problem, start: Array, scales: Mapping[str, Any]) -> Array
         jac=slopes,
         bounds=(low, high),
         x_scale=np.array([abs(v) or 1.0 for v in start.tolist()]),
-        xtol=TOLERANCE,
-        ftol=TOLERANCE**2,
+        xtol=TOLERANCE if loss == "linear" else ROUGHLY,
+        ftol=TOLERANCE**2 if loss == "linear" else ROUGHLY**2,
         gtol=TOLERANCE**2,
+        loss=loss,
     )
     return np.asarray(found.x)

@@ -1,0 +1,188 @@
+"""A robust second fit, and the numbers that do not go with the others."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.fitting.problem import Problem, grid, minimum
+
+Array = NDArray[np.float64]
+
+#: The median absolute deviation of normal scatter is this much smaller than its standard error.
+NORMAL = 1.4826
+#: Residuals of the robust fit, in units of its scatter, beyond which numbers are left out for a
+#: try: the fit of the rest, not this, decides.
+CUTS = (20.0, 10.0, 6.0, 4.5, 3.5)
+#: A larger share of the numbers is no slip, and fewer numbers say too little of their scatter.
+FEW, LEAST = 0.3, 6
+#: Chance with which normal scatter is taken for outliers.
+CHANCE = 1e-3
+#: Scatter below this share of the largest number is numerical error.
+NUMERICAL = 1e-4
+#: Impacts that are listed one by one.
+LISTED = 8
+
+
+class Outliers(NamedTuple):
+    """Numbers that do not go with the others.
+
+    Attributes
+    ----------
+    chance : float
+        With which normal scatter would look like it; 1 if there are none.
+    places : mapping of str to array of int
+        Rows, by quantity.
+    rest : Problem
+        Without them.
+    values : array, shape (parameters,)
+        That meet the rest best.
+    """
+
+    chance: float
+    places: Mapping[str, NDArray[np.intp]]
+    rest: Problem
+    values: Array
+
+
+def robust(problem: Problem, values: Array) -> tuple[Array, dict[str, Any]]:
+    """Return values that few far numbers hardly move, and the scatter of the others by quantity.
+
+    Parameters
+    ----------
+    problem : Problem
+    values : array, shape (parameters,)
+        The best values by least squares.
+
+    Notes
+    -----
+    ``scipy.optimize.least_squares`` with the loss "soft_l1": first nearly the least absolute
+    deviations, then with the scatter that these show.
+    """
+    scales = {
+        name: 0.1 * np.asarray(scale)
+        for name, scale in problem.scales(problem.residuals(values[None])).items()
+    }
+    points = np.vstack([values, grid(problem.model.parameters)])
+    start = points[int(np.argmin(np.sum(np.abs(problem.weighted(points, scales)), axis=1)))]
+    first = minimum(problem, start, scales, loss="soft_l1")
+    scales = scatter(problem, first)
+    return minimum(problem, first, scales, loss="soft_l1"), scales
+
+
+def scatter(problem: Problem, values: Array) -> dict[str, Any]:
+    """Return the scatter of each quantity by the median of its absolute residuals.
+
+    Where errors are given it is as many times these for all numbers of the quantity.
+    """
+    number = sum(problem.counts.values())
+    wider = math.sqrt(number / max(number - len(values), 1))
+    found: dict[str, Any] = {}
+    sizes = problem.sizes()
+    for name, rows in problem.residuals(values[None]).items():
+        errors = problem.errors.get(name, np.ones(rows.shape[1]))
+        middle = float(np.nanmedian(np.abs(rows[0] / errors)))
+        found[name] = errors * max(NORMAL * wider * middle, NUMERICAL * sizes[name] / errors.max())
+    return found
+
+
+def outliers(problem: Problem, values: Array, scales: Mapping[str, Any]) -> Outliers:
+    """Return the numbers without which the rest is met so well as chance never makes it.
+
+    Parameters
+    ----------
+    problem : Problem
+    values : array, shape (parameters,)
+        Of the robust fit.
+    scales : mapping of str to array
+        Its scatter.
+
+    Notes
+    -----
+    The F test of k numbers with a mean of their own, times the number of ways to choose k
+    (Bonferroni): the numbers farthest from the robust fit are tried, some more each time.
+    """
+    from scipy.special import fdtrc, gammaln  # only those who fit pay for it
+
+    off = {
+        name: np.abs(rows[0]) / scales[name]
+        for name, rows in problem.residuals(values[None]).items()
+    }
+    flat = np.concatenate([rows[np.isfinite(rows)] for rows in off.values()])
+    number, parameters = len(flat), len(values)
+    if number < LEAST + parameters - 1:
+        return none(problem, values)
+    least = sum((NUMERICAL * size / np.min(scales[q])) ** 2 for q, size in problem.sizes().items())
+    whole = math.nan
+    best = none(problem, values)
+    for count in sorted({int(np.sum(flat > cut)) for cut in CUTS} - {0}):
+        freedom = number - count - parameters
+        if count > max(1.0, FEW * number) or freedom < 3:
+            break
+        cut = np.sort(flat)[-count]
+        places = {name: np.flatnonzero(rows >= cut) for name, rows in off.items()}
+        rest = _without(problem, places)
+        if min(rest.counts.values()) <= parameters:
+            break
+        again = minimum(rest, values, scales)
+        square = _square(rest, again, scales)
+        if math.isnan(whole):
+            whole = _square(problem, minimum(problem, values, scales), scales)
+        ratio = (whole - square) / count / ((square + least) / freedom)
+        ways = gammaln(number + 1) - gammaln(count + 1) - gammaln(number - count + 1)
+        chance = float(fdtrc(count, freedom, max(ratio, 0.0)) * math.exp(min(ways, 500.0)))
+        if chance < min(best.chance, CHANCE):
+            best = Outliers(chance, {n: p for n, p in places.items() if len(p)}, rest, again)
+    return best
+
+
+def none(problem: Problem, values: Array) -> Outliers:
+    """Return that there are no outliers."""
+    return Outliers(1.0, {}, problem, values)
+
+
+def told(problem: Problem, found: Outliers) -> list[str]:
+    """Return a sentence for each quantity that has outliers."""
+    residuals = {
+        name: problem.measured[name] - rows[0]
+        for name, rows in problem.model.predicted(found.values[None], list(found.places)).items()
+    }
+    without = ", ".join(
+        f"{one.name} is {value:.4g}"
+        for one, value in zip(problem.model.parameters, found.values, strict=True)
+    )
+    sentences = []
+    for name, places in found.places.items():
+        others = np.delete(residuals[name], places)
+        rms = float(np.sqrt(np.nanmean(others**2)))
+        largest = float(np.max(np.abs(residuals[name][places])))
+        rows = [str(place + 1) for place in places[:LISTED]]
+        if len(places) > LISTED:
+            rows.append(f"{len(places) - LISTED} more")
+        listed = " and ".join([", ".join(rows[:-1]), rows[-1]] if rows[1:] else rows)
+        impacts, are = ("impacts", "are") if len(places) > 1 else ("impact", "is")
+        sentences.append(
+            f"{name}: {impacts} {listed} {are} off by up to {largest:.3g}, the others by "
+            f"{rms:.2g} (rms); without what is off {without}; # before a line leaves it out"
+        )
+    return sentences
+
+
+def _square(problem: Problem, values: Array, scales: Mapping[str, Any]) -> float:
+    """Return the sum of squares of residuals over the scatter."""
+    weighted = problem.weighted(values[None], scales)[0]
+    return float(weighted @ weighted)
+
+
+def _without(problem: Problem, places: Mapping[str, NDArray[np.intp]]) -> Problem:
+    """Return the problem without some numbers."""
+    measured = {}
+    for name, values in problem.measured.items():
+        measured[name] = values.copy()
+        measured[name][places[name]] = np.nan
+    return attrs.evolve(problem, measured=measured)

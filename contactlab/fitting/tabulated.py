@@ -1,0 +1,60 @@
+"""Impacts whose rebound is tabulated: elastic ones, and those of one restitution by Tsuji's law."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from contactlab.compose.rebound import damped, rebound
+from contactlab.compose.simulation import Simulation
+from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.outcome.motion import Motion
+from contactlab.outcome.plan import Plan
+from contactlab.outcome.result import ImpactResult
+
+
+def holds(simulation: Simulation | None) -> bool:
+    """Return whether ``contactlab.rebound`` answers for these laws.
+
+    None stands for the exact elastic laws. Others are tabulated if their normal law is that of
+    ``rebound(restitution=)``, and the rest is what that normal law gets where nothing else is
+    chosen: partial slip by Coulomb's law.
+    """
+    if simulation is None:
+        return True
+    return type(simulation.normal) is _normal_law() and simulation == Simulation(
+        normal=simulation.normal
+    )
+
+
+@cache
+def _normal_law() -> type:
+    """Return the class of the normal law behind ``rebound(restitution=)``."""
+    return type(damped(0.9).normal)
+
+
+def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
+    """Return the impacts of a batch by the table of psi2; friction work is not worked out."""
+    shape = scene.shape
+    if simulation is None:
+        psi2, course = rebound(scene.psi1, scene.chi), Simulation().normal_motion(scene)
+    else:
+        law: Any = simulation.normal
+        psi2 = rebound(scene.psi1, scene.chi, restitution=law.restitution)
+        course = simulation.normal_motion(scene)
+    change: Any = (psi2 - scene.psi1) / np.asarray(scene.psi_scale)
+    motion = Motion(
+        slip_velocity_change=change,
+        friction_work=np.full(shape, np.nan),
+        status=np.full(shape, Status.SUCCESS, dtype=object),
+        duration=np.broadcast_to(course.duration, shape),
+        normal_velocity=np.broadcast_to(course.final_rate, shape),
+        maximum_radius=np.broadcast_to(course.maximum_radius, shape),
+        maximum_approach=np.broadcast_to(course.maximum_approach, shape),
+        maximum_force=np.broadcast_to(course.maximum_force, shape),
+    )
+    plan = Plan(computed=(), left_out=(), marched=np.zeros(shape, dtype=bool))
+    return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
