@@ -34,15 +34,16 @@ from contactlab.compose.rebound import rebound
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
-from contactlab.impact.bodies import HalfSpace, Material, Pair, Sphere
+from contactlab.impact.bodies import HalfSpace, Pair, Sphere
 from contactlab.impact.encounter import Encounter
+from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.outcome.energy import EnergyLedger
 from contactlab.outcome.result import ImpactError, ImpactResult
 
 if TYPE_CHECKING:
     from contactlab.fitting import fit
-    from contactlab.impact import materials
+    from contactlab.impact import material as materials
     from contactlab.scene_file import SceneFile
 
 __version__ = "0.1.0"
@@ -117,5 +118,5 @@ def __getattr__(name: str) -> Any:
     if name == "fit":
         return importlib.import_module("contactlab.fitting").fit
     if name == "materials":
-        return importlib.import_module("contactlab.impact.materials")
+        return importlib.import_module("contactlab.impact.material")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

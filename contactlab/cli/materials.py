@@ -17,7 +17,7 @@ import attrs
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
-from contactlab.impact import materials
+from contactlab.impact import material as materials
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -53,7 +53,7 @@ def make_plan(
     computed = [Sentence(f"normal motion: {type(normal.law).__name__}, {how}", everywhere)]
     cautions = unit_slips(scene)
     if some(separated):
-        cautions += normal.law.cautions(scene, normal)
+        cautions += laws.normal.cautions(scene, normal)
         cautions += laws.tangential.cautions(scene, normal)
     if some(marched):
         text = f"tangential motion: {laws.integrator!r} over {laws.tangential!r}"

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import faults
-from contactlab.contracts.normal import NormalContact, NormalLaw
+from contactlab.contracts.contact import NormalContact
+from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene

@@ -9,8 +9,9 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.contracts.contact import NormalContact
+from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion, NormalSample
-from contactlab.contracts.normal import NormalContact, NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
@@ -160,7 +161,7 @@ class SolvedMotion(NormalMotion):
 
     accuracy = ACCURACY
 
-    def __init__(self, law: NormalLaw, scene: Scene, table: MotionTable) -> None:
+    def __init__(self, law: Law, scene: Scene, table: MotionTable) -> None:
         self.law, self.scene, self.table = law, scene, table
         self.duration = table.shaped(table.ends * table.unit)
         self.final_rate = table.shaped(table.last[:, RATE])
@@ -206,12 +207,12 @@ class FailedMotion(NormalMotion):
 
     accuracy = math.nan
 
-    def __init__(self, law: NormalLaw, scene: Scene, status: Status, detail: str) -> None:
+    def __init__(self, law: Law, scene: Scene, status: Status, detail: str) -> None:
         """Every number is NaN.
 
         Parameters
         ----------
-        law : NormalLaw
+        law : Law
             The one that failed.
         scene : Scene
         status, detail : Status, str

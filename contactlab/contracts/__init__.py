@@ -5,6 +5,7 @@ restitution as an option, statuses and faults.
 """
 
 from contactlab.contracts import faults
+from contactlab.contracts.contact import NormalContact, without_tension
 from contactlab.contracts.integrator import Integrator, Observer, Sample, TangentialMotion
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.contracts.motion import (
@@ -13,12 +14,7 @@ from contactlab.contracts.motion import (
     NormalSample,
     ScaledContact,
 )
-from contactlab.contracts.normal import (
-    ClosedFormNormalLaw,
-    NormalContact,
-    NormalLaw,
-    without_tension,
-)
+from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.phases import (
     ClosedPhase,
     DenseOutput,

@@ -12,9 +12,10 @@ from typing import Any, ClassVar, NamedTuple, Self, TypeAlias
 import attrs
 import numpy as np
 
+from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.normal import NormalContact, NormalLaw
+from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene

@@ -12,7 +12,8 @@ from contactlab.contracts.status import Status
 from contactlab.numeric.checks import Real
 
 if TYPE_CHECKING:
-    from contactlab.contracts.normal import NormalContact, NormalLaw
+    from contactlab.contracts.contact import NormalContact
+    from contactlab.contracts.law import Law
     from contactlab.impact.scene import Scene
 
 
@@ -62,7 +63,7 @@ class NormalMotion(ABC):
     detail : str, or array of str
     """
 
-    law: NormalLaw
+    law: Law
     scene: Scene
     duration: Real
     maximum_radius: Real

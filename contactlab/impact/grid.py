@@ -11,7 +11,8 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.impact.bodies import Material, Sphere
+from contactlab.impact.bodies import Sphere
+from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import real, refuse
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from contactlab.impact.bodies import HalfSpace, Material, Sphere
+from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.encounter import Encounter
+from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, unit_remedy
 from contactlab.scene_file.entries import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from contactlab.impact import materials
+from contactlab.impact import material as materials
 from contactlab.impact.grid import UNITS as SCENE_UNITS
 from contactlab.numeric.checks import nearest
 

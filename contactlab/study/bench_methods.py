@@ -13,7 +13,8 @@ from contactlab.compose.names import KINDS, full_name, kind_of, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import WholeImpactTangentialLaw
-from contactlab.impact.bodies import HalfSpace, Material, Sphere
+from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.testing.bench import scene as ball
 

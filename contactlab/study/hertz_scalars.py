@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from contactlab.impact.bodies import HalfSpace, Material, Sphere
+from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 
 #: Stiff enough for a plane that is to be rigid, in Pa.

@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab.impact.bodies import HalfSpace, Material, Sphere
+from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 
 #: A solid sphere of Poisson's ratio 0.3: the paper's own case.

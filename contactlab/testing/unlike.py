@@ -11,8 +11,9 @@ import numpy as np
 
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import Integrator, NormalLaw, TangentialLaw
-from contactlab.impact.bodies import Material, Sphere
+from contactlab.impact.bodies import Sphere
 from contactlab.impact.hertz import hertz_scales
+from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.testing.bench import FRICTION
 from contactlab.testing.check import check, hold

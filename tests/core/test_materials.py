@@ -5,7 +5,7 @@ import re
 import pytest
 
 from contactlab import HalfSpace, Material, Sphere, read_scene
-from contactlab.impact import materials
+from contactlab.impact import material as materials
 
 
 def test_there_are_some_twenty_and_the_usual_ones():

@@ -10,7 +10,7 @@ import pytest
 from contactlab.compose import citations
 from contactlab.compose.citations import DOI, YEAR, bibtex, references
 from contactlab.compose.registry import REGISTRY
-from contactlab.impact import materials
+from contactlab.impact import material as materials
 
 ROOT = Path(__file__).parents[2]
 BIB = (ROOT / "contactlab" / "compose" / "references.bib").read_text(encoding="utf-8")

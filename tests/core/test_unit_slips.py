@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere, collide
-from contactlab.impact import materials
+from contactlab.impact import material as materials
 from contactlab.impact.unit_slips import unit_slips
 
 STEEL = Material.named("steel")

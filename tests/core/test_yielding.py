@@ -9,7 +9,7 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab.impact import materials
+from contactlab.impact import material as materials
 from contactlab.impact.hertz import hertz_scales, peak_pressure
 
 YIELD = 2.0e9

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 
 from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
-from contactlab.contracts.normal import TOUCH
+from contactlab.contracts.contact import TOUCH
 from contactlab.impact.adhesion import tabor_caution
 from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene

@@ -1,16 +1,98 @@
-"""Materials by name: elastic constants and densities of some thirty, each with its source.
+"""Elastic materials, and a collection of some thirty by name.
 
-The numbers stand in ``materials.toml`` beside this file, where the sources are written out.
+The numbers stand in ``materials.toml`` beside this file, each with its source.
 """
 
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import attrs
+import numpy as np
 
-from contactlab.impact.bodies import Material
-from contactlab.numeric.checks import nearest, refuse
+from contactlab.numeric.checks import POISSON, POSITIVE, Real, nearest, quantity, real, refuse
+
+
+@attrs.frozen(init=False, kw_only=True)
+class Material:
+    """A linear elastic, isotropic material.
+
+    Parameters
+    ----------
+    shear_modulus, young_modulus : float
+        Exactly one of the two, in Pa. They are related by E = 2 G (1 + nu).
+    poisson_ratio : float
+        In [-1, 0.5].
+    density : float, optional
+        In kg/m³; needed only by a sphere whose mass is not given.
+    yield_stress : float, optional
+        Y in Pa, of a tension test: plans caution where the contact pressure exceeds 1.6 Y. No law
+        computes with it.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range, or both moduli or neither are given.
+    """
+
+    shear_modulus: Real = quantity("Pa", rule=POSITIVE)
+    poisson_ratio: Real = quantity("1", rule=POISSON)
+    density: Real | None = quantity("kg/m³", rule=POSITIVE, default=None)
+    yield_stress: Real | None = quantity("Pa", rule=POSITIVE, default=None)
+
+    def __init__(
+        self,
+        *,
+        shear_modulus: object = None,
+        young_modulus: object = None,
+        poisson_ratio: object,
+        density: Any = None,
+        yield_stress: Any = None,
+    ) -> None:
+        if (shear_modulus is None) == (young_modulus is None):
+            raise refuse(
+                "shear_modulus, young_modulus",
+                (shear_modulus, young_modulus),
+                "exactly one of the two must be given",
+                "leave one out; the other follows from E = 2 G (1 + nu)",
+            )
+        ratio = real("poisson_ratio", poisson_ratio, rule=POISSON, remedy="it has no unit")
+        if shear_modulus is None:
+            young = real("young_modulus", young_modulus, rule=POSITIVE, remedy="give it in Pa")
+            if np.any(np.asarray(ratio) == -1.0):
+                raise refuse(
+                    "young_modulus",
+                    young_modulus,
+                    "does not determine the shear modulus at poisson_ratio = -1",
+                    "give shear_modulus instead",
+                )
+            shear_modulus = young / (2.0 * (1.0 + ratio))
+        shear = real("shear_modulus", shear_modulus, rule=POSITIVE, remedy="give it in Pa")
+        self.__attrs_init__(
+            shear_modulus=shear, poisson_ratio=ratio, density=density, yield_stress=yield_stress
+        )
+
+    @classmethod
+    def named(cls, name: str) -> Material:
+        """Return a material of the collection by name: see ``contactlab.impact.material``.
+
+        Parameters
+        ----------
+        name : str
+            Such as ``"steel"``; ``contactlab materials`` lists them.
+
+        Raises
+        ------
+        ValueError
+            If there is no such material, with the nearest name.
+        """
+        return entry(name).material()
+
+    @property
+    def young_modulus(self) -> Real:
+        """E = 2 G (1 + nu), in Pa."""
+        return 2.0 * self.shear_modulus * (1.0 + self.poisson_ratio)
 
 
 @attrs.frozen(kw_only=True)
