@@ -7,7 +7,7 @@ from typing import Any
 
 from contactlab.cli.table import table
 from contactlab.compose.collision import VECTORS, Collision
-from contactlab.impact.grid import entry_unit
+from contactlab.impact.scene import entry_unit
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import answer, closing, largest_imbalance, sections, sweep_section
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.cli.table import table
 from contactlab.fitting import Fit, Ranked
-from contactlab.impact.grid import entry_unit
+from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.files import write_table
 from contactlab.outcome.tables import heading

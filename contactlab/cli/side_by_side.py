@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from contactlab.cli.table import table
-from contactlab.impact.grid import entry_unit
+from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import COMPARISON_TABLE, QUANTITIES
 from contactlab.outcome.tables import heading, number, time
 from contactlab.scene_file import SceneFile

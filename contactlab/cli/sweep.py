@@ -24,8 +24,7 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.run import draw, report
 from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
 from contactlab.cli.table import table
-from contactlab.impact.grid import entry_unit
-from contactlab.impact.scene import Scene
+from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import COLUMNS, csv_heading
 from contactlab.outcome.export import WRITERS

@@ -22,7 +22,7 @@ from contactlab.figures.style import (
     verbatim,
     zero_line,
 )
-from contactlab.impact.grid import Grid, entry_unit
+from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import QUANTITIES, scaled_forces
 from contactlab.study.compare import Agreement, Comparison
 
@@ -226,7 +226,7 @@ def forces_over_contact(axes: Axes, comparison: Comparison) -> Axes:
 def _axes(comparison: Comparison) -> Mapping[str, Any]:
     """Return the entries that vary independently, where there are several."""
     scene = comparison.scene
-    return scene.axes if isinstance(scene, Grid) and len(scene.axes) > 1 else {}
+    return scene.axes if len(scene.axes) > 1 else {}
 
 
 def _abscissa(

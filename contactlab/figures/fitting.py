@@ -13,7 +13,7 @@ from contactlab.figures.comparison import POINTS
 from contactlab.figures.files import save
 from contactlab.figures.style import label, law_style, verbatim, zero_line
 from contactlab.fitting.outcome import Fit
-from contactlab.impact.grid import entry_unit
+from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import QUANTITIES
 
 MARKERS = "os^Dv<"

@@ -6,7 +6,7 @@ import math
 import re
 from typing import NamedTuple
 
-from contactlab.impact.grid import entry_unit
+from contactlab.impact.scene import entry_unit
 from contactlab.numeric.checks import nearest
 from contactlab.outcome.columns import QUANTITIES
 from contactlab.scene_file.entries import ENTRIES

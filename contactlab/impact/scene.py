@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
 
 import attrs
 import numpy as np
 
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
+from contactlab.impact.grid import Array, axes_of, product
+from contactlab.impact.material import Material
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import (
     NON_NEGATIVE,
@@ -22,9 +25,6 @@ from contactlab.numeric.checks import (
     real,
     refuse,
 )
-
-if TYPE_CHECKING:
-    from contactlab.impact.grid import Grid
 
 #: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s: numbers
 #: formed from smaller ones are no longer held to sixteen digits.
@@ -81,6 +81,7 @@ class Scene:
     #: Place of each impact in the whole batch, whole numbers of the batch shape; 0 of one impact.
     #: ``take``, blocks, chunks and workers keep it: a key for the random draws of a law.
     index: Any = attrs.field(init=False, eq=False, repr=False)
+    _axes: tuple[tuple[str, Array], ...] = attrs.field(init=False, eq=False, repr=False, default=())
 
     def __attrs_post_init__(self) -> None:
         if self.sphere is not None and self.target is not None:
@@ -233,13 +234,13 @@ class Scene:
         return cls(None, None, 1.0, 1.0, incidence, pair=pair)
 
     @classmethod
-    def grid(cls, *bodies: Any, **entries: Any) -> Grid:
+    def grid(cls, *bodies: Any, **entries: Any) -> Scene:
         """Return the batch of every combination of some entries, the last varying fastest.
 
         ``Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25))``, or bodies first and the
         entries of ``Scene`` or of ``Scene.at_angle`` by name: lists for those that vary, numbers
-        for the others. A sweep of it gives tables and arrays with named dimensions:
-        ``ImpactResult.to_xarray``.
+        for the others. The scene knows its ``axes``, and a sweep of it gives tables and arrays
+        with named dimensions: ``ImpactResult.to_xarray``.
 
         Parameters
         ----------
@@ -254,9 +255,39 @@ class Scene:
         ValueError
             If nothing varies, a list has more than one dimension, or the scene is refused.
         """
-        from contactlab.impact.grid import grid  # a kind of scene itself
+        axes = axes_of(entries)
+        make: Callable[..., Scene] = cls
+        if not bodies and {"psi1", "chi"} & set(entries):
+            make = cls.nondimensional
+        elif {"speed", "angle_deg"} & set(entries):
+            make = cls.at_angle
+        return make(*bodies, **(entries | product(axes))).over(axes)
 
-        return grid(*bodies, **entries)
+    def over(self, axes: Mapping[str, Any]) -> Scene:
+        """Return the batch as a grid: it has every combination of ``axes``, in its order.
+
+        Parameters
+        ----------
+        axes : mapping of str to array, shape (n_i,)
+            The values of each entry that varies, the last varying fastest.
+        """
+        found = copy.copy(self)
+        lines = [(name, np.array(values, dtype=np.float64)) for name, values in axes.items()]
+        object.__setattr__(found, "_axes", tuple((name, batch.locked(v)) for name, v in lines))
+        return found
+
+    @property
+    def axes(self) -> Mapping[str, Array]:
+        """The values of each entry that varies over a grid, by name; empty for other scenes.
+
+        Impact ``i`` of the batch is ``np.unravel_index(i, scene.dimensions)`` of them.
+        """
+        return MappingProxyType({name: batch.locked(values) for name, values in self._axes})
+
+    @property
+    def dimensions(self) -> tuple[int, ...]:
+        """The length of each axis of a grid; () for other scenes."""
+        return tuple(values.size for _, values in self._axes)
 
     @classmethod
     def stack(cls, scenes: Sequence[Scene]) -> Scene:
@@ -306,6 +337,7 @@ class Scene:
         taken: Scene = batch.taken(self, self.shape, part)
         numbers = taken.numbers().values()
         object.__setattr__(taken, "shape", np.broadcast_shapes(*map(np.shape, numbers)))
+        object.__setattr__(taken, "_axes", ())
         if taken.shape or isinstance(part, int | tuple):
             return taken
         count = np.shape(taken.index)
@@ -375,3 +407,17 @@ class Scene:
     def psi1(self) -> Real:
         """Non-dimensional local angle of incidence, from the local velocity (20), (29)."""
         return self.psi(self.slip_velocity)
+
+
+#: Units of the entries that a scene may be made of.
+UNITS: dict[str, str] = {
+    field.name: field.metadata["unit"]
+    for kind in (Scene, Sphere, Material)
+    for field in attrs.fields(kind)
+    if "unit" in field.metadata
+} | {"speed": "m/s", "angle_deg": "deg", "psi1": "1", "chi": "1", "young_modulus": "Pa"}
+
+
+def entry_unit(name: str) -> str:
+    """Return the unit of an entry, by a dotted name too: ``"sphere.radius"`` is in m."""
+    return UNITS[name.rpartition(".")[2]]

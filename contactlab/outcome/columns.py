@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
-from contactlab.impact.grid import Grid, entry_unit, product
-from contactlab.impact.scene import Scene
+from contactlab.impact.grid import product
+from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import nearest, refuse
 
 
@@ -126,7 +126,7 @@ def quantity_named(name: str, *, where: str = "quantity") -> Column:
 def columns(result: Any) -> list[tuple[str, str, Any]]:
     """Return name, unit and values of every column; grid axes that are not columns come first."""
     found = [(column.name, column.unit, column.read(result)) for column in COLUMNS]
-    if not isinstance(result.scene, Grid):
+    if not result.scene.axes:
         return found
     varied = product(result.scene.axes)
     for column in COLUMNS:

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab.impact.grid import Grid
 from contactlab.outcome.columns import columns as all_columns
 from contactlab.outcome.columns import unit_in
 
@@ -68,7 +67,7 @@ def to_xarray(result: Any) -> Any:
 
 def _labelled(result: Any) -> Labelled:
     scene = result.scene
-    axes = dict(scene.axes) if isinstance(scene, Grid) else {}
+    axes = dict(scene.axes)
     columns, units = {}, {}
     for name, unit, values in all_columns(result):
         if values is None:  # not defined for a scene without bodies

@@ -16,8 +16,7 @@ from contactlab.compose.citations import references
 from contactlab.compose.simulation import Simulation
 from contactlab.figures.comparison import differences, forces_over_contact, laws_over_sweep
 from contactlab.figures.files import as_svg
-from contactlab.impact.grid import entry_unit
-from contactlab.impact.scene import Scene
+from contactlab.impact.scene import Scene, entry_unit
 from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import closing, largest_imbalance, scene_section, sweep_section, time

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from contactlab.impact import material as materials
-from contactlab.impact.grid import UNITS as SCENE_UNITS
+from contactlab.impact.scene import UNITS as SCENE_UNITS
 from contactlab.numeric.checks import nearest
 
 MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density", "yield_stress")

@@ -12,7 +12,6 @@ from typing import Any
 import attrs
 
 from contactlab.impact.encounter import Encounter
-from contactlab.impact.grid import over
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, real, refuse
 from contactlab.outcome.files import content
@@ -46,7 +45,7 @@ class SceneFile:
     title, citation, notes : str
         From ``[about]``; empty where not given.
     scene : Scene
-        One impact, or the batch of a ``[sweep]``: a ``Grid`` if that is a product.
+        One impact, or the batch of a ``[sweep]``: with ``axes`` if that is a product.
     varied : mapping of str to array
         The entries that the sweep varies and their values, shape (n,); empty for one impact.
     laws : LawChoice
@@ -118,7 +117,7 @@ def read_scene(
         return SceneFile(
             path=file,
             **{key: about.text(key, default="") for key in ABOUT_KEYS},
-            scene=over(scene, sweep.axes) if sweep.axes else scene,
+            scene=scene.over(sweep.axes) if sweep.axes else scene,
             encounter=encounter,
             varied=sweep.varied,
             laws=read_laws(document.get("simulation", {})),

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from contactlab.compose.error_estimate import estimated
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
-from contactlab.impact.grid import Grid, product
+from contactlab.impact.grid import product
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import quantity_named
@@ -234,7 +234,7 @@ def _varied(scene: Scene) -> dict[str, Array]:
     """
     if not scene.shape:
         return {}
-    if isinstance(scene, Grid):
+    if scene.axes:
         return product(scene.axes)
     found: dict[str, Any] = {"psi1": scene.psi1, "chi": scene.chi}
     if scene.sphere is not None:

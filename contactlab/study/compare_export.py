@@ -9,7 +9,7 @@ from typing import Any, TextIO
 import attrs
 import numpy as np
 
-from contactlab.impact.grid import entry_unit
+from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import QUANTITIES, csv_heading, json_value
 from contactlab.study.compare import Comparison
 from contactlab.study.scores import Score

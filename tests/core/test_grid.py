@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scene
-from contactlab.impact.grid import MOST_IMPACTS, Grid
+from contactlab.impact.grid import MOST_IMPACTS
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.outcome.columns import COLUMNS
 from contactlab.outcome.export import to_dict, write_csv, write_npz
@@ -24,12 +24,11 @@ def result():
 
 def test_every_combination_the_last_fastest(result):
     grid = result.scene
-    assert isinstance(grid, Grid)
     assert (grid.shape, grid.dimensions) == ((12,), (3, 4))
     pairs = [(chi, psi1) for chi in CHI for psi1 in PSI1]
     assert list(zip(grid.chi, grid.psi1, strict=True)) == pairs
-    assert type(grid.take(slice(2, 5))) is Scene
-    assert grid.scene == Scene.nondimensional(psi1=grid.psi1, chi=grid.chi)
+    assert not grid.take(slice(2, 5)).axes
+    assert grid == Scene.nondimensional(psi1=grid.psi1, chi=grid.chi)
 
 
 def test_a_grid_pickles_and_is_read_only(result):
@@ -173,7 +172,7 @@ def test_a_file_asks_for_the_product(tmp_path):
     path = tmp_path / "grid.toml"
     path.write_text(SCENE.format(product="true"), encoding="utf-8")
     file = read_scene(path)
-    assert isinstance(file.scene, Grid)
+    assert file.scene.dimensions == Scene.grid(chi=CHI, psi1=[0.0, 2.0, 4.0, 6.0]).dimensions
     assert dict(RIGID.sweep(file.scene).to_xarray().sizes) == {"chi": 3, "psi1": 4}
     assert file.scene == Scene.grid(chi=CHI, psi1=[0.0, 2.0, 4.0, 6.0])
     assert file.varied["psi1"].tolist() == file.scene.psi1.tolist()
