@@ -8,6 +8,7 @@ import os
 import pickle
 import signal
 import threading
+import time
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing.context import SpawnContext, SpawnProcess
@@ -27,6 +28,8 @@ from contactlab.numeric.checks import whole
 
 #: Most processes: more than any machine has processors.
 MOST = 1024
+#: Seconds that a call has to end after an interrupt.
+GRACE = 5.0
 MODULE_REMEDY = "define its class at the top of a module that can be imported"
 
 
@@ -86,11 +89,18 @@ def processes(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 def stop(pool: ProcessPoolExecutor) -> None:
-    """Interrupt the calls of a pool and end its processes."""
-    for process in list((pool._processes or {}).values()):
+    """Interrupt the calls of a pool and end its processes, by force where a call goes on."""
+    running = list((pool._processes or {}).values())
+    for process in running:
         if process.is_alive():
             os.kill(process.pid or 0, signal.SIGINT)
-    pool.shutdown(cancel_futures=True)
+    pool.shutdown(wait=False, cancel_futures=True)
+    deadline = time.monotonic() + GRACE
+    for process in running:
+        process.join(max(0.0, deadline - time.monotonic()))
+        if process.is_alive():
+            process.terminate()
+    pool.shutdown()
 
 
 class _Process(SpawnProcess):

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 import types
-from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -391,6 +391,15 @@ def test_processes_end_with_a_program_that_is_killed(tmp_path):
     while any(map(alive, pids)):
         assert time.monotonic() < deadline
         time.sleep(0.01)
+
+
+def test_a_call_that_no_interrupt_ends_is_ended_by_force(monkeypatch):
+    monkeypatch.setattr(workers_module, "GRACE", 0.5)
+    with processes(1) as pool:
+        call = pool.submit(time.sleep, 60.0)
+        while not call.running():
+            time.sleep(0.01)
+    assert isinstance(call.exception(), BrokenExecutor)
 
 
 def alive(pid):
