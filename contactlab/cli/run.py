@@ -61,7 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--estimate",
         action=argparse.BooleanOptionalAction,
         default=True,
-        help="estimate the numerical error of a single impact by runs at other resolutions",
+        help="estimate the numerical error of a single impact by finer runs (the default)",
     )
     shared.add_progress(parser)
 

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 #: A count that is refined alone is multiplied by this factor and by its square, several counts
 #: together by the lesser factor: the finest run costs about sixteen times the first.
 ALONE, TOGETHER = 4, 2
-#: A tolerance is divided by this and by its square. Steps are doubled until a tolerance is kept,
-#: so that a lesser change of it might change no step.
-TOLERANCE = 16.0
+#: A tolerance is divided by this times the square of the lesser factor, as for a method of second
+#: order. Steps are doubled until a tolerance is kept: a lesser change might change no step.
+TOLERANCE = 4.0
 #: Share of the last change that the finest run is taken to be off by. A method of second order
 #: leaves a third of the change of a doubling, one of first order all of it.
 LEFT = 0.5
@@ -81,17 +81,18 @@ def _distance(simulation: Simulation, scene: Scene, resolution: float | None, ch
         Change of slip velocity, in m/s.
     """
     options = _options(simulation, resolution)
-    factor = ALONE if len(options) == 1 else TOGETHER
-    answers = [change]
-    for level in (1, 2):
-        finer = _finer(simulation, options, factor**level, TOLERANCE**level)
+    alone = len(options) == 1 and all(isinstance(value, int) for value in options.values())
+    factor = ALONE if alone else TOGETHER
+    answers = []
+    for times in (factor, factor**2):
+        finer = _finer(simulation, options, times)
         if finer is None:
             return np.zeros(change.shape)
         run = finer.run(scene)
         found = np.asarray(run.motion.slip_velocity_change)
         answers.append(np.where(_successes(run), found, np.nan))
-    coarse, fine, finest = answers
-    return scene.psi(np.abs(finest - coarse) + LEFT * np.abs(finest - fine))
+    fine, finest = answers
+    return scene.psi(np.abs(finest - change) + LEFT * np.abs(finest - fine))
 
 
 def _options(simulation: Simulation, resolution: float | None) -> dict[str, Any]:
@@ -106,9 +107,7 @@ def _options(simulation: Simulation, resolution: float | None) -> dict[str, Any]
     return found
 
 
-def _finer(
-    simulation: Simulation, options: dict[str, Any], times: int, divisor: float
-) -> Simulation | None:
+def _finer(simulation: Simulation, options: dict[str, Any], times: int) -> Simulation | None:
     """Return the simulation with finer resolutions; None if there are none, or a law refuses.
 
     Parameters
@@ -118,13 +117,11 @@ def _finer(
         As of ``_options``.
     times : int
         What a count is multiplied by.
-    divisor : float
-        What a tolerance is divided by.
     """
     changed = {}
     for kind, value in options.items():
         law: Any = getattr(simulation, kind)
-        other = value * times if isinstance(value, int) else value / divisor
+        other = value * times if isinstance(value, int) else value / (TOLERANCE * times**2)
         try:
             changed[kind] = attrs.evolve(law, **{law.resolution: other})
         except ValueError:  # beyond what the law allows
