@@ -1,7 +1,7 @@
 """Declared and estimated numerical errors against true ones, over 6,000 runs of a fixed seed.
 
 ``error_figures.json`` beside this file holds what was measured before the estimate was mended, and
-after. The true error is the distance from the exact solution; of laws that do not converge to it,
+after, and the simple rules that were tried for declared errors. The true error is the distance from the exact solution; of laws that do not converge to it,
 from the same law at many steps.
 """
 
@@ -97,7 +97,16 @@ def test_estimates_of_6000_runs():
     assert runs == 6000
     assert small == 0, found
     assert share >= 0.96, found
-    assert min(each["estimate within a factor of three"] for each in found.values()) >= 0.95, found
+    assert min(each["estimate within a factor of three"] for each in found.values()) >= 0.955, found
+
+
+@pytest.mark.parametrize("name", ["springs", "sharp_annulus"])
+def test_estimates_of_240_runs(name):
+    """A part of the set; laws without an exact limit and annuli take longer."""
+    found = figures(name, "symplectic", 240)
+    assert found["estimate within a factor of three"] >= 0.96
+    assert found["estimate over ten times too small"] == 0
+    assert 0.9 < found["estimate over true error, median"] < 1.2
 
 
 def test_the_set_is_what_it_says():
