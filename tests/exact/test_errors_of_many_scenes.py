@@ -1,8 +1,8 @@
 """Declared and estimated numerical errors against true ones, over 6,000 runs of a fixed seed.
 
-``error_figures.json`` beside this file holds what was measured before the estimate was mended, and
-after, and the simple rules that were tried for declared errors. The true error is the distance from the exact solution; of laws that do not converge to it,
-from the same law at many steps.
+``error_figures.json`` beside this file holds what was measured before the estimate was mended and
+after, and the simple rules that were tried for declared errors. The true error is the distance
+from the exact solution; of laws that do not converge to it, from the same law at many steps.
 """
 
 import numpy as np
