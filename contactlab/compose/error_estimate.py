@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from contactlab.compose.planning import CLOSED_FORM
+from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.status import Status
 from contactlab.numeric.checks import Real
 
@@ -31,7 +33,8 @@ def estimated(simulation: Simulation, result: ImpactResult) -> Real:
 
     Each impact is run again at two finer resolutions, of all laws that have one: normal law,
     tangential law and, where it marches the impact, integrator. The estimate is the distance of
-    psi2 from the finest answer, plus half the last change. No order of convergence is assumed.
+    psi2 from the finest answer, plus half the last change, and no less than rounding. No order of
+    convergence is assumed.
     The errors of the model are not in the estimate. Where the answers do not differ, or no law has
     a finer resolution, the estimate is the error that the plan declares.
 
@@ -92,7 +95,10 @@ def _distance(simulation: Simulation, scene: Scene, resolution: float | None, ch
         found = np.asarray(run.motion.slip_velocity_change)
         answers.append(np.where(_successes(run), found, np.nan))
     fine, finest = answers
-    return scene.psi(np.abs(finest - change) + LEFT * np.abs(finest - fine))
+    distance = scene.psi(np.abs(finest - change) + LEFT * np.abs(finest - fine))
+    return np.where(
+        distance > 0.0, np.maximum(distance, CLOSED_FORM * psi_magnitude(scene)), distance
+    )
 
 
 def _options(simulation: Simulation, resolution: float | None) -> dict[str, Any]:

@@ -70,11 +70,11 @@ def test_a_region_knows_whether_its_law_converges_to_the_exact_solution(law, con
 
 @pytest.mark.parametrize(("reference", "expected"), [(continuum, ANSWERED), (no_change, WRONG)])
 def test_the_error_of_a_law_that_declares_none_is_judged_by_the_estimate(reference, expected):
-    """Two springs are off by more than a hundredth of the range, as the estimate says."""
+    """One spring is off by more than a hundredth of the range, as the estimate says."""
     scene = Extreme("map", "", lambda: Scene.nondimensional(psi1=1.2, chi=CHI))
     method = Method(tangential="springs", integrator="symplectic")
     case = Case(family="map", label="", method=method, options={}, scene=scene, planned=False)
-    law = contactlab.create("tangential.springs", springs=2)
+    law = contactlab.create("tangential.springs", springs=1)
     simulation = Simulation(tangential=law, integrator="symplectic")
     outcome = judge_run(case, simulation, scene.make(), reference)
     assert outcome.outcome == expected

@@ -15,6 +15,13 @@ from tests.outside_laws import Walton
 CHI = 49.0 / 34.0
 
 
+def test_no_estimate_is_less_than_rounding():
+    scene = Scene.nondimensional(psi1=[0.3, 1.2, 2.0], chi=CHI)
+    result = Simulation().run(scene, estimate_error=True).check()
+    assert (result.psi2_error_estimate >= 1e-12).all()
+    assert (result.psi2_error_estimate <= result.plan.psi2_error).all()
+
+
 def test_what_is_known_has_the_declared_error():
     result = Simulation(tangential="springs").run(
         Scene.nondimensional(psi1=np.array([0.0, 1.2, 9.0]), chi=CHI), estimate_error=True
