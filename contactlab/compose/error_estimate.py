@@ -34,9 +34,9 @@ def estimated(simulation: Simulation, result: ImpactResult) -> Real:
     Each impact is run again at two finer resolutions, of all laws that have one: normal law,
     tangential law and, where it marches the impact, integrator. The estimate is the distance of
     psi2 from the finest answer, plus half the last change, and no less than rounding. No order of
-    convergence is assumed.
-    The errors of the model are not in the estimate. Where the answers do not differ, or no law has
-    a finer resolution, the estimate is the error that the plan declares.
+    convergence is assumed. A tolerance that cannot be kept when it is tightened stays, and the
+    error in time is not in the estimate then. Nor are the errors of the model. Where the answers
+    do not differ, or no law has a finer resolution, the estimate is what the plan declares.
 
     Parameters
     ----------
@@ -84,21 +84,29 @@ def _distance(simulation: Simulation, scene: Scene, resolution: float | None, ch
         Change of slip velocity, in m/s.
     """
     options = _options(simulation, resolution)
-    alone = len(options) == 1 and all(isinstance(value, int) for value in options.values())
-    factor = ALONE if alone else TOGETHER
+    counts = {kind: value for kind, value in options.items() if isinstance(value, int)}
+    factor = ALONE if len(options) == len(counts) == 1 else TOGETHER
     answers = []
     for times in (factor, factor**2):
         finer = _finer(simulation, options, times)
         if finer is None:
             return np.zeros(change.shape)
-        run = finer.run(scene)
-        found = np.asarray(run.motion.slip_velocity_change)
-        answers.append(np.where(_successes(run), found, np.nan))
+        found = _change(finer, scene)
+        coarser = _finer(simulation, counts, times) if counts else None
+        if coarser is not None and np.isnan(found).any():  # the tolerance cannot be tightened
+            found = np.where(np.isnan(found), _change(coarser, scene), found)
+        answers.append(found)
     fine, finest = answers
     distance = scene.psi(np.abs(finest - change) + LEFT * np.abs(finest - fine))
     return np.where(
         distance > 0.0, np.maximum(distance, CLOSED_FORM * psi_magnitude(scene)), distance
     )
+
+
+def _change(simulation: Simulation, scene: Scene) -> Any:
+    """Return the change of slip velocity in m/s; NaN where the run failed."""
+    result = simulation.run(scene)
+    return np.where(_successes(result), result.motion.slip_velocity_change, np.nan)
 
 
 def _options(simulation: Simulation, resolution: float | None) -> dict[str, Any]:

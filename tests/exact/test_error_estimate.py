@@ -7,12 +7,26 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Scene, Simulation
+from contactlab import Scene, Simulation, Status
 from contactlab.contracts import NormalLaw, SteppedTangentialLaw, TangentialResponse
 from contactlab.numeric.checks import count
 from tests.outside_laws import Walton
 
 CHI = 49.0 / 34.0
+
+
+@attrs.frozen(kw_only=True)
+class Tight(type(contactlab.create("integrator.adaptive"))):
+    """The adaptive integrator, for which no tolerance below 1e-3 can be kept."""
+
+    api_version: ClassVar[int] = 2
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        motion = super().integrate(normal, tangential, scene, observer)
+        sentence = "The tolerance is not kept."
+        return motion.failing(
+            np.full(scene.shape, self.tolerance < 1e-3), Status.UNRESOLVED, sentence
+        )
 
 
 def test_no_estimate_is_less_than_rounding():
@@ -68,6 +82,18 @@ def test_of_an_integrator_with_a_tolerance_the_law_is_refined_too():
     error = abs(result.psi2 - fine.psi2)
     assert error > 1e-3
     assert error / 3.0 < result.psi2_error_estimate < 3.0 * error
+
+
+def test_where_a_tolerance_cannot_be_tightened_the_law_alone_is_refined():
+    """The annuli at least are seen; a stepped law that jumps may need millions of steps."""
+    tight = Tight(tolerance=1e-2)
+    law = contactlab.create("tangential.annulus", annuli=1)
+    scene = Scene.nondimensional(psi1=[1.2, 2.0], chi=CHI)
+    result = Simulation(tangential=law, integrator=tight).run(scene, estimate_error=True).check()
+    error = np.abs(result.psi2 - Simulation().run(scene).psi2)
+    assert (error > 0.1).all()
+    assert (result.psi2_error_estimate > error / 3.0).all()
+    assert (result.psi2_error_estimate < 3.0 * error).all()
 
 
 @attrs.frozen(kw_only=True)
