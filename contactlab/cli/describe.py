@@ -8,6 +8,7 @@ from typing import Any
 from contactlab.cli.table import table
 from contactlab.compose.collision import VECTORS, Collision
 from contactlab.impact.scene import entry_unit
+from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import answer, closing, largest_imbalance, sections, sweep_section
 
@@ -31,6 +32,7 @@ def describe(
         Both bodies in space, where the scene was given by vectors.
     """
     plan = result.plan
+    warned = "\n".join(f"caution:  {text}" for text in error_cautions(result))
     if result.scene.shape:
         shown = {name: (entry_unit(name), values) for name, values in varied.items()}
         body = [table(*sweep_section(result, shown)), largest_imbalance(result)]
@@ -41,7 +43,7 @@ def describe(
             body.insert(1, table(["in space", "before", "after", "unit"], _space(collision)))
             plan = collision.plan
     end = "\n".join(f"{name + ':':9} {words}" for name, words in closing(result))
-    return "\n\n".join([title] * bool(title) + [*body, str(plan), end])
+    return "\n\n".join([title] * bool(title) + [*body, *[warned] * bool(warned), str(plan), end])
 
 
 def _space(collision: Collision) -> list[list[str]]:

@@ -30,6 +30,7 @@ from contactlab.contracts.status import Status
 from contactlab.outcome import export
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.export import WRITERS
+from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
 
 
@@ -60,7 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--estimate",
         action=argparse.BooleanOptionalAction,
         default=True,
-        help="estimate the numerical error of a single impact by runs at other resolutions",
+        help="estimate the numerical error of a single impact by finer runs (the default)",
     )
     shared.add_progress(parser)
 
@@ -144,6 +145,8 @@ def report(
         if collision is not None:
             content["collision"] = collision.to_dict()
         print(json.dumps(content, indent=2, allow_nan=False))
+    for sentence in error_cautions(result) if as_json else ():
+        print(f"contactlab: caution: {sentence}", file=sys.stderr)
     failures = result.failures
     if not failures:
         return shared.OK

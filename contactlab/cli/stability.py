@@ -110,8 +110,9 @@ def report(found: Stability, why_not: str = "the budget ran out") -> str:
         f"{found.tried()} runs tried, {found.silently_wrong()} silently wrong; "
         f"{found.skipped()} more were skipped as too much work.\nErrors are numerical, from the "
         "law's own exact answer, over the range that physics leaves to psi2,\nof answers whose "
-        "declared error is below a quarter of it: the others are counted as coarse. A law\nwhose "
-        "exact answer is not that of the elastic continuum is listed with its model error."
+        "declared or estimated error is below a quarter of it: the others are counted as coarse.\n"
+        "A law whose exact answer is not that of the elastic continuum is listed with its model "
+        "error."
     )
     if not found.complete:
         parts.append(f"not complete: {why_not}")

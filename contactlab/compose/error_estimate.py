@@ -1,4 +1,4 @@
-"""An estimate of the numerical error of psi2, for any laws, from answers at other resolutions."""
+"""An estimate of the numerical error of psi2, for any laws, from answers at finer resolutions."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from contactlab.compose.planning import CLOSED_FORM
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.status import Status
 from contactlab.numeric.checks import Real
@@ -16,22 +17,26 @@ if TYPE_CHECKING:
     from contactlab.impact.scene import Scene
     from contactlab.outcome.result import ImpactResult
 
-#: By how much a resolution is changed: a count is doubled, a tolerance divided by this.
-COUNT, TOLERANCE = 2, 16.0
-#: The order of convergence is believed between these.
-LEAST_ORDER, MOST_ORDER = 1.0, 2.0
+#: A count that is refined alone is multiplied by this factor and by its square, several counts
+#: together by the lesser factor: the finest run costs about sixteen times the first.
+ALONE, TOGETHER = 4, 2
+#: A tolerance is divided by this times the square of the lesser factor, as for a method of second
+#: order. Steps are doubled until a tolerance is kept: a lesser change might change no step.
+TOLERANCE = 4.0
+#: Share of the last change that the finest run is taken to be off by. A method of second order
+#: leaves a third of the change of a doubling, one of first order all of it.
+LEFT = 0.5
 
 
 def estimated(simulation: Simulation, result: ImpactResult) -> Real:
-    """Return the estimated numerical error of psi2 of a result.
+    """Return the estimated numerical error of psi2 of a result, of the scene's shape.
 
-    Each impact is run again at half and at twice the resolution that it got, of integrator and
-    tangential law together. If the change of psi2 falls by r from one doubling to the next the
-    error that is left is the last change over 1 - 1/r, r = 2 for a method of first order and 4 for
-    one of second; 2 too where the second change turns back, and no order shows. Of an integrator
-    with a tolerance that is the error in time, and the resolution of the law alone is changed, if
-    it has one. The errors of the model are not in it. What has no resolution, and is known in
-    closed form, has the error that the plan declares.
+    Each impact is run again at two finer resolutions, of all laws that have one: normal law,
+    tangential law and, where it marches the impact, integrator. The estimate is the distance of
+    psi2 from the finest answer, plus half the last change, and no less than rounding. No order of
+    convergence is assumed. A tolerance that cannot be kept when it is tightened stays, and the
+    error in time is not in the estimate then. Nor are the errors of the model. Where the answers
+    do not differ, or no law has a finer resolution, the estimate is what the plan declares.
 
     Parameters
     ----------
@@ -41,19 +46,20 @@ def estimated(simulation: Simulation, result: ImpactResult) -> Real:
     Returns
     -------
     float or array
-        NaN where one of the runs failed.
+        NaN where a run failed, and where nothing is declared and no resolution shows an error.
     """
     scene = result.scene
     successes = _successes(result)
     error = np.where(successes, result.plan.psi2_error, np.nan)
     marched = successes & result.plan.marched
-    got = _resolution(simulation, scene) if np.any(marched) else np.zeros(scene.shape)
+    got = np.where(marched, _resolution(simulation, scene) if np.any(marched) else 0.0, np.nan)
     change = np.asarray(result.motion.slip_velocity_change)
-    for value in np.unique(got[marched]).tolist():
-        where = marched & (got == value)
-        left = _left(simulation, scene.take(where) if scene.shape else scene, value, change[where])
-        # Answers that do not differ at all say nothing: what is declared stands.
-        error[where] = np.where(left == 0.0, error[where], left)
+    for value in [*np.unique(got[marched]).tolist(), None]:
+        where = successes & ~marched if value is None else marched & (got == value)
+        if np.any(where):
+            part = scene.take(where) if scene.shape else scene
+            found = _distance(simulation, part, value, change[where])
+            error[where] = np.where(found == 0.0, error[where], found)
     return error if error.ndim else float(error)
 
 
@@ -65,75 +71,77 @@ def _resolution(simulation: Simulation, scene: Scene) -> Any:
     return np.broadcast_to(got, scene.shape)
 
 
-def _left(simulation: Simulation, scene: Scene, resolution: float, change: Any) -> Any:
-    """Return the estimated error of impacts that all got one resolution; 0 where they have none.
+def _distance(simulation: Simulation, scene: Scene, resolution: float | None, change: Any) -> Any:
+    """Return the estimated error of psi2 of impacts; 0 where no finer run is possible.
 
     Parameters
     ----------
     simulation : Simulation
     scene : Scene
-    resolution : float
-        Of the integrator.
+    resolution : float or None
+        That all impacts got of the integrator; None for impacts that were not marched.
     change : array
         Change of slip velocity, in m/s.
     """
-    fine, coarse = (_at(simulation, resolution, doublings) for doublings in (1, -1))
-    if fine is None:
-        return np.zeros(change.shape)
-    better = fine.run(scene)
-    last = np.asarray(better.motion.slip_velocity_change) - change
-    ratio: Any = COUNT**MOST_ORDER
-    if coarse is not None:
-        ratio = COUNT**LEAST_ORDER
-        if _gets_what_it_asks(coarse, scene):
-            worse = coarse.run(scene)
-            first = change - np.asarray(worse.motion.slip_velocity_change)
-            with np.errstate(all="ignore"):
-                found = np.where(last != 0.0, first / last, COUNT**MOST_ORDER)
-            found = np.where(_successes(worse), found, COUNT**LEAST_ORDER)
-            ratio = np.clip(found, COUNT**LEAST_ORDER, COUNT**MOST_ORDER)
-    with np.errstate(all="ignore"):
-        error = np.abs(scene.psi(last / (1.0 - 1.0 / ratio)))
-    if fine.integrator == simulation.integrator and simulation.integrator.resolution:
-        error = error + resolution * psi_magnitude(scene)  # the tolerance that was kept
-    return np.where(_successes(better), error, np.nan)
+    options = _options(simulation, resolution)
+    counts = {kind: value for kind, value in options.items() if isinstance(value, int)}
+    factor = ALONE if len(options) == len(counts) == 1 else TOGETHER
+    answers = []
+    for times in (factor, factor**2):
+        finer = _finer(simulation, options, times)
+        if finer is None:
+            return np.zeros(change.shape)
+        found = _change(finer, scene)
+        coarser = _finer(simulation, counts, times) if counts else None
+        if coarser is not None and np.isnan(found).any():  # the tolerance cannot be tightened
+            found = np.where(np.isnan(found), _change(coarser, scene), found)
+        answers.append(found)
+    fine, finest = answers
+    distance = scene.psi(np.abs(finest - change) + LEFT * np.abs(finest - fine))
+    return np.where(
+        distance > 0.0, np.maximum(distance, CLOSED_FORM * psi_magnitude(scene)), distance
+    )
 
 
-def _gets_what_it_asks(simulation: Simulation, scene: Scene) -> bool:
-    """Return whether the integrator has as many steps as asked for, raised for no impact."""
-    integrator = simulation.integrator
-    asked = getattr(integrator, integrator.resolution) if integrator.resolution else 0.0
-    return bool(np.all(_resolution(simulation, scene) == asked))
+def _change(simulation: Simulation, scene: Scene) -> Any:
+    """Return the change of slip velocity in m/s; NaN where the run failed."""
+    result = simulation.run(scene)
+    return np.where(_successes(result), result.motion.slip_velocity_change, np.nan)
+
+
+def _options(simulation: Simulation, resolution: float | None) -> dict[str, Any]:
+    """Return the value of each resolution that has a part in the answer, by the kind of its law."""
+    found = {}
+    for kind in ("normal", "tangential", "integrator"):
+        law: Any = getattr(simulation, kind)
+        if law.resolution is None or (kind == "integrator" and resolution is None):
+            continue
+        value = getattr(law, law.resolution)
+        found[kind] = type(value)(resolution) if kind == "integrator" else value
+    return found
+
+
+def _finer(simulation: Simulation, options: dict[str, Any], times: int) -> Simulation | None:
+    """Return the simulation with finer resolutions; None if there are none, or a law refuses.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    options : mapping of str to int or float
+        As of ``_options``.
+    times : int
+        What a count is multiplied by.
+    """
+    changed = {}
+    for kind, value in options.items():
+        law: Any = getattr(simulation, kind)
+        other = value * times if isinstance(value, int) else value / (TOLERANCE * times**2)
+        try:
+            changed[kind] = attrs.evolve(law, **{law.resolution: other})
+        except ValueError:  # beyond what the law allows
+            return None
+    return attrs.evolve(simulation, **changed) if changed else None
 
 
 def _successes(result: ImpactResult) -> Any:
     return np.asarray(result.status, dtype=object) == Status.SUCCESS
-
-
-def _at(simulation: Simulation, resolution: float, doublings: int) -> Simulation | None:
-    """Return the simulation at twice, or half, the resolution; None if there is none.
-
-    ``resolution`` is what the integrator got; the law has that of its option. A tolerance is kept
-    where the law has a resolution.
-    """
-    changed: dict[str, Any] = {}
-    for kind in ("tangential", "integrator"):
-        law: Any = getattr(simulation, kind)
-        if law.resolution is None:
-            continue
-        value = getattr(law, law.resolution)
-        if kind == "integrator":
-            value = type(value)(resolution)
-        if isinstance(value, int):
-            other: Any = max(round(value * float(COUNT) ** doublings), 1)
-        elif changed:
-            continue
-        elif doublings < 0:
-            return None  # a looser tolerance says nothing of the error at this one
-        else:
-            other = value / TOLERANCE
-        try:
-            changed[kind] = attrs.evolve(law, **{law.resolution: other})
-        except ValueError:  # beyond what the law allows
-            continue
-    return attrs.evolve(simulation, **changed) if changed else None

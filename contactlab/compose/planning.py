@@ -10,13 +10,13 @@ import numpy as np
 
 from contactlab.compose.answers import NONE, ONE, Answer, Mask
 from contactlab.compose.composition import Laws
-from contactlab.contracts.error_model import COARSE, psi_magnitude, range_of
+from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.impact.unit_slips import unit_slips
-from contactlab.numeric.arrays import every, for_share, some, spread
+from contactlab.numeric.arrays import every, some, spread
 from contactlab.outcome.plan import Plan, Sentence
 
 #: Error of what is known in closed form, over max(1, |psi1|).
@@ -62,7 +62,6 @@ def make_plan(
         if not every(marched):
             part = normal.take(marched), scene.take(marched)
         cautions += laws.integrator.remarks(part[0], laws.tangential, part[1])
-        cautions += _coarse(scene, error, marched, laws)
     left_out = _not_marched(known, separated)
     if reason := _no_history(history, marched):
         left_out.append(Sentence(reason, everywhere))
@@ -132,6 +131,8 @@ def _error(
     if some(marched):
         with np.errstate(all="ignore"):
             declared = laws.integrator.psi2_error(normal, laws.tangential, scene)
+            if math.isnan(normal.accuracy):
+                declared = math.nan  # no better known than the motion that it follows
             error = np.where(marched, declared, error) if scene.shape else declared
     return error if scene.shape else float(error)
 
@@ -150,33 +151,6 @@ def _error_sentences(error: Any, separated: Mask) -> list[Sentence]:
         most = float(np.max(error[declared])) if declared.ndim else error
         found.append(Sentence(f"numerical error of psi2: at most {most:.2g}, declared", declared))
     if some(undeclared):
-        text = "numerical error of psi2: none is declared for these laws"
+        text = "numerical error of psi2: not declared; run(scene, estimate_error=True) estimates it"
         found.append(Sentence(text, undeclared))
     return found
-
-
-def _coarse(scene: Scene, error: Any, marched: Mask, laws: Laws) -> list[str]:
-    """Return the caution of steps or annuli so coarse that no digit is sure.
-
-    Parameters
-    ----------
-    scene : Scene
-    error : float or array
-        Declared, of psi2.
-    marched : array of bool
-    laws : Laws
-    """
-    unit, width, _ = range_of(scene)
-    if not scene.shape and width > 0.0 and error * (unit / width) <= COARSE:
-        return []  # one impact, as it should be: plain numbers are ten times as fast
-    with np.errstate(all="ignore"):
-        share = np.where(marched, error * np.divide(unit, width), 0.0)
-    coarse = share > COARSE
-    if not coarse.any():
-        return []
-    finer = " and ".join(law.resolution for law in laws[1:] if law.resolution)
-    return [
-        f"coarse{for_share(coarse)}: the declared numerical error is "
-        f"{float(np.nanmax(share)):.2g} of the range of psi2, so that no digit is sure; finer "
-        f"{finer} would help"
-    ]

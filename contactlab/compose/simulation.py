@@ -86,9 +86,8 @@ class Simulation:
         history : bool or "fields"
             Keep the course of the impact; ``"fields"`` keeps traction and stick/slip too.
         estimate_error : bool
-            Estimate the numerical error of psi2, of any laws, by running the scene again at half
-            and at twice the resolution: ``ImpactResult.psi2_error_estimate``. About four times the
-            work.
+            Estimate the numerical error of psi2, of any laws, by running the scene again at two
+            finer resolutions: ``ImpactResult.psi2_error_estimate``. About twenty times the work.
 
         Returns
         -------

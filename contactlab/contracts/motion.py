@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -73,8 +74,8 @@ class NormalMotion(ABC):
     total_load_impulse: Real
     status: Any = Status.SUCCESS
     detail: Any = ""
-    #: Relative error of the load impulse that is declared; NaN if none is.
-    accuracy: float = 1e-14
+    #: Declared relative error of the load impulse; NaN, the default: not declared.
+    accuracy: float = math.nan
 
     @property
     def offers(self) -> frozenset[str]:

@@ -82,7 +82,7 @@ class TangentialLaw(Law):
        several answers hold for an impact the first is taken.
     5. ``psi2_error`` is a bound of the error of psi2 that the law's own discretisation and
        ``steps`` even steps of an integrator of second order make; infinite ``steps`` are none.
-       NaN, the default: not known.
+       NaN, the default: not declared.
     6. ``cautions`` says where the model itself is doubtful.
     """
 

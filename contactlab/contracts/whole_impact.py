@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -32,7 +33,8 @@ class WholeImpact:
         the tangential force (N) at the instants where the integral of the friction load and
         the load itself have these values, for a history. Without it a history has none.
     psi2_error : float or array
-        Bound of the numerical error of psi2; 0, the default, for rounding alone.
+        Bound of the numerical error of psi2, rounding aside: 0 for a closed form. NaN, the
+        default: not declared.
     """
 
     where: Mask
@@ -40,7 +42,7 @@ class WholeImpact:
     friction_work: Real
     reason: str
     course: Callable[[Any, Any], tuple[Any, Any]] | None = None
-    psi2_error: Real = 0.0
+    psi2_error: Real = math.nan
 
 
 def sliding(
@@ -88,6 +90,7 @@ def sliding(
         friction_work=work,
         reason=reason,
         course=course,
+        psi2_error=0.0,
     )
 
 
@@ -109,5 +112,10 @@ def no_force(scene: Scene, *, where: Mask, reason: str) -> WholeImpact:
         return nothing, nothing
 
     return WholeImpact(
-        where=where, slip_velocity_change=0.0, friction_work=0.0, reason=reason, course=course
+        where=where,
+        slip_velocity_change=0.0,
+        friction_work=0.0,
+        reason=reason,
+        course=course,
+        psi2_error=0.0,
     )

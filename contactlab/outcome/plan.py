@@ -49,7 +49,7 @@ class Plan:
         Impacts whose tangential motion an integrator follows.
     psi2_error : float or array
         Bound of the numerical error of psi2, as the laws and the integrator declare it; NaN where
-        none is declared. The errors of the model are not in it: see ``cautions``.
+        it is not declared. The errors of the model are not in it: see ``cautions``.
     """
 
     computed: Sentences

@@ -18,6 +18,7 @@ from contactlab.numeric.checks import Real
 from contactlab.outcome.energy import EnergyLedger, ledger
 from contactlab.outcome.history import History
 from contactlab.outcome.motion import Motion
+from contactlab.outcome.numerical_error import error_cautions, error_words
 from contactlab.outcome.plan import Plan
 
 if TYPE_CHECKING:
@@ -86,6 +87,12 @@ class ImpactResult:
             found = f"{psi2.size} impacts, psi2{ends}"
         told = ", ".join(f"{count} {name}" if shape else name for name, count in statuses.items())
         return f"ImpactResult({found}; {told}; {laws})"
+
+    def __str__(self) -> str:
+        """Return the line of ``repr``, the numerical error and every caution, a line each."""
+        cautions = [*error_cautions(self), *map(str, self.plan.cautions)]
+        lines = [repr(self), f"numerical error of psi2: {error_words(self)}"]
+        return "\n".join([*lines, *(f"caution: {text}" for text in cautions)])
 
     def _repr_html_(self) -> str:
         """Return what a notebook shows: the words of ``str``."""

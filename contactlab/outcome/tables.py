@@ -12,6 +12,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.scene import Scene
 from contactlab.outcome.columns import QUANTITIES, SWEEP_TABLE
+from contactlab.outcome.numerical_error import error_words
 from contactlab.outcome.result import ImpactResult
 
 #: Different sentences about failed impacts that are shown.
@@ -47,15 +48,9 @@ def time(seconds: float) -> str:
 
 def answer(result: ImpactResult) -> list[tuple[str, str]]:
     """Return the answer of one impact, its numerical error and its run time: names and words."""
-    estimate, declared = result.psi2_error_estimate, float(np.asarray(result.plan.psi2_error))
-    known = []
-    if estimate is not None and np.isfinite(estimate) and float(estimate) != declared:
-        known.append(f"about {float(estimate):.1g}, estimated")
-    if np.isfinite(declared):
-        known.append(f"at most {declared:.1g}, declared")
     return [
         ("psi2", number(result.psi2, digits=10)),
-        ("numerical error of psi2", "; ".join(known) or "not known"),
+        ("numerical error of psi2", error_words(result)),
         ("run time", time(result.run_time)),
     ]
 

@@ -168,7 +168,7 @@ def compare(
     history : bool
         Keep the course of a single impact; a sweep has none.
     estimate_error : bool
-        Estimate the numerical error of psi2 of each law, from runs at other resolutions.
+        Estimate the numerical error of psi2 of each law, from runs at finer resolutions.
     progress : callable, optional
         Called as ``progress(done, total)`` after each run.
 

@@ -25,13 +25,13 @@ def broken_invariants(
     books_bound: float = 0.0,
     load_impulse: float | None = None,
 ) -> list[str]:
-    """Return the laws of physics (theory §7) that a result breaks beyond what is declared.
+    """Return the laws of physics (theory §7) that a result breaks by more than ``bound``.
 
     Parameters
     ----------
     result : ImpactResult
     bound : float
-        Declared error of psi2, over its range.
+        Declared or estimated error of psi2, over its range.
     passive : bool
         False for a law that says of its books that they do not close: its model makes energy.
     books_bound : float

@@ -33,10 +33,10 @@ ANSWERED, REFUSED, SKIPPED = "answered", "refused", "skipped"
 WRONG, RAISED = "silently wrong", "raised"
 #: Rounding, over the range of psi2.
 ROUNDING = 1e-9
-#: What a law that declares no error may break the invariants by, over the range.
-UNDECLARED = 0.05
-#: Such a law may be off by this many times the error that ``estimate_error=True`` tells, if that
-#: is more: estimates are within a factor of three.
+#: What a law that declares no error may be off by, and break the invariants by, over the range.
+UNDECLARED = 0.01
+#: It may be off by this many times the estimated error, if that is more: estimates are mostly
+#: within a factor of three.
 ESTIMATED = 3.0
 
 
@@ -48,7 +48,8 @@ class Outcome:
     ----------
     error, bound : float
         Of the change of slip velocity, over its possible range; NaN without an answer.
-        The error of a law that declares none is told, not held against it.
+        The bound of a law that declares no error is ``UNDECLARED``, or ``ESTIMATED`` times the
+        estimate if that is more.
     note : str
         The status, or what is wrong.
     """
@@ -150,33 +151,16 @@ def _judged(
     unit, width, _ = range_of(scene)
     declared = float(result.plan.psi2_error) * unit
     bound = min(declared / width + ROUNDING, LARGEST_SHARE) if width > 0.0 else ROUNDING
-    held = True
-    elastic = "elastic_hertz" in simulation.normal.offers
-    if np.isnan(bound):  # nothing is declared: under Hertz's law only the invariants are held
-        bound = UNDECLARED
-        held = not elastic
-    passive = "books" not in simulation.tangential.expected_failures
-    books = simulation.tangential.books_bound
-    wrong = broken_invariants(
-        result,
-        bound,
-        passive=passive,
-        books_bound=books,
-        load_impulse=None if elastic else load_impulse(scene, simulation.normal),
-    )
     error = np.nan
     if expected is not None:
         away = abs(float(result.motion.slip_velocity_change) - expected)
         error = away / width if width > 0.0 else (0.0 if away == 0.0 else np.inf)
-        if not elastic and error > UNDECLARED and np.isnan(declared):
-            told = float(np.asarray(estimated(simulation, result))) * unit / width
-            bound = min(max(bound, ESTIMATED * told), LARGEST_SHARE)
-        if held and not error <= bound + known_to:
-            wrong.append(f"error {error:.2g} of the range, declared {bound:.2g}")
-    off = float(np.asarray(result.normal_restitution)) - 1.0
-    allowed = LARGEST_NORMAL if isinstance(simulation.normal, ClosedFormNormalLaw) else ACCURACY
-    if not off <= allowed or (elastic and not off >= -allowed):
-        wrong.append(f"e is off by {off:.2g}")
+    if not np.isnan(bound):
+        wrong = _wrong(simulation, result, (error, known_to), bound)
+    elif wrong := _wrong(simulation, result, (error, known_to), bound := UNDECLARED):
+        told = float(np.asarray(estimated(simulation, result))) * unit / width
+        bound = min(max(bound, ESTIMATED * told), LARGEST_SHARE)
+        wrong = _wrong(simulation, result, (error, known_to), bound)
     return _outcome(
         case,
         WRONG if wrong else ANSWERED,
@@ -185,6 +169,39 @@ def _judged(
         note="; ".join(wrong) if wrong else "" if expected is not None else "no reference",
         time=taken,
     )
+
+
+def _wrong(
+    simulation: Simulation, result: ImpactResult, error: tuple[float, float], bound: float
+) -> list[str]:
+    """Return what is wrong with an answer by more than ``bound`` of the range.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    result : ImpactResult
+    error : tuple of float
+        Of the change of slip velocity, and how closely that is known, over the range; NaN for
+        an error without reference.
+    bound : float
+        Declared, or from an estimate.
+    """
+    scene, (away, known_to) = result.scene, error
+    elastic = "elastic_hertz" in simulation.normal.offers
+    wrong = broken_invariants(
+        result,
+        bound,
+        passive="books" not in simulation.tangential.expected_failures,
+        books_bound=simulation.tangential.books_bound,
+        load_impulse=None if elastic else load_impulse(scene, simulation.normal),
+    )
+    if away > bound + known_to:
+        wrong.append(f"error {away:.2g} of the range, at most {bound:.2g} is declared or estimated")
+    off = float(np.asarray(result.normal_restitution)) - 1.0
+    allowed = LARGEST_NORMAL if isinstance(simulation.normal, ClosedFormNormalLaw) else ACCURACY
+    if not off <= allowed or (elastic and not off >= -allowed):
+        wrong.append(f"e is off by {off:.2g}")
+    return wrong
 
 
 def _outcome(case: Case, outcome: str, *, time: float = 0.0, **entries: Any) -> Outcome:

@@ -23,7 +23,9 @@ from contactlab.study.model_error import ModelError, model_error
 from contactlab.study.stability import Stability
 from contactlab.study.stability_cases import Case
 from contactlab.study.stability_map import ALL_ANSWERED, Region, region
-from contactlab.study.stability_outcome import ANSWERED, UNDECLARED, judge_run
+from contactlab.study.stability_outcome import ANSWERED, UNDECLARED, WRONG, judge_run
+from contactlab.study.stability_references import continuum
+from contactlab.study.stability_references import none as no_change
 from contactlab.study.stability_scenes import Extreme
 
 CHI = 49 / 34
@@ -66,14 +68,18 @@ def test_a_region_knows_whether_its_law_converges_to_the_exact_solution(law, con
     assert 0.0 < found.error[0, 0] < 0.05
 
 
-def test_the_error_of_a_law_that_declares_none_is_told_and_not_held_against_it():
+@pytest.mark.parametrize(("reference", "expected"), [(continuum, ANSWERED), (no_change, WRONG)])
+def test_the_error_of_a_law_that_declares_none_is_judged_by_the_estimate(reference, expected):
+    """One spring is off by more than a hundredth of the range, as the estimate says."""
     scene = Extreme("map", "", lambda: Scene.nondimensional(psi1=1.2, chi=CHI))
-    method = Method(tangential="linear_spring", integrator="symplectic")
+    method = Method(tangential="springs", integrator="symplectic")
     case = Case(family="map", label="", method=method, options={}, scene=scene, planned=False)
-    simulation = Simulation(tangential="linear_spring", integrator="symplectic")
-    outcome = judge_run(case, simulation, scene.make(), lambda *_: 0.0)
-    assert outcome.outcome == ANSWERED
+    law = contactlab.create("tangential.springs", springs=1)
+    simulation = Simulation(tangential=law, integrator="symplectic")
+    outcome = judge_run(case, simulation, scene.make(), reference)
+    assert outcome.outcome == expected
     assert outcome.error > UNDECLARED
+    assert (outcome.error < outcome.bound) == (expected == ANSWERED)
 
 
 def area(converges):

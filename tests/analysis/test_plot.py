@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+import contactlab
 from contactlab import Scene, Simulation
 from contactlab.figures.results import draw_history
 
@@ -45,12 +46,12 @@ def test_impacts_that_share_an_abscissa_are_points(axes):
 def test_the_numerical_error_is_a_band_where_it_can_be_seen(axes, many):
     many.plot(axes=axes)
     assert not axes.collections
-    rough = Simulation(tangential="annulus", integrator="symplectic")
-    result = rough.run(Scene.nondimensional(psi1=[0.5, 1.2, 2.0], chi=1.4))
+    rough = Simulation(tangential=contactlab.create("tangential.annulus", annuli=3))
+    result = rough.run(Scene.nondimensional(psi1=[0.5, 1.2, 2.0], chi=1.4), estimate_error=True)
     result.plot(axes=axes)
     (band,) = axes.collections
     upper = band.get_paths()[0].vertices[:, 1].max()
-    assert upper == pytest.approx(np.max(result.psi2 + result.plan.psi2_error))
+    assert upper == pytest.approx(np.max(result.psi2 + result.psi2_error_estimate))
 
 
 def test_one_impact_is_its_force_over_time(axes):

@@ -16,12 +16,13 @@ from contactlab.contracts import (
     TangentialResponse,
     WholeImpactTangentialLaw,
 )
-from contactlab.contracts.error_model import psi2_range, range_of
+from contactlab.contracts.error_model import range_of
 from contactlab.contracts.whole_impact import no_force
 from tests.normal_laws import Damped, ForceFree, LinearSpring
 
 CHI = 1.4411764706
 MIXED = [0.0, 1.2, 9.0, 50.0]
+UNDECLARED = "not declared; run(scene, estimate_error=True) estimates it"
 SPRINGS = {"tangential": "springs", "integrator": "symplectic"}
 
 
@@ -39,7 +40,7 @@ def test_the_plan_of_one_impact_that_is_marched():
     assert list(map(str, plan.computed)) == [
         "normal motion: Hertz, in closed form",
         "tangential motion: Symplectic(steps=200, refine=True) over Springs(springs=50)",
-        f"numerical error of psi2: at most {plan.psi2_error:.2g}, declared",
+        f"numerical error of psi2: {UNDECLARED}",
     ]
     assert list(map(str, plan.left_out)) == ["history: not asked for"]
     assert plan.cautions == ()
@@ -50,13 +51,14 @@ def test_the_plan_of_one_impact_that_is_marched():
 
 def test_the_plan_of_a_batch_says_which_impacts():
     plan = Simulation(**SPRINGS).plan(scene(MIXED))
-    most = plan.psi2_error.max()
+    most = np.nanmax(plan.psi2_error)
     assert said(plan.computed) == {
         "normal motion: Hertz, in closed form": [True] * 4,
         "tangential motion: Symplectic(steps=200, refine=True) over Springs(springs=50)": [
             False, True, False, False,
         ],
-        f"numerical error of psi2: at most {most:.2g}, declared": [True] * 4,
+        f"numerical error of psi2: at most {most:.2g}, declared": [True, False, True, True],
+        f"numerical error of psi2: {UNDECLARED}": [False, True, False, False],
     }  # fmt: skip
     march = "march of the tangential motion: "
     assert said(plan.left_out) == {
@@ -65,7 +67,8 @@ def test_the_plan_of_a_batch_says_which_impacts():
         "history: not asked for": [True] * 4,
     }
     assert plan.to_dict()["left_out"] == list(map(str, plan.left_out))
-    assert plan.to_dict()["psi2_error"] == plan.psi2_error.tolist()
+    assert plan.to_dict()["psi2_error"][1] is None
+    assert plan.to_dict()["psi2_error"][2:] == plan.psi2_error[2:].tolist()
 
 
 @pytest.mark.parametrize(
@@ -94,11 +97,6 @@ def test_a_closed_form_is_declared_to_rounding_and_an_integrator_to_its_toleranc
     for index, psi1 in enumerate(MIXED):
         alone = Simulation(integrator=plan_integrator(1e-5)).plan(scene(psi1)).psi2_error
         assert alone == pytest.approx(plan.psi2_error[index], rel=1e-12)
-    doubled = Simulation(
-        tangential="springs", integrator=contactlab.create("integrator.adaptive", tolerance=1e-2)
-    ).plan(scene([0.5, 2.0]))
-    assert doubled.psi2_error[0] > 2e-2
-    assert doubled.psi2_error[1] - doubled.psi2_error[0] >= 2e-2
 
 
 @attrs.frozen(kw_only=True)
@@ -122,10 +120,9 @@ def plan_integrator(tolerance):
 
 
 def test_the_range_that_an_error_is_a_share_of():
-    """The lesser of 4 chi and 2 |psi1|, in m/s and in psi, alone and in a batch."""
+    """The lesser of 4 chi and 2 |psi1|, in m/s, alone and in a batch."""
     psi1 = [-3.0, 0.2, 0.0, 50.0]
     widths = [4.0 * CHI, 0.4, 0.0, 4.0 * CHI]
-    assert psi2_range(scene(psi1)).tolist() == pytest.approx(widths)
     assert range_of(scene(psi1)).width.tolist() == pytest.approx(widths)
     for one, width in zip(psi1, widths, strict=True):
         assert range_of(scene(one)) == pytest.approx((1.0, width, abs(one)))
@@ -185,7 +182,7 @@ def test_undeclared_errors_are_said_of_the_impacts_that_are_marched():
     """Of a damped contact the springs declare nothing; a central impact is known without them."""
     plan = Simulation(normal=Damped(), **SPRINGS).plan(scene([0.0, 1.2]))
     told = said(plan.computed)
-    assert told["numerical error of psi2: none is declared for these laws"] == [False, True]
+    assert told[f"numerical error of psi2: {UNDECLARED}"] == [False, True]
     declared = [text for text, where in told.items() if where == [True, False]]
     assert re.fullmatch(r"numerical error of psi2: at most 5.8e-07, declared", declared[0])
 
@@ -197,7 +194,7 @@ def test_a_sweep_in_parts_has_the_plan_of_the_whole():
     whole = simulation.plan(scene(psi1))
     parts = simulation.sweep(scene(psi1), chunk=2).plan
     assert parts.marched.tolist() == whole.marched.tolist()
-    assert parts.psi2_error.tolist() == whole.psi2_error.tolist()
+    np.testing.assert_array_equal(parts.psi2_error, whole.psi2_error)
     for kind in ("computed", "left_out", "cautions"):
         joined = {str(text).partition(" at most")[0]: where
                   for text, where in said(getattr(parts, kind)).items()}  # fmt: skip
@@ -210,7 +207,7 @@ def test_the_plan_of_one_impact_of_a_batch():
     plan = Simulation(**SPRINGS).plan(scene(MIXED))
     assert [bool(plan[index].marched) for index in range(4)] == [False, True, False, False]
     assert isinstance(plan[1].psi2_error, float)
-    assert plan[1:3].psi2_error.tolist() == plan.psi2_error[1:3].tolist()
+    np.testing.assert_array_equal(plan[1:3].psi2_error, plan.psi2_error[1:3])
 
 
 @attrs.frozen(kw_only=True)

@@ -200,6 +200,8 @@ SCENES = {"one": Scene.nondimensional(psi1=1.2, chi=1.44), "batch": batch()}
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 @pytest.mark.parametrize("integrator", ["symplectic", "adaptive"])
 def test_a_plug_in_does_not_end_the_process(how, place, scene, integrator):
+    if (place, integrator) == ("psi2_error", "adaptive"):
+        pytest.skip("the adaptive integrator declares nothing, and asks no law to")
     result = Simulation(tangential=Rude(place=place, how=how), integrator=integrator).run(scene)
     assert np.all(np.asarray(result.status, dtype=object) == Status.LAW_RAISED)
     assert "Rude" in result.failures[0]

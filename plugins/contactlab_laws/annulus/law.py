@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
 
@@ -20,7 +19,6 @@ from contactlab.contracts import (
     TangentialResponse,
     WholeImpact,
 )
-from contactlab.contracts.error_model import ErrorModel
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, choice, count
 from contactlab_laws.annulus import blocks, many, one
@@ -28,14 +26,6 @@ from contactlab_laws.annulus.tables import Tables, hertz_pressure, tables
 from contactlab_laws.jaeger.all_steps import ScaledSteps
 from contactlab_laws.jaeger.gross_slip import gross_slip
 from contactlab_laws.jaeger.law import Scales
-
-#: Measured over 600 runs of 29 impacts, see ``ErrorModel``.
-ERRORS = ErrorModel(
-    chi=(0.05, 0.229, 0.491, 1.05, 1.44, 2.26, 3, 4.83, 10.3, 47.5, 102, 218, 467, 1e+03),
-    steps=(12, 19, 0.19, 60, 34, 32, 78, 88, 62, 6.4e+02, 1.5e+03, 4.1e+03, 1.1e+04, 1.5e+04),
-    parts=(0.19, 0.17, 0.25, 0.33, 0.33, 0.4, 0.42, 0.44, 0.78, 1.5, 1.8, 2.4, 2.5, 4.2),
-    power=1.0,
-)  # fmt: skip
 
 
 class State(NamedTuple):
@@ -61,7 +51,8 @@ class Annulus(AllStepsTangentialLaw):
     Parameters
     ----------
     annuli : int
-        n, the number of annuli across the largest contact radius. The error is about 1/n.
+        n, the number of annuli across the largest contact radius. The error is about 1/n, for n
+        up to half the steps: annuli that come into contact in one step share one displacement.
     displacement : str
         Where (33) prescribes it: ``"midpoint"`` of each annulus, as in the paper, or its
         ``"mean"``, which is as accurate and closes the energy books at every n.
@@ -91,15 +82,6 @@ class Annulus(AllStepsTangentialLaw):
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return those of gross slip too, where (44) and (46) say so."""
         return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
-
-    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
-        """Return what was measured over elastic Hertz contacts; of others nothing is declared."""
-        if "elastic_hertz" not in normal.offers:
-            return math.nan
-        # A step that brings several annuli into contact gives them one displacement to remember:
-        # annuli finer than that are worth no more.
-        finest = float(np.min(steps)) / 2.0
-        return ERRORS.psi2_error(scene, steps, min(self.annuli, finest))
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""

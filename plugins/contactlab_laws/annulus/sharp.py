@@ -8,17 +8,9 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
-from contactlab.contracts.error_model import ErrorModel
 from contactlab.numeric.checks import count
 from contactlab_laws.jaeger.bundle import Array, Bundle
 from contactlab_laws.jaeger.law import ProfileLaw
-
-#: Measured over 1,000 runs of 29 impacts, see ``ErrorModel``.
-ERRORS = ErrorModel(
-    chi=(0.05, 0.229, 0.491, 1.05, 1.44, 2.26, 3, 4.83, 10.3, 47.5, 102, 218, 467, 1e+03),
-    steps=(0.44, 1, 0.36, 3.1, 2.9, 7.5, 13, 16, 60, 4.6e+02, 1.2e+03, 4.4e+03, 9.6e+03, 3.2e+04),
-    parts=(0.14, 0.42, 0.047, 1, 0.77, 1.2, 2.2, 2.6, 2, 10, 13, 15, 26, 26),
-)  # fmt: skip
 
 
 class Circles(Bundle):
@@ -102,8 +94,6 @@ class SharpAnnulus(ProfileLaw):
 
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "annuli"
-
-    errors: ClassVar[ErrorModel] = ERRORS
 
     annuli: int = count(default=50, most=100_000)
 

@@ -192,6 +192,7 @@ class DashpotMotion(ClosedFormMotion):
     maximum_force: Real
     final_rate: Real
     total_load_impulse: Real
+    accuracy = 1e-14  # rounding: the impulse is a closed form
 
     @classmethod
     def of(cls, law: NormalLaw, scene: Scene, course: Course, approach: Real) -> DashpotMotion:

@@ -97,6 +97,7 @@ class HertzMotion(ClosedFormMotion):
     maximum_force: Real
     final_rate: Real
     total_load_impulse: Real
+    accuracy = 1e-14  # rounding: the impulse is a closed form
 
     @classmethod
     def of(cls, law: NormalLaw, scene: Scene) -> HertzMotion:

@@ -20,7 +20,6 @@ from contactlab.contracts import (
     TangentialResponse,
     WholeImpact,
 )
-from contactlab.contracts.error_model import ErrorModel
 from contactlab.impact.coupling import hemisphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
@@ -83,7 +82,6 @@ class ProfileLaw(AllStepsTangentialLaw):
 
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
-    errors: ClassVar[ErrorModel]
     expected_failures: ClassVar[Mapping[str, str]] = {
         "coulomb_at_a_point_damped": "each spring is cut alone, which is Coulomb's law at a point "
         "only while the stuck part is a disc: in elastic Hertz impacts, not in damped ones",
@@ -96,12 +94,6 @@ class ProfileLaw(AllStepsTangentialLaw):
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return those of gross slip too, where (44) and (46) say so."""
         return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
-
-    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
-        """Return what was measured over elastic Hertz contacts; of others nothing is declared."""
-        if "elastic_hertz" not in normal.offers:
-            return math.nan
-        return self.errors.psi2_error(scene, steps, len(self.bundle().squares))
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return those of every law, and that of a pressure that may be no hemisphere."""

@@ -16,11 +16,11 @@ from contactlab.contracts import (
     TangentialMotion,
     faults,
 )
-from contactlab.contracts.error_model import psi_magnitude, range_of
+from contactlab.contracts.error_model import range_of
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
-from contactlab.numeric.checks import Real, Rule, quantity
+from contactlab.numeric.checks import Rule, quantity
 from contactlab_laws.march.division import midpoints
 from contactlab_laws.march.fixed import MOST_STEPS, in_groups, needed_steps, refined
 from contactlab_laws.march.march import march
@@ -49,7 +49,8 @@ class Adaptive(Integrator):
 
     The error is that of the whole impact, seen in the answer itself, and not a sum of what
     single steps may have missed. It is the error in time: that of a law's own discretisation
-    is not in it.
+    is not in it. The tolerance is aimed at and no bound, so that no error is declared: of 6,000
+    impacts of a linear spring at 1e-5, 141 were off by more than twice that, the worst by 22 times.
 
     Parameters
     ----------
@@ -67,12 +68,6 @@ class Adaptive(Integrator):
     tangential_contract: ClassVar[Any] = SteppedTangentialLaw
 
     tolerance: float = quantity("1", rule=TOLERANCE, default=1e-4)
-
-    def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
-        """Return twice the tolerance, and what the law declares for its own discretisation."""
-        own: Any = tangential.psi2_error(scene, normal, np.inf)
-        bound: Real = 2.0 * self.tolerance * psi_magnitude(scene) + own
-        return bound
 
     def integrate(
         self,

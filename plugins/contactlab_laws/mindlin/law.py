@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
 
@@ -18,7 +17,6 @@ from contactlab.contracts import (
     WholeImpact,
     sliding,
 )
-from contactlab.contracts.error_model import ErrorModel
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Mask, Real, choice, quantity
 from contactlab_laws.mindlin.dashpot import critical_share, cut, with_dashpot
@@ -84,12 +82,6 @@ DAMPED_GAIN = {
     "displacement_rescaled": _MADE.format(_DAMPED.format("11 %")),
     "increment": _MADE.format(_DAMPED.format("15 %")),
 }
-
-#: Measured over 100 runs of 29 impacts against the law's own limit, see ``ErrorModel``.
-ERRORS = ErrorModel(
-    chi=(0.05, 0.229, 0.491, 1.05, 1.44, 2.26, 3, 4.83, 10.3, 47.5, 102, 218, 467, 1e+03),
-    steps=(0.7, 1.9, 4.2, 9.8, 6.8, 32, 28, 55, 85, 1e+03, 3.1e+03, 9.5e+03, 2.9e+04, 7.7e+04),
-)  # fmt: skip
 
 
 class State(NamedTuple):
@@ -189,12 +181,6 @@ class MindlinCap(SteppedTangentialLaw):
         return np.abs(psi1) >= np.maximum(
             np.maximum(loading, 2.0 * np.asarray(chi)), 4.0 * np.asarray(chi) - unloading
         )
-
-    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
-        """Return what was measured over elastic Hertz contacts; of others nothing is declared."""
-        if "elastic_hertz" not in normal.offers or self.damping:
-            return math.nan
-        return ERRORS.psi2_error(self._stiffer(scene), steps) / self.stiffness_factor
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return k of the largest contact."""

@@ -9,17 +9,9 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
-from contactlab.contracts.error_model import ErrorModel
 from contactlab.numeric.checks import Real, count
 from contactlab_laws.jaeger.bundle import Array, Bundle
 from contactlab_laws.jaeger.law import ProfileLaw
-
-#: Measured over 1,000 runs of 29 impacts, see ``ErrorModel``.
-ERRORS = ErrorModel(
-    chi=(0.05, 0.229, 0.491, 1.05, 1.44, 2.26, 3, 4.83, 10.3, 47.5, 102, 218, 467, 1e+03),
-    steps=(1.5, 3.9, 0.39, 5.5, 3, 13, 20, 35, 61, 4.8e+02, 1.7e+03, 4.6e+03, 1.3e+04, 3.8e+04),
-    parts=(0.022, 0.057, 0.0075, 0.15, 0.3, 0.39, 0.53, 0.52, 0.6, 1.7, 2.1, 2.2, 2.8, 2.8),
-)  # fmt: skip
 
 
 class Midpoints(Bundle):
@@ -97,8 +89,6 @@ class Springs(ProfileLaw):
 
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "springs"
-
-    errors: ClassVar[ErrorModel] = ERRORS
 
     springs: int = count(default=50, most=100_000)
 

@@ -72,6 +72,7 @@ class Stronge(WholeImpactTangentialLaw):
             slip_velocity_change=np.sign(scene.slip_velocity) * change * unit,
             friction_work=pair.tangential_mass * np.square(unit) * work,
             reason="two springs and a slider: sines and cosines between slip and stick",
+            psi2_error=0.0,
         )
         return (*known, answer)
 

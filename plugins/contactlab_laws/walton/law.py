@@ -65,6 +65,7 @@ class Walton(WholeImpactTangentialLaw):
             slip_velocity_change=-np.sign(scene.slip_velocity) * lost,
             friction_work=work,
             reason="hard spheres: the lesser of gross slip and a constant slip restitution",
+            psi2_error=0.0,
         )
         return (*super().whole_impacts(scene, normal), answer)
 
