@@ -1,6 +1,6 @@
 """A set with Coulomb's law at every point: laws of partial slip under normal laws that dissipate.
 
-``figures.csv`` beside this file would be made by hand otherwise: ``python -m
+``coulomb_at_a_point.csv`` holds the figures before and after: ``python -m
 tests.exact.coulomb_at_a_point`` prints, for every pair of laws that fit, the largest difference of
 psi2 from the rings of ``contactlab_laws.damped_table.rings`` over ``SCENES``.
 """
@@ -101,7 +101,7 @@ def main():
     print("normal,option,value,tangential,largest_difference")
     for name, options, law, fitting in pairs():
         known = reference(law)
-        (option, value), = options.items() or (("", ""),)
+        ((option, value),) = options.items() or (("", ""),)
         for each in fitting:
             largest = np.abs(limit(law, each) - known).max()
             print(f"{name},{option},{value},{each},{largest:.1e}", flush=True)

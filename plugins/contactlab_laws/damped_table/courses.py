@@ -8,12 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.registry import REGISTRY
 from contactlab.contracts.motion import NormalMotion
+from contactlab.impact.scene import Scene
 from contactlab_laws.damped_table.rings import Array, Course, rebound
 
 #: Phases among which the largest radius is looked for, and halvings that find an instant.
 LOOKED, HALVINGS = 4001, 60
-#: Rings from whose answers the limit is found: to 1.5e-4 in psi2, see ``tests/exact/test_rings.py``.
+#: Rings from whose answers the limit is found, to 2e-4 in psi2: ``tests/exact/test_rings.py``.
 COUNTS = (48, 64, 80, 96, 112, 128)
 #: Radii at first touch and at separation, over the largest, that count as none.
 NOTHING = 1e-6
@@ -83,12 +86,16 @@ def solve(
     return np.asarray(np.linalg.lstsq(terms, found * weights[:, None])[0][0])
 
 
+def tsuji(e: float) -> NormalMotion:
+    """Return the normal motion under Tsuji's law, in units of its own that of every impact."""
+    law = REGISTRY.create("normal.tsuji", restitution=e)
+    return normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0))
+
+
 def _edges(count: int, marks: list[float]) -> tuple[Array, list[int]]:
     """Return the edges, among them the two radii of ``marks``, and the number of each of these."""
     angles = [2.0 / math.pi * math.asin(mark) for mark in marks]
-    numbers = [
-        min(max(round(count * each), 1), count - 1) if each > 0.0 else 0 for each in angles
-    ]
+    numbers = [min(max(round(count * each), 1), count - 1) if each > 0.0 else 0 for each in angles]
     known = {0: 0.0, count: 1.0}
     known.update((number, each) for number, each in zip(numbers, angles, strict=True) if number)
     places = sorted(known)
@@ -97,6 +104,7 @@ def _edges(count: int, marks: list[float]) -> tuple[Array, list[int]]:
 
 
 def _radii(motion: NormalMotion, phases: Any) -> Array:
+    """Return the contact radius at phases, in m."""
     sample = motion.at(phases)
     return np.asarray(sample.contact.radius, dtype=np.float64)
 
@@ -121,4 +129,4 @@ def _instants(
         middle = 0.5 * (low + high)
         before = (_radii(motion, middle) < wanted) == rising
         low, high = np.where(before, middle, low), np.where(before, high, middle)
-    return 0.5 * (low + high)
+    return np.asarray(0.5 * (low + high))

@@ -72,8 +72,13 @@ class Rings(NamedTuple):
     def within(self, number: int) -> Rings:
         """Return the matrices of the first ``number`` rings."""
         block = slice(number), slice(number)
-        matrices = (each[block] for each in (self.compliance, self.lower, self.upper))
-        return Rings(self.points[:number], *matrices, self.weights[:number])
+        return Rings(
+            points=self.points[:number],
+            compliance=self.compliance[block],
+            lower=self.lower[block],
+            upper=self.upper[block],
+            weights=self.weights[:number],
+        )
 
 
 def rings(edges: Array) -> Rings:
@@ -87,10 +92,8 @@ def rings(edges: Array) -> Rings:
     displaced = (2.0 / np.pi) * ((ends**2 - 0.5 * points**2) * angle + 0.5 * ends * points * rest)
     inverse = np.linalg.inv(traction)
     compliance = displaced @ inverse
-    lower, upper = _factors(compliance)
-    return Rings(
-        edges[:-1], compliance, np.linalg.inv(lower), np.linalg.inv(upper), edges[1:] ** 3 @ inverse
-    )
+    lower, upper = (np.asarray(np.linalg.inv(each), float) for each in _factors(compliance))
+    return Rings(edges[:-1], compliance, lower, upper, edges[1:] ** 3 @ inverse)
 
 
 def _factors(matrix: Array) -> tuple[Array, Array]:
@@ -111,12 +114,14 @@ class History(NamedTuple):
         Tangential velocity.
     moved : array, shape (K, impacts)
         Slip displacement of each step.
-    centre : array, shape (K + 1, impacts)
-        Share of Coulomb's limit that acts at the centre, from -1 to 1.
+    share, centre : array, shape (K + 1, impacts)
+        Share of Coulomb's limit that acts, from -1 to 1: of the force, and of the traction at the
+        centre.
     """
 
     psi: Array
     moved: Array
+    share: Array
     centre: Array
 
 
@@ -129,7 +134,7 @@ def rebound(psi1: Array, chi: Array, course: Course) -> Array:
         Eqs (29) and (38).
     course : Course
     """
-    return march(psi1, chi, course).psi[-1]
+    return np.asarray(march(psi1, chi, course).psi[-1])
 
 
 def march(psi1: Array, chi: Array, course: Course) -> History:
@@ -152,7 +157,11 @@ def march(psi1: Array, chi: Array, course: Course) -> History:
     """
     table, steps = rings(course.edges), np.diff(course.time)
     psi = np.empty((len(steps) + 1, len(psi1)))
-    moved, centre = np.empty((len(steps), len(psi1))), np.zeros(psi.shape)
+    moved, shares, centre = (
+        np.empty((len(steps), len(psi1))),
+        np.zeros(psi.shape),
+        np.zeros(psi.shape),
+    )
     psi[0] = psi1
     displaced = np.zeros((len(psi1), len(table.points)))
     stuck, sense = np.ones(displaced.shape, dtype=bool), np.zeros(displaced.shape)
@@ -178,8 +187,8 @@ def march(psi1: Array, chi: Array, course: Course) -> History:
             share = share if begun else after
             begun = True
         psi[k + 1] = psi[k] - 0.5 * gain * (share + after)
-        share = after
-    return History(psi, moved, centre)
+        share = shares[k + 1] = after
+    return History(psi, moved, shares, centre)
 
 
 def settle(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) -> Array:
@@ -220,7 +229,7 @@ def _divided(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) 
     """Return the tractions of given divisions, shape (impacts, rings)."""
     traction = np.where(stuck, 0.0, sense * limit)
     rest = aim - traction @ table.compliance.T
-    discs = (stuck[:, :-1] >= stuck[:, 1:]).all(axis=1)
+    discs = np.all(stuck[:, :-1] >= stuck[:, 1:], axis=1)
     held = np.where(stuck, (np.where(stuck, rest, 0.0) @ table.lower.T), 0.0) @ table.upper.T
     traction = np.where(stuck & discs[:, None], held, traction)
     others = np.flatnonzero(~discs)
@@ -228,7 +237,7 @@ def _divided(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) 
         patterns, which = np.unique(np.packbits(stuck[others], axis=1), axis=0, return_inverse=True)
         for k in range(len(patterns)):
             rows = others[which.ravel() == k]
-            held = np.flatnonzero(stuck[rows[0]])
-            block = table.compliance[np.ix_(held, held)]
-            traction[np.ix_(rows, held)] = np.linalg.solve(block, rest[np.ix_(rows, held)].T).T
+            ours = np.flatnonzero(stuck[rows[0]])
+            block = table.compliance[np.ix_(ours, ours)]
+            traction[np.ix_(rows, ours)] = np.linalg.solve(block, rest[np.ix_(rows, ours)].T).T
     return traction
