@@ -28,7 +28,7 @@ from contactlab_laws.damped_table.table import Table, write
 Array = NDArray[np.float64]
 
 #: Rings of the impacts at the nodes, and those with which the cuts are looked for.
-COUNTS, RINGS = (48, 64, 80), 48
+COUNTS, RINGS = (72, 96, 120, 144), 72
 #: Where they are looked for: psi1 of the first two, 2 chi (1 + e) - psi1 of the last; and on so
 #: many impacts.
 FIRST, LAST, LOOKED = (0.5, 1.9), (0.3, 1.3), 57

@@ -123,7 +123,18 @@ def _largest(motion: NormalMotion, phases: Array, radius: Array) -> float:
 def _instants(
     motion: NormalMotion, wanted: Array, start: float, end: float, *, rising: bool
 ) -> NDArray[np.float64]:
-    """Return the phases between ``start`` and ``end`` at which the radius is ``wanted``."""
+    """Return the phases at which the contact has given radii, by halving.
+
+    Parameters
+    ----------
+    motion : NormalMotion
+    wanted : array, shape (K,)
+        Radii, in m.
+    start, end : float
+        Phases between which the radius only grows or only falls.
+    rising : bool
+        Whether it grows.
+    """
     low, high = np.full(len(wanted), start), np.full(len(wanted), end)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)

@@ -226,7 +226,17 @@ def settle(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) ->
 
 
 def _divided(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) -> Array:
-    """Return the tractions of given divisions, shape (impacts, rings)."""
+    """Return the tractions of given divisions, shape (impacts, rings).
+
+    Parameters
+    ----------
+    table : Rings
+    aim : array, shape (impacts, rings)
+        Displacement of what sticks.
+    limit : array, shape (rings,)
+    stuck, sense : array, shape (impacts, rings)
+        The divisions, and the senses of slip.
+    """
     traction = np.where(stuck, 0.0, sense * limit)
     rest = aim - traction @ table.compliance.T
     discs = np.all(stuck[:, :-1] >= stuck[:, 1:], axis=1)
