@@ -10,7 +10,7 @@ from contactlab_laws.damped_table import build
 from contactlab_laws.damped_table.build import solve
 from contactlab_laws.damped_table.coordinates import CHI as RANGE_OF_CHI
 from contactlab_laws.damped_table.coordinates import depth, inner, restitution
-from contactlab_laws.damped_table.function import _at, rebound, shipped
+from contactlab_laws.damped_table.function import _at, by_rings, rebound, shipped
 from contactlab_laws.damped_table.table import SHIPPED, read, write
 from tests.exact.test_rings import REFERENCES
 
@@ -95,7 +95,7 @@ def test_the_same_on_both_sides_of_the_border():
     chi = np.array([0.8, 0.8 - 1e-9, 1.8, 1.8 + 1e-9])
     found = contactlab.rebound(psi1, chi, restitution=0.9)
     assert found[0::2] == pytest.approx(found[1::2], abs=DAMPED_ERROR)
-    assert found[1] == pytest.approx(solve(psi1[1:2], chi[1:2], 0.9)[0], abs=1e-9)
+    assert found[1] == pytest.approx(by_rings(psi1[1:2], chi[1:2], 0.9)[0], abs=1e-9)
     low = contactlab.rebound(1.3, 1.0, restitution=0.4999)
     assert low == pytest.approx(contactlab.rebound(1.3, 1.0, restitution=0.5), abs=8e-4)
     assert isinstance(low, float)

@@ -96,6 +96,8 @@ def choice(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     if own not in measured or "elastic_hertz" in normal.offers:
         return ()
     if own.endswith(".Tsuji"):
+        if np.all(_restitution(normal) == 1.0):
+            return ()  # no damping: Hertz's motion
         sizes = {
             law.rpartition(".")[2]: _largest(normal, each, "choice")
             for law, each in measured.items()
@@ -123,7 +125,12 @@ def _rubs(scene: Scene) -> bool:
 
 def _largest(normal: NormalMotion, measured: tuple[Row, ...], column: str) -> float:
     """Return the largest difference over the impacts, by interpolation in their restitution."""
-    e = -np.asarray(normal.final_rate) / np.asarray(normal.scene.normal_speed)
+    e = _restitution(normal)
     known = [row.restitution for row in measured]
     found = np.interp(e, known, [getattr(row, column) for row in measured])
     return float(np.nanmax(found)) if np.isfinite(found).any() else 0.0
+
+
+def _restitution(normal: NormalMotion) -> Any:
+    """Return e of each impact."""
+    return -np.asarray(normal.final_rate) / np.asarray(normal.scene.normal_speed)
