@@ -201,7 +201,7 @@ def damped(restitution: float) -> Simulation:
         normal=composition.law(
             "normal", composition.RESTITUTION["normal"], restitution=restitution
         ),
-        tangential=attrs.evolve(fine, **{str(fine.resolution): SPRINGS}),
+        tangential=attrs.evolve(fine, **{str(fine.resolution): ANNULI}),
         integrator=composition.fixed_steps(4 * ANNULI),
     )
 
