@@ -131,7 +131,7 @@ class Collision:
         met, known = self._met, self.known
         plan = self._simulation.plan(met.scene) if known is None else known.plan
         if self.simulation is None and known is None and self.restitution != 1.0:
-            plan = by_rebound(plan, self.restitution)
+            plan = by_rebound(plan, met.scene.chi, self.restitution)
         return collision_plan(plan, met, passed)
 
     @property
@@ -230,10 +230,11 @@ def collide(
         The laws. By default the exact answer for elastic spheres, Hertz contact with partial slip,
         by ``contactlab.rebound``: under a microsecond an encounter in a large batch, 0.2 ms alone.
     restitution : float
-        e of the normal motion without a simulation, from 0.01 to 1: below 1 by Tsuji's law to 2e-4
-        in psi2. Other laws of the same e give another psi2, by up to 0.02 (viscoelastic) or 0.18
-        (plastic) at e = 0.9: see ``contactlab.rebound``. From a table for e from 0.5 and chi from
-        0.8 to 1.8, which solid spheres have; by springs elsewhere, 20 ms alone.
+        e of the normal motion without a simulation, from 0.01 to 1: below 1 by Tsuji's law with
+        Coulomb's law at every point, from a table for e from 0.5 and chi from 0.8 to 1.8, which
+        solid spheres have; by rings elsewhere. ``Collision.plan`` says how good psi2 is. Other laws
+        of the same e give another psi2, at e = 0.9 by up to 0.021 (viscoelastic) or 0.62 (a linear
+        spring): see ``contactlab.rebound``.
     separating : "refuse" or "pass"
         What to do with bodies that do not approach each other: an error with the index of the
         first, or let them pass through untouched, which ``Collision.collided`` tells.

@@ -7,7 +7,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.compose.rebound import DAMPED_ERROR
+from contactlab.compose.rebound import damped_error
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.vectors import components
 from contactlab.outcome.plan import Plan, Sentence
@@ -40,19 +40,33 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
     return attrs.evolve(plan, left_out=tuple(left_out))
 
 
-def by_rebound(plan: Plan, restitution: float) -> Plan:
-    """Return the plan with ``rebound`` in place of the laws that stand for it in ``result``."""
+def by_rebound(plan: Plan, chi: Any, restitution: float) -> Plan:
+    """Return the plan with ``rebound`` in place of the laws that stand for it in ``result``.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of those laws.
+    chi : float or array
+        Of the impacts.
+    restitution : float
+    """
     unknown = np.isnan(plan.psi2_error)
+    bound = np.broadcast_to(damped_error(chi, restitution), unknown.shape)
+    declared = bound[unknown & ~np.isnan(bound)]
+    said = "none was measured beyond chi = 10"
+    if declared.size:
+        said = f"at most {declared.max():g} beside Coulomb's law at every point"
     heads = {
         "tangential motion": f"contactlab.rebound with restitution={restitution:g}",
-        "numerical error of psi2": f"at most {DAMPED_ERROR:g}, of contactlab.rebound",
+        "numerical error of psi2": f"{said}, of contactlab.rebound",
     }
     computed = []
     for text, where in plan.computed:
         head = text.partition(": ")[0]
-        said = head in heads and np.any(where & unknown)
-        computed.append(Sentence(f"{head}: {heads[head]}" if said else text, where))
-    error = np.where(unknown, DAMPED_ERROR, plan.psi2_error)
+        other = head in heads and np.any(where & unknown)
+        computed.append(Sentence(f"{head}: {heads[head]}" if other else text, where))
+    error = np.where(unknown, bound, plan.psi2_error)
     return attrs.evolve(
         plan, computed=tuple(computed), psi2_error=error if error.ndim else float(error)
     )

@@ -19,11 +19,12 @@ from contactlab.contracts.tangential import (
 )
 from contactlab.numeric.checks import refuse
 
-#: Taken where none is named, the first that is installed and fits: exact, then of second order,
-#: then for any normal law. A default has to be a name; that is all the privilege there is.
+#: Taken where none is named, the first that is installed and fits: Coulomb's law at every point
+#: under any normal law with a radius, then laws that need less. Defaults are plug-in names.
 DEFAULT_NORMAL = "hertz"
 PREFERRED = {
-    "tangential": ("fronts", "springs", "coulomb"),
+    "tangential": ("annulus", "springs", "coulomb"),
+    "elastic": ("fronts", "springs", "coulomb"),  # for Hertz's contact: exact, of second order
     "integrator": ("events", "symplectic"),
 }
 #: What the core and the studies ask for by its use, with the names above all that they name:
@@ -31,7 +32,7 @@ PREFERRED = {
 #: of ``contactlab.rebound``.
 EXACT = {"tangential": "fronts", "integrator": "events"}
 FIXED_STEPS = "symplectic"
-RESTITUTION = {"normal": "tsuji", "tangential": "springs"}
+RESTITUTION = {"normal": "tsuji", "tangential": "annulus"}
 OF_REBOUND = "tabulated"
 #: The ways in which a tangential law can be run: one of them it must be.
 WAYS = (SteppedTangentialLaw, PhasedTangentialLaw, WholeImpactTangentialLaw)
@@ -111,7 +112,8 @@ def preferred(kind: str, *others: Law, after: tuple[Law, ...] = ()) -> str:
         The integrator that a tangential law has to fit, if one was named.
     """
     installed = []
-    for name in PREFERRED[kind]:
+    elastic = kind == "tangential" and "elastic_hertz" in others[0].offers
+    for name in PREFERRED["elastic" if elastic else kind]:
         try:
             found = law(kind, name)
         except ValueError:  # blocked, or not installed

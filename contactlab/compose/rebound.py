@@ -25,12 +25,14 @@ Array = NDArray[np.float64]
 #: Entry points of functions (psi1, chi, derivatives=False) that know psi2 without solving anything;
 #: the one called "elastic" is used here. It may be blocked, like a law, as "rebound.elastic".
 GROUP, TABLE = "contactlab.rebound", "elastic"
-#: The one for a restitution below 1, (psi1, chi, restitution), and the range that it holds.
-DAMPED, DAMPED_CHI, DAMPED_RESTITUTION = "damped", (0.8, 1.8), 0.5
-#: Its largest error in psi2, that of the springs that it is made of included.
-DAMPED_ERROR = 2e-4
-#: Springs elsewhere, four steps to each.
-SPRINGS = 200
+#: The one for a restitution below 1, (psi1, chi, restitution), and the largest chi that it takes.
+DAMPED, DAMPED_LARGEST_CHI = "damped", 10.0
+#: Where it is a table, and the largest errors of psi2 there and elsewhere beside Coulomb's law at
+#: every point, as measured: ``tests/exact/test_damped_table.py``.
+DAMPED_CHI, DAMPED_RESTITUTION = (0.8, 1.8), 0.5
+DAMPED_ERROR, BEYOND_ERROR = 1e-3, 4e-3
+#: Annuli beyond the largest chi, four steps to each.
+ANNULI = 100
 #: Up to this chi, and for tolerances above this, the table answers: it holds psi2 to 1e-9.
 TABULATED_CHI, TABULATED = 2.5, 1e-9
 #: Whatever is asked for: an answer is then the same, to 1e-10, in an array and alone.
@@ -89,11 +91,12 @@ def rebound(
         tabulated to 1e-6, whatever the tolerance (5e-5 for psi1 just above 1, chi 1.83 to 1.92).
 
     restitution : float
-        e of the normal motion, one number; below 1 by Tsuji's law (``normal.tsuji``), to 2e-4
-        whatever the tolerance: for chi from 0.8 to 1.8 and e from 0.5 by a table, elsewhere by
-        springs, a millisecond an impact. The choice of law is a model error: at the same e other
-        laws differ in psi2, at e = 0.9 the viscoelastic one by up to 0.02, Hunt and Crossley's by
-        0.1, a plastic one by 0.18, at 0.99 by 0.0025, 0.011 and 0.018 (theory §11).
+        e of the normal motion, one number; below 1 by Tsuji's law (``normal.tsuji``) with Coulomb's
+        law at every point, whatever the tolerance: for chi from 0.8 to 1.8 and e from 0.5 by a
+        table, to 1e-3 in psi2; elsewhere up to chi = 10 by rings, to 4e-3, some ten
+        milliseconds an impact; beyond by annuli, whose error is not declared. The choice of law is
+        a model error: at the same e other laws differ in psi2, for chi up to 1.8 at e = 0.9 the
+        viscoelastic one by up to 0.021, Hunt and Crossley's by 0.11, a linear spring by 0.62.
 
     Returns
     -------
@@ -176,11 +179,11 @@ def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
 
 
 def _damped(psi1: Array, chi: Array, restitution: float) -> Array:
-    """Return psi2, shape (impacts,), under Tsuji's law: from the table, elsewhere by springs."""
+    """Return psi2, shape (impacts,), under Tsuji's law, by annuli where no function knows it."""
     psi2, left = np.empty_like(psi1), np.ones(psi1.shape, dtype=bool)
     table = _table(DAMPED)
-    if table is not None and restitution >= DAMPED_RESTITUTION:
-        known = (chi >= DAMPED_CHI[0]) & (chi <= DAMPED_CHI[1])
+    if table is not None:
+        known = chi <= DAMPED_LARGEST_CHI
         psi2[known], left = table(psi1[known], chi[known], restitution), ~known
     if left.any():
         change = _change(damped(restitution), psi1[left], chi[left])
@@ -198,9 +201,26 @@ def damped(restitution: float) -> Simulation:
         normal=composition.law(
             "normal", composition.RESTITUTION["normal"], restitution=restitution
         ),
-        tangential=attrs.evolve(fine, **{str(fine.resolution): SPRINGS}),
-        integrator=composition.fixed_steps(4 * SPRINGS),
+        tangential=attrs.evolve(fine, **{str(fine.resolution): ANNULI}),
+        integrator=composition.fixed_steps(4 * ANNULI),
     )
+
+
+def damped_error(chi: Real, restitution: float) -> Any:
+    """Return the bound of the error of psi2 below a restitution of 1, of the shape of ``chi``.
+
+    Beside Coulomb's law at every point; NaN where none was measured.
+
+    Parameters
+    ----------
+    chi : float or array
+    restitution : float
+    """
+    if _table(DAMPED) is None:
+        return np.full(np.shape(chi), np.nan)
+    inside = (chi >= DAMPED_CHI[0]) & (chi <= DAMPED_CHI[1]) & (restitution >= DAMPED_RESTITUTION)
+    known = np.asarray(chi) <= DAMPED_LARGEST_CHI
+    return np.where(inside, DAMPED_ERROR, np.where(known, BEYOND_ERROR, np.nan))
 
 
 def _table(name: str = TABLE) -> Callable[..., Any] | None:

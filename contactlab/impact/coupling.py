@@ -128,13 +128,3 @@ def three_numbers(scene: Scene) -> tuple[str, ...]:
         f"{arrays[0]} has three numbers, taken for three impacts: vectors in space belong in an "
         "Encounter",
     )
-
-
-def hemisphere(claims: frozenset[str]) -> tuple[str, ...]:
-    """Return the caution of a pressure that is taken for a hemisphere and may be none."""
-    if "hertzian_pressure" in claims:
-        return ()
-    return (
-        "the friction law takes the pressure for a hemisphere over the contact radius that "
-        "carries the friction load; the normal law does not say that it is one (model error)",
-    )

@@ -81,11 +81,12 @@ def _another(normal: NormalLaw, judged: type[TangentialLaw]) -> Reference:
 def another_of_the_continuum(normal: NormalLaw, judged: type[TangentialLaw]) -> str | None:
     """Return a stepped law of the continuum that fits ``normal`` and is another than ``judged``.
 
-    It needs nothing of the normal contact but its radius. The defaults come first, then the other
-    laws of contactlab by name; None if there is none.
+    It needs nothing of the normal contact but its radius. The defaults of elastic bodies come
+    first, which are of second order, then the other laws of contactlab by name; None if there is
+    none.
     """
     ours = [info.name for info in REGISTRY.installed() if info.distribution == PROJECT]
-    for name in (*PREFERRED["tangential"], *(name for name in ours if kind_of(name) == KIND)):
+    for name in (*PREFERRED["elastic"], *(name for name in ours if kind_of(name) == KIND)):
         try:
             found = REGISTRY.create(full_name(KIND, name))
         except (ValueError, PluginError):  # blocked, broken, or it needs options

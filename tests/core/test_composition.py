@@ -64,7 +64,7 @@ def test_what_is_left_out_is_the_best_that_fits():
     assert Simulation(tangential="annulus").integrator == contactlab.create("integrator.symplectic")
     assert Simulation(integrator="adaptive").tangential == contactlab.create("tangential.springs")
     with_radius, without = Simulation(normal=Tsuji()), Simulation(normal=LinearSpring())
-    assert with_radius.tangential == contactlab.create("tangential.springs")
+    assert with_radius.tangential == contactlab.create("tangential.annulus")
     assert without.tangential == contactlab.create("tangential.coulomb")
     assert with_radius.run(scene()).check().normal_restitution < 1.0
     assert without.run(scene()).check().psi2 == 0.0

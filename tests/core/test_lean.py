@@ -47,7 +47,7 @@ def test_choosing_an_integrator_imports_no_other_law():
             "import contactlab\ncontactlab.Simulation(tangential='springs')\n",
         )
     )
-    needed = {"hertz", "springs", "jaeger", "events", "march"}
+    needed = {"hertz", "springs", "jaeger", "differences", "events", "march"}
     assert {name.split(".")[1] for name in laws if "." in name} == needed
 
 

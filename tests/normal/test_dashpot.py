@@ -11,7 +11,8 @@ from tests.normal.by_hand import rebound
 from tests.normal.impacts import psi2, scene
 
 POWERS = {"linear": (1.0, 0.0), "tsuji": (1.5, 0.25)}
-#: psi2 under Tsuji's law, theory §11, by springs converged to 5e-7: chi 1.4412 and 1.
+#: psi2 under Tsuji's law by springs, which above psi1 = 1 are not Coulomb's law, converged to 5e-7:
+#: chi 1.4412 and 1.
 PSI2 = {
     (1.4412, 0.95): {0.1: 0.019465, 0.5: 0.030988, 1: -0.107381, 2: -0.853004, 4: -1.363620},
     (1.4412, 0.8): {0.1: 0.012505, 0.5: -0.037273, 1: -0.269058, 2: -0.914894, 4: -1.092294},

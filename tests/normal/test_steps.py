@@ -51,6 +51,5 @@ def test_annuli_agree_with_springs(name):
             chosen = attrs.evolve(chosen, **{chosen.resolution: 100})
             found[tangential] = Simulation(normal=law, tangential=chosen).run(given).check().psi2
     assert found["sharp_annulus"] == pytest.approx(found["springs"], abs=1e-3)
-    assert ("annulus" in found) == ("hertzian_pressure" in law.offers)
-    if "annulus" in found:  # of first order: at 100 annuli and 200 steps 0.011 off
-        assert found["annulus"] == pytest.approx(found["springs"], abs=0.02)
+    # of first order: at 100 annuli and 200 steps 0.011 off; springs up to 0.02 (see the caution)
+    assert found["annulus"] == pytest.approx(found["springs"], abs=0.02)

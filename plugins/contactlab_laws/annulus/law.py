@@ -26,6 +26,7 @@ from contactlab_laws.annulus.tables import Tables, hertz_pressure, tables
 from contactlab_laws.jaeger.all_steps import ScaledSteps
 from contactlab_laws.jaeger.gross_slip import gross_slip
 from contactlab_laws.jaeger.law import Scales
+from contactlab_laws.jaeger.pressure import hemisphere
 
 
 class State(NamedTuple):
@@ -66,7 +67,7 @@ class Annulus(AllStepsTangentialLaw):
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "annuli"
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
-    needs: ClassVar[frozenset[str]] = frozenset({"hertzian_pressure"})
+    needs: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     annuli: int = count(default=50, most=2000)
     displacement: str = choice("midpoint", "mean", default="midpoint")
@@ -82,6 +83,10 @@ class Annulus(AllStepsTangentialLaw):
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return those of gross slip too, where (44) and (46) say so."""
         return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
+
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+        """Return those of every law, and that of a pressure that may be no hemisphere."""
+        return (*super().cautions(scene, normal), *hemisphere(normal))
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""

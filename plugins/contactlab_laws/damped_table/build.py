@@ -1,4 +1,4 @@
-"""Making the table: where it is cut, and psi2 by springs at its nodes."""
+"""Making the table: where it is cut, and psi2 by rings at its nodes."""
 
 from __future__ import annotations
 
@@ -9,9 +9,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.registry import REGISTRY
-from contactlab.compose.simulation import Simulation
-from contactlab.impact.scene import Scene
 from contactlab_laws.damped_table.coordinates import (
     BORDERS,
     CHI,
@@ -23,31 +20,26 @@ from contactlab_laws.damped_table.coordinates import (
     restitution,
     smooth,
 )
+from contactlab_laws.damped_table.courses import course, tsuji
+from contactlab_laws.damped_table.function import by_rings
+from contactlab_laws.damped_table.rings import Course, History, march
 from contactlab_laws.damped_table.table import Table, write
-from contactlab_laws.dashpot.oscillator import damping_of
 
 Array = NDArray[np.float64]
 
-#: Springs of the impacts at the nodes; four steps to a spring.
-SPRINGS = 150
-#: Where the cuts are looked for: psi1 of the first, 2 chi (1 + e) - psi1 of the second; and on so
+#: Rings of the impacts at the nodes, and those with which the cuts are looked for.
+COUNTS, RINGS = (72, 96, 120, 144), 72
+#: Where they are looked for: psi1 of the first two, 2 chi (1 + e) - psi1 of the last; and on so
 #: many impacts.
-FIRST, SECOND, LOOKED = (0.8, 1.6), (0.3, 1.3), 49
-#: The piece between them is no narrower than this.
-NARROWEST = 0.05
+FIRST, LAST, LOOKED = (0.5, 1.9), (0.3, 1.3), 57
+#: The pieces between them are no narrower than this.
+NARROWEST = 0.02
+#: Above these shares of Coulomb's limit the centre, and all of the contact, are taken to slip.
+CENTRE, WHOLE = 0.995, 0.9999
 
 
-def simulation(e: float, springs: int) -> Simulation:
-    """Return Tsuji's law under so many springs."""
-    return Simulation(
-        normal=REGISTRY.create("normal.tsuji", restitution=e),
-        tangential=REGISTRY.create("tangential.springs", springs=springs),
-        integrator=REGISTRY.create("integrator.symplectic", steps=4 * springs),
-    )
-
-
-def solve(psi1: Array, chi: Array, e: float, *, springs: int = SPRINGS) -> Array:
-    """Return psi2 of impacts of one restitution, by springs.
+def solve(psi1: Array, chi: Array, e: float, *, counts: tuple[int, ...] = COUNTS) -> Array:
+    """Return psi2 of impacts of one restitution, with Coulomb's law at every point, by rings.
 
     Parameters
     ----------
@@ -55,56 +47,68 @@ def solve(psi1: Array, chi: Array, e: float, *, springs: int = SPRINGS) -> Array
         Broadcast against each other.
     e : float
         Restitution.
-    springs : int
-        Four steps are taken to each.
+    counts : tuple of int
+        Numbers of rings.
     """
     shape = np.broadcast_shapes(psi1.shape, chi.shape)
     psi1, chi = (np.broadcast_to(each, shape).ravel() for each in (psi1, chi))
-    result = simulation(e, springs).sweep(Scene.nondimensional(psi1=psi1, chi=chi)).check()
-    return np.asarray(result.psi2).reshape(shape)
+    return by_rings(psi1, chi, e, counts=counts).reshape(shape)
 
 
-def cuts_at(e: float, chi: Array) -> tuple[Array, Array]:
-    """Return the two values of psi1 at which the table is cut, each of the shape of ``chi``.
+def cuts_at(e: float, chi: Array, *, rings: int = RINGS) -> Array:
+    """Return the three values of psi1 at which the table is cut, shape (3, chi).
 
-    The first: the centre grazes slip before it slips at the end, as the limit vanishes. Its
-    displacement since touch comes to the limit of the spring there, l(0) = P^/zeta^½. The
-    second: it slips for good, psi >= dl(0)/dT all through unloading. Extrapolated: both are of
-    first order in steps.
+    At the first the traction at the centre grazes mu p before the end, where the limit vanishes.
+    At the second all of the contact slips, for an instant, before that. From the third on the
+    centre slips for good: the slip displacement grows at least as fast as that of a hemisphere at
+    its limit all through unloading.
     """
-    coarse, fine = (_looked_for(e, chi, springs) for springs in (SPRINGS // 2, SPRINGS))
-    first, second = 2.0 * fine - coarse
-    return first, np.maximum(second, first + NARROWEST)
+    shape = (LOOKED, len(chi))
+    first = np.broadcast_to(np.linspace(*FIRST, LOOKED)[:, None], shape)
+    last = 2.0 * chi * (1.0 + e) - np.linspace(LAST[1], LAST[0], LOOKED)[:, None]
+    psi1 = np.stack([first, last])
+    ours = course(tsuji(e), rings)
+    found = march(psi1.ravel(), np.broadcast_to(chi, psi1.shape).ravel(), ours)
+    history = History(*(each.reshape(-1, *psi1.shape) for each in found))
+    top = int(ours.inside.argmax())
+    centre = _largest(np.abs(history.centre[1:-1, 0]), top)
+    whole = np.abs(history.share[1 : top + 2, 0]).max(axis=0)
+    margin = _margin(history, ours, top)
+    cuts = np.empty((3, len(chi)))
+    for k in range(len(chi)):
+        cuts[0, k] = _reaching(first[:, k], centre[:, k], CENTRE)
+        cuts[1, k] = _reaching(first[:, k], whole[:, k], WHOLE)
+        cuts[2, k] = np.interp(0.0, margin[:, k], last[:, k])
+    cuts[1:] = np.maximum(cuts[1:], cuts[:1] + NARROWEST)
+    cuts[2] = np.maximum(cuts[2], cuts[1] + NARROWEST)
+    return cuts
 
 
-def _looked_for(e: float, chi: Array, springs: int) -> Array:
-    """Return the cuts as springs find them on a grid of psi1, shape (2, chi)."""
-    first = np.broadcast_to(np.linspace(*FIRST, LOOKED)[:, None], (LOOKED, len(chi)))
-    second = 2.0 * chi * (1.0 + e) - np.linspace(SECOND[1], SECOND[0], LOOKED)[:, None]
-    psi1 = np.stack([first, second])
-    scene = Scene.nondimensional(psi1=psi1.ravel(), chi=np.broadcast_to(chi, psi1.shape).ravel())
-    history = simulation(e, springs).run(scene, history=True).check().history
-    assert history is not None
-    # In these units zeta is the approach, and Hertz's greatest force 1.25.
-    rate, approach = (each[1:-1, 0] for each in (history.normal_velocity, history.approach))
-    limit = history.normal_force[1:-1, 0] / 1.25 / approach**0.5
-    slip = history.slip_velocity.reshape(-1, *psi1.shape)
-    moved = 0.5 * (slip[1:] + slip[:-1]) * np.diff(history.time[:, 0])[:, None, None, None]
-    loaded = rate > 0.0
-    forth = np.cumsum(moved, axis=0)[:-1, 0] / limit[:, None, None]
-    # At the end the limit vanishes: what counts is the ratio before it is least in unloading.
-    least = np.count_nonzero(loaded) + forth[~loaded].argmin(axis=0)
-    ratio = np.take_along_axis(np.maximum.accumulate(forth), least[None], axis=0)[0]
-    x, beta = approach**1.25, damping_of(e)
-    pull = x + 2.0 * beta * rate
-    falling = 1.25 * (rate - 2.0 * beta * pull - 0.2 * rate * pull / x)
-    margin = (slip[1:-1, 1][~loaded] - falling[~loaded, None, None]).min(axis=0)
-    return np.array(
-        [
-            [np.interp(at, measured[:, k], grid[:, k]) for k in range(len(chi))]
-            for at, measured, grid in ((1.0, ratio, first), (0.0, margin, second))
-        ]
-    )
+def _largest(share: Array, top: int) -> Array:
+    """Return the largest share of the limit before the slip of the end, shape (psi1, chi).
+
+    At the end the limit vanishes: what counts is the share before it is least in unloading.
+    """
+    least = top + share[top:].argmin(axis=0)
+    before = np.take_along_axis(np.maximum.accumulate(share), least[None], axis=0)
+    return np.asarray(before[0])
+
+
+def _reaching(psi1: Array, share: Array, slipping: float) -> float:
+    """Return where ``share`` comes to 1 for good, by the line through the two values before."""
+    k = max(int(np.flatnonzero(share < slipping).max(initial=1)) + 1, 2)
+    if k == len(psi1):
+        return float(psi1[-1])
+    rise = max((share[k - 1] - share[k - 2]) / (psi1[k - 1] - psi1[k - 2]), 1e-3)
+    return float(np.clip(psi1[k - 1] + (1.0 - share[k - 1]) / rise, psi1[k - 1], psi1[k]))
+
+
+def _margin(history: History, ours: Course, top: int) -> Array:
+    """Return the least excess of slip over that of the limit at the centre in unloading."""
+    ends = ours.edges[ours.inside]
+    limit = ours.load / np.where(ends > 0.0, ends, 1.0)
+    excess = history.moved[:, 1] - np.diff(limit)[:, None, None]
+    return np.asarray((excess / np.diff(ours.time)[:, None, None])[top:].min(axis=0))
 
 
 def build(path: Path) -> None:
@@ -114,16 +118,17 @@ def build(path: Path) -> None:
     for piece, (low, high) in enumerate(pairwise(BORDERS)):
         depths = nodes(NODES[2], low, high)
         found = np.array([cuts_at(float(restitution(t)), chi) for t in depths]).swapaxes(0, 1)
+        print(f"cuts of piece {piece + 1} of {len(BORDERS) - 1}", file=sys.stderr)
         # The cuts are those of the polynomials, in building and evaluating alike.
         cuts.append([coefficients(np.ascontiguousarray(each.T)) for each in found])
         values.append(np.empty((SLIPS + 1, *NODES)))
         for k, t in enumerate(depths):
             e = float(restitution(t))
+            at = nodes(NODES[0], -1.0, 1.0)[:, None]
+            psi1 = np.stack([incidence(part, at, found[:, k]) for part in range(SLIPS + 1)])
+            psi2 = solve(psi1, chi, e)
             for part in range(SLIPS + 1):
-                at = nodes(NODES[0], -1.0, 1.0)[:, None]
-                psi1 = incidence(part, at, (found[0, k], found[1, k]))
-                psi2 = solve(psi1, chi, e)
-                values[-1][part, :, :, k] = smooth(part, psi1, psi2, chi, e)
+                values[-1][part, :, :, k] = smooth(part, psi1[part], psi2[part], chi, e)
             done = piece * NODES[2] + k + 1
             print(f"{done} of {NODES[2] * (len(BORDERS) - 1)}: e = {e:.4f}", file=sys.stderr)
     terms = np.array([[coefficients(part) for part in each] for each in values])

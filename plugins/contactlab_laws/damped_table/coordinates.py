@@ -15,10 +15,11 @@ CHI = (0.8, 1.8)
 RESTITUTION = (0.5, 1.0)
 #: Pieces of t = (1 - e)^(1/3), in which psi2 is smooth down to e = 1; the border is e = 0.9.
 BORDERS = (0.0, 0.1 ** (1.0 / 3.0), 0.5 ** (1.0 / 3.0))
-#: Pieces in psi1: the centre sticks until the end; it slips and sticks again; it slips for good.
-STICKS, TURNS, SLIPS = range(3)
+#: Pieces in psi1: the centre sticks until the end; it slips while a ring around it sticks; all of
+#: the contact slips and sticks again; the centre slips for good.
+STICKS, RINGS, TURNS, SLIPS = range(4)
 #: Nodes in psi1, chi and t.
-NODES = (24, 10, 10)
+NODES = (16, 8, 8)
 
 
 def depth(restitution: Any) -> Any:
@@ -49,25 +50,25 @@ def coefficients(values: Array) -> Array:
     return values
 
 
-def place(piece: int, psi1: Any, cuts: tuple[Any, Any]) -> Any:
+def place(piece: int, psi1: Any, cuts: Any) -> Any:
     """Return the coordinate in [-1, 1] of ``psi1`` in a piece."""
-    low, high = cuts
     if piece == STICKS:
-        return 2.0 * psi1 / low - 1.0
-    if piece == TURNS:  # rough where it begins: the root makes it smooth
-        return 2.0 * np.sqrt((psi1 - low) / (high - low)) - 1.0
-    return 2.0 * (high - 1.0) / (psi1 - 1.0) - 1.0
+        return 2.0 * psi1 / cuts[0] - 1.0
+    if piece == SLIPS:
+        return 2.0 * (cuts[-1] - 1.0) / (psi1 - 1.0) - 1.0
+    low, high = cuts[piece - 1], cuts[piece]  # rough where it begins: the root makes it smooth
+    return 2.0 * np.sqrt((psi1 - low) / (high - low)) - 1.0
 
 
-def incidence(piece: int, at: Any, cuts: tuple[Any, Any]) -> Any:
+def incidence(piece: int, at: Any, cuts: Any) -> Any:
     """Return psi1 at a coordinate in [-1, 1] of a piece: the inverse of ``place``."""
-    low, high = cuts
     share = 0.5 * (at + 1.0)
     if piece == STICKS:
-        return low * share
-    if piece == TURNS:
-        return low + (high - low) * share**2
-    return 1.0 + (high - 1.0) / share
+        return cuts[0] * share
+    if piece == SLIPS:
+        return 1.0 + (cuts[-1] - 1.0) / share
+    low, high = cuts[piece - 1], cuts[piece]
+    return low + (high - low) * share**2
 
 
 def smooth(piece: int, psi1: Any, psi2: Any, chi: Any, e: Any) -> Any:
@@ -76,13 +77,13 @@ def smooth(piece: int, psi1: Any, psi2: Any, chi: Any, e: Any) -> Any:
     Parameters
     ----------
     piece : int
-        ``STICKS``, ``TURNS`` or ``SLIPS``.
+        ``STICKS``, ``RINGS``, ``TURNS`` or ``SLIPS``.
     psi1, psi2, chi, e : float or array
         Impacts of that piece; e is the restitution.
     """
     if piece == STICKS:
         return psi2 / psi1
-    return psi2 if piece == TURNS else psi2 - (psi1 - 2.0 * chi * (1.0 + e))
+    return psi2 if piece != SLIPS else psi2 - (psi1 - 2.0 * chi * (1.0 + e))
 
 
 def rough(piece: int, psi1: Any, value: Any, chi: Any, e: Any) -> Any:
@@ -91,7 +92,7 @@ def rough(piece: int, psi1: Any, value: Any, chi: Any, e: Any) -> Any:
     Parameters
     ----------
     piece : int
-        ``STICKS``, ``TURNS`` or ``SLIPS``.
+        ``STICKS``, ``RINGS``, ``TURNS`` or ``SLIPS``.
     psi1, chi, e : float or array
         Impacts of that piece; e is the restitution.
     value : float or array
@@ -99,4 +100,4 @@ def rough(piece: int, psi1: Any, value: Any, chi: Any, e: Any) -> Any:
     """
     if piece == STICKS:
         return value * psi1
-    return value if piece == TURNS else value + (psi1 - 2.0 * chi * (1.0 + e))
+    return value if piece != SLIPS else value + (psi1 - 2.0 * chi * (1.0 + e))

@@ -14,8 +14,6 @@ from contactlab_laws.damped_table.coordinates import (
     CHI,
     RESTITUTION,
     SLIPS,
-    STICKS,
-    TURNS,
     depth,
     inner,
     place,
@@ -28,8 +26,10 @@ Array = NDArray[np.float64]
 #: Impacts computed together: fewer cost more calls, more leave the processor's cache.
 CHUNK = 8192
 #: The last terms along psi1 are left out that together are no more than this: less than the
-#: springs are off that the table is made of.
+#: rings are off that the table is made of.
 SMALL = 1e-5
+#: Rings beyond the table, and psi1 beyond which the change of psi is its limit to 1e-4.
+COUNTS, LARGEST = (48, 64, 80), 1e4
 
 
 @cache
@@ -46,27 +46,59 @@ def tabulated(chi: Any, restitution: Any) -> Any:
 
 @np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
 def rebound(psi1: Array, chi: Array, restitution: float) -> Array:
-    """Return psi2 of spheres under Tsuji's law, to 2e-4; odd in psi1 to the last bit.
+    """Return psi2 of spheres under Tsuji's law, shape (impacts,); odd in psi1 to the last bit.
+
+    With Coulomb's law at every point: by the table where it reaches, elsewhere by rings.
 
     Parameters
     ----------
     psi1 : array, shape (impacts,)
     chi : array, shape (impacts,)
-        From 0.8 to 1.8.
+        Up to 10, as far as the rings were tried.
     restitution : float
-        e, from 0.5 to 1.
+        e.
     """
+    speed, known = np.abs(psi1), tabulated(chi, restitution)
+    if known.all():
+        psi2 = _by_table(speed, chi, restitution)
+    else:
+        psi2 = np.empty(psi1.shape)
+        psi2[known] = _by_table(speed[known], chi[known], restitution) if known.any() else 0.0
+        psi2[~known] = by_rings(speed[~known], chi[~known], restitution)
+    return np.copysign(psi2, psi2 * np.where(psi1 < 0.0, -1.0, 1.0))
+
+
+def by_rings(psi1: Array, chi: Array, e: float, *, counts: tuple[int, ...] = COUNTS) -> Array:
+    """Return psi2 of psi1 >= 0 by rings, shape (impacts,).
+
+    Parameters
+    ----------
+    psi1, chi : array, shape (impacts,)
+    e : float
+        Restitution.
+    counts : tuple of int
+        Numbers of rings.
+    """
+    from contactlab_laws.damped_table import courses  # a table needs no normal motion
+
+    near = np.minimum(psi1, LARGEST)
+    change = courses.solve(near, chi, courses.tsuji(e), counts=counts) - near
+    return np.asarray(psi1 + change)
+
+
+def _by_table(psi1: Array, chi: Array, restitution: float) -> Array:
+    """Return psi2 of psi1 >= 0 from the table, shape (impacts,)."""
     cuts, terms = _at(restitution)
     psi2 = np.empty(psi1.shape)
     for first in range(0, len(psi1), CHUNK):
         part = slice(first, first + CHUNK)
-        psi2[part] = _chunk(np.abs(psi1[part]), chi[part], restitution, cuts, terms)
-    return np.copysign(psi2, psi2 * np.where(psi1 < 0.0, -1.0, 1.0))
+        psi2[part] = _chunk(psi1[part], chi[part], restitution, cuts, terms)
+    return psi2
 
 
 @lru_cache(maxsize=64)
 def _at(restitution: float) -> tuple[Array, list[Array]]:
-    """Return coefficients at a restitution: of the cuts (2, chi), and of each piece (psi1, chi)."""
+    """Return coefficients at a restitution: of the cuts (3, chi), and of each piece (psi1, chi)."""
     table, t = shipped(), float(depth(restitution))
     piece = int(t > BORDERS[1])
     low, high = BORDERS[piece : piece + 2]
@@ -88,20 +120,20 @@ def _chunk(psi1: Array, chi: Array, e: float, cuts: Array, terms: list[Array]) -
     psi1, chi : array, shape (impacts,)
     e : float
         Restitution.
-    cuts : array, shape (2, terms)
-        Polynomials in chi of the two cuts.
+    cuts : array, shape (3, terms)
+        Polynomials in chi of the cuts.
     terms : list of array
         Of each piece: polynomials in psi1 and chi.
     """
     along = _polynomials(inner(chi, *CHI), cuts.shape[-1])
-    low, high = cuts @ along
-    piece = (psi1 > low).astype(np.int8) + (psi1 > high)
+    borders = cuts @ along
+    piece = (psi1 > borders).sum(axis=0)
     psi2 = np.empty(psi1.shape)
-    for part in (STICKS, TURNS, SLIPS):
+    for part in range(SLIPS + 1):
         rows = np.flatnonzero(piece == part)
         if rows.size:
             ours = psi1[rows], chi[rows]
-            at = place(part, ours[0], (low[rows], high[rows]))
+            at = place(part, ours[0], borders[:, rows])
             value = _summed(at, terms[part] @ along.take(rows, axis=1))
             psi2[rows] = rough(part, ours[0], value, ours[1], e)
     return psi2

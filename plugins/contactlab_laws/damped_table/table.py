@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 SHIPPED = Path(__file__).with_name("damped.npz")
-FORMAT = 1
+FORMAT = 2
 
 
 @attrs.frozen(eq=False)
@@ -22,9 +22,9 @@ class Table:
 
     Attributes
     ----------
-    cuts : array, shape (pieces of t, 2, chi, t)
-        Of the two values of psi1 at which the table is cut.
-    terms : array, shape (pieces of t, 3, psi1, chi, t)
+    cuts : array, shape (pieces of t, 3, chi, t)
+        Of the values of psi1 at which the table is cut.
+    terms : array, shape (pieces of t, 4, psi1, chi, t)
     version, built : str
         Of contactlab, and the day.
     """

@@ -10,6 +10,7 @@ from contactlab.contracts import (
     ClosedFormMotion,
     ClosedFormNormalLaw,
     NormalContact,
+    NormalMotion,
     without_tension,
 )
 from contactlab.contracts.restitution import restitution
@@ -18,6 +19,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, Real, quantity
 from contactlab_laws.dashpot.motion import Course, DashpotMotion
 from contactlab_laws.dashpot.oscillator import damping_of
+from contactlab_laws.differences.table import choice
 from contactlab_laws.hertz.motion import HertzMotion
 
 
@@ -96,6 +98,10 @@ class Tsuji(ClosedFormNormalLaw):
         course = Course(damping_of(self.restitution), 1.25)
         return DashpotMotion.of(self, scene, course, hertz_scales(scene).approach)
 
+    def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
+        """Return those of every law, and how far others of the same restitution move psi2."""
+        return (*super().cautions(scene, motion), *choice(scene, motion))
+
 
 @attrs.frozen(kw_only=True)
 class Linear(ClosedFormNormalLaw):
@@ -142,3 +148,7 @@ class Linear(ClosedFormNormalLaw):
         stiffness = self.start(scene).stiffness
         deepest = scene.normal_speed * (scene.pair.normal_mass / stiffness) ** 0.5
         return DashpotMotion.of(self, scene, Course(damping_of(self.restitution), 1.0), deepest)
+
+    def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
+        """Return those of every law, and how far others of the same restitution move psi2."""
+        return (*super().cautions(scene, motion), *choice(scene, motion))

@@ -17,10 +17,10 @@ from contactlab.contracts import (
     SteppedTangentialLaw,
     TangentialResponse,
 )
-from contactlab.impact.coupling import hemisphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab_laws.deresiewicz.branches import Memory, Step, followed
+from contactlab_laws.jaeger.pressure import hemisphere
 
 #: Of the energy books, over the energy at the start: what the short memory leaves out.
 LARGEST_IMBALANCE = 0.1
@@ -69,7 +69,7 @@ class MindlinDeresiewicz(SteppedTangentialLaw):
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return that the memory is short, and that of a pressure that may be no hemisphere."""
-        known = (*super().cautions(scene, normal), *hemisphere(normal.offers))
+        known = (*super().cautions(scene, normal), *hemisphere(normal))
         return (*known, SHORT_MEMORY)
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:

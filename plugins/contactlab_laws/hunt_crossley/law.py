@@ -8,11 +8,12 @@ from typing import Any, ClassVar, NamedTuple
 
 import attrs
 
-from contactlab.contracts import NormalContact, NormalLaw, without_tension
+from contactlab.contracts import NormalContact, NormalLaw, NormalMotion, without_tension
 from contactlab.contracts.restitution import one_of_two, restitution, root
 from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
+from contactlab_laws.differences.table import choice
 
 #: Where neither the restitution nor the damping is given.
 DEFAULT_RESTITUTION = 0.9
@@ -83,3 +84,7 @@ class HuntCrossley(NormalLaw):
         inside: Any = approach * (approach > 0.0)
         force = state.stiffness * inside**1.5 * (1.0 + state.damping * rate)
         return without_tension(force, (state.radius * inside) ** 0.5, approach), state
+
+    def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
+        """Return those of every law, and how far others of the same restitution move psi2."""
+        return (*super().cautions(scene, motion), *choice(scene, motion))

@@ -20,12 +20,13 @@ from contactlab.contracts import (
     TangentialResponse,
     WholeImpact,
 )
-from contactlab.impact.coupling import hemisphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
+from contactlab_laws.differences.table import springs
 from contactlab_laws.jaeger import all_steps, step
 from contactlab_laws.jaeger.bundle import Array, Bundle
 from contactlab_laws.jaeger.gross_slip import gross_slip
+from contactlab_laws.jaeger.pressure import hemisphere
 
 #: Numbers in a table of a whole run; larger ones (16 MB each) are not made.
 LARGEST_RUN = 2_000_000
@@ -96,8 +97,9 @@ class ProfileLaw(AllStepsTangentialLaw):
         return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return those of every law, and that of a pressure that may be no hemisphere."""
-        return (*super().cautions(scene, normal), *hemisphere(normal.offers))
+        """Return those of every law, of springs cut each alone, and of the pressure."""
+        known = super().cautions(scene, normal)
+        return (*known, *springs(scene, normal), *hemisphere(normal))
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""

@@ -8,11 +8,12 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.contracts import NormalContact, NormalLaw, without_tension
+from contactlab.contracts import NormalContact, NormalLaw, NormalMotion, without_tension
 from contactlab.contracts.restitution import one_of_two, restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
+from contactlab_laws.differences.table import choice
 
 #: Where neither the restitution nor the relaxation time is given.
 DEFAULT_RESTITUTION = 0.9
@@ -112,3 +113,7 @@ class KuwabaraKono(NormalLaw):
         inside: Any = approach * (approach > 0.0)
         force = state.stiffness * inside**0.5 * (inside + state.time * rate)
         return without_tension(force, (state.radius * inside) ** 0.5, approach), state
+
+    def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
+        """Return those of every law, and how far others of the same restitution move psi2."""
+        return (*super().cautions(scene, motion), *choice(scene, motion))

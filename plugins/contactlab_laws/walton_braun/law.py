@@ -7,11 +7,12 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.contracts import NormalContact, NormalLaw
+from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
 from contactlab.contracts.restitution import restitution
 from contactlab.impact.hertz import linear_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, Real, quantity
+from contactlab_laws.differences.table import choice
 
 
 class Memory(NamedTuple):
@@ -69,3 +70,7 @@ class WaltonBraun(NormalLaw):
             overlap=given_way,
         )
         return contact, state._replace(deepest=deepest)
+
+    def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
+        """Return those of every law, and how far others of the same restitution move psi2."""
+        return (*super().cautions(scene, motion), *choice(scene, motion))

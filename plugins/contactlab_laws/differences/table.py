@@ -1,0 +1,136 @@
+"""Cautions with sizes from ``differences.csv``, which ``damped_table.differences`` measures."""
+
+from __future__ import annotations
+
+import csv
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import NormalLaw
+from contactlab.impact.scene import Scene
+
+FILE = Path(__file__).with_name("differences.csv")
+#: Differences of psi2 below this are not worth a sentence.
+LEAST = 1e-3
+#: Laws whose rows begin at a restitution no larger have any restitution, as Tsuji's.
+SPANNED = 0.1
+#: The impacts that were measured.
+MEASURED = "measured for chi 0.8 to 1.8"
+
+
+class Row(NamedTuple):
+    """Largest differences of psi2 under one normal law at one restitution.
+
+    Attributes
+    ----------
+    restitution : float
+    springs : float
+        Between independent springs and Coulomb's law at every point.
+    choice : float
+        Between this normal law and Tsuji's of the same restitution.
+    """
+
+    restitution: float
+    springs: float
+    choice: float
+
+
+def key(law: NormalLaw) -> str:
+    """Return the name by which the table knows a normal law: that of its class, with its module."""
+    return f"{type(law).__module__}.{type(law).__qualname__}"
+
+
+@cache
+def rows() -> dict[str, tuple[Row, ...]]:
+    """Return the rows of each normal law, by restitution from small to large."""
+    found: dict[str, list[Row]] = {}
+    with FILE.open(encoding="utf-8", newline="") as file:
+        for law, *numbers in list(csv.reader(file))[1:]:
+            found.setdefault(law, []).append(Row(*map(float, numbers)))
+    return {law: tuple(sorted(each)) for law, each in found.items()}
+
+
+def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+    """Return the caution that independent springs are not Coulomb's law, with its size in psi2.
+
+    Parameters
+    ----------
+    scene : Scene
+        One impact or a batch.
+    normal : NormalMotion
+        Of all impacts of ``scene``.
+    """
+    if "elastic_hertz" in normal.offers or not _rubs(scene):
+        return ()
+    measured = rows()
+    own = measured.get(key(normal.law))
+    laws = measured.values() if own is None else (own,)
+    size = max((_largest(normal, each, "springs") for each in laws), default=0.0)
+    if not size >= LEAST:
+        return ()
+    whose = ", of other normal laws of this restitution" if own is None else ""
+    return (
+        "springs that are cut each alone are not Coulomb's law at every point under this normal "
+        f"law: psi2 is off by up to {size:.1g} ({MEASURED}{whose}; model, not numerical error); "
+        "tangential.annulus has the right limit",
+    )
+
+
+def choice(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+    """Return the caution that another normal law of the same e gives another psi2, with its size.
+
+    Parameters
+    ----------
+    scene : Scene
+        One impact or a batch.
+    normal : NormalMotion
+        Of all impacts of ``scene``, under a law that ``differences.csv`` holds.
+    """
+    if not _rubs(scene):
+        return ()
+    measured, own = rows(), key(normal.law)
+    if own not in measured or "elastic_hertz" in normal.offers:
+        return ()
+    if own.endswith(".Tsuji"):
+        if np.all(_restitution(normal) == 1.0):
+            return ()  # no damping: Hertz's motion
+        sizes = {
+            law.rpartition(".")[2]: _largest(normal, each, "choice")
+            for law, each in measured.items()
+            if law != own and each[0].restitution <= SPANNED
+        }
+        least, most = (pick(sizes, key=sizes.__getitem__) for pick in (min, max))
+        told = f"{sizes[least]:.1g} ({least}) to {sizes[most]:.1g} ({most})"
+    else:
+        size = _largest(normal, measured[own], "choice")
+        if not size >= LEAST:
+            return ()
+        told = f"{size:.1g} (Tsuji)"
+    return (
+        "the restitution alone does not decide psi2: under partial slip other normal laws of the "
+        f"same restitution move psi2 by up to {told} ({MEASURED}; model, not numerical error)",
+    )
+
+
+def _rubs(scene: Scene) -> bool:
+    """Return whether any impact has friction and slip velocity."""
+    slip: Any = scene.slip_velocity
+    friction: Any = scene.friction_coefficient
+    return bool(np.any((slip != 0.0) & (friction != 0.0)))
+
+
+def _largest(normal: NormalMotion, measured: tuple[Row, ...], column: str) -> float:
+    """Return the largest difference over the impacts, by interpolation in their restitution."""
+    e = _restitution(normal)
+    known = [row.restitution for row in measured]
+    found = np.interp(e, known, [getattr(row, column) for row in measured])
+    return float(np.nanmax(found)) if np.isfinite(found).any() else 0.0
+
+
+def _restitution(normal: NormalMotion) -> Any:
+    """Return e of each impact."""
+    return -np.asarray(normal.final_rate) / np.asarray(normal.scene.normal_speed)

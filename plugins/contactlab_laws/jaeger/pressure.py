@@ -1,0 +1,48 @@
+"""The caution of a pressure that a friction law takes for a hemisphere."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from contactlab.contracts.motion import NormalMotion
+
+#: Phases at which the friction load is compared with Hertz's, and what they may differ by.
+PHASES = np.linspace(0.1, 0.9, 9) * math.pi
+CLOSE = 1e-6
+
+
+def hemisphere(normal: NormalMotion) -> tuple[str, ...]:
+    """Return the caution of a pressure that is taken for a hemisphere and may be none.
+
+    Without the claim ``hertzian_pressure`` the friction law assumes it. With the claim the normal
+    law does, unless the friction load is Hertz's at the contact radius.
+
+    Parameters
+    ----------
+    normal : NormalMotion
+        Of one impact or of a batch.
+    """
+    if "hertzian_pressure" not in normal.offers:
+        return (
+            "the friction law takes the pressure for a hemisphere over the contact radius that "
+            "carries the friction load; the normal law does not say that it is one (model error)",
+        )
+    if "elastic_hertz" in normal.offers or _hertzian(normal):
+        return ()
+    return (
+        "the normal law assumes a hemisphere of pressure that carries its damped force; what the "
+        "pressure of the damping is no theory says (model error)",
+    )
+
+
+def _hertzian(normal: NormalMotion) -> bool:
+    """Return whether the friction load is that of Hertz's contact of the same radius."""
+    pair, shape = normal.scene.pair, normal.scene.shape
+    contact = normal.at(PHASES.reshape(-1, *(1 for _ in shape))).contact
+    radius: Any = contact.radius
+    hertz = (4.0 / 3.0) * pair.effective_modulus * radius**3 / pair.radius
+    off = np.abs(np.asarray(contact.friction_load) - hertz)
+    return bool(np.all(~(off > CLOSE * hertz)))
