@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.law import Law
 from contactlab.impact.scene import Scene
 
 FILE = Path(__file__).with_name("differences.csv")
@@ -39,7 +39,7 @@ class Row(NamedTuple):
     choice: float
 
 
-def key(law: NormalLaw) -> str:
+def key(law: Law) -> str:
     """Return the name by which the table knows a normal law: that of its class, with its module."""
     return f"{type(law).__module__}.{type(law).__qualname__}"
 
