@@ -9,8 +9,9 @@ import numpy as np
 
 from contactlab.compose.rebound import damped_error
 from contactlab.impact.encounter import Encounter
+from contactlab.numeric.arrays import some
 from contactlab.numeric.vectors import components
-from contactlab.outcome.plan import Plan, Sentence
+from contactlab.outcome.plan import Clause, Plan
 
 PARTED = "collision: the bodies separate, they pass through untouched"
 TURNS = "spin about the normal: friction makes no moment about it, it passes through unchanged"
@@ -34,9 +35,9 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
     if met is not None:
         turning = np.array(np.broadcast_to(_turns(met), met.shape))
         if turning.any():
-            left_out.append(Sentence(TURNS, turning))
+            left_out.append(Clause(TURNS, turning))
     if passed.any():
-        left_out.append(Sentence(PARTED, passed))
+        left_out.append(Clause(PARTED, passed))
     return attrs.evolve(plan, left_out=tuple(left_out))
 
 
@@ -53,19 +54,21 @@ def by_rebound(plan: Plan, chi: Any, restitution: float) -> Plan:
     """
     unknown = np.isnan(plan.psi2_error)
     bound = np.broadcast_to(damped_error(chi, restitution), unknown.shape)
-    declared = bound[unknown & ~np.isnan(bound)]
-    said = "none was measured beyond chi = 10"
-    if declared.size:
-        said = f"at most {declared.max():g} beside Coulomb's law at every point"
     heads = {
         "tangential motion": f"contactlab.rebound with restitution={restitution:g}",
-        "numerical error of psi2": f"{said}, of contactlab.rebound",
+        "numerical error of psi2": "none was measured beyond chi = 10, of contactlab.rebound",
     }
+    if not np.isnan(bound[unknown]).all():
+        heads["numerical error of psi2"] = (
+            "at most {:g} beside Coulomb's law at every point, of contactlab.rebound"
+        )
     computed = []
-    for text, where in plan.computed:
-        head = text.partition(": ")[0]
-        other = head in heads and np.any(where & unknown)
-        computed.append(Sentence(f"{head}: {heads[head]}" if other else text, where))
+    for clause in plan.computed:
+        head = clause.text.partition(": ")[0]
+        if head in heads and some(clause.where & unknown):
+            text = f"{head}: {heads[head]}"
+            clause = Clause(text, clause.where, (np.where(unknown, bound, np.nan),))
+        computed.append(clause)
     error = np.where(unknown, bound, plan.psi2_error)
     return attrs.evolve(
         plan, computed=tuple(computed), psi2_error=error if error.ndim else float(error)

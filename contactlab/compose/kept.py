@@ -23,13 +23,12 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.plan import Plan, Sentence
+from contactlab.outcome.plan import Plan
 
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation
 
 ABOUT, PIECES = "sweep.json", "impacts-*.npz"
-KINDS_OF_SENTENCES = ("computed", "left_out", "cautions")
 #: Impacts with these were not computed: a sweep that goes on tries them again.
 TRIED_AGAIN = (Status.INTERRUPTED, Status.WORKER_DIED)
 
@@ -190,12 +189,7 @@ def _arrays(piece: Piece) -> dict[str, Any]:
     arrays["status"] = np.array([status.name for status in motion.status])
     arrays["detail"] = np.array(list(motion.detail), dtype=np.str_)
     arrays["counters"] = np.array(json.dumps(dict(motion.counters)))
-    arrays |= {"marched": plan.marched, "psi2_error": plan.psi2_error}
-    for kind in KINDS_OF_SENTENCES:
-        sentences = getattr(plan, kind)
-        arrays[kind] = np.array([sentence.text for sentence in sentences], dtype=np.str_)
-        masks = [sentence.where for sentence in sentences]
-        arrays[f"{kind}_where"] = np.array(masks, dtype=bool)
+    arrays |= plan.to_arrays()
     return arrays
 
 
@@ -213,13 +207,6 @@ def _name(chunk: Chunk) -> str:
 def _piece(content: Mapping[str, Any]) -> Piece:
     """Return the piece that arrays were made of."""
     first, stop = content["place"].tolist()
-    kinds = {
-        kind: tuple(
-            Sentence(str(text), where)
-            for text, where in zip(content[kind], content[f"{kind}_where"], strict=True)
-        )
-        for kind in KINDS_OF_SENTENCES
-    }
     motion = Motion(
         **{name: content[name] for name in Motion.numbers()},
         status=np.array([Status[name] for name in content["status"]], dtype=object),
@@ -228,5 +215,4 @@ def _piece(content: Mapping[str, Any]) -> Piece:
     )
     if motion.status.shape != (stop - first,):
         raise ValueError(f"{stop - first} impacts by its place, {motion.status.size} in it")
-    plan = Plan(**kinds, marched=content["marched"], psi2_error=content["psi2_error"])
-    return Piece(Chunk(first, stop), plan, motion)
+    return Piece(Chunk(first, stop), Plan.from_arrays(content), motion)

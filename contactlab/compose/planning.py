@@ -17,7 +17,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.impact.unit_slips import unit_slips
 from contactlab.numeric.arrays import every, some, spread
-from contactlab.outcome.plan import Plan, Sentence
+from contactlab.outcome.plan import Clause, Plan
 
 #: Error of what is known in closed form, over max(1, |psi1|).
 CLOSED_FORM = 1e-12
@@ -50,25 +50,25 @@ def make_plan(
     how = "integrated from first touch to separation"
     if isinstance(normal.law, ClosedFormNormalLaw):
         how = "in closed form"
-    computed = [Sentence(f"normal motion: {type(normal.law).__name__}, {how}", everywhere)]
+    computed = [Clause(f"normal motion: {type(normal.law).__name__}, {how}", everywhere)]
     cautions = unit_slips(scene)
     if some(separated):
         cautions += laws.normal.cautions(scene, normal)
         cautions += laws.tangential.cautions(scene, normal)
     if some(marched):
-        text = f"tangential motion: {laws.integrator!r} over {laws.tangential!r}"
-        computed.append(Sentence(text, marched))
+        text = "tangential motion: {!r} over {!r}"
+        computed.append(Clause(text, marched, (laws.integrator, laws.tangential)))
         part = (normal, scene)
         if not every(marched):
             part = normal.take(marched), scene.take(marched)
         cautions += laws.integrator.remarks(part[0], laws.tangential, part[1])
     left_out = _not_marched(known, separated)
     if reason := _no_history(history, marched):
-        left_out.append(Sentence(reason, everywhere))
+        left_out.append(Clause(reason, everywhere))
     return Plan(
-        computed=(*computed, *_error_sentences(error, separated)),
+        computed=(*computed, *_error_clauses(error, separated)),
         left_out=tuple(left_out),
-        cautions=tuple(Sentence(text, everywhere) for text in cautions),
+        cautions=tuple(Clause(text, everywhere) for text in cautions),
         marched=marched,
         psi2_error=error,
     )
@@ -90,12 +90,12 @@ def _separated_and_marched(
     return separated, marched
 
 
-def _not_marched(known: Sequence[Answer], separated: Mask) -> list[Sentence]:
+def _not_marched(known: Sequence[Answer], separated: Mask) -> list[Clause]:
     """Return why impacts are not marched."""
     march = "march of the tangential motion"
-    found = [Sentence(f"{march}: {answer.known.reason}", answer.where) for answer in known]
+    found = [Clause(f"{march}: {answer.known.reason}", answer.where) for answer in known]
     if not every(separated):
-        found.append(Sentence(f"{march}: the normal motion came to no end", ~separated))
+        found.append(Clause(f"{march}: the normal motion came to no end", ~separated))
     return found
 
 
@@ -137,7 +137,7 @@ def _error(
     return error if scene.shape else float(error)
 
 
-def _error_sentences(error: Any, separated: Mask) -> list[Sentence]:
+def _error_clauses(error: Any, separated: Mask) -> list[Clause]:
     """Return what a plan says of the numerical error."""
     if separated.ndim:
         undeclared = separated & np.isnan(error)
@@ -148,9 +148,9 @@ def _error_sentences(error: Any, separated: Mask) -> list[Sentence]:
         undeclared, declared = NONE, separated
     found = []
     if some(declared):
-        most = float(np.max(error[declared])) if declared.ndim else error
-        found.append(Sentence(f"numerical error of psi2: at most {most:.2g}, declared", declared))
+        text = "numerical error of psi2: at most {:.2g}, declared"
+        found.append(Clause(text, declared, (np.asarray(error),)))
     if some(undeclared):
         text = "numerical error of psi2: not declared; run(scene, estimate_error=True) estimates it"
-        found.append(Sentence(text, undeclared))
+        found.append(Clause(text, undeclared))
     return found

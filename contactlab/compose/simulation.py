@@ -24,7 +24,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.plan import Plan, Sentence
+from contactlab.outcome.plan import Clause, Plan
 from contactlab.outcome.result import ImpactResult
 
 if TYPE_CHECKING:
@@ -212,7 +212,7 @@ def _complete(plan: Plan, scene: Scene) -> Plan:
     if not cautions:
         return plan
     everywhere = np.ones(scene.shape, dtype=bool)
-    more = tuple(Sentence(text, everywhere) for text in cautions)
+    more = tuple(Clause(text, everywhere) for text in cautions)
     return attrs.evolve(plan, cautions=plan.cautions + more)
 
 

@@ -3,37 +3,106 @@
 from __future__ import annotations
 
 import html
+import json
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.numeric.arrays import share, taken
+from contactlab.numeric.arrays import every, share, some, taken
 from contactlab.numeric.checks import Real
 from contactlab.outcome.columns import json_value
 
 Mask = NDArray[np.bool_]
 
+#: A number within words: no part of a name or of another number.
+NUMBER = re.compile(r"(?<![\w.{])\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w}])")
 
-class Sentence(NamedTuple):
-    """A sentence of a plan, and the impacts that it is said of."""
+
+class Span(NamedTuple):
+    """A number in the words of a law, over all parts of a batch that say them.
+
+    Attributes
+    ----------
+    low, high : float
+    text : str
+        The number as the law wrote it, shown while ``low`` is ``high``.
+    """
+
+    low: float
+    high: float
+    text: str
+
+    def __str__(self) -> str:
+        """Return the number, or the range as ``low..high``."""
+        return self.text if self.low == self.high else f"{self.low:.4g}..{self.high:.4g}"
+
+
+class Clause(NamedTuple):
+    """A statement of a plan: words, the impacts that they are said of, and the values in them.
+
+    Words are made when they are read. Clauses that differ in their numbers only are one.
+
+    Attributes
+    ----------
+    text : str
+        The words, or their format where there are ``values``.
+    where : array of bool
+        Of the batch shape.
+    values : tuple or None
+        What ``text`` formats: an array of the batch shape, of which the largest entry among the
+        impacts is shown, a ``Span``, or a law. None: ``text`` is the words.
+    """
 
     text: str
     where: Mask
+    values: tuple[Any, ...] | None = None
+
+    @property
+    def words(self) -> str:
+        """The statement without its share of a batch."""
+        if self.values is None:
+            return self.text
+        return self.text.format(*(_largest(value, self.where) for value in self.values))
 
     def __str__(self) -> str:
-        """Return the sentence with its share of a batch."""
-        if not self.where.ndim or self.where.all():
-            return self.text
-        head, colon, tail = self.text.partition(": ")
+        """Return the statement with its share of a batch."""
+        if every(self.where):
+            return self.words
+        head, colon, tail = self.words.partition(": ")
         return f"{head} ({share(self.where)}){colon}{tail}"
 
+    def take(self, part: Any) -> Clause:
+        """Return the clause for some of the impacts."""
+        values = self.values
+        if values is not None:
+            values = tuple(
+                np.asarray(taken(value, self.where.shape, part))
+                if isinstance(value, np.ndarray)
+                else value
+                for value in values
+            )
+        return Clause(self.text, np.asarray(self.where[part]), values)
 
-Sentences = tuple[Sentence, ...]
+    @property
+    def template(self) -> Clause:
+        """The clause with every number of its words a value."""
+        if self.values is not None and any(isinstance(v, np.ndarray | Span) for v in self.values):
+            return self
+        words = self.words
+        numbers = NUMBER.findall(words)
+        text = NUMBER.sub("{}", words.replace("{", "{{").replace("}", "}}"))
+        spans = tuple(Span(float(number), float(number), number) for number in numbers)
+        return Clause(text, self.where, spans)
+
+
+Clauses = tuple[Clause, ...]
+#: The attributes of a plan that hold clauses.
+KINDS = ("computed", "left_out", "cautions")
 
 
 @attrs.frozen(kw_only=True, eq=False)
@@ -42,8 +111,8 @@ class Plan:
 
     Attributes
     ----------
-    computed, left_out, cautions : tuple of Sentence
-        ``str`` of one gives it in words. Cautions are about the model and its numbers, and say
+    computed, left_out, cautions : tuple of Clause
+        ``str`` of a clause gives its words. Cautions are about the model and its numbers, and say
         which of the two.
     marched : bool or array of bool
         Impacts whose tangential motion an integrator follows.
@@ -52,9 +121,9 @@ class Plan:
         it is not declared. The errors of the model are not in it: see ``cautions``.
     """
 
-    computed: Sentences
-    left_out: Sentences
-    cautions: Sentences = ()
+    computed: Clauses
+    left_out: Clauses
+    cautions: Clauses = ()
     marched: Mask
     psi2_error: Real = math.nan
 
@@ -79,9 +148,46 @@ class Plan:
         }
 
     def __getitem__(self, index: Any) -> Plan:
-        """Return the plan of some impacts of a batch; sentences stay those of the batch."""
+        """Return the plan of some impacts of a batch: the clauses that hold for any of them."""
+        parts = {
+            kind: tuple(
+                part
+                for part in (clause.take(index) for clause in getattr(self, kind))
+                if some(part.where)
+            )
+            for kind in KINDS
+        }
         error = taken(self.psi2_error, self.marched.shape, index)
-        return attrs.evolve(self, marched=self.marched[index], psi2_error=error)
+        return Plan(**parts, marched=self.marched[index], psi2_error=error)
+
+    def to_arrays(self) -> dict[str, Any]:
+        """Return the plan of a batch as arrays of numbers and text, for a file."""
+        arrays: dict[str, Any] = {"marched": self.marched, "psi2_error": self.psi2_error}
+        for kind in KINDS:
+            clauses = [clause.template for clause in getattr(self, kind)]
+            said = [
+                (c.text, [None if isinstance(v, np.ndarray) else v for v in c.values or ()])
+                for c in clauses
+            ]
+            arrays[kind] = np.array(json.dumps(said))
+            arrays[f"{kind}_where"] = np.array([clause.where for clause in clauses], dtype=bool)
+            values = [v for c in clauses for v in c.values or () if isinstance(v, np.ndarray)]
+            arrays[f"{kind}_values"] = np.array(values, dtype=np.float64)
+        return arrays
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, Any]) -> Plan:
+        """Return the plan that ``to_arrays`` was called of."""
+        kinds = {}
+        for kind in KINDS:
+            entries = iter(arrays[f"{kind}_values"])
+            kinds[kind] = tuple(
+                Clause(text, where, tuple(next(entries) if v is None else Span(*v) for v in values))
+                for (text, values), where in zip(
+                    json.loads(str(arrays[kind])), arrays[f"{kind}_where"], strict=True
+                )
+            )
+        return cls(**kinds, marched=arrays["marched"], psi2_error=arrays["psi2_error"])
 
     @classmethod
     def nothing(cls, shape: tuple[int, ...]) -> Plan:
@@ -97,10 +203,7 @@ class Plan:
         errors = [
             np.broadcast_to(plan.psi2_error, size) for plan, size in zip(plans, sizes, strict=True)
         ]
-        kinds = {
-            kind: _together([getattr(plan, kind) for plan in plans], sizes)
-            for kind in ("computed", "left_out", "cautions")
-        }
+        kinds = {kind: _joined([getattr(plan, kind) for plan in plans], sizes) for kind in KINDS}
         return cls(
             **kinds,
             marched=np.concatenate([np.ravel(plan.marched) for plan in plans]).reshape(shape),
@@ -108,14 +211,42 @@ class Plan:
         )
 
 
-def _together(parts: Sequence[Sentences], sizes: Sequence[int]) -> Sentences:
-    """Return sentences with the masks of all parts; those that differ in numbers are one."""
-    found: dict[str, tuple[str, Mask]] = {}
-    first = 0
-    for sentences, size in zip(parts, sizes, strict=True):
-        for sentence in sentences:
-            key = re.sub(r"[\d.e+-]+", "#", sentence.text)
-            entry = found.setdefault(key, (sentence.text, np.zeros(sum(sizes), dtype=bool)))
-            entry[1][first : first + size] |= sentence.where
-        first += size
-    return tuple(Sentence(text, where) for text, where in found.values())
+def _joined(parts: Sequence[Clauses], sizes: Sequence[int]) -> Clauses:
+    """Return the clauses of all parts; clauses that differ in their numbers only are one."""
+    same: dict[str, list[tuple[int, Clause]]] = {}
+    for place, clauses in enumerate(parts):
+        for clause in clauses:
+            template = clause.template
+            same.setdefault(template.text, []).append((place, template))
+    ends = np.cumsum([0, *sizes])
+    joined = []
+    for text, members in same.items():
+        where = np.zeros(ends[-1], dtype=bool)
+        columns = [
+            list(column) for column in zip(*(m.values or () for _, m in members), strict=True)
+        ]
+        for place, member in members:
+            where[ends[place] : ends[place + 1]] |= member.where
+        slices = [slice(ends[place], ends[place + 1]) for place, _ in members]
+        values = tuple(_value(column, slices, ends[-1]) for column in columns)
+        joined.append(Clause(text, where, values))
+    return tuple(joined)
+
+
+def _value(column: Sequence[Any], slices: Sequence[slice], size: int) -> Any:
+    """Return one value of a joined clause: the range of spans, or an array, NaN in other parts."""
+    if isinstance(column[0], Span):
+        low, high = min(span.low for span in column), max(span.high for span in column)
+        return Span(low, high, column[0].text)
+    values = np.full(size, np.nan)
+    for part, entries in zip(slices, column, strict=True):
+        values[part] = np.fmax(values[part], entries)
+    return values
+
+
+def _largest(value: Any, where: Mask) -> Any:
+    """Return the largest entry of an array among the impacts; other values as they are."""
+    if not isinstance(value, np.ndarray):
+        return value
+    chosen = value[np.broadcast_to(where, value.shape)]
+    return float(np.nanmax(chosen)) if chosen.size else math.nan

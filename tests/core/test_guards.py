@@ -92,7 +92,7 @@ def test_without_partial_slip_steps_must_keep_the_phase():
             tangential="mindlin_cap",
             integrator=contactlab.create("integrator.symplectic", steps=steps, refine=False),
         )
-        said = [caution for caution in ringing.plan(scene).cautions if "steps" in caution.text]
+        said = [caution for caution in ringing.plan(scene).cautions if "steps" in caution.words]
         assert len(said) == cautions
         assert (ringing.run(scene).status is Status.SUCCESS) is (not cautions)
 

@@ -18,6 +18,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.error_model import range_of
 from contactlab.contracts.whole_impact import no_force
+from contactlab.outcome.plan import Clause, Plan
 from tests.normal_laws import Damped, ForceFree, LinearSpring
 
 CHI = 1.4411764706
@@ -32,7 +33,7 @@ def scene(psi1=1.2):
 
 def said(sentences):
     """Return each sentence of a batch with the impacts that it is said of."""
-    return {sentence.text: sentence.where.tolist() for sentence in sentences}
+    return {sentence.words: sentence.where.tolist() for sentence in sentences}
 
 
 def test_the_plan_of_one_impact_that_is_marched():
@@ -268,3 +269,41 @@ def test_of_two_answers_the_first_is_taken():
     assert said(result.plan.left_out)["march of the tangential motion: second"] == [False, True]
     alone = [simulation.run(scene(one)).check().psi_change for one in psi1]
     assert alone == pytest.approx([0.0, 0.25])
+
+
+def test_the_error_of_a_sweep_in_parts_is_the_largest_of_its_parts():
+    """Of prose that was merged the number of the first part stayed: 9e-12."""
+    psi1 = [9.0, 10.0, 5e3, 6e3]
+    plan = Simulation(tangential="coulomb").sweep(scene(psi1), chunk=2).plan
+    (words,) = (clause.words for clause in plan.computed if "error" in clause.text)
+    assert words == f"numerical error of psi2: at most {plan.psi2_error.max():.2g}, declared"
+    assert plan.psi2_error.max() > 100.0 * plan.psi2_error[0]
+    (first,) = (clause.words for clause in plan[0].computed if "error" in clause.text)
+    assert first == f"numerical error of psi2: at most {plan.psi2_error[0]:.2g}, declared"
+
+
+def test_numbers_of_a_law_that_differ_between_parts_are_a_range():
+    whole = Clause("steps raised from 5 to 75: eq. (45)", np.ones(2, dtype=bool))
+    other = Clause("steps raised from 5 to 120: eq. (45)", np.ones(3, dtype=bool))
+    parts = [Plan(computed=(each,), left_out=(), marched=each.where) for each in (whole, other)]
+    (clause,) = Plan.joined(parts).computed
+    assert clause.words == "steps raised from 5 to 75..120: eq. (45)"
+    assert Plan.joined(parts[:1]).computed[0].words == whole.words
+
+
+def test_one_impact_of_a_batch_has_the_clauses_that_are_said_of_it():
+    plan = Simulation(**SPRINGS).plan(scene(MIXED))
+    alone = [Simulation(**SPRINGS).plan(scene(psi1)) for psi1 in MIXED]
+    assert [str(plan[index]) for index in range(len(MIXED))] == list(map(str, alone))
+
+
+def test_a_plan_survives_its_arrays():
+    plan = Simulation(**SPRINGS).plan(scene(MIXED))
+    again = Plan.from_arrays(plan.to_arrays())
+    assert str(again) == str(plan)
+    assert str(again[1]) == str(plan[1])
+
+
+def test_words_with_braces_are_words():
+    clause = Clause("a law's {odd} words of 3", np.array(True))
+    assert (clause.words, clause.template.words) == ("a law's {odd} words of 3",) * 2

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.law import Law
+from contactlab.contracts.motion import NormalMotion
 from contactlab.impact.scene import Scene
 
 FILE = Path(__file__).with_name("differences.csv")
