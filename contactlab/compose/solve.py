@@ -13,6 +13,7 @@ from contactlab.compose.composition import Laws
 from contactlab.compose.marching import march
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.planning import make_plan
+from contactlab.compose.registry import REGISTRY
 from contactlab.compose.solved_motion import FailedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.integrator import TangentialMotion
@@ -71,14 +72,35 @@ def outcome(
     except faults.LawFaultError as fault:
         if recorder is None and math.prod(shape) > 1:
             return _by_halves(laws, scene)
-        return Plan.nothing(shape), Motion.nothing(shape, fault.status, fault.detail)
+        return Plan.nothing(shape), _named(laws, Motion.nothing(shape, fault.status, fault.detail))
     if isinstance(prepared.normal, FailedMotion) and math.prod(shape) > 1:
         return _by_halves(laws, scene)
     tangential = _tangential(laws, prepared, recorder)
     motion = sound(Motion.along(prepared.normal, tangential))
     # What the books may miss by: the law's own bound, and the integrator's share.
     bound = laws.tangential.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
-    return prepared.plan, balanced(motion, scene, bound)
+    return prepared.plan, _named(laws, balanced(motion, scene, bound))
+
+
+def _named(laws: Laws, motion: Motion) -> Motion:
+    """Return the motion, its sentences with the distribution of the law that each blames."""
+    if not np.any(motion.detail):
+        return motion
+
+    def named(sentence: str) -> str:
+        for law in laws:
+            blamed = f", from {type(law).__name__}."
+            sentence = sentence.replace(blamed, f"{blamed[:-1]}, {REGISTRY.describe(law)}.")
+        return sentence
+
+    detail: Any = motion.detail
+    if isinstance(detail, np.ndarray):
+        detail = np.array([named(one) for one in detail.ravel()], dtype=object).reshape(
+            detail.shape
+        )
+    else:
+        detail = named(detail)
+    return attrs.evolve(motion, detail=detail)
 
 
 def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:

@@ -66,13 +66,11 @@ def sentence(law: Law, what: str, step: int, time: Any = None) -> str:
     time : float or array, optional
         In s; the latest of several.
     """
-    from contactlab.compose.registry import REGISTRY  # only a run that fails asks for names
-
     try:
         when = f", time {float(np.max(time)):.6g} s" if time is not None else ""
     except (TypeError, ValueError):
         when = ""
-    return f"At step {step}{when}: {what}, from {type(law).__name__}, {REGISTRY.describe(law)}."
+    return f"At step {step}{when}: {what}, from {type(law).__name__}."
 
 
 def raised(error: BaseException) -> str:

@@ -11,7 +11,6 @@ PLUGINS = PACKAGE.parent / "plugins"
 ROOMS = re.findall(r"^``(\w+)`` ", contactlab.__doc__, flags=re.MULTILINE)
 #: Arrows that point upward still, from a file to a room. None may come; one that goes, goes here.
 UPWARD = {
-    ("contracts/faults.py", "compose"),
     ("outcome/history.py", "figures"),
     ("outcome/result.py", "figures"),
 }
