@@ -28,6 +28,7 @@ from contactlab_laws.tabulated.fit import (
 )
 from contactlab_laws.tabulated.function import shipped
 from contactlab_laws.tabulated.places import places
+from contactlab_laws.tabulated.polynomials import polynomials_of
 from contactlab_laws.tabulated.verify import BESIDE_NAMES, draw, judge, verify
 from tests.reference import TABLE
 
@@ -252,7 +253,7 @@ def test_patches_cover_every_region_and_lack_the_powers_that_g_lacks():
 def test_terms_left_out_are_too_small_to_matter():
     """Each patch against all of its terms, in local coordinates, by another evaluation."""
     made = shipped()
-    short = made.polynomials
+    short = polynomials_of(made)
     x, y = np.random.default_rng(29).uniform(size=(2, 40))
     for patch, (row, terms) in enumerate(zip(made.cells.tolist(), made.terms, strict=True)):
         region, level_a, level_b, i, j = row

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab_laws.tabulated.places import Places, places
-from contactlab_laws.tabulated.polynomials import Polynomials
+from contactlab_laws.tabulated.polynomials import Polynomials, polynomials_of
 from contactlab_laws.tabulated.table import DEEPEST, NODES, Table
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ def rebound(table: Table, speed: Array, chi: Array) -> Array:
         psi2[part] = _full_slip(p, x)
         here = places(p, x, table.cuts)
         if here.who.size:
-            psi2[part][here.who] = _partial_slip(table.polynomials, here)
+            psi2[part][here.who] = _partial_slip(polynomials_of(table), here)
     return psi2
 
 

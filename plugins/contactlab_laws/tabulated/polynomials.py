@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import attrs
 import numpy as np
 from numpy.typing import NDArray
@@ -59,6 +61,12 @@ class Polynomials:
         return cls(
             rank[table.grid.ravel()], corners[:, order], terms[order], needed[:, order].tolist()
         )
+
+
+@cache
+def polynomials_of(table: Table) -> Polynomials:
+    """Return the patches of a table as they are evaluated, made once."""
+    return Polynomials.of(table)
 
 
 def _needed(sizes: Array) -> NDArray[np.intp]:

@@ -18,6 +18,7 @@ from contactlab_laws.tabulated.coordinates import (
     STUCK_BACK,
     STUCK_ON,
 )
+from contactlab_laws.tabulated.polynomials import polynomials_of
 from contactlab_laws.tabulated.table import DEEPEST, Table
 
 #: Twelve terms of one row.
@@ -36,7 +37,7 @@ class ScalarTable:
     def __init__(self, table: Table) -> None:
         self.stuck: list[float] = table.cuts.stuck[::-1].tolist()
         self.slip: list[float] = table.cuts.slip[::-1].tolist()
-        polynomials = table.polynomials
+        polynomials = polynomials_of(table)
         self.grid: list[int] = polynomials.grid.tolist()
         self.corners: list[list[float]] = polynomials.corners.T.tolist()
         # rows from the highest power of x down, terms from the lowest power of y up

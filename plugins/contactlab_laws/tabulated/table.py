@@ -6,16 +6,13 @@ import hashlib
 from datetime import date
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab_laws.tabulated.coordinates import REGIONS, Cuts
-
-if TYPE_CHECKING:
-    from contactlab_laws.tabulated.polynomials import Polynomials
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
@@ -73,13 +70,6 @@ class Table:
             wide, high = size >> level_a, size >> level_b
             grid[region, i * wide : (i + 1) * wide, j * high : (j + 1) * high] = patch
         return grid
-
-    @cached_property
-    def polynomials(self) -> Polynomials:
-        """The patches as they are evaluated."""
-        from contactlab_laws.tabulated.polynomials import Polynomials  # which needs this module
-
-        return Polynomials.of(self)
 
     @cached_property
     def scales(self) -> tuple[Array, Array]:
