@@ -149,7 +149,7 @@ def _error_clauses(error: Any, separated: Mask) -> list[Clause]:
     found = []
     if some(declared):
         text = "numerical error of psi2: at most {:.2g}, declared"
-        found.append(Clause(text, declared, (np.asarray(error),)))
+        found.append(Clause(text, declared, (error,)))
     if some(undeclared):
         text = "numerical error of psi2: not declared; run(scene, estimate_error=True) estimates it"
         found.append(Clause(text, undeclared))

@@ -84,7 +84,7 @@ def outcome(
 
 def _named(laws: Laws, motion: Motion) -> Motion:
     """Return the motion, its sentences with the distribution of the law that each blames."""
-    if not np.any(motion.detail):
+    if not (motion.detail if isinstance(motion.detail, str) else np.any(motion.detail)):
         return motion
 
     def named(sentence: str) -> str:
