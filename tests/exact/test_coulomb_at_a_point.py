@@ -9,7 +9,8 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab_laws.differences.table import key, rows
+from contactlab_laws.damped_table import differences
+from contactlab_laws.differences.table import LEAST, key, rows
 from tests.exact.coulomb_at_a_point import NORMAL, TANGENTIAL, limit, reference
 
 RECORDED = Path(__file__).with_name("coulomb_at_a_point.csv")
@@ -55,7 +56,7 @@ def test_a_plan_says_what_was_recorded(name, options, tangential, size):
     elif name == "hertz":
         assert told is None
     else:
-        assert (told or 0.0) >= 0.75 * size - 2.0 * NUMERICAL
+        assert (told or LEAST) >= size - NUMERICAL
 
 
 @pytest.mark.slow
@@ -89,7 +90,7 @@ def test_no_springs_are_cautioned_of_where_nothing_slips():
         Scene.nondimensional(psi1=[0.0, 0.0], chi=1.44),
     ):
         assert caution(law, "springs", scene) is None
-    assert caution(law, "springs", Scene.nondimensional(psi1=[0.0, 2.0], chi=1.44)) == 0.04
+    assert caution(law, "springs", Scene.nondimensional(psi1=[0.0, 2.0], chi=1.44)) == 0.05
 
 
 def test_a_normal_law_that_was_not_measured_is_cautioned_of_too():
@@ -103,24 +104,47 @@ SAME = "the restitution alone does not decide psi2"
 
 @pytest.mark.parametrize(
     ("name", "e", "size"),
-    [("linear", 0.9, 0.6), ("linear", 1.0, 0.7), ("walton_braun", 0.9, 0.5),
-     ("hunt_crossley", 0.8, 0.2), ("hunt_crossley", 0.95, 0.05), ("kuwabara_kono", 0.9, 0.02)],
+    [("linear", 0.9, 0.7), ("linear", 1.0, 0.8), ("walton_braun", 0.9, 0.6),
+     ("hunt_crossley", 0.8, 0.3), ("hunt_crossley", 0.95, 0.06), ("kuwabara_kono", 0.9, 0.03)],
 )  # fmt: skip
 def test_the_choice_of_normal_law_has_a_size(name, e, size):
-    """That of differences.csv, and about that of theory §11."""
+    """That of differences.csv, a tenth more, rounded up: no less than that of theory §11."""
     law = contactlab.create(f"normal.{name}", restitution=e)
     plan = Simulation(normal=law).plan(OBLIQUE)
-    (sentence,) = (text for text in map(str, plan.cautions) if SAME in text)
-    found = float(re.search(r"up to ([\d.e-]+) \(Tsuji\)", sentence)[1])
     own = {row.restitution: row.choice for row in rows()[key(law)]}
-    assert found == float(f"{own[e]:.1g}")
-    assert found == pytest.approx(size, rel=0.2)
+    assert own[e] < chosen(plan) == size < 1.1 * own[e] + 10.0 ** np.floor(np.log10(1.1 * own[e]))
+
+
+def chosen(plan):
+    """The size in the caution of the choice of normal law."""
+    (sentence,) = (text for text in map(str, plan.cautions) if SAME in text)
+    return float(re.search(r"up to ([\d.e-]+) \(Tsuji\)", sentence)[1])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "e"),
+    [("tsuji", 0.412), ("tsuji", 0.896), ("hunt_crossley", 0.732), ("kuwabara_kono", 0.57),
+     ("kuwabara_kono", 0.956), ("linear", 0.519), ("linear", 0.895), ("walton_braun", 0.475)],
+)  # fmt: skip
+def test_sizes_hold_between_what_was_measured(name, e):
+    """Springs were off by 1.5 times what a plan said, and normal laws differed by 1.2 times."""
+    draw = np.random.default_rng(round(1e4 * e))
+    chi = draw.uniform(0.8, 1.8, 80)
+    psi1 = draw.uniform(0.6, 2.0 * chi * (1.0 + e) + 0.2)
+    law = contactlab.create(f"normal.{name}", restitution=e)
+    known = differences.by_rings(law, psi1, chi)
+    found = np.abs(differences.springs(law, psi1, chi) - known).max()
+    assert found < caution(law, "springs")
+    if name != "tsuji":
+        others = differences.by_rings(contactlab.create("normal.tsuji", restitution=e), psi1, chi)
+        assert np.abs(others - known).max() < chosen(Simulation(normal=law).plan(OBLIQUE))
 
 
 def test_tsujis_law_names_the_law_that_is_furthest():
     plan = str(Simulation(normal=contactlab.create("normal.tsuji", restitution=0.9)).plan(OBLIQUE))
     assert SAME in plan
-    assert "0.02 (KuwabaraKono) to 0.6 (Linear)" in plan
+    assert "0.03 (KuwabaraKono) to 0.7 (Linear)" in plan
     elastic = contactlab.create("normal.tsuji", restitution=1.0)
     assert SAME not in str(Simulation(normal=elastic).plan(OBLIQUE))
     assert SAME not in str(Simulation().plan(OBLIQUE))

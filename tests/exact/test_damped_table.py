@@ -8,8 +8,8 @@ import contactlab
 from contactlab.compose.rebound import BEYOND_ERROR, DAMPED_ERROR
 from contactlab_laws.damped_table import build
 from contactlab_laws.damped_table.build import solve
+from contactlab_laws.damped_table.coordinates import BORDERS, depth, inner, restitution
 from contactlab_laws.damped_table.coordinates import CHI as RANGE_OF_CHI
-from contactlab_laws.damped_table.coordinates import depth, inner, restitution
 from contactlab_laws.damped_table.function import _at, by_rings, rebound, shipped
 from contactlab_laws.damped_table.table import SHIPPED, read, write
 from tests.exact.test_rings import REFERENCES
@@ -22,7 +22,7 @@ def test_table_is_rings_to_its_error(e):
     """At random impacts; ``python -m contactlab_laws.damped_table verify`` draws more."""
     draw = np.random.default_rng(round(1e4 * e))
     psi1, chi = draw.uniform(0.0, 9.0, 12), draw.uniform(0.8, 1.8, 12)
-    assert rebound(psi1, chi, e) == pytest.approx(solve(psi1, chi, e), abs=DAMPED_ERROR)
+    assert rebound(psi1, chi, e) == pytest.approx(solve(psi1, chi, e), abs=2e-4)
 
 
 @pytest.mark.slow
@@ -35,7 +35,7 @@ def test_table_is_finer_rings_to_its_error():
             e = 1.0 - 10.0 ** float(draw.uniform(-5.0, -1.0))
         psi1, chi = draw.uniform(0.0, 9.0, 20), draw.uniform(0.8, 1.8, 20)
         finer = solve(psi1, chi, e, counts=(64, 96, 128))
-        assert rebound(psi1, chi, e) == pytest.approx(finer, abs=DAMPED_ERROR)
+        assert rebound(psi1, chi, e) == pytest.approx(finer, abs=5e-4)
 
 
 @pytest.mark.parametrize(("name", "e", "chi"), REFERENCES)
@@ -45,7 +45,7 @@ def test_references_of_another_program(name, e, chi):
         pytest.skip("rebound follows Tsuji's law")
     psi1, expected = zip(*REFERENCES[name, e, chi].items(), strict=True)
     found = contactlab.rebound(np.array(psi1, dtype=float), chi, restitution=e)
-    assert found == pytest.approx(expected, abs=3e-4 if e >= 0.5 else 1e-3)
+    assert found == pytest.approx(expected, abs=2e-4)
 
 
 @pytest.mark.parametrize(("largest", "e"), [(0.8, 0.3), (4.0, 0.05), (10.0, 0.95)])
@@ -64,20 +64,40 @@ def test_table_meets_the_elastic_rebound():
     for chi in (0.8, 1.2, CHI, 1.8):
         elastic = contactlab.rebound(psi1, chi)
         assert contactlab.rebound(psi1, chi, restitution=1.0 - 1e-12) == pytest.approx(
-            elastic, abs=DAMPED_ERROR
+            elastic, abs=2e-4
         )
         assert (contactlab.rebound(psi1, chi, restitution=1.0) == elastic).all()
 
 
-@pytest.mark.parametrize("e", [0.5, 0.9])
-def test_no_jump_at_cuts_and_borders(e):
-    """Over psi1, and over e where two pieces of the table meet."""
+@pytest.mark.parametrize(("e", "jump"), [(0.5, 7e-4), (0.9, 5e-4)])
+def test_no_jump_at_cuts(e, jump):
+    """Over psi1."""
     psi1 = np.linspace(0.01, 12.0, 20_001)
     for chi in (0.8, CHI, 1.8):
         psi2 = contactlab.rebound(psi1, chi, restitution=e)
-        assert np.abs(np.diff(psi2, 2)).max() < DAMPED_ERROR
-        near = contactlab.rebound(psi1, chi, restitution=e + 1e-9)
-        assert psi2 == pytest.approx(near, abs=4e-4)
+        assert np.abs(np.diff(psi2, 2)).max() < jump
+
+
+def test_no_jump_where_two_pieces_meet():
+    """Over e, at e = 0.9: by two polynomials, one on each side."""
+    assert depth(0.9 + 1e-9) < BORDERS[1] < depth(0.9 - 1e-9)
+    psi1 = np.linspace(0.01, 12.0, 5001)
+    for chi in (0.8, 1.0, CHI, 1.8):
+        above, below = (contactlab.rebound(psi1, chi, restitution=0.9 + d) for d in (1e-9, -1e-9))
+        assert 1e-8 < np.abs(above - below).max() < 5e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("e", [0.5, 0.503, 0.65, 0.8, 0.897, 0.9001, 0.97, 0.999])
+def test_error_beside_the_cuts(e):
+    """Where it is largest: on both sides of every cut, by more rings than the table's."""
+    chi = np.array([0.8, 1.0, 1.25, CHI, 1.8])
+    cuts = chebval(inner(chi, *RANGE_OF_CHI), _at(e)[0].T)
+    offsets = np.array([-0.01, -0.003, -1e-5, 1e-5, 0.001, 0.003, 0.01])
+    psi1 = (cuts[None] + offsets[:, None, None]).ravel()
+    chi = np.broadcast_to(chi, (len(offsets), *cuts.shape)).ravel()
+    finer = solve(psi1, chi, e, counts=(64, 80, 96, 112, 128, 160))
+    assert rebound(psi1, chi, e) == pytest.approx(finer, abs=DAMPED_ERROR)
 
 
 def test_odd_to_the_last_bit_and_slip_throughout():
@@ -94,10 +114,10 @@ def test_the_same_on_both_sides_of_the_border():
     psi1 = np.full(4, 1.3)
     chi = np.array([0.8, 0.8 - 1e-9, 1.8, 1.8 + 1e-9])
     found = contactlab.rebound(psi1, chi, restitution=0.9)
-    assert found[0::2] == pytest.approx(found[1::2], abs=DAMPED_ERROR)
+    assert found[0::2] == pytest.approx(found[1::2], abs=2e-4)
     assert found[1] == pytest.approx(by_rings(psi1[1:2], chi[1:2], 0.9)[0], abs=1e-9)
     low = contactlab.rebound(1.3, 1.0, restitution=0.4999)
-    assert low == pytest.approx(contactlab.rebound(1.3, 1.0, restitution=0.5), abs=8e-4)
+    assert low == pytest.approx(contactlab.rebound(1.3, 1.0, restitution=0.5), abs=2e-4)
     assert isinstance(low, float)
 
 
@@ -140,4 +160,4 @@ def test_the_cuts_are_found_again(e, monkeypatch):
     monkeypatch.setattr(build, "LOOKED", 29)
     chi = np.array([0.9, 1.44, 1.7])
     known = chebval(inner(chi, *RANGE_OF_CHI), _at(e)[0].T)
-    assert build.cuts_at(e, chi, rings=40) == pytest.approx(known, abs=0.03)
+    assert build.cuts_at(e, chi, rings=40) == pytest.approx(known, abs=0.01)

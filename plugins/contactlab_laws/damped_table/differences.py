@@ -23,8 +23,10 @@ from contactlab_laws.damped_table.courses import solve
 from contactlab_laws.damped_table.rings import Array
 from contactlab_laws.differences.table import FILE, key
 
-#: The impacts: so many psi1 from the least to slip throughout and one more, at each chi.
-LEAST, COUNT, CHI = 0.2, 24, (0.8, 49.0 / 34.0, 1.8)
+#: The impacts: so many psi1 from the least to slip throughout and one more, and as many where the
+#: error of springs is largest in a narrow range of psi1, at each chi.
+LEAST, COUNT, CHI = 0.2, 24, (0.8, 1.0, 1.2, 49.0 / 34.0, 1.6, 1.8)
+NARROW = (0.7, 2.0)
 #: Rings; springs, of which half as many are extrapolated with, four steps to each.
 RINGS, SPRINGS = (48, 64, 80), 120
 #: Laws whose restitution is an option, and its values.
@@ -41,8 +43,9 @@ OTHERS: tuple[tuple[str, str, tuple[float, ...]], ...] = (
 def impacts(e: float) -> tuple[Array, Array]:
     """Return psi1 and chi of the impacts, shape (impacts,)."""
     last = 2.0 * np.array(CHI) * (1.0 + e) + 1.0
-    psi1 = np.linspace(LEAST, last, COUNT).ravel()
-    return psi1, np.tile(CHI, COUNT)
+    narrow = np.broadcast_to(np.linspace(*NARROW, COUNT)[:, None], (COUNT, len(CHI)))
+    psi1 = np.concatenate((np.linspace(LEAST, last, COUNT), narrow)).ravel()
+    return psi1, np.tile(CHI, 2 * COUNT)
 
 
 def springs(law: NormalLaw, psi1: Array, chi: Array) -> Array:
