@@ -9,18 +9,17 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExec
 from queue import SimpleQueue
 from typing import Any
 
+from contactlab.compose.composition import Laws, versions
 from contactlab.compose.installed import short
-from contactlab.compose.registry import KINDS
-from contactlab.compose.simulation import Simulation
-from contactlab.compose.sweep import Chunk, Piece, unsolved
-from contactlab.compose.workers import MODULE_REMEDY, Reply, reply, stop, versions
+from contactlab.compose.pieces import Chunk, Piece, unsolved
+from contactlab.compose.workers import MODULE_REMEDY, Reply, reply, stop
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 
 
 def pieces_of(
-    simulation: Simulation, scene: Scene, chunks: Sequence[Chunk], block: int, executor: Executor
+    laws: Laws, scene: Scene, chunks: Sequence[Chunk], block: int, executor: Executor
 ) -> Generator[Piece, None, None]:
     """Return the pieces of ``chunks`` as an executor finishes them.
 
@@ -31,7 +30,7 @@ def pieces_of(
 
     Parameters
     ----------
-    simulation : Simulation
+    laws : Laws
     scene : Scene
         Of the whole sweep.
     chunks : sequence of Chunk
@@ -50,7 +49,7 @@ def pieces_of(
         remedy = "give ProcessPoolExecutor(4), or client.get_executor() of dask"
         raise refuse("executor", executor, "must have a method submit", remedy)
     pool: Any = executor if isinstance(executor, ProcessPoolExecutor) else None
-    laws, ours = _sent(simulation), versions(simulation)
+    sent, ours = _sent(laws), versions(*laws)
     finished: SimpleQueue[Future[Reply]] = SimpleQueue()
     waiting: dict[Future[Reply], tuple[Any, Chunk]] = {}
     left, again = deque(chunks), set[Chunk]()
@@ -61,7 +60,7 @@ def pieces_of(
             while left and free:
                 taker, chunk = free.pop() or _fresh(pool), left.popleft()
                 part = pickle.dumps(scene.take(slice(*chunk)))
-                future = _submitted(taker, laws, part, chunk, block)
+                future = _submitted(taker, sent, part, chunk, block)
                 waiting[future] = taker, chunk
                 future.add_done_callback(finished.put)
             future = finished.get()
@@ -97,17 +96,16 @@ def pieces_of(
                 taker.shutdown()
 
 
-def _sent(simulation: Simulation) -> bytes:
-    """Return the pickled simulation, or say which law does not pickle."""
-    for kind in KINDS:
-        law = getattr(simulation, kind)
+def _sent(laws: Laws) -> bytes:
+    """Return the pickled laws, or say which law does not pickle."""
+    for kind, law in laws._asdict().items():
         try:
             pickle.dumps(law)
         except Exception as error:
             raise refuse(
                 kind, law, f"cannot be sent to an executor: {short(error)}", MODULE_REMEDY
             ) from error
-    return pickle.dumps(simulation)
+    return pickle.dumps(laws)
 
 
 def _submitted(executor: Any, *call: Any) -> Future[Reply]:

@@ -11,22 +11,20 @@ import zipfile
 from collections.abc import Mapping
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import attrs
 import numpy as np
 
-from contactlab.compose.registry import KINDS, REGISTRY
-from contactlab.compose.sweep import Chunk, Piece
+from contactlab.compose.composition import Laws
+from contactlab.compose.pieces import Chunk, Piece
+from contactlab.compose.registry import REGISTRY
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Plan
-
-if TYPE_CHECKING:
-    from contactlab.compose.simulation import Simulation
 
 ABOUT, PIECES = "sweep.json", "impacts-*.npz"
 #: Impacts with these were not computed: a sweep that goes on tries them again.
@@ -40,7 +38,7 @@ class Kept:
     ----------
     folder : str or Path
         Made if it is not there.
-    simulation : Simulation
+    laws : Laws
     scene : Scene
         Of the whole sweep.
     block : int
@@ -53,20 +51,18 @@ class Kept:
         version.
     """
 
-    def __init__(
-        self, folder: str | Path, simulation: Simulation, scene: Scene, block: int
-    ) -> None:
+    def __init__(self, folder: str | Path, laws: Laws, scene: Scene, block: int) -> None:
         if not isinstance(folder, str | os.PathLike):
             raise refuse("keep", folder, "must be the path of a folder")
         if os.path.exists(folder) and not os.path.isdir(folder):
             raise refuse("keep", str(folder), "is a file", "name a folder")
         self.folder = Path(folder)
-        laws = {kind: getattr(simulation, kind) for kind in KINDS}
+        by_kind = laws._asdict()
         about = {
-            **{kind: f"{REGISTRY.describe(law)}: {law!r}" for kind, law in laws.items()},
+            **{kind: f"{REGISTRY.describe(law)}: {law!r}" for kind, law in by_kind.items()},
             "impacts": scene.shape[0],
             "scene": fingerprint(scene),
-            "options": fingerprint(laws),
+            "options": fingerprint(by_kind),
             "block": block,
         }
         #: Stands in every piece, so that a piece of another sweep is known as such.

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from contactlab.compose import composition
+from contactlab.compose import composition, solve
 from contactlab.compose.composition import Laws
 from contactlab.compose.error_estimate import estimated
-from contactlab.compose.solve import normal_or_failed, outcome, prepare
 from contactlab.compose.sweep import swept
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
@@ -23,7 +22,6 @@ from contactlab.impact.coupling import three_numbers
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.history import Recorder
-from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Clause, Plan
 from contactlab.outcome.result import ImpactResult
 
@@ -73,7 +71,7 @@ class Simulation:
         history : bool or "fields"
             As of ``run``.
         """
-        return _complete(prepare(self._laws, _scene(scene), _history(history)).plan, scene)
+        return _complete(solve.prepare(self._laws, _scene(scene), _history(history)).plan, scene)
 
     def run(
         self, scene: Scene, *, history: bool | str = False, estimate_error: bool = False
@@ -102,7 +100,8 @@ class Simulation:
         """
         started = time.perf_counter()
         recorder = Recorder(_scene(scene).shape, with_fields=history == "fields")
-        plan, motion = self._outcome(scene, _history(history), recorder if history else None)
+        kept = recorder if history else None
+        plan, motion = solve.outcome(self._laws, scene, _history(history), kept)
         result = ImpactResult(
             scene=scene,
             plan=_complete(plan, scene),
@@ -113,7 +112,7 @@ class Simulation:
         )
         if not estimate_error:
             return result
-        return attrs.evolve(result, psi2_error_estimate=estimated(self, result))
+        return attrs.evolve(result, psi2_error_estimate=estimated(self._laws, result))
 
     def sweep(
         self,
@@ -175,7 +174,7 @@ class Simulation:
                 "for one impact use run",
             )
         plan, motion = swept(
-            self, batch, progress=progress, chunk=chunk, executor=executor, keep=keep
+            self._laws, batch, progress=progress, chunk=chunk, executor=executor, keep=keep
         )
         return ImpactResult(
             scene=batch,
@@ -193,17 +192,11 @@ class Simulation:
         scene : Scene
             One impact or a batch.
         """
-        return normal_or_failed(self._laws, scene)
+        return solve.normal_or_failed(self._laws, scene)
 
     @property
     def _laws(self) -> Laws:
         return Laws(self.normal, self.tangential, self.integrator)
-
-    def _outcome(
-        self, scene: Scene, history: bool | str, recorder: Recorder | None
-    ) -> tuple[Plan, Motion]:
-        """Return plan and motion; ``recorder`` keeps the history."""
-        return outcome(self._laws, scene, history, recorder)
 
 
 def _complete(plan: Plan, scene: Scene) -> Plan:

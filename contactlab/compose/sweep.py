@@ -6,8 +6,10 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from contactlab.compose.composition import Laws
+from contactlab.compose.pieces import Chunk, Piece, solved, unsolved
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import WholeImpactTangentialLaw
@@ -19,72 +21,25 @@ from contactlab.outcome.plan import Plan
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from contactlab.compose.simulation import Simulation
-
 #: Impacts of a block where nothing is marched: as many as fit into the cache.
 WHOLE_IMPACTS = 1 << 14
 
 
-class Chunk(NamedTuple):
-    """Impacts ``first`` to ``stop``, without the last, of a sweep: some whole blocks of it."""
-
-    first: int
-    stop: int
-
-
-class Piece(NamedTuple):
-    """The plan and the motion of a chunk."""
-
-    chunk: Chunk
-    plan: Plan
-    motion: Motion
-
-
-def block_of(simulation: Simulation) -> int:
+def block_of(laws: Laws) -> int:
     """Return how many impacts are solved in one call.
 
     The last bits of an answer may depend on what is solved beside it: on the iterations of an
     array solver, and on which arithmetic, of scalars or of vectors, the processor has for a
     number. So a block depends on the laws alone.
     """
-    whole_impacts = isinstance(simulation.tangential, WholeImpactTangentialLaw)
-    if whole_impacts and isinstance(simulation.normal, ClosedFormNormalLaw):
+    whole_impacts = isinstance(laws.tangential, WholeImpactTangentialLaw)
+    if whole_impacts and isinstance(laws.normal, ClosedFormNormalLaw):
         return WHOLE_IMPACTS
-    return simulation.integrator.chunk(simulation.tangential)
-
-
-def solved(simulation: Simulation, scene: Scene, chunk: Chunk, block: int) -> Piece:
-    """Return the piece of a chunk, ``scene`` being that chunk alone, solved block by block.
-
-    Parameters
-    ----------
-    simulation : Simulation
-    scene : Scene
-        A batch of one axis, of the chunk's length.
-    chunk : Chunk
-        Where it lies in the whole sweep.
-    block : int
-        Most impacts that are advanced together.
-    """
-    size = chunk.stop - chunk.first
-    plans, motions = zip(
-        *(
-            simulation._outcome(scene.take(slice(first, min(first + block, size))), False, None)
-            for first in range(0, size, block)
-        ),
-        strict=True,
-    )
-    return Piece(chunk, Plan.joined(plans), Motion.joined(motions, (size,)))
-
-
-def unsolved(chunk: Chunk, status: Status, detail: str = "") -> Piece:
-    """Return the piece of a chunk that there is no answer to."""
-    shape = (chunk.stop - chunk.first,)
-    return Piece(chunk, Plan.nothing(shape), Motion.nothing(shape, status, detail))
+    return laws.integrator.chunk(laws.tangential)
 
 
 def swept(
-    simulation: Simulation,
+    laws: Laws,
     scene: Scene,
     *,
     progress: Callable[[int, int], object] | None,
@@ -96,36 +51,36 @@ def swept(
 
     Parameters
     ----------
-    simulation : Simulation
+    laws : Laws
     scene : Scene
         Of shape (n,).
     progress, chunk, executor, keep
         As ``Simulation.sweep`` has them.
     """
-    size, block = scene.shape[0], block_of(simulation)
+    size, block = scene.shape[0], block_of(laws)
     step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
     kept = None
     if keep is not None:
         from contactlab.compose.kept import Kept  # only for those who keep
 
-        kept = Kept(keep, simulation, scene, block)
+        kept = Kept(keep, laws, scene, block)
     found = [] if kept is None else kept.pieces()
-    done = sum(piece.chunk.stop - piece.chunk.first for piece in found)
+    done = sum(piece.chunk.size for piece in found)
     missing = _cut(_gaps(found, size), step)
     if executor is None:
-        pieces = (solved(simulation, scene.take(slice(*each)), each, block) for each in missing)
+        pieces = (solved(laws, scene.take(slice(*each)), each, block) for each in missing)
     else:
         from contactlab.compose.executors import (
             pieces_of,  # only for those who share their work out
         )
 
-        pieces = pieces_of(simulation, scene, list(missing), block, executor)
+        pieces = pieces_of(laws, scene, list(missing), block, executor)
     try:
         for piece in pieces:
             if kept is not None:
                 kept.keep(piece)
             found.append(piece)
-            done += piece.chunk.stop - piece.chunk.first
+            done += piece.chunk.size
             if progress is not None:
                 progress(done, size)
     except KeyboardInterrupt:

@@ -18,11 +18,9 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.compose import composition
+from contactlab.compose.composition import versions
 from contactlab.compose.installed import short
-from contactlab.compose.registry import KINDS
-from contactlab.compose.simulation import Simulation
-from contactlab.compose.sweep import Chunk, Piece, solved
+from contactlab.compose.pieces import Chunk, Piece, solved
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import whole
 
@@ -41,32 +39,27 @@ class Reply(NamedTuple):
     raised: Exception | None = None
 
 
-def reply(laws: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
+def reply(sent: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
     """Return a worker's reply to a chunk; executors are given this function to call.
 
     Parameters
     ----------
-    laws, part : bytes
-        The pickled simulation, and the pickled scene of the chunk.
+    sent, part : bytes
+        The pickled laws, and the pickled scene of the chunk.
     chunk : Chunk
     block : int
         Impacts solved in one call.
     """
     try:
-        simulation, scene = pickle.loads(laws), _locked(pickle.loads(part))
+        laws, scene = pickle.loads(sent), _locked(pickle.loads(part))
     except Exception as error:
         told = f"executor: its workers cannot load the laws: {short(error)}"
         remedy = f"install them there too, and {MODULE_REMEDY}"
         return Reply(None, {}, ValueError(f"{told}; {remedy}"))
     try:
-        return Reply(solved(simulation, scene, chunk, block), versions(simulation))
+        return Reply(solved(laws, scene, chunk, block), versions(*laws))
     except Exception as error:
         return Reply(None, {}, error)
-
-
-def versions(simulation: Simulation) -> Mapping[str, str]:
-    """Return the versions of the laws by kind."""
-    return composition.versions(*(getattr(simulation, kind) for kind in KINDS))
 
 
 @contextlib.contextmanager
