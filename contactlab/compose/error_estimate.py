@@ -34,11 +34,16 @@ class Composed(Protocol):
     """An object with three laws: ``Laws``, or a ``Simulation``."""
 
     @property
-    def normal(self) -> NormalLaw: ...  # noqa: D102
+    def normal(self) -> NormalLaw:
+        """The normal law."""
+
     @property
-    def tangential(self) -> TangentialLaw: ...  # noqa: D102
+    def tangential(self) -> TangentialLaw:
+        """The tangential law."""
+
     @property
-    def integrator(self) -> Integrator: ...  # noqa: D102
+    def integrator(self) -> Integrator:
+        """The integrator."""
 
 
 def estimated(composed: Composed, result: ImpactResult) -> Real:

@@ -21,30 +21,11 @@ from contactlab.numeric.checks import refuse
 def pieces_of(
     laws: Laws, scene: Scene, chunks: Sequence[Chunk], block: int, executor: Executor
 ) -> Generator[Piece, None, None]:
-    """Return the pieces of ``chunks`` as an executor finishes them.
-
-    A chunk that the executor loses has the status ``WORKER_DIED``. A ``ProcessPoolExecutor``
-    breaks with any of its processes. So it has one chunk in flight for each process, and when it
-    breaks these chunks and the rest go to fresh pools of one process each: a chunk that ends its
-    process there too is lost.
-
-    Parameters
-    ----------
-    laws : Laws
-    scene : Scene
-        Of the whole sweep.
-    chunks : sequence of Chunk
-    block : int
-        Impacts solved in one call.
-    executor : concurrent.futures.Executor
-        Or another object with a method ``submit`` that returns futures.
-
-    Raises
-    ------
-    ValueError
-        If ``executor`` takes no work, if a law cannot be sent to it, or if the laws have other
-        versions there.
-    """
+    """Yield the pieces of ``chunks`` as an executor finishes them; ``scene`` is the whole sweep."""
+    # A chunk that the executor loses gets the status WORKER_DIED. A ProcessPoolExecutor breaks
+    # when any of its processes dies. So each process has one chunk at a time, and after a break
+    # these chunks and the rest go to new pools of one process each: a chunk that ends its process
+    # a second time is lost.
     if isinstance(executor, type) or not callable(getattr(executor, "submit", None)):
         remedy = "give ProcessPoolExecutor(4), or client.get_executor() of dask"
         raise refuse("executor", executor, "must have a method submit", remedy)
@@ -52,13 +33,13 @@ def pieces_of(
     sent, ours = _sent(laws), versions(*laws)
     finished: SimpleQueue[Future[Reply]] = SimpleQueue()
     waiting: dict[Future[Reply], tuple[Any, Chunk]] = {}
-    left, again = deque(chunks), set[Chunk]()
-    # Executors with room for a chunk; None is a fresh pool, to be made when it is needed.
+    left, retried = deque(chunks), set[Chunk]()
+    # Executors with room for a chunk; None stands for a new pool, made when it is needed.
     free: list[Any] = [executor] * (pool._max_workers if pool else len(chunks))
     try:
         while left or waiting:
             while left and free:
-                taker, chunk = free.pop() or _fresh(pool), left.popleft()
+                taker, chunk = free.pop() or _new_pool(pool), left.popleft()
                 part = pickle.dumps(scene.take(slice(*chunk)))
                 future = _submitted(taker, sent, part, chunk, block)
                 waiting[future] = taker, chunk
@@ -67,12 +48,12 @@ def pieces_of(
             taker, chunk = waiting.pop(future)
             try:
                 answer = future.result()
-            except Exception as error:  # of the executor: ``reply`` returns what it raises
+            except Exception as error:  # the executor failed: ``reply`` returns errors of the laws
                 free.append(taker)
                 if pool:
                     free = [None if each is taker else each for each in free]
-                if pool and chunk not in again:
-                    again.add(chunk)
+                if pool and chunk not in retried:
+                    retried.add(chunk)
                     left.append(chunk)
                 else:
                     yield unsolved(chunk, Status.WORKER_DIED, short(error))
@@ -97,7 +78,7 @@ def pieces_of(
 
 
 def _sent(laws: Laws) -> bytes:
-    """Return the pickled laws, or say which law does not pickle."""
+    """Return the pickled laws, or refuse the first that does not pickle."""
     for kind, law in laws._asdict().items():
         try:
             pickle.dumps(law)
@@ -109,7 +90,7 @@ def _sent(laws: Laws) -> bytes:
 
 
 def _submitted(executor: Any, *call: Any) -> Future[Reply]:
-    """Return the future of a reply; if the executor is broken, the future holds its error."""
+    """Return the future of a reply; the future holds the error of a broken executor."""
     try:
         future: Future[Reply] = executor.submit(reply, *call)
     except BrokenExecutor as error:
@@ -120,8 +101,8 @@ def _submitted(executor: Any, *call: Any) -> Future[Reply]:
     return future
 
 
-def _fresh(broken: Any) -> ProcessPoolExecutor:
-    """Return a pool of one process, started as those of the broken pool were."""
+def _new_pool(broken: Any) -> ProcessPoolExecutor:
+    """Return a pool of one process with the settings of the broken pool."""
     pool = ProcessPoolExecutor(
         1,
         mp_context=broken._mp_context,
