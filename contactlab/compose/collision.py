@@ -128,9 +128,9 @@ class Collision:
         passed = ~np.asarray(self.collided)
         if passed.all():
             return collision_plan(Plan.nothing(passed.shape), None, passed)
-        met, known = self._met, self.known
-        plan = self._simulation.plan(met.scene) if known is None else known.plan
-        if self.simulation is None and known is None and self.restitution != 1.0:
+        met, result = self._met, self.known
+        plan = self._simulation.plan(met.scene) if result is None else result.plan
+        if self.simulation is None and result is None and self.restitution != 1.0:
             plan = by_rebound(plan, met.scene.chi, self.restitution)
         return collision_plan(plan, met, passed)
 
@@ -259,7 +259,7 @@ def collide(
     if not isinstance(encounter, Encounter):
         remedy = "make one: Encounter(...)"
         if isinstance(encounter, list | tuple):
-            remedy = "make one of them all, with arrays of vectors, shape (..., 3)"
+            remedy = "make a single Encounter with arrays of vectors, shape (..., 3)"
         raise refuse("encounter", encounter, "must be an Encounter", remedy)
     if simulation is not None and not isinstance(simulation, Simulation):
         remedy = "or leave it out"
@@ -286,9 +286,9 @@ def collide(
     else:  # the index of an impact is its place in the whole batch
         places = np.arange(np.size(met)).reshape(np.shape(met))[met]
         scene = encounter.take(met).scene.numbered(places)
-    known = _run(simulation, scene)
-    moved = impulses.moved(encounter, _columns(encounter, known, met))
-    return _collision(encounter, moved, simulation=simulation, known=known)
+    result = _run(simulation, scene)
+    moved = impulses.moved(encounter, _columns(encounter, result, met))
+    return _collision(encounter, moved, simulation=simulation, known=result)
 
 
 def _run(simulation: Simulation, scene: Any) -> ImpactResult:

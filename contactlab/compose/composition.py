@@ -133,12 +133,12 @@ def misfit(normal: Any, tangential: Any = None, integrator: Any = None) -> str |
     if not isinstance(tangential, integrator.tangential_contract):
         return (
             f"integrator = {_name(integrator)}: runs a {integrator.tangential_contract.__name__}, "
-            f"and tangential = {_name(tangential)} is none"
+            f"and tangential = {_name(tangential)} is not one"
         )
     if not isinstance(normal, integrator.normal_contract):
         return (
             f"integrator = {_name(integrator)}: needs a {integrator.normal_contract.__name__}, "
-            f"and normal = {_name(normal)} is none"
+            f"and normal = {_name(normal)} is not one"
         )
     return None
 

@@ -62,7 +62,7 @@ def pieces_of(
             if answer.raised is not None:
                 raise answer.raised
             if answer.versions != ours:
-                rule = f"its workers have {dict(answer.versions)}, here are {dict(ours)}"
+                rule = f"its workers have {dict(answer.versions)}, this process {dict(ours)}"
                 raise refuse("executor", executor, rule, "install the same versions there")
             assert answer.piece is not None
             yield answer.piece

@@ -38,12 +38,12 @@ def entry_points() -> set[tuple[str, str, str, str]]:
     except Exception:  # one unreadable distribution makes the common reading fail
         points = [point for each in metadata.distributions() for point in _points_of(each)]
     origins: dict[int, tuple[str, str]] = {}
-    found = set()
+    entries = set()
     for point in points:
         if id(point.dist) not in origins:  # each reading opens a file
             origins[id(point.dist)] = _name_and_version(point.dist)
-        found.add((point.name, *origins[id(point.dist)], point.value))
-    return found
+        entries.add((point.name, *origins[id(point.dist)], point.value))
+    return entries
 
 
 def _name_and_version(distribution: metadata.Distribution | None) -> tuple[str, str]:

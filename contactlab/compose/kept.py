@@ -58,7 +58,7 @@ class Kept:
         path = self.folder / ABOUT
         if not path.exists():
             if self.folder.exists() and any(self.folder.glob("[!.]*")):
-                rule = "holds something else than a sweep"
+                rule = "is not empty, and holds no sweep"
                 raise refuse("keep", str(self.folder), rule, "name a new folder")
             self.folder.mkdir(exist_ok=True)
             with written(path) as stream:
@@ -96,8 +96,8 @@ class Kept:
                 raise refuse("keep", str(path), rule, "delete this file") from error
             first, stop = piece.chunk
             if path.name != _name(piece.chunk):
-                rule = f"holds impacts {first} to {stop} by its content, others by its name"
-                remedy = f"call it {_name(piece.chunk)} again, or delete this file"
+                rule = f"contains impacts {first} to {stop}, which are not those of its name"
+                remedy = f"rename it to {_name(piece.chunk)}, or delete this file"
                 raise refuse("keep", str(path), rule, remedy)
             if sweep != self.sweep:
                 rule = f"holds impacts {first} to {stop} of another sweep"
@@ -186,5 +186,5 @@ def _piece(content: Mapping[str, Any]) -> Piece:
         counters=json.loads(str(content["counters"])),
     )
     if motion.status.shape != (stop - first,):
-        raise ValueError(f"{stop - first} impacts by its place, {motion.status.size} in it")
+        raise ValueError(f"{motion.status.size} impacts where its place has {stop - first}")
     return Piece(Chunk(first, stop), Plan.from_arrays(content), motion)

@@ -284,7 +284,7 @@ class _Solver:
         for item in np.flatnonzero(abandoned).tolist():
             self.status[item] = Status.NOT_SEPARATED
             self.detail[item] = faults.sentence(
-                law.law, "the bodies do not part", law.steps, self.time[item] * law.unit[item]
+                law.law, "the bodies do not separate", law.steps, self.time[item] * law.unit[item]
             )
         law.active &= ~abandoned
 

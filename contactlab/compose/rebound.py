@@ -140,7 +140,9 @@ def rebound(
     if e != 1.0:
         if derivatives:
             remedy = "take differences of psi2, or leave one of the two out"
-            raise refuse("derivatives", derivatives, "are known for restitution = 1", remedy)
+            raise refuse(
+                "derivatives", derivatives, "are available for restitution = 1 only", remedy
+            )
         psi2 = _damped(velocity.ravel(), ratio.ravel(), float(e)).reshape(velocity.shape)
     else:
         psi2 = _solve(velocity.ravel(), ratio.ravel(), aim).reshape(velocity.shape)
@@ -150,7 +152,7 @@ def rebound(
     table = _table()
     if table is None:
         remedy = f"install a plug-in that offers {GROUP}: {TABLE}, and do not block it"
-        raise refuse("derivatives", derivatives, "only a table knows them", remedy)
+        raise refuse("derivatives", derivatives, "are available from a table only", remedy)
     _, by_psi1, by_chi = table(incidence, inertia, derivatives=True)
     return answer, by_psi1, by_chi
 

@@ -92,9 +92,9 @@ class Registry:
             and not any(blocks({entry}, info.name, info.distribution) for info in infos)
         }
         self._warned |= unknown
-        known = {text for info in infos for text in (info.name, info.qualified, info.distribution)}
+        names = {text for info in infos for text in (info.name, info.qualified, info.distribution)}
         for name in sorted(unknown):
-            hint = nearest(name, known).strip()
+            hint = nearest(name, names).strip()
             text = f"{BLOCK_VARIABLE} names {name!r}, which is not installed; {hint}"
             warnings.warn(text.rstrip("; "), PluginWarning, stacklevel=4)
 
@@ -211,7 +211,7 @@ class Registry:
             if f"{law_class.__module__}.".startswith(f"{module}."):
                 with contextlib.suppress(ValueError, PluginError):
                     self.law_class(name)
-        return next((info for known, info in self._loaded.values() if known is law_class), None)
+        return next((info for each, info in self._loaded.values() if each is law_class), None)
 
     def _unknown(self, name: str) -> ValueError:
         """Return the refusal of a name that is not installed, with the nearest installed name."""

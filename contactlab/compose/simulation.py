@@ -213,9 +213,9 @@ def _scene(scene: object) -> Scene:
     if not isinstance(scene, Scene):
         remedy = "make one: Scene(...)"
         if isinstance(scene, str | Path):
-            remedy = "of a file: read_scene(path) has the scene, and run() runs it"
+            remedy = "for a file use read_scene(path), whose run() runs it"
         elif type(scene).__name__ == "Encounter":
-            remedy = "of bodies in space: collide(encounter, simulation), or encounter.scene"
+            remedy = "for bodies in space use collide(encounter, simulation), or encounter.scene"
         raise refuse("scene", scene, "must be a Scene", remedy)
     return scene
 
