@@ -1,4 +1,4 @@
-"""Which law a name means that several distributions offer, and which laws are blocked."""
+"""The meaning of a name that several distributions offer, and the blocking of laws."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ BLOCK_VARIABLE = "CONTACTLAB_BLOCK_PLUGINS"
 
 
 def meant(rivals: list[PluginInfo]) -> PluginInfo | None:
-    """Return which of the laws of one name that name means; None if it is refused."""
+    """Return the law that a name means, among laws of that name; None if the name is refused."""
     usable = [info for info in rivals if not info.blocked] or rivals
     ours = [info for info in usable if info.distribution == hookspecs.PROJECT]
     if len(usable) == 1 or len(ours) == 1:
@@ -21,7 +21,7 @@ def meant(rivals: list[PluginInfo]) -> PluginInfo | None:
 
 
 def clash(rivals: list[PluginInfo]) -> str:
-    """Return what a name means that several distributions offer, and how to say which."""
+    """Return a sentence on a name of several distributions: its meaning, and how to choose."""
     name, law = rivals[0].name, meant(rivals)
     origins = " and ".join(f"{info.distribution} {info.version}" for info in rivals)
     others = [info for info in rivals if info is not law]
@@ -38,15 +38,7 @@ def clash(rivals: list[PluginInfo]) -> str:
 
 
 def blocks(entries: set[str], name: str, distribution: str) -> bool:
-    """Return whether any of some entries of ``CONTACTLAB_BLOCK_PLUGINS`` blocks a plug-in.
-
-    Parameters
-    ----------
-    entries : set of str
-        Names, names with a distribution, and names of distributions.
-    name, distribution : str
-        Of the plug-in.
-    """
+    """Return True if entries of ``CONTACTLAB_BLOCK_PLUGINS`` block a plug-in of a distribution."""
     for entry in entries:
         origin, plain = parted(entry)
         if origin and plain == name and same_distribution(origin, distribution):

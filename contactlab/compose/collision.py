@@ -1,4 +1,4 @@
-"""The collision of two bodies in space: what any law makes of an encounter."""
+"""The collision of two bodies in space: velocities and spins after an encounter."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from contactlab.outcome.result import ImpactResult
 Array = NDArray[np.float64]
 
 SEPARATING = ("refuse", "pass")
-#: Vectors after a collision: name and unit.
+#: Vectors after a collision, name and unit.
 VECTORS = (
     ("velocity", "m/s"), ("spin", "rad/s"), ("target_velocity", "m/s"), ("target_spin", "rad/s"),
     ("impulse", "N s"), ("contact_velocity", "m/s"), ("target_contact_velocity", "m/s"),
@@ -43,23 +43,23 @@ class Collision:
     ----------
     encounter : Encounter
     velocity, target_velocity : ndarray
-        Of the centres, in m/s. A half-space goes on as it was.
+        Velocities of the centres, in m/s. A half-space keeps its velocity.
     spin, target_spin : ndarray
-        In rad/s. Spin about the normal is that of before.
+        In rad/s. Spin about the normal does not change.
     normal_velocity : float or array
         Rate of approach after the impact, in m/s; negative: the bodies separate.
     slip_velocity_change : float or array
-        Change of the slip velocity along the slip of before, in m/s.
+        Change of the slip velocity in the direction of the slip before, in m/s.
     friction_work : float or array
         In J.
     collided : bool or array of bool
-        False where the bodies separated before, and passed through untouched.
+        False if the bodies were separating and passed through untouched.
     restitution : float
-        e that ``contactlab.rebound`` was asked for, if it was.
+        e of the normal motion given to ``contactlab.rebound``; 1 with a simulation.
     simulation : Simulation or None
         The laws; None for ``contactlab.rebound``.
     known : ImpactResult or None
-        What the simulation returned, of those that collided.
+        The simulation's result for the encounters that collided.
     """
 
     encounter: Encounter
@@ -83,12 +83,12 @@ class Collision:
         ----------
         encounter : Encounter
         result : ImpactResult
-            Of ``encounter.scene``.
+            The result of ``encounter.scene``.
 
         Raises
         ------
         ValueError
-            If the result is that of another scene.
+            If the result has another scene.
         """
         if not isinstance(result, ImpactResult) or result.scene != encounter.scene:
             why = "must be the result of encounter.scene"
@@ -101,22 +101,22 @@ class Collision:
         return {name: json_value(np.asarray(getattr(self, name))) for name, _ in VECTORS}
 
     def __repr__(self) -> str:
-        """Return how many collided, and how it went."""
+        """Return velocity and spin of a single collision, or the count in a batch, and statuses."""
         statuses = {status.name for status in np.ravel(np.array(self.status, dtype=object))}
-        told = ", ".join(sorted(statuses))
+        outcome = ", ".join(sorted(statuses))
         if not self.encounter.shape and not self.collided:
-            told = "separate, passed through"
+            outcome = "separate, passed through"
         if not self.encounter.shape:
-            return f"Collision(velocity={self.velocity}, spin={self.spin}; {told})"
+            return f"Collision(velocity={self.velocity}, spin={self.spin}; {outcome})"
         count = int(np.sum(self.collided))
-        return f"Collision({count} of {np.size(self.collided)} encounters collided; {told})"
+        return f"Collision({count} of {np.size(self.collided)} encounters collided; {outcome})"
 
     @cached_property
     def result(self) -> ImpactResult:
-        """The impacts in their planes of friction: of those that collided, one after another.
+        """The impacts in their planes of friction: one for each encounter that collided, in order.
 
-        Without a simulation of its own the collision's numbers came from ``rebound`` directly; the
-        impacts are then run once more, by the law that gives the same answers.
+        If the collision came from ``contactlab.rebound``, the impacts are run now, by the law that
+        gives the same answers.
         """
         if self.known is not None:
             return self.known
@@ -124,26 +124,26 @@ class Collision:
 
     @cached_property
     def plan(self) -> Plan:
-        """What was computed, what was left out, and what to be wary of."""
+        """What is computed, what is left out, and the cautions."""
         passed = ~np.asarray(self.collided)
         if passed.all():
             return collision_plan(Plan.nothing(passed.shape), None, passed)
-        met, known = self._met, self.known
-        plan = self._simulation.plan(met.scene) if known is None else known.plan
-        if self.simulation is None and known is None and self.restitution != 1.0:
+        met, result = self._met, self.known
+        plan = self._simulation.plan(met.scene) if result is None else result.plan
+        if self.simulation is None and result is None and self.restitution != 1.0:
             plan = by_rebound(plan, met.scene.chi, self.restitution)
         return collision_plan(plan, met, passed)
 
     @property
     def status(self) -> Any:
-        """A ``Status``, or an array of them; ``SUCCESS`` where bodies passed through."""
+        """A ``Status``, or an array of statuses; ``SUCCESS`` if the bodies passed through."""
         if self.known is None:
             return filled(Status.SUCCESS, self.encounter.shape)
         if np.all(self.collided):
             return self.known.status
-        found = filled(Status.SUCCESS, self.encounter.shape)
-        found[self.collided] = self.known.status
-        return found
+        status = filled(Status.SUCCESS, self.encounter.shape)
+        status[self.collided] = self.known.status
+        return status
 
     def check(self) -> Collision:
         """Return this collision if every impact succeeded.
@@ -151,7 +151,7 @@ class Collision:
         Raises
         ------
         ImpactError
-            With the sentence of the first impact that failed.
+            With the sentence on the first impact that failed.
         """
         if self.known is not None:
             self.known.check()
@@ -159,7 +159,7 @@ class Collision:
 
     @property
     def energy(self) -> EnergyLedger:
-        """The energy books of the relative motion, in J; what both bodies lose is what it loses."""
+        """The energy books of the relative motion, in J; its loss is the loss of both bodies."""
         contact = self.encounter.contact()
         before = (contact.approach, contact.slip)
         after = (self.normal_velocity, self.slip_velocity_change)
@@ -167,7 +167,7 @@ class Collision:
 
     @property
     def impulse(self) -> Array:
-        """On the sphere, in N s; on the target it is the opposite."""
+        """Impulse on the sphere, in N s; the target receives the opposite impulse."""
         contact, pair = self.encounter.contact(), self.encounter.pair
         push: Any = pair.normal_mass * (self.normal_velocity - contact.approach)
         drag: Any = pair.tangential_mass * self.slip_velocity_change
@@ -190,6 +190,7 @@ class Collision:
 
     @property
     def _normal(self) -> Array:
+        """Unit vectors along the normals, shape (..., 3)."""
         parts = np.stack(self.encounter.contact().normal, axis=-1)
         return np.broadcast_to(parts, (*self.encounter.shape, 3))
 
@@ -204,6 +205,7 @@ class Collision:
 
     @property
     def _simulation(self) -> Simulation:
+        """The laws, or laws with the answers of ``contactlab.rebound``."""
         if self.simulation is not None:
             return self.simulation
         if self.restitution != 1.0:
@@ -221,28 +223,29 @@ def collide(
     restitution: float = 1.0,
     separating: str = "refuse",
 ) -> Collision:
-    """Return both bodies after an encounter, or after each of a batch.
+    """Return velocities and spins of both bodies after an encounter, or after each of a batch.
 
     Parameters
     ----------
     encounter : Encounter
     simulation : Simulation, optional
-        The laws. By default the exact answer for elastic spheres, Hertz contact with partial slip,
-        by ``contactlab.rebound``: under a microsecond an encounter in a large batch, 0.2 ms alone.
+        The laws. The default is ``contactlab.rebound``, exact for elastic spheres with Hertz
+        contact and partial slip: under a microsecond per encounter in a large batch, 0.2 ms for a
+        single one.
     restitution : float
-        e of the normal motion without a simulation, from 0.01 to 1: below 1 by Tsuji's law with
-        Coulomb's law at every point, from a table for e from 0.5 and chi from 0.8 to 1.8, which
-        solid spheres have; by rings elsewhere. ``Collision.plan`` says how good psi2 is. Other laws
+        e of the normal motion without a simulation, from 0.01 to 1. Below 1 the law is Tsuji's,
+        with Coulomb's law at every point: from a table for e from 0.5 and chi from 0.8 to 1.8
+        (solid spheres), by rings elsewhere. ``Collision.plan`` states the error of psi2. Other laws
         of the same e give another psi2, at e = 0.9 by up to 0.021 (viscoelastic) or 0.62 (a linear
         spring): see ``contactlab.rebound``.
     separating : "refuse" or "pass"
-        What to do with bodies that do not approach each other: an error with the index of the
-        first, or let them pass through untouched, which ``Collision.collided`` tells.
+        For bodies that do not approach each other: an error with the index of the first, or both
+        bodies unchanged, with ``Collision.collided`` False.
 
     Raises
     ------
     ValueError
-        For bad input, or bodies that separate.
+        If the input is bad, or if bodies separate and ``separating`` is "refuse".
 
     Examples
     --------
@@ -256,7 +259,7 @@ def collide(
     if not isinstance(encounter, Encounter):
         remedy = "make one: Encounter(...)"
         if isinstance(encounter, list | tuple):
-            remedy = "make one of them all, with arrays of vectors, shape (..., 3)"
+            remedy = "make a single Encounter with arrays of vectors, shape (..., 3)"
         raise refuse("encounter", encounter, "must be an Encounter", remedy)
     if simulation is not None and not isinstance(simulation, Simulation):
         remedy = "or leave it out"
@@ -280,34 +283,35 @@ def collide(
         return _collision(encounter, impulses.moved(encounter), simulation=simulation)
     if np.all(met):
         scene = encounter.scene
-    else:  # an impact keeps its place in the whole batch
+    else:  # the index of an impact is its place in the whole batch
         places = np.arange(np.size(met)).reshape(np.shape(met))[met]
         scene = encounter.take(met).scene.numbered(places)
-    known = _run(simulation, scene)
-    moved = impulses.moved(encounter, _columns(encounter, known, met))
-    return _collision(encounter, moved, simulation=simulation, known=known)
+    result = _run(simulation, scene)
+    moved = impulses.moved(encounter, _columns(encounter, result, met))
+    return _collision(encounter, moved, simulation=simulation, known=result)
 
 
 def _run(simulation: Simulation, scene: Any) -> ImpactResult:
+    """Return the result of a scene, by blocks if the scene has one axis."""
     return simulation.sweep(scene) if len(scene.shape) == 1 else simulation.run(scene)
 
 
 def _columns(encounter: Encounter, result: ImpactResult, met: Any = True) -> Array:
-    """Return the same three of a result, shape (3, encounters), 0 where bodies have not met."""
+    """Return rebound rate, slip change and friction work, shape (3, n); 0 without a collision."""
     motion = result.motion
-    found = np.zeros((3, *encounter.shape))
-    columns = (motion.normal_velocity, motion.slip_velocity_change, motion.friction_work)
-    for k, column in enumerate(columns):
-        found[k, met] = column
-    return found.reshape(3, -1)
+    columns = np.zeros((3, *encounter.shape))
+    quantities = (motion.normal_velocity, motion.slip_velocity_change, motion.friction_work)
+    for k, quantity in enumerate(quantities):
+        columns[k, met] = quantity
+    return columns.reshape(3, -1)
 
 
 def _collision(encounter: Encounter, moved: impulses.Moved, **rest: Any) -> Collision:
-    """Return the collision with both bodies after it; ``rest`` are its other entries."""
+    """Return the collision whose bodies are ``moved``."""
     return Collision(encounter=encounter, **moved._asdict(), **rest)
 
 
 def _rim(body: Sphere, spin: Array, normal: Array) -> Array:
-    """Return the velocity that spin gives to the surface in the direction of ``normal``."""
+    """Return the velocity in m/s, relative to the centre, of the surface at ``normal``."""
     radius: Any = np.asarray(body.radius)[..., None]
     return np.asarray(radius * np.cross(spin, normal))

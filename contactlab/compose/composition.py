@@ -19,22 +19,22 @@ from contactlab.contracts.tangential import (
 )
 from contactlab.numeric.checks import refuse
 
-#: Taken where none is named, the first that is installed and fits: Coulomb's law at every point
-#: under any normal law with a radius, then laws that need less. Defaults are plug-in names.
+#: Defaults are plug-in names: of a list the first that is installed and fits. Coulomb's law at
+#: every point comes first, for any normal law with a radius, then laws that need less.
 DEFAULT_NORMAL = "hertz"
 PREFERRED = {
     "tangential": ("annulus", "springs", "coulomb"),
-    "elastic": ("fronts", "springs", "coulomb"),  # for Hertz's contact: exact, of second order
+    "elastic": ("fronts", "springs", "coulomb"),  # under elastic Hertz contact: fronts is exact
     "integrator": ("events", "symplectic"),
 }
-#: What the core and the studies ask for by its use, with the names above all that they name:
-#: exact answers between elastic spheres, fixed steps, a restitution, and the law with the answers
-#: of ``contactlab.rebound``.
+#: Laws that the core and the studies request by purpose: exact answers between elastic spheres,
+#: fixed steps, a restitution, and the law with the answers of ``contactlab.rebound``. No other
+#: plug-in names stand in the core.
 EXACT = {"tangential": "fronts", "integrator": "events"}
 FIXED_STEPS = "symplectic"
 RESTITUTION = {"normal": "tsuji", "tangential": "annulus"}
 OF_REBOUND = "tabulated"
-#: The ways in which a tangential law can be run: one of them it must be.
+#: Contracts of tangential laws that can be run; every law must be derived from one of them.
 WAYS = (SteppedTangentialLaw, PhasedTangentialLaw, WholeImpactTangentialLaw)
 
 
@@ -47,7 +47,7 @@ class Laws(NamedTuple):
 
 
 def law(kind: str, value: object, **options: Any) -> Any:
-    """Return the law of ``kind`` that ``value`` names, with its options, or already is."""
+    """Return the law of ``kind`` that ``value`` names, made with ``options``; or a law as it is."""
     if isinstance(value, str):
         return REGISTRY.create(full_name(kind, value), **options)
     if isinstance(value, Law) and value.kind == kind:
@@ -61,13 +61,7 @@ def law(kind: str, value: object, **options: Any) -> Any:
 
 
 def exact(tolerance: float) -> dict[str, Any]:
-    """Return the laws of the exact answers between elastic spheres, for ``Simulation(**laws)``.
-
-    Parameters
-    ----------
-    tolerance : float
-        Error of psi2 aimed at, over max(1, abs(psi1)).
-    """
+    """Return laws for ``Simulation``: exact for elastic spheres, psi2 to ``tolerance``."""
     return {
         "tangential": law("tangential", EXACT["tangential"]),
         "integrator": law("integrator", EXACT["integrator"], tolerance=tolerance),
@@ -75,19 +69,13 @@ def exact(tolerance: float) -> dict[str, Any]:
 
 
 def fixed_steps(steps: int) -> Integrator:
-    """Return the integrator of so many fixed steps."""
-    made: Integrator = law("integrator", FIXED_STEPS, steps=steps)
-    return made
+    """Return an integrator with fixed steps."""
+    integrator: Integrator = law("integrator", FIXED_STEPS, steps=steps)
+    return integrator
 
 
 def compose(normal: object, tangential: object, integrator: object) -> Laws:
-    """Return three laws that fit, from names, laws, or None for the best that fits.
-
-    Raises
-    ------
-    ValueError
-        If a name is not installed, or the laws do not fit together (naming what would).
-    """
+    """Return three laws that fit, from names or laws; None stands for the preferred law."""
     first = law("normal", DEFAULT_NORMAL if normal is None else normal)
     named = () if integrator is None else (law("integrator", integrator),)
     if tangential is None:
@@ -100,26 +88,18 @@ def compose(normal: object, tangential: object, integrator: object) -> Laws:
     return laws
 
 
-def preferred(kind: str, *others: Law, after: tuple[Law, ...] = ()) -> str:
-    """Return the name of the first law in ``PREFERRED`` that fits the others, or else the first.
-
-    Parameters
-    ----------
-    kind : str
-        ``"tangential"``, for a normal law, or ``"integrator"``, for both.
-    others : Law
-    after : tuple of Law
-        The integrator that a tangential law has to fit, if one was named.
-    """
+def preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> str:
+    """Return the name of the first law in ``PREFERRED`` that fits, or of the first installed."""
+    # ``before`` are the laws in front of this kind, ``after`` is a named integrator.
     installed = []
-    elastic = kind == "tangential" and "elastic_hertz" in others[0].offers
+    elastic = kind == "tangential" and "elastic_hertz" in before[0].offers
     for name in PREFERRED["elastic" if elastic else kind]:
         try:
-            found = law(kind, name)
+            candidate = law(kind, name)
         except ValueError:  # blocked, or not installed
             continue
         installed.append(name)
-        if _fits(*others, found, *after):
+        if _fits(*before, candidate, *after):
             return name
     if not installed:
         names = ", ".join(REGISTRY.names(kind))
@@ -133,7 +113,7 @@ def _fits(*parts: Law) -> bool:
 
 
 def misfit(normal: Any, tangential: Any = None, integrator: Any = None) -> str | None:
-    """Return why laws do not fit, naming both parties; None if they do."""
+    """Return why laws do not fit, with the names of both; None if they fit."""
     if "elastic_hertz" in normal.offers and not isinstance(normal, ClosedFormNormalLaw):
         return (
             f"normal = {_name(normal)}: offers 'elastic_hertz', and is no ClosedFormNormalLaw; "
@@ -153,30 +133,29 @@ def misfit(normal: Any, tangential: Any = None, integrator: Any = None) -> str |
     if not isinstance(tangential, integrator.tangential_contract):
         return (
             f"integrator = {_name(integrator)}: runs a {integrator.tangential_contract.__name__}, "
-            f"and tangential = {_name(tangential)} is none"
+            f"and tangential = {_name(tangential)} is not one"
         )
     if not isinstance(normal, integrator.normal_contract):
         return (
             f"integrator = {_name(integrator)}: needs a {integrator.normal_contract.__name__}, "
-            f"and normal = {_name(normal)} is none"
+            f"and normal = {_name(normal)} is not one"
         )
     return None
 
 
 def _would_fit(laws: Laws) -> str:
-    """Return which laws would fit in the place of one, of those that need no new import."""
-    found: list[str] = []
-    for kind in laws._fields:
-        fits = (name for name, other in _candidates(kind) if _fits(*laws._replace(**{kind: other})))
-        found += fits
-    return f"; these would fit: {', '.join(found)}" if found else "; no law at hand fits"
+    """Return a phrase that names the laws that would fit in place of one of the three."""
+    names = [
+        name
+        for kind in laws._fields
+        for name, candidate in _candidates(kind)
+        if _fits(*laws._replace(**{kind: candidate}))
+    ]
+    return f"; these would fit: {', '.join(names)}" if names else "; no law at hand fits"
 
 
 def _candidates(kind: str) -> Iterator[tuple[str, Any]]:
-    """Iterate over laws made with their defaults: those of this distribution, or loaded before.
-
-    Other people's plug-ins are not imported for the sake of a message.
-    """
+    """Yield names and laws, made with their defaults, that need no import of a foreign plug-in."""
     for info in REGISTRY.installed():
         if info.kind != kind or info.blocked or not REGISTRY.at_hand(info):
             continue
@@ -191,5 +170,5 @@ def _name(law: Law) -> str:
 
 
 def versions(*laws: Law) -> dict[str, str]:
-    """Return each law's kind with its name and version, for the record."""
+    """Return each law's name and version, by kind."""
     return {law.kind: REGISTRY.describe(law) for law in laws}

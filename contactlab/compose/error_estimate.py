@@ -2,45 +2,64 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import attrs
 import numpy as np
 
+from contactlab.compose import solve
+from contactlab.compose.composition import Laws
 from contactlab.compose.planning import CLOSED_FORM
 from contactlab.contracts.error_model import psi_magnitude
+from contactlab.contracts.integrator import Integrator
+from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import TangentialLaw
+from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
+from contactlab.outcome.result import ImpactResult
 
-if TYPE_CHECKING:
-    from contactlab.compose.simulation import Simulation
-    from contactlab.impact.scene import Scene
-    from contactlab.outcome.result import ImpactResult
-
-#: A count that is refined alone is multiplied by this factor and by its square, several counts
-#: together by the lesser factor: the finest run costs about sixteen times the first.
+#: A single count is multiplied by the first factor and by its square, several counts together by
+#: the second: the finest run costs about sixteen times the first.
 ALONE, TOGETHER = 4, 2
-#: A tolerance is divided by this times the square of the lesser factor, as for a method of second
-#: order. Steps are doubled until a tolerance is kept: a lesser change might change no step.
+#: A tolerance is divided by this times the square of the factor of the counts, as for a method of
+#: second order. Steps are doubled until a tolerance is kept: a lesser change might change no step.
 TOLERANCE = 4.0
-#: Share of the last change that the finest run is taken to be off by. A method of second order
-#: leaves a third of the change of a doubling, one of first order all of it.
+#: Assumed error of the finest run, as a share of the last change. A method of second order leaves
+#: a third of the change of a doubling, a method of first order all of it.
 LEFT = 0.5
 
 
-def estimated(simulation: Simulation, result: ImpactResult) -> Real:
+class Composed(Protocol):
+    """An object with three laws: ``Laws``, or a ``Simulation``."""
+
+    @property
+    def normal(self) -> NormalLaw:
+        """The normal law."""
+
+    @property
+    def tangential(self) -> TangentialLaw:
+        """The tangential law."""
+
+    @property
+    def integrator(self) -> Integrator:
+        """The integrator."""
+
+
+def estimated(composed: Composed, result: ImpactResult) -> Real:
     """Return the estimated numerical error of psi2 of a result, of the scene's shape.
 
-    Each impact is run again at two finer resolutions, of all laws that have one: normal law,
-    tangential law and, where it marches the impact, integrator. The estimate is the distance of
+    Each impact is run again at two finer resolutions of all laws that have a resolution: normal
+    law, tangential law and, if the impact is marched, integrator. The estimate is the distance of
     psi2 from the finest answer, plus half the last change, and no less than rounding. No order of
-    convergence is assumed. A tolerance that cannot be kept when it is tightened stays, and the
-    error in time is not in the estimate then. Nor are the errors of the model. Where the answers
-    do not differ, or no law has a finer resolution, the estimate is what the plan declares.
+    convergence is assumed. If a tightened tolerance cannot be kept, the tolerance stays, and the
+    estimate leaves out the error in time. The estimate never includes errors of the model. If the
+    answers do not differ, or no law has a finer resolution, the estimate is what the plan declares.
 
     Parameters
     ----------
-    simulation : Simulation
+    composed : Laws or Simulation
+        The laws of the result.
     result : ImpactResult
 
     Returns
@@ -48,54 +67,46 @@ def estimated(simulation: Simulation, result: ImpactResult) -> Real:
     float or array
         NaN where a run failed, and where nothing is declared and no resolution shows an error.
     """
+    laws = Laws(composed.normal, composed.tangential, composed.integrator)
     scene = result.scene
-    successes = _successes(result)
+    successes = _successes(result.status)
     error = np.where(successes, result.plan.psi2_error, np.nan)
     marched = successes & result.plan.marched
-    got = np.where(marched, _resolution(simulation, scene) if np.any(marched) else 0.0, np.nan)
+    resolutions = np.where(marched, _resolution(laws, scene) if np.any(marched) else 0.0, np.nan)
     change = np.asarray(result.motion.slip_velocity_change)
-    for value in [*np.unique(got[marched]).tolist(), None]:
-        where = successes & ~marched if value is None else marched & (got == value)
+    for resolution in [*np.unique(resolutions[marched]).tolist(), None]:
+        where = successes & ~marched
+        if resolution is not None:
+            where = marched & (resolutions == resolution)
         if np.any(where):
             part = scene.take(where) if scene.shape else scene
-            found = _distance(simulation, part, value, change[where])
-            error[where] = np.where(found == 0.0, error[where], found)
+            distance = _distance(laws, part, resolution, change[where])
+            error[where] = np.where(distance == 0.0, error[where], distance)
     return error if error.ndim else float(error)
 
 
-def _resolution(simulation: Simulation, scene: Scene) -> Any:
-    """Return the resolution of the integrator that each impact gets; 0 of one without."""
-    integrator = simulation.integrator
-    normal = simulation.normal_motion(scene)
-    got = integrator.resolution_for(normal, simulation.tangential, scene)
-    return np.broadcast_to(got, scene.shape)
+def _resolution(laws: Laws, scene: Scene) -> Any:
+    """Return the resolution of the integrator for each impact; 0 if it has none."""
+    normal = solve.normal_or_failed(laws, scene)
+    resolution = laws.integrator.resolution_for(normal, laws.tangential, scene)
+    return np.broadcast_to(resolution, scene.shape)
 
 
-def _distance(simulation: Simulation, scene: Scene, resolution: float | None, change: Any) -> Any:
-    """Return the estimated error of psi2 of impacts; 0 where no finer run is possible.
-
-    Parameters
-    ----------
-    simulation : Simulation
-    scene : Scene
-    resolution : float or None
-        That all impacts got of the integrator; None for impacts that were not marched.
-    change : array
-        Change of slip velocity, in m/s.
-    """
-    options = _options(simulation, resolution)
+def _distance(laws: Laws, scene: Scene, resolution: float | None, change: Any) -> Any:
+    """Return the estimated error of psi2; 0 where no finer run is possible."""
+    options = _options(laws, resolution)
     counts = {kind: value for kind, value in options.items() if isinstance(value, int)}
     factor = ALONE if len(options) == len(counts) == 1 else TOGETHER
     answers = []
     for times in (factor, factor**2):
-        finer = _finer(simulation, options, times)
+        finer = _finer(laws, options, times)
         if finer is None:
             return np.zeros(change.shape)
-        found = _change(finer, scene)
-        coarser = _finer(simulation, counts, times) if counts else None
-        if coarser is not None and np.isnan(found).any():  # the tolerance cannot be tightened
-            found = np.where(np.isnan(found), _change(coarser, scene), found)
-        answers.append(found)
+        answer = _change(finer, scene)
+        with_tolerance = _finer(laws, counts, times) if counts else None
+        if with_tolerance is not None and np.isnan(answer).any():  # it cannot be tightened
+            answer = np.where(np.isnan(answer), _change(with_tolerance, scene), answer)
+        answers.append(answer)
     fine, finest = answers
     distance = scene.psi(np.abs(finest - change) + LEFT * np.abs(finest - fine))
     return np.where(
@@ -103,45 +114,35 @@ def _distance(simulation: Simulation, scene: Scene, resolution: float | None, ch
     )
 
 
-def _change(simulation: Simulation, scene: Scene) -> Any:
+def _change(laws: Laws, scene: Scene) -> Any:
     """Return the change of slip velocity in m/s; NaN where the run failed."""
-    result = simulation.run(scene)
-    return np.where(_successes(result), result.motion.slip_velocity_change, np.nan)
+    _, motion = solve.outcome(laws, scene, False, None)
+    return np.where(_successes(motion.status), motion.slip_velocity_change, np.nan)
 
 
-def _options(simulation: Simulation, resolution: float | None) -> dict[str, Any]:
-    """Return the value of each resolution that has a part in the answer, by the kind of its law."""
-    found = {}
-    for kind in ("normal", "tangential", "integrator"):
-        law: Any = getattr(simulation, kind)
+def _options(laws: Laws, resolution: float | None) -> dict[str, Any]:
+    """Return the value of each resolution by kind of law; ``resolution`` is the integrator's."""
+    options = {}
+    for kind, law in laws._asdict().items():
         if law.resolution is None or (kind == "integrator" and resolution is None):
             continue
         value = getattr(law, law.resolution)
-        found[kind] = type(value)(resolution) if kind == "integrator" else value
-    return found
+        options[kind] = type(value)(resolution) if kind == "integrator" else value
+    return options
 
 
-def _finer(simulation: Simulation, options: dict[str, Any], times: int) -> Simulation | None:
-    """Return the simulation with finer resolutions; None if there are none, or a law refuses.
-
-    Parameters
-    ----------
-    simulation : Simulation
-    options : mapping of str to int or float
-        As of ``_options``.
-    times : int
-        What a count is multiplied by.
-    """
+def _finer(laws: Laws, options: dict[str, Any], times: int) -> Laws | None:
+    """Return the laws with counts ``times`` as large; None without options, or if a law refuses."""
     changed = {}
     for kind, value in options.items():
-        law: Any = getattr(simulation, kind)
-        other = value * times if isinstance(value, int) else value / (TOLERANCE * times**2)
+        law: Any = getattr(laws, kind)
+        finer = value * times if isinstance(value, int) else value / (TOLERANCE * times**2)
         try:
-            changed[kind] = attrs.evolve(law, **{law.resolution: other})
+            changed[kind] = attrs.evolve(law, **{law.resolution: finer})
         except ValueError:  # beyond what the law allows
             return None
-    return attrs.evolve(simulation, **changed) if changed else None
+    return laws._replace(**changed) if changed else None
 
 
-def _successes(result: ImpactResult) -> Any:
-    return np.asarray(result.status, dtype=object) == Status.SUCCESS
+def _successes(status: Any) -> Any:
+    return np.asarray(status, dtype=object) == Status.SUCCESS

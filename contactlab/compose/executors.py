@@ -9,71 +9,51 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExec
 from queue import SimpleQueue
 from typing import Any
 
+from contactlab.compose.composition import Laws, versions
 from contactlab.compose.installed import short
-from contactlab.compose.registry import KINDS
-from contactlab.compose.simulation import Simulation
-from contactlab.compose.sweep import Chunk, Piece, unsolved
-from contactlab.compose.workers import MODULE_REMEDY, Reply, reply, stop, versions
+from contactlab.compose.pieces import Chunk, Piece, unsolved
+from contactlab.compose.workers import MODULE_REMEDY, Reply, reply, stop
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 
 
 def pieces_of(
-    simulation: Simulation, scene: Scene, chunks: Sequence[Chunk], block: int, executor: Executor
+    laws: Laws, scene: Scene, chunks: Sequence[Chunk], block: int, executor: Executor
 ) -> Generator[Piece, None, None]:
-    """Return the pieces of ``chunks`` as an executor finishes them.
-
-    A chunk that the executor loses has the status ``WORKER_DIED``. A ``ProcessPoolExecutor``
-    breaks with any of its processes. So it has one chunk in flight for each process, and when it
-    breaks these chunks and the rest go to fresh pools of one process each: a chunk that ends its
-    process there too is lost.
-
-    Parameters
-    ----------
-    simulation : Simulation
-    scene : Scene
-        Of the whole sweep.
-    chunks : sequence of Chunk
-    block : int
-        Impacts solved in one call.
-    executor : concurrent.futures.Executor
-        Or another object with a method ``submit`` that returns futures.
-
-    Raises
-    ------
-    ValueError
-        If ``executor`` takes no work, if a law cannot be sent to it, or if the laws have other
-        versions there.
-    """
+    """Yield the pieces of ``chunks`` as an executor finishes them; ``scene`` is the whole sweep."""
+    # A chunk that the executor loses gets the status WORKER_DIED. A ProcessPoolExecutor breaks
+    # when any of its processes dies. So each process has one chunk at a time, and after a break
+    # these chunks and the rest go to new pools of one process each: a chunk that ends its process
+    # a second time is lost.
     if isinstance(executor, type) or not callable(getattr(executor, "submit", None)):
         remedy = "give ProcessPoolExecutor(4), or client.get_executor() of dask"
         raise refuse("executor", executor, "must have a method submit", remedy)
     pool: Any = executor if isinstance(executor, ProcessPoolExecutor) else None
-    laws, ours = _sent(simulation), versions(simulation)
+    sent, ours = _sent(laws), versions(*laws)
     finished: SimpleQueue[Future[Reply]] = SimpleQueue()
     waiting: dict[Future[Reply], tuple[Any, Chunk]] = {}
-    left, again = deque(chunks), set[Chunk]()
-    # Executors with room for a chunk; None is a fresh pool, to be made when it is needed.
+    left, retried = deque(chunks), set[Chunk]()
+    # Executors with room for a chunk; None stands for a new pool, made when it is needed.
     free: list[Any] = [executor] * (pool._max_workers if pool else len(chunks))
     try:
         while left or waiting:
             while left and free:
-                taker, chunk = free.pop() or _fresh(pool), left.popleft()
+                taker, chunk = free.pop() or _new_pool(pool), left.popleft()
                 part = pickle.dumps(scene.take(slice(*chunk)))
-                future = _submitted(taker, laws, part, chunk, block)
+                future = _submitted(taker, sent, part, chunk, block)
                 waiting[future] = taker, chunk
                 future.add_done_callback(finished.put)
             future = finished.get()
             taker, chunk = waiting.pop(future)
             try:
                 answer = future.result()
-            except Exception as error:  # of the executor: ``reply`` returns what it raises
+            except Exception as error:  # the executor failed: ``reply`` returns errors of the laws
                 free.append(taker)
                 if pool:
                     free = [None if each is taker else each for each in free]
-                if pool and chunk not in again:
-                    again.add(chunk)
+                if pool and chunk not in retried:
+                    retried.add(chunk)
                     left.append(chunk)
                 else:
                     yield unsolved(chunk, Status.WORKER_DIED, short(error))
@@ -82,7 +62,7 @@ def pieces_of(
             if answer.raised is not None:
                 raise answer.raised
             if answer.versions != ours:
-                rule = f"its workers have {dict(answer.versions)}, here are {dict(ours)}"
+                rule = f"its workers have {dict(answer.versions)}, this process {dict(ours)}"
                 raise refuse("executor", executor, rule, "install the same versions there")
             assert answer.piece is not None
             yield answer.piece
@@ -97,21 +77,20 @@ def pieces_of(
                 taker.shutdown()
 
 
-def _sent(simulation: Simulation) -> bytes:
-    """Return the pickled simulation, or say which law does not pickle."""
-    for kind in KINDS:
-        law = getattr(simulation, kind)
+def _sent(laws: Laws) -> bytes:
+    """Return the pickled laws, or refuse the first that does not pickle."""
+    for kind, law in laws._asdict().items():
         try:
             pickle.dumps(law)
         except Exception as error:
             raise refuse(
                 kind, law, f"cannot be sent to an executor: {short(error)}", MODULE_REMEDY
             ) from error
-    return pickle.dumps(simulation)
+    return pickle.dumps(laws)
 
 
 def _submitted(executor: Any, *call: Any) -> Future[Reply]:
-    """Return the future of a reply; if the executor is broken, the future holds its error."""
+    """Return the future of a reply; the future holds the error of a broken executor."""
     try:
         future: Future[Reply] = executor.submit(reply, *call)
     except BrokenExecutor as error:
@@ -122,8 +101,8 @@ def _submitted(executor: Any, *call: Any) -> Future[Reply]:
     return future
 
 
-def _fresh(broken: Any) -> ProcessPoolExecutor:
-    """Return a pool of one process, started as those of the broken pool were."""
+def _new_pool(broken: Any) -> ProcessPoolExecutor:
+    """Return a pool of one process with the settings of the broken pool."""
     pool = ProcessPoolExecutor(
         1,
         mp_context=broken._mp_context,

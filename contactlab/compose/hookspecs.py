@@ -1,4 +1,4 @@
-"""The one hook of a plug-in. Hooks only hand out classes; none is called in a step."""
+"""The only hook of a plug-in. It returns a class; it is never called in a step."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ def contactlab_law(name: str) -> type | None:
     Parameters
     ----------
     name : str
-        The entry point's name, kind and law: ``"tangential.annulus"``. A module that is
-        listed under one name only may leave the argument out.
+        The entry point's name, kind and law: ``"tangential.annulus"``. A module with a single
+        entry point may leave the argument out.
 
     Returns
     -------
     type
-        A subclass of ``NormalLaw``, ``TangentialLaw`` or ``Integrator``; its parameters
-        are keyword arguments.
+        A subclass of ``NormalLaw``, ``TangentialLaw`` or ``Integrator`` whose parameters are
+        keyword arguments.
     """

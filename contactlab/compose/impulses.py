@@ -1,4 +1,4 @@
-"""Impulses on two bodies in space, and what they make of velocities and spins."""
+"""Impulses on two bodies in space, and the velocities and spins after them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from contactlab.numeric.vectors import LEAST, components
 
 Array = NDArray[np.float64]
 
-#: Beyond this psi1 the change of psi under a restitution is its limit to 1e-4.
+#: Beyond this psi1 the change of psi under a restitution equals its limit to 1e-4.
 END_OF_DAMPED = 1e4
 #: Velocities and spins of both bodies.
 VECTORS = ("velocity", "spin", "target_velocity", "target_spin")
@@ -39,21 +39,10 @@ class Moved(NamedTuple):
 def rebounding(
     part: Encounter, contact: Contact, pair: Pair, restitution: float
 ) -> tuple[Any, Any, Any]:
-    """Return rate of approach, change of slip velocity and friction work by ``rebound``.
-
-    Slip throughout, eq. (46), is the same for elastic bodies from psi1 = 4 chi + 1 on, so that
-    psi1 is cut there: whatever slip and friction are, it is finite and keeps its digits. With a
-    restitution the change of psi tends to -2 chi (1 + e) as 1/psi1.
-
-    Parameters
-    ----------
-    part : Encounter
-    contact : Contact
-    pair : Pair
-        Of the two bodies.
-    restitution : float
-        e of the normal motion.
-    """
+    """Return rebound rate (m/s), slip change (m/s) and friction work (J) by ``rebound``."""
+    # From psi1 = 4 chi + 1 on elastic bodies slip throughout, eq. (46), and the change of psi is
+    # constant. So psi1 is cut there: it stays finite, with all digits, at any slip and friction.
+    # With a restitution the change of psi tends to -2 chi (1 + e) as 1/psi1.
     chi = pair.inertia_ratio
     end: Any = 4.0 * chi + 1.0 if restitution == 1.0 else END_OF_DAMPED
     with np.errstate(all="ignore"):
@@ -70,7 +59,7 @@ def rebounding(
 
 
 def _check(part: Encounter, impulse: Any, change: Any) -> None:
-    """Refuse encounters whose numbers a float cannot hold; a scene does so for a simulation."""
+    """Refuse encounters whose numbers a float cannot hold, as ``Scene`` does."""
     if not every(impulse >= LEAST_IMPULSE):
         raise refuse(
             "sphere, velocity",
@@ -94,19 +83,8 @@ def moved(
     restitution: float = 1.0,
     strict: bool = False,
 ) -> Moved:
-    """Return both bodies after an encounter; those that separate move on, or are refused.
-
-    Parameters
-    ----------
-    encounter : Encounter
-    answers : array, optional
-        Of a law, shape (3, encounters): rate of approach after the impact, change of the slip
-        velocity (m/s), friction work (J). By default those of ``contactlab.rebound``.
-    restitution : float
-        For ``rebound``.
-    strict : bool
-        Whether bodies that separate are refused.
-    """
+    """Return both bodies after an encounter; ``strict`` refuses bodies that separate."""
+    # ``answers``, shape (3, encounters), are the columns of ``rebounding``; its own by default.
     shape = encounter.shape
     vectors = [np.empty((*shape, 3)) for _ in VECTORS]
     flat = [array.reshape(-1, 3) for array in vectors]
@@ -145,17 +123,7 @@ def moved(
 
 
 def _push(moved: list[Array], part: Encounter, contact: Contact, push: Any, drag: Any) -> None:
-    """Write velocities and spins after impulses along the normal and along the slip.
-
-    Parameters
-    ----------
-    moved : list of arrays
-        ``VECTORS``, to be written, each of shape (encounters, 3).
-    part : Encounter
-    contact : Contact
-    push, drag : array
-        Impulses on the sphere, in N s.
-    """
+    """Write ``VECTORS`` after the normal impulse ``push`` and the tangential ``drag``, in N s."""
     (n1, n2, n3), (t1, t2, t3) = contact.normal, contact.along
     across = (n2 * t3 - n3 * t2, n3 * t1 - n1 * t3, n1 * t2 - n2 * t1)
     bodies: tuple[Any, ...] = (
@@ -168,7 +136,7 @@ def _push(moved: list[Array], part: Encounter, contact: Contact, push: Any, drag
             to[:], turned[:] = velocity, spin
             continue
         ahead, aside = sense * push / body.mass, sense * drag / body.mass
-        # one after another: the moment of inertia of a tiny body is no float
+        # divided step by step: the moment of inertia of a tiny body underflows
         turn = drag / body.mass / (body.gyration_ratio * body.gyration_ratio * body.radius)
         for k, (v, w) in enumerate(zip(components(velocity), components(spin), strict=True)):
             to[:, k] = v + (ahead * contact.normal[k] + aside * contact.along[k])

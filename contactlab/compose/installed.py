@@ -1,4 +1,4 @@
-"""The entry points that are installed, read so that a broken distribution stops nothing."""
+"""The installed entry points; a broken distribution is passed over."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ GROUP = "contactlab"
 
 
 class PluginWarning(UserWarning):
-    """A word about plug-ins without effect: one is blocked that is not there, or unreadable."""
+    """A blocked name is not installed, or the entry points of a distribution are unreadable."""
 
 
 def stamp() -> object:
-    """Return what changes where something is installed: the folders of the path, and when."""
+    """Return the folders of ``sys.path`` with their times: an installation changes the value."""
     stamps = []
     for folder in sys.path:
         try:
@@ -31,23 +31,23 @@ def stamp() -> object:
 
 def entry_points() -> set[tuple[str, str, str, str]]:
     """Return name, distribution, version and module of every entry point of the group."""
-    from importlib import metadata  # 20 ms that only those who look for laws pay
+    from importlib import metadata  # takes 20 ms to import
 
     try:
         points = list(metadata.entry_points(group=GROUP))
-    except Exception:  # a single unreadable distribution, anybody's, spoils the common reading
-        points = [point for found in metadata.distributions() for point in _points_of(found)]
+    except Exception:  # one unreadable distribution makes the common reading fail
+        points = [point for each in metadata.distributions() for point in _points_of(each)]
     origins: dict[int, tuple[str, str]] = {}
-    found = set()
+    entries = set()
     for point in points:
-        if id(point.dist) not in origins:  # a file is read for each name and each version
+        if id(point.dist) not in origins:  # each reading opens a file
             origins[id(point.dist)] = _name_and_version(point.dist)
-        found.add((point.name, *origins[id(point.dist)], point.value))
-    return found
+        entries.add((point.name, *origins[id(point.dist)], point.value))
+    return entries
 
 
 def _name_and_version(distribution: metadata.Distribution | None) -> tuple[str, str]:
-    """Return name and version as far as they are written down and can be read."""
+    """Return name and version of a distribution; "unknown" if they cannot be read."""
     about: Any = {}
     with contextlib.suppress(Exception):
         about = distribution.metadata if distribution else {}
@@ -66,5 +66,5 @@ def _points_of(distribution: metadata.Distribution) -> list[metadata.EntryPoint]
 
 
 def short(error: BaseException) -> str:
-    """Return what was raised, in one line."""
+    """Return the class and the message of an exception."""
     return f"{type(error).__name__}: {error}"

@@ -1,4 +1,4 @@
-"""Pieces of a sweep in a folder, so that a sweep that was ended goes on where it stopped."""
+"""Pieces of a sweep in a folder, from which an interrupted sweep resumes."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ import zipfile
 from collections.abc import Mapping
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import attrs
 import numpy as np
 
-from contactlab.compose.registry import KINDS, REGISTRY
-from contactlab.compose.sweep import Chunk, Piece
+from contactlab.compose.composition import Laws
+from contactlab.compose.pieces import Chunk, Piece
+from contactlab.compose.registry import REGISTRY
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
@@ -25,61 +26,39 @@ from contactlab.outcome.files import written
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Plan
 
-if TYPE_CHECKING:
-    from contactlab.compose.simulation import Simulation
-
 ABOUT, PIECES = "sweep.json", "impacts-*.npz"
-#: Impacts with these were not computed: a sweep that goes on tries them again.
+#: Statuses of impacts that were not computed: a resumed sweep computes them.
 TRIED_AGAIN = (Status.INTERRUPTED, Status.WORKER_DIED)
 
 
 class Kept:
-    """A folder with the finished pieces of one sweep, each written beside and renamed.
+    """A folder with the finished pieces of one sweep, each written to a temporary file first."""
 
-    Parameters
-    ----------
-    folder : str or Path
-        Made if it is not there.
-    simulation : Simulation
-    scene : Scene
-        Of the whole sweep.
-    block : int
-        Impacts solved in one call.
-
-    Raises
-    ------
-    ValueError
-        If the folder holds another sweep, or something else: another scene, law, option or
-        version.
-    """
-
-    def __init__(
-        self, folder: str | Path, simulation: Simulation, scene: Scene, block: int
-    ) -> None:
+    def __init__(self, folder: str | Path, laws: Laws, scene: Scene, block: int) -> None:
         if not isinstance(folder, str | os.PathLike):
             raise refuse("keep", folder, "must be the path of a folder")
         if os.path.exists(folder) and not os.path.isdir(folder):
             raise refuse("keep", str(folder), "is a file", "name a folder")
         self.folder = Path(folder)
-        laws = {kind: getattr(simulation, kind) for kind in KINDS}
+        by_kind = laws._asdict()
         about = {
-            **{kind: f"{REGISTRY.describe(law)}: {law!r}" for kind, law in laws.items()},
+            **{kind: f"{REGISTRY.describe(law)}: {law!r}" for kind, law in by_kind.items()},
             "impacts": scene.shape[0],
             "scene": fingerprint(scene),
-            "options": fingerprint(laws),
+            "options": fingerprint(by_kind),
             "block": block,
         }
-        #: Stands in every piece, so that a piece of another sweep is known as such.
+        #: Written into every piece, so that a piece of another sweep is refused.
         self.sweep = fingerprint(about)
         self._check(about)
 
     def _check(self, about: Mapping[str, Any]) -> None:
-        """Begin a new folder, or refuse one that is of another sweep."""
+        """Make the folder if there is none, or refuse a folder of another sweep."""
         remedy = "delete the folder, or keep this sweep in another"
         path = self.folder / ABOUT
         if not path.exists():
             if self.folder.exists() and any(self.folder.glob("[!.]*")):
-                rule = "holds something else than a sweep"
+                rule = "is not empty, and holds no sweep"
                 raise refuse("keep", str(self.folder), rule, "name a new folder")
             self.folder.mkdir(exist_ok=True)
             with written(path) as stream:
@@ -96,26 +75,18 @@ class Kept:
             raise refuse("keep", str(self.folder), rule, remedy)
 
     def keep(self, piece: Piece) -> None:
-        """Write a piece, unless there is something in it to be tried again."""
+        """Write a piece, unless it has impacts that were not computed."""
         if any(status in TRIED_AGAIN for status in piece.motion.status):
             return
         with written(self.folder / _name(piece.chunk), binary=True) as stream:
             np.savez(stream, **_arrays(piece), sweep=np.array(self.sweep))
 
     def pieces(self) -> list[Piece]:
-        """Return the pieces that are there, no impact in two of them.
-
-        Two runs at a time, with chunks of their own, may have written some impacts twice.
-
-        Raises
-        ------
-        ValueError
-            If a file is damaged, or its content is that of other impacts than its name says, or
-            of another sweep.
-        """
-        found: list[Piece] = []
+        """Return the pieces in the folder, no impact in two of them; refuse what does not fit."""
+        pieces: list[Piece] = []
         for path in sorted(self.folder.glob(PIECES), key=_first):
-            if found and _first(path) < found[-1].chunk.stop:
+            # Two runs at the same time, with different chunks, may have written impacts twice.
+            if pieces and _first(path) < pieces[-1].chunk.stop:
                 continue
             try:
                 with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as content:
@@ -125,18 +96,18 @@ class Kept:
                 raise refuse("keep", str(path), rule, "delete this file") from error
             first, stop = piece.chunk
             if path.name != _name(piece.chunk):
-                rule = f"holds impacts {first} to {stop} by its content, others by its name"
-                remedy = f"call it {_name(piece.chunk)} again, or delete this file"
+                rule = f"contains impacts {first} to {stop}, which are not those of its name"
+                remedy = f"rename it to {_name(piece.chunk)}, or delete this file"
                 raise refuse("keep", str(path), rule, remedy)
             if sweep != self.sweep:
                 rule = f"holds impacts {first} to {stop} of another sweep"
                 raise refuse("keep", str(path), rule, "delete this file")
-            found.append(piece)
-        return found
+            pieces.append(piece)
+        return pieces
 
 
 def count(folder: Path) -> int:
-    """Return the number of impacts in the pieces of a sweep; zero if nothing is there."""
+    """Return the number of impacts in the pieces of a folder; 0 if there is no folder."""
     ends = (path.stem.split("-")[1:] for path in folder.glob(PIECES))
     return sum(
         int(end[1]) - int(end[0]) for end in ends if len(end) == 2 and all(map(str.isdigit, end))
@@ -144,7 +115,7 @@ def count(folder: Path) -> int:
 
 
 def remove(folder: Path) -> None:
-    """Delete the pieces of a sweep, and their folder if nothing else is in it."""
+    """Delete the pieces of a sweep, and their folder if it is empty then."""
     for pattern in (PIECES, ".contactlab-*.part", ABOUT):
         for path in folder.glob(pattern):
             path.unlink(missing_ok=True)
@@ -153,13 +124,14 @@ def remove(folder: Path) -> None:
 
 
 def fingerprint(tree: Any) -> str:
-    """Return a text that differs where any number, text or class in a tree does."""
+    """Return a hash of every number, text and class in a tree, 16 hexadecimal digits."""
     digest = hashlib.sha256()
     _feed(tree, digest.update)
     return digest.hexdigest()[:16]
 
 
 def _feed(tree: Any, update: Any) -> None:
+    """Pass the bytes of a tree to ``update``."""
     update(type(tree).__qualname__.encode())
     if attrs.has(type(tree)):
         for field in attrs.fields(type(tree)):
@@ -182,7 +154,7 @@ def _feed(tree: Any, update: Any) -> None:
 
 
 def _arrays(piece: Piece) -> dict[str, Any]:
-    """Return what a piece is made of as arrays of numbers and text."""
+    """Return the entries of a piece as arrays of numbers and text."""
     chunk, plan, motion = piece
     arrays: dict[str, Any] = {name: getattr(motion, name) for name in motion.numbers()}
     arrays["place"] = np.array(chunk)
@@ -194,7 +166,7 @@ def _arrays(piece: Piece) -> dict[str, Any]:
 
 
 def _first(path: Path) -> int:
-    """Return the first impact of a piece by the name of its file; 0 if it is not one of ours."""
+    """Return the first impact of a piece from its file name; 0 if there is no number in it."""
     first = path.stem.split("-")[1]
     return int(first) if first.isdigit() else 0
 
@@ -205,7 +177,7 @@ def _name(chunk: Chunk) -> str:
 
 
 def _piece(content: Mapping[str, Any]) -> Piece:
-    """Return the piece that arrays were made of."""
+    """Return the piece of the arrays that ``_arrays`` made."""
     first, stop = content["place"].tolist()
     motion = Motion(
         **{name: content[name] for name in Motion.numbers()},
@@ -214,5 +186,5 @@ def _piece(content: Mapping[str, Any]) -> Piece:
         counters=json.loads(str(content["counters"])),
     )
     if motion.status.shape != (stop - first,):
-        raise ValueError(f"{stop - first} impacts by its place, {motion.status.size} in it")
+        raise ValueError(f"{motion.status.size} impacts where its place has {stop - first}")
     return Piece(Chunk(first, stop), Plan.from_arrays(content), motion)

@@ -1,4 +1,4 @@
-"""The loading of a plug-in: its module imported, its hook called, its law checked."""
+"""Loading of a plug-in: imports its module, calls its hook and checks its law."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ from contactlab.contracts.law import API_VERSION, Law
 
 
 class PluginError(RuntimeError):
-    """A plug-in is broken or at odds with another; names plug-in and distribution."""
+    """A plug-in is broken or conflicts with another; the message names plug-in and distribution."""
 
 
 @attrs.frozen
 class PluginInfo:
-    """One installed law, as the listing shows it; nothing has been imported.
+    """One installed law as its entry point describes it; its module is not imported.
 
     Attributes
     ----------
     name, distribution, version, module : str
-        What the entry point says, and whose it is.
+        Name and module of the entry point, and the distribution that it belongs to.
     blocked : bool
-        Whether it is not to be used: ``Registry`` says how.
+        True if ``CONTACTLAB_BLOCK_PLUGINS`` blocks the law: see ``Registry``.
     meant : bool
-        Whether the name without a distribution means this law.
+        True if the name without a distribution means this law.
     """
 
     name: str
@@ -46,7 +46,7 @@ class PluginInfo:
 
     @property
     def qualified(self) -> str:
-        """The name that no other distribution has: ``"my-laws:normal.hertz"``."""
+        """The unique name with the distribution: ``"my-laws:normal.hertz"``."""
         return f"{self.distribution}:{self.name}"
 
     @property
@@ -61,12 +61,12 @@ class PluginInfo:
 
     @property
     def malformed(self) -> bool:
-        """Whether the name is not a kind, a dot and a name; no such law can be made."""
+        """True if the name is not a kind, a dot and a name; such a law cannot be made."""
         return self.kind not in KINDS or not self.name.partition(".")[2]
 
 
 class Loader:
-    """The plug-ins imported so far, under the one manager of their hooks."""
+    """The plug-ins imported so far, with the manager of their hooks."""
 
     @cached_property
     def _manager(self) -> pluggy.PluginManager:
@@ -80,7 +80,7 @@ class Loader:
         Raises
         ------
         PluginError
-            If the plug-in cannot be imported, has no hook, or its law is at odds with the contract.
+            If the plug-in cannot be imported or has no hook, or its law breaks the contract.
         """
         source = f"{info.name!r} of {info.distribution} {info.version}"
         from importlib import metadata
@@ -95,7 +95,7 @@ class Loader:
         return _checked(law, info, source)
 
     def _register(self, module: ModuleType, info: PluginInfo, source: str) -> None:
-        """Enter a module whose hooks fit those of the project."""
+        """Register a module, or raise PluginError if its hooks do not fit the project's."""
         if self._manager.is_registered(module):
             return
         try:
@@ -115,12 +115,9 @@ class Loader:
 
 @contextlib.contextmanager
 def _guarded(source: str, failed: str) -> Iterator[None]:
-    """Keep a plug-in's code from ending the program, writing among data or changing settings.
-
-    Whatever it raises but an interruption becomes a ``PluginError``, one sentence alone where the
-    plug-in is of another version; what it prints goes to stderr, for stdout may be read by a
-    program; numpy's handling of errors is put back.
-    """
+    """Keep a plug-in from ending the program, printing to stdout or changing numpy's settings."""
+    # Every exception but an interruption becomes a PluginError. Output goes to stderr, because a
+    # program may read stdout.
     try:
         with np.errstate(), contextlib.redirect_stdout(sys.stderr):
             yield
@@ -133,7 +130,7 @@ def _guarded(source: str, failed: str) -> Iterator[None]:
 
 
 def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
-    """Return ``law`` if it is the class of a law of the right kind and version."""
+    """Return ``law``, or raise PluginError unless it is a law's class of right kind and version."""
     if not (isinstance(law, type) and issubclass(law, Law)):
         raise PluginError(f"{source} returned {law!r}, which is not the class of a law")
     if law.kind != info.kind:
@@ -150,7 +147,7 @@ def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
 
 
 def outdated(law: type[Law]) -> str | None:
-    """Return what is wrong with the version of the contracts that a law was written for, if any."""
+    """Return a complaint on the version of the contracts that a law was written for, or None."""
     version = getattr(law, "api_version", None)
     if version == API_VERSION:
         return None

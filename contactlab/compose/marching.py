@@ -1,4 +1,4 @@
-"""The march of impacts by an integrator, with failures within a batch traced to their impacts."""
+"""The march of impacts by an integrator; failures in a batch are traced to single impacts."""
 
 from __future__ import annotations
 
@@ -14,15 +14,13 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import halves
 
-#: So many impacts of a batch that failed are tried one by one; more are halved first.
+#: A failed batch of at most so many impacts is run one by one; a larger batch is halved first.
 FEW = 8
 
 
 def march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) -> TangentialMotion:
-    """Return the tangential motion; a failure within a batch costs the impacts that fail only.
-
-    Of a batch that is observed failures are not traced: the observer would be called again.
-    """
+    """Return the tangential motion; in a batch only the impacts that fail have no answer."""
+    # With an observer, failures are not isolated: the observer would be called again.
 
     def part(index: Any) -> TangentialMotion:
         return march(laws, normal.take(index))
@@ -43,10 +41,10 @@ def march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) ->
 def _attempt(
     laws: Laws, normal: NormalMotion, observer: Observer | None
 ) -> tuple[TangentialMotion, bool]:
-    """Return the motion, and whether the integrator raised instead of returning one."""
+    """Return the motion, and True if the integrator raised instead of returning a motion."""
     scene = normal.scene
     try:
-        # Where a user has asked for errors of underflow: small numbers may vanish here.
+        # Underflow is harmless here, even if the user has numpy raise for it.
         with np.errstate(under="ignore"):
             return laws.integrator.integrate(normal, laws.tangential, scene, observer), False
     except KeyboardInterrupt:

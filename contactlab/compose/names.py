@@ -1,4 +1,4 @@
-"""Names of laws: ``kind.name``, with ``distribution:`` before it to tell two of one name apart."""
+"""Names of laws: ``kind.name``, or ``distribution:kind.name`` if two distributions offer it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ KINDS = ("normal", "tangential", "integrator")
 
 
 def parted(name: str) -> tuple[str, str]:
-    """Return distribution and plain name: ``("my-laws", "normal.hertz")``; "" for none."""
+    """Return distribution and plain name: ``("my-laws", "normal.hertz")``; "" if there is none."""
     distribution, _, plain = name.rpartition(":")
     return distribution, plain
 
@@ -19,29 +19,20 @@ def kind_of(name: str) -> str:
 
 
 def full_name(kind: str, name: str) -> str:
-    """Return a name with its kind: ``"my-laws:normal.hertz"`` of ``"my-laws:hertz"``.
-
-    Parameters
-    ----------
-    kind : str
-        One of ``KINDS``.
-    name : str
-        With or without kind and distribution.
-    """
+    """Return a name with its kind: ``"my-laws:normal.hertz"`` for ``"my-laws:hertz"``."""
     distribution, plain = parted(name)
     plain = plain if plain.startswith(f"{kind}.") else f"{kind}.{plain}"
     return f"{distribution}:{plain}" if distribution else plain
 
 
 def short_name(name: str) -> str:
-    """Return a name without its kind: ``"my-laws:hertz"`` of ``"my-laws:normal.hertz"``."""
+    """Return a name without its kind: ``"my-laws:hertz"`` for ``"my-laws:normal.hertz"``."""
     distribution, plain = parted(name)
     kind, _, short = plain.partition(".")
     plain = short if kind in KINDS and short else plain
     return f"{distribution}:{plain}" if distribution else plain
 
 
-def same_distribution(one: str, other: str) -> bool:
-    """Return whether two names are of one distribution: ``My_Laws`` is ``my-laws``."""
-    first, second = (re.sub(r"[-_.]+", "-", name).lower() for name in (one, other))
-    return first == second
+def same_distribution(first: str, second: str) -> bool:
+    """Return True if two names mean the same distribution, as ``My_Laws`` and ``my-laws`` do."""
+    return len({re.sub(r"[-_.]+", "-", name).lower() for name in (first, second)}) == 1

@@ -1,4 +1,4 @@
-"""The normal motion of any normal law, made once: in closed form, or solved to ``TOLERANCE``."""
+"""The normal motion of any normal law: in closed form, or solved to ``TOLERANCE``."""
 
 from __future__ import annotations
 
@@ -22,45 +22,36 @@ from contactlab.numeric.runge_kutta import attempt
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-#: Error of approach, rate and load impulse in a step, over their scales: far below what
-#: integrators of the tangential motion aim at by default, so that the normal motion is not what
-#: limits them.
+#: Error of approach, rate and load impulse in a step, over their scales: far below the default
+#: tolerances of the integrators, so that the normal motion does not limit their accuracy.
 TOLERANCE = 1e-11
-#: First step over the duration of a Hertz impact; the next ones follow the error.
+#: First step over the duration of a Hertz impact; the error sets the next ones.
 FIRST_STEP = 1e-4
-#: Steps after which a contact is given up, those tried in vain among them.
+#: Steps after which a contact is abandoned, rejected steps included.
 MOST_STEPS = 20_000
-#: A contact in which the rate has changed its sign so often without separation is given up:
-#: adhesion holds the bodies.
+#: Sign changes of the rate without separation after which a contact is abandoned: adhesion holds
+#: the bodies together.
 MOST_TURNS = 20
-#: A contact is given up too if it is deeper than this over R, or if the bodies rest: the rate over
-#: v1, and what the force would change of it in the time since first touch.
+#: Also abandoned: a contact deeper than this times R, or stationary. It is stationary if the rate,
+#: and its change by the present force over the time since first touch, are below this times v1.
 DEEPEST, AT_REST = 1e6, 1e-9
-#: Over the time since first touch: an event this close to an end of a step is at that end.
+#: An event this close to an end of a step, over the time since first touch, is at that end.
 NEAR = 1e-11
 #: Halvings of the part of a step that holds an event.
 HALVINGS = 60
-#: Error over the tolerance up to which a step that failed tells where an event is.
+#: Error over the tolerance up to which a rejected step is used to locate an event.
 TRUSTED = 1e8
-#: The next step ends before such an event: by this many times the error over the width of the step
-#: that failed, as a part of the way, and by no more than that part.
+#: The step after a rejected one ends before the event, by a fraction of the way: this many times
+#: the error over the width of the rejected step, but at most the second number.
 DOUBT, MOST_DOUBT = 10.0, 0.1
-#: A step is this much shorter than its error allows, and changes by no more than these factors.
+#: Factor on the step that the error allows, and limits of the change from one step to the next.
 SAFETY, SHRINKAGE, GROWTH = 0.9, 0.2, 10.0
-#: Over the time since first touch: a step so short is lost in rounding.
+#: Shortest step over the time since first touch: rounding error dominates below.
 SHORTEST = 1e-15
 
 
 def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
-    """Return the motion of ``scene`` under ``law`` from first touch to separation.
-
-    Impacts of a batch that do not separate have the status ``NOT_SEPARATED``.
-
-    Raises
-    ------
-    LawFaultError
-        If the law raises, or answers with other than finite real numbers.
-    """
+    """Return the motion from first touch to separation, or raise LawFaultError for a bad law."""
     if isinstance(law, ClosedFormNormalLaw):
         with faults.blaming(law):
             motion = law.motion(scene)
@@ -69,9 +60,9 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
             return motion
     quantities = (*attrs.astuple(scene.pair), scene.normal_speed)
     if scene.shape and all(isinstance(quantity, float) for quantity in quantities):
-        one = attrs.evolve(scene, friction_coefficient=0.0, tangential_velocity=0.0, spin=0.0)
-        if not one.shape:  # the impacts of the batch differ in their tangential motion only
-            watched = _Watched.of(one)
+        single = attrs.evolve(scene, friction_coefficient=0.0, tangential_velocity=0.0, spin=0.0)
+        if not single.shape:  # the impacts of the batch differ in their tangential motion only
+            watched = _Watched.of(single)
             common = normal_motion(law, watched)
             assert isinstance(common, SolvedMotion)
             if not watched.was_read:
@@ -81,51 +72,51 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
 
 
 class _Watched(Scene):
-    """A single impact that keeps whether its index was read: then its motion is nobody else's."""
+    """A single impact that records whether a law read its index: then no other impact shares it."""
 
     __slots__ = ("was_read",)
     was_read: bool
 
     @classmethod
     def of(cls, scene: Scene) -> _Watched:
-        """Return the scene, watched."""
-        found = object.__new__(cls)
+        """Return a watched copy of a scene."""
+        watched = object.__new__(cls)
         for field in attrs.fields(Scene):
             if field.name != "index":
-                object.__setattr__(found, field.name, getattr(scene, field.name))
-        object.__setattr__(found, "was_read", False)
-        return found
+                object.__setattr__(watched, field.name, getattr(scene, field.name))
+        object.__setattr__(watched, "was_read", False)
+        return watched
 
     @property
     def index(self) -> int:
-        """Return 0, and keep that it was asked for."""
+        """Return 0, and record that the index was read."""
         object.__setattr__(self, "was_read", True)
         return 0
 
 
 class _Solver:
-    """The solution of the normal motions of a batch; each impact takes steps of its own.
+    """The solver of the normal motions of a batch; each impact has its own steps.
 
-    A step ends where the rate changes its sign, where the friction load vanishes or appears, and
-    where contact ends: a law often has a kink there, and no polynomial of the table runs over it.
+    Steps end at events: the rate changes sign, the friction load vanishes or appears, or contact
+    ends. A law often has a kink at an event, and no polynomial of the table spans a kink.
 
     Attributes
     ----------
     law : ScaledNormalLaw
     place : array, shape (3, items)
-        Scaled approach, rate and load impulse where each impact is.
+        Present scaled approach, rate and load impulse.
     time : array, shape (items,)
-        Since first touch, scaled.
+        Scaled time since first touch.
     width : array, shape (items,)
-        Of the next step, as its error allows.
+        Width of the next step that the error allows.
     event : array, shape (items,)
-        How far the next event is; infinite if none is known.
+        Scaled time until the next event; infinite if no event is located.
     begun : array of bool, shape (items,)
-        Impacts that have been in contact: only those can end it.
+        True for impacts that have had contact: before, contact cannot end.
     turns : array, shape (items,)
-        Changes of sign of the rate so far.
+        Sign changes of the rate so far.
     tried : int
-        Steps so far, those tried in vain among them.
+        Steps so far, rejected steps included.
     """
 
     def __init__(self, law: NormalLaw, scene: Scene) -> None:
@@ -140,17 +131,17 @@ class _Solver:
         self.detail = np.full(items, "", dtype=object)
 
     def solve(self) -> SolvedMotion:
-        """Return the motion."""
+        """Return the solved motion of all impacts."""
         law, steps = self.law, [self._step()]
         while law.active.any():
             step = self._step()
             if step[0].any():
                 steps.append(step)
         widths, values = (np.stack(column, axis=1) for column in zip(*steps, strict=True))
-        # The steps that an item took come first, those that it tried in vain are dropped.
-        vain = widths == 0.0
-        most = max(int((~vain).sum(axis=1).max()), 1)
-        order = np.argsort(vain, axis=1, kind="stable")[:, :most]
+        # Accepted steps of each item come first; rejected steps are dropped.
+        rejected = widths == 0.0
+        most = max(int((~rejected).sum(axis=1).max()), 1)
+        order = np.argsort(rejected, axis=1, kind="stable")[:, :most]
         widths = np.take_along_axis(widths, order, axis=1)
         table = MotionTable.made(
             shape=law.shape,
@@ -163,15 +154,7 @@ class _Solver:
         return SolvedMotion(law.law, law.scene, table)
 
     def _step(self) -> tuple[Array, Array]:
-        """Try a step of every item in contact.
-
-        Returns
-        -------
-        widths : array, shape (items,)
-            Of the steps taken; 0 where one missed the tolerance, or ran over an event.
-        columns : array, shape (items, NODES, 6)
-            Of the table.
-        """
+        """Try a step; return widths, 0 if rejected, and the table's columns (items, NODES, 6)."""
         law, points = self.law, lobatto(NODES).points
         self.tried += 1
         law.time = float((self.time * law.unit).max())
@@ -183,8 +166,9 @@ class _Solver:
         doubt = _doubt(tried.error, width)
         until, ended = self._until(course, contacts, width, doubt)
         close = NEAR * (self.time + width)
+        # A step is rejected if it misses the tolerance or spans an event.
         taken = good & (width * (1.0 - until) <= close)
-        ended &= taken | (width * until <= close)  # contact ends in this step, or as it begins
+        ended &= taken | (width * until <= close)  # contact ends in this step, or at its beginning
         taken |= ended
         sure = np.where(until < 1.0, until * (1.0 - doubt), 1.0)
         self._plan(tried.error, width, sure, taken)
@@ -204,79 +188,63 @@ class _Solver:
         if taken.any():
             law.steps += 1
             law.remember(self.place)
-        self._give_up(rate, contacts[-1, 0], taken)
+        self._abandon(rate, contacts[-1, 0], taken)
         return widths, np.where(taken[:, None, None], columns, columns[:, :1])
 
     def _contacts(self, course: Array) -> Array:
         """Return force, radius, overlap and load along a step, shape (NODES, 4, items)."""
-        return np.array([self.law.contact(here) for here in course])
+        return np.array([self.law.contact(place) for place in course])
 
     def _until(
         self, course: Array, contacts: Array, width: Array, doubt: Array
     ) -> tuple[Array, Mask]:
-        """Return the part of a step before its first event, and whether that is the end of contact.
-
-        Parameters
-        ----------
-        course : array, shape (NODES, 3, items)
-        contacts : array, shape (NODES, 4, items)
-        width : array, shape (items,)
-        doubt : array, shape (items,)
-            Of the way to the event, as a part of it; 1 where the step tells of no event.
-        """
+        """Return the fraction of a step before its first event, and True if contact ends there."""
         law, points = self.law, lobatto(NODES).points
         trusted = law.active & (doubt < 1.0)
         close = NEAR * (self.time + width)
-        # What was an event of the step before is none of this one: it is judged from here on.
+        # The search begins just after the step does, so that the last step's event is not repeated.
         start = np.minimum(close / np.where(width > 0.0, width, close), 1.0)
-        here = _between(course, start)
-        _, _, overlap, load = law.contact(here)
+        place = _between(course, start)
+        _, _, overlap, load = law.contact(place)
         self._refuse_nan(overlap, trusted)
         left = trusted & self.begun & ~(overlap > 0.0)
-        begun, rate, loaded = self.begun | (overlap > 0.0), here[1], load > 0.0
+        begun, rate, loaded = self.begun | (overlap > 0.0), place[1], load > 0.0
 
         def quiet(rates: Array, overlaps: Array, loads: Array) -> Mask:
-            same = ~(rates * rate < 0.0) & ((loads > 0.0) == loaded)
-            return np.asarray(same & ((overlaps > 0.0) | ~begun))
+            unchanged = ~(rates * rate < 0.0) & ((loads > 0.0) == loaded)
+            return np.asarray(unchanged & ((overlaps > 0.0) | ~begun))
 
         calm = quiet(course[:, 1], contacts[:, 2], contacts[:, 3])
         calm |= (points[:, None] <= start) | ~trusted
         first = (~calm).argmax(axis=0)
-        found = ~calm.all(axis=0) & ~left
-        high = np.where(found, points[first], 1.0)
-        low = np.where(found, np.maximum(points[np.maximum(first - 1, 0)], start), 1.0)
+        eventful = ~calm.all(axis=0) & ~left
+        high = np.where(eventful, points[first], 1.0)
+        low = np.where(eventful, np.maximum(points[np.maximum(first - 1, 0)], start), 1.0)
         out = begun & ~(contacts[first, 2, np.arange(self.items)] > 0.0)
         for _ in range(HALVINGS):
-            # Each item is halved as often as it would be alone.
+            # The number of halvings of an item does not depend on the other items.
             wide = (high - low) * width > 0.1 * np.maximum(close, doubt * low * width)
             if not wide.any():
                 break
             middle = np.where(wide, 0.5 * (low + high), low)
-            here = _between(course, middle)
-            _, _, overlap, load = law.contact(here)
+            place = _between(course, middle)
+            _, _, overlap, load = law.contact(place)
             self._refuse_nan(overlap, wide)
-            before = quiet(here[1], overlap, load)
+            before = quiet(place[1], overlap, load)
             low = np.where(before & wide, middle, low)
             high = np.where(~before & wide, middle, high)
             out = np.where(~before & wide, begun & ~(overlap > 0.0), out)
-        return np.where(left, 0.0, low), left | (found & out)
+        return np.where(left, 0.0, low), left | (eventful & out)
 
     def _plan(self, error: Array, width: Array, until: Array, taken: Mask) -> None:
-        """Set the width of the next step of each item, and how far its next event is.
-
-        Parameters
-        ----------
-        error : array, shape (items,)
-            Of the step tried, over the tolerance; NaN of a force that is not finite.
-        width, until : array, shape (items,)
-            Of the step tried, and the part of it that is surely before an event; 1 without one.
-        taken : array of bool, shape (items,)
-        """
+        """Set ``width`` and ``event`` of the next step from the error and width of this one."""
+        # ``error`` is over the tolerance, NaN if a force is not finite; ``until`` is the fraction
+        # of the step that is surely before an event.
         active, missed, before = self.law.active, ~(error <= 1.0), until < 1.0
-        # The eighth root by square roots: a power may depend on what stands beside it in an array.
+        # The eighth root by square roots: the last bit of a power depends on the array around it.
         root = np.sqrt(np.sqrt(np.sqrt(np.where(np.isnan(error), math.inf, error))))
         factor = SAFETY / np.maximum(root, SAFETY / GROWTH)
-        # A step cut short by an event, or one that failed over it, tells nothing of others.
+        # A step that an event shortened, or that was rejected over an event, sets no width.
         changes = active & np.where(missed, ~before, width == self.width)
         self.width = np.where(changes, width * np.clip(factor, SHRINKAGE, GROWTH), self.width)
         self.event = np.where(before & ~taken, until * width, math.inf)
@@ -286,48 +254,39 @@ class _Solver:
             raise self.law.fault(Status.NON_FINITE, "a force that is not finite")
 
     def _columns(self, course: Array, contacts: Array) -> Array:
-        """Return the columns of the table in one step; enter the impulses in ``course``."""
+        """Return the table's columns for one step, and write load impulses into ``course``."""
         law = self.law
         force, radius, _, load = np.moveaxis(contacts, 1, 0)
-        same = (load == force).all(axis=0)  # no tension: the impulse is the change of momentum
-        impulse = np.where(same, course[0, 2] + (course[0, 1] - course[:, 1]), course[:, 2])
+        # Without tension the load impulse is the change of momentum.
+        pressed = (load == force).all(axis=0)
+        impulse = np.where(pressed, course[0, 2] + (course[0, 1] - course[:, 1]), course[:, 2])
         course[:, 2] = np.maximum.accumulate(impulse, axis=0)
         approach, rate = law.in_si(course)
         impulse = course[:, 2] * law.momentum
         return np.stack([approach, rate, force, radius**2, load, impulse], axis=-1).swapaxes(0, 1)
 
     def _refuse_nan(self, overlap: Array, where: Mask) -> None:
-        """Refuse overlaps that are NaN, which would compare as out of contact."""
+        """Refuse overlaps that are NaN: a comparison would take them for the end of contact."""
         if np.isnan(overlap[..., where]).any():
             raise self.law.fault(Status.NON_FINITE, "the overlap nan")
 
-    def _give_up(self, rate_before: Array, force: Array, taken: Mask) -> None:
-        """Give up contacts that do not come to an end.
-
-        Parameters
-        ----------
-        rate_before : array, shape (items,)
-            Before the last step.
-        force : array, shape (items,)
-            After it, in N.
-        taken : array of bool, shape (items,)
-            Items that took it.
-        """
+    def _abandon(self, rate_before: Array, force: Array, taken: Mask) -> None:
+        """Abandon contacts that do not end, from rates before the last step and forces after it."""
         law, rate = self.law, self.place[1]
         self.turns += rate * rate_before < 0.0
-        gained = force * law.response * self.time
-        rests = (np.abs(rate) < AT_REST) & (np.abs(gained) < AT_REST)
+        rate_change = force * law.response * self.time
+        stationary = (np.abs(rate) < AT_REST) & (np.abs(rate_change) < AT_REST)
         deep = law.in_si(self.place)[0] > DEEPEST * law.radius
-        lost = taken & ((self.turns > MOST_TURNS) | rests | deep)
+        abandoned = taken & ((self.turns > MOST_TURNS) | stationary | deep)
         if self.tried >= MOST_STEPS:
-            lost = law.active
-        lost = lost & law.active
-        for item in np.flatnonzero(lost).tolist():
+            abandoned = law.active
+        abandoned = abandoned & law.active
+        for item in np.flatnonzero(abandoned).tolist():
             self.status[item] = Status.NOT_SEPARATED
             self.detail[item] = faults.sentence(
-                law.law, "the bodies do not part", law.steps, self.time[item] * law.unit[item]
+                law.law, "the bodies do not separate", law.steps, self.time[item] * law.unit[item]
             )
-        law.active &= ~lost
+        law.active &= ~abandoned
 
 
 def _between(course: Array, fraction: Array) -> Array:
@@ -336,6 +295,6 @@ def _between(course: Array, fraction: Array) -> Array:
 
 
 def _doubt(error: Array, width: Array) -> Array:
-    """Return how far off an event may be, over the way to it; 1 where nothing can be told."""
+    """Return the uncertainty of an event's place over the way to it; 1 if it cannot be located."""
     blur = DOUBT * TOLERANCE * error / np.where(width > 0.0, width, 1.0)
     return np.where(error <= 1.0, 0.0, np.where(error < TRUSTED, np.minimum(blur, MOST_DOUBT), 1.0))

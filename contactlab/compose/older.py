@@ -1,10 +1,10 @@
-"""What is said of a plug-in that was written for another version of contactlab."""
+"""The sentence on a plug-in that was written for another version of contactlab."""
 
 from __future__ import annotations
 
 import re
 
-#: Errors of an import or of a name that another version had, and what they name.
+#: Messages of errors about modules and names that this version does not have.
 MISSING = (
     re.compile(r"cannot import name '(?P<name>\w+)' from '(?P<module>contactlab[\w.]*)'"),
     re.compile(r"No module named '(?P<module>contactlab\.[\w.]*)'"),
@@ -14,18 +14,12 @@ REMEDY = "`contactlab guide version-2` says what has changed and what to write"
 
 
 def other_version(error: BaseException) -> str | None:
-    """Return the sentence for an error of an import from contactlab; None for any other error.
-
-    Parameters
-    ----------
-    error : BaseException
-        What the plug-in raised as it was imported or asked for its law.
-    """
+    """Return the sentence for an error of an import from contactlab; None for any other error."""
     if not isinstance(error, ImportError | AttributeError):
         return None
     for pattern in MISSING:
-        if (found := pattern.search(str(error))) is not None:
-            parts = found.groupdict()
+        if (match := pattern.search(str(error))) is not None:
+            parts = match.groupdict()
             wanted = f"{parts['name']} of {parts['module']}" if "name" in parts else parts["module"]
             return (
                 f"was written for another version of contactlab: it uses {wanted}, which is not "

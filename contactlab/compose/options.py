@@ -1,4 +1,4 @@
-"""Options of a law: what each means, its default, unit and range, from the class alone."""
+"""Options of a law: meaning, default, unit and range of each, read from its class."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from typing import Any
 
 import attrs
 
-#: One name or several of the section, with what stands below.
+#: One or several names in the section Parameters, with the indented lines below.
 ENTRY = re.compile(r"^(\w+(?:, \w+)*)(?: : [^\n]*)?\n((?:(?: +[^\n]*)?\n)*)", re.MULTILINE)
 
 
 @attrs.frozen(kw_only=True)
 class Option:
-    """One option of a law, in words.
+    """One option of a law.
 
     Parameters
     ----------
     name : str
     default : object
-        ``inspect.Parameter.empty`` if it must be given.
+        ``inspect.Parameter.empty`` if there is no default.
     unit : str
-        In SI; ``"1"`` for a number without one, empty if unknown or no number.
+        SI unit; ``"1"`` for a number without a unit, empty if unknown or not a number.
     rule : str
-        What a value must satisfy, as a refusal says it; empty if unknown.
+        Condition on values, in the words of a refusal; empty if unknown.
     meaning : str
-        What the docstring of the class says; empty if it says nothing.
+        Text of the class's docstring; empty if there is none.
     """
 
     name: str
@@ -36,12 +36,12 @@ class Option:
     meaning: str
 
     def __str__(self) -> str:
-        """Return the name, with the default if there is one."""
+        """Return the name with the default, or with a note that there is none."""
         needed = self.default is inspect.Parameter.empty
         return f"{self.name}, to be given" if needed else f"{self.name} = {self.default!r}"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what JSON takes; a default that is no plain value stands as its text."""
+        """Return plain values for JSON; any other default becomes its ``repr``."""
         needed = self.default is inspect.Parameter.empty
         default = None if needed else self.default
         if not isinstance(default, bool | int | float | str | None):
@@ -50,30 +50,28 @@ class Option:
 
 
 def options(law: type) -> list[Option]:
-    """Return the options of a class of laws, in the order of its signature.
-
-    Unit and range are known of fields made by ``contactlab.numeric.checks``.
-    """
+    """Return the options of a class of laws, in the order of its signature."""
+    # Fields made by ``contactlab.numeric.checks`` carry unit and range.
     fields: Any = attrs.fields_dict(law) if attrs.has(law) else {}
-    meant = meanings(law)
-    found = []
+    by_name = meanings(law)
+    listed = []
     for name, parameter in inspect.signature(law).parameters.items():
-        known = fields[name].metadata if name in fields else {}
-        rule = str(known.get("range", ""))
-        found.append(
+        metadata = fields[name].metadata if name in fields else {}
+        rule = str(metadata.get("range", ""))
+        listed.append(
             Option(
                 name=name,
                 default=parameter.default,
-                unit=str(known.get("unit", "")),
+                unit=str(metadata.get("unit", "")),
                 rule=rule + ", if given" if rule and parameter.default is None else rule,
-                meaning=meant.get(name, ""),
+                meaning=by_name.get(name, ""),
             )
         )
-    return found
+    return listed
 
 
 def meanings(law: type) -> dict[str, str]:
-    """Return what the section Parameters of a class says of each name, as one line."""
+    """Return the text of the section Parameters of a class by name, each as one line."""
     return {
         name: " ".join(text.split())
         for names, text in ENTRY.findall(section(law, "Parameters"))
@@ -82,7 +80,7 @@ def meanings(law: type) -> dict[str, str]:
 
 
 def section(law: type, title: str) -> str:
-    """Return what a section of a class's NumPy docstring says; nothing if there is none."""
+    """Return the text of a section of a class's NumPy docstring; empty if there is none."""
     text = (inspect.getdoc(law) or "") + "\n"
-    found = re.search(rf"^{title}\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", text, re.MULTILINE | re.DOTALL)
-    return found[1] if found else ""
+    match = re.search(rf"^{title}\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", text, re.MULTILINE | re.DOTALL)
+    return match[1] if match else ""

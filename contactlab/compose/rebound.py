@@ -1,4 +1,4 @@
-"""psi2 for arrays of (psi1, chi): the shortcut for people's own code."""
+"""psi2 for arrays of (psi1, chi), without scenes, plans and energy books."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-#: Entry points of functions (psi1, chi, derivatives=False) that know psi2 without solving anything;
-#: the one called "elastic" is used here. It may be blocked, like a law, as "rebound.elastic".
+#: Group of entry points of functions (psi1, chi, derivatives=False) that return psi2 from a table,
+#: and the name that is used here. The entry point may be blocked, like a law: "rebound.elastic".
 GROUP, TABLE = "contactlab.rebound", "elastic"
-#: The one for a restitution below 1, (psi1, chi, restitution), and the largest chi that it takes.
+#: Name of the function (psi1, chi, restitution) for a restitution below 1, and its largest chi.
 DAMPED, DAMPED_LARGEST_CHI = "damped", 10.0
-#: Where it is a table, and the largest errors of psi2 there and elsewhere beside Coulomb's law at
-#: every point, as measured: ``tests/exact/test_damped_table.py``.
+#: Range of chi and least restitution of its table, and the largest errors of psi2 in the table and
+#: outside, against Coulomb's law at every point: ``tests/exact/test_damped_table.py``.
 DAMPED_CHI, DAMPED_RESTITUTION = (0.8, 1.8), 0.5
 DAMPED_ERROR, BEYOND_ERROR = 1e-3, 4e-3
-#: Annuli beyond the largest chi, four steps to each.
+#: Number of annuli beyond the largest chi; the steps are four times as many.
 ANNULI = 100
-#: Up to this chi, and for tolerances above this, the table answers: it holds psi2 to 1e-9.
+#: The table answers up to this chi and for tolerances above this: it holds psi2 to 1e-9.
 TABULATED_CHI, TABULATED = 2.5, 1e-9
-#: Whatever is asked for: an answer is then the same, to 1e-10, in an array and alone.
+#: Tolerance of every solution: an answer in an array then equals a single one to 1e-10.
 EXACT = 1e-9
 TOLERANCE = Rule(
     lambda value: (value >= 1e-9) & (value < 1.0), "must lie between 1e-9 and 1, of max(1, |psi1|)"
@@ -45,7 +45,7 @@ CHI = Rule(
     lambda value: POSITIVE.holds(value) & (value <= LARGEST_CHI),
     "must be positive and at most 1e4, the range over which answers were checked",
 )
-#: Every impact with chi in range slips throughout from here on: psi1 falls by 4 chi.
+#: From this psi1 on every impact with chi in range slips throughout, and psi falls by 4 chi.
 LARGEST = 1e5
 
 
@@ -70,13 +70,12 @@ def rebound(
     derivatives: bool = False,
     restitution: float = 1.0,
 ) -> Real | tuple[Real, Real, Real]:
-    """Return the tangential rebound psi2 of elastic spheres, for any number of impacts at once.
+    """Return the dimensionless rebound psi2 of spheres, a float or an array of the inputs' shape.
 
-    The paper's model in its continuum limit (elastic Hertz contact, Coulomb friction), without
-    scenes, plans or books. Up to chi = 2.5, which holds all spheres but those with a dense core,
-    psi2 is tabulated to 1e-9: about a tenth of a microsecond an impact in a large array. Beyond,
-    impacts are solved, about a tenth of a millisecond each. ``contactlab.Simulation`` gives
-    everything else.
+    The model is the paper's in its continuum limit: elastic Hertz contact, Coulomb friction. Up to
+    chi = 2.5, which covers all spheres except those with a dense core, psi2 is tabulated to 1e-9,
+    at about 0.1 us per impact in a large array. Above, impacts are solved, at about 0.1 ms each.
+    ``contactlab.Simulation`` gives everything else.
 
     Parameters
     ----------
@@ -85,35 +84,36 @@ def rebound(
     chi : float or array_like
         Eq. (38), broadcast against ``psi1``; positive, at most 1e4.
     tolerance : float
-        Error aimed at, of max(1, abs(psi1)), from 1e-9. Answers are that good whatever is asked.
+        Largest error over max(1, abs(psi1)), from 1e-9. Answers with
+        restitution 1 are within 1e-9 at any tolerance.
     derivatives : bool
-        Whether d psi2/d psi1 and d psi2/d chi are wanted too, for chi up to 2.5; they are
-        tabulated to 1e-6, whatever the tolerance (5e-5 for psi1 just above 1, chi 1.83 to 1.92).
-
+        Return d psi2/d psi1 and d psi2/d chi too, for chi up to 2.5. Both are tabulated to 1e-6 at
+        any tolerance (5e-5 for psi1 just above 1, chi 1.83 to 1.92).
     restitution : float
-        e of the normal motion, one number; below 1 by Tsuji's law (``normal.tsuji``) with Coulomb's
-        law at every point, whatever the tolerance: for chi from 0.8 to 1.8 and e from 0.5 by a
-        table, to 1e-3 in psi2; elsewhere up to chi = 10 by rings, to 4e-3, some ten
-        milliseconds an impact; beyond by annuli, whose error is not declared. The choice of law is
-        a model error: at the same e other laws differ in psi2, for chi up to 1.8 at e = 0.9 the
-        viscoelastic one by up to 0.021, Hunt and Crossley's by 0.11, a linear spring by 0.62.
+        e of the normal motion, one number. Below 1 the law is Tsuji's (``normal.tsuji``) with
+        Coulomb's law at every point, and ``tolerance`` has no effect. For chi from 0.8 to 1.8 and e
+        from 0.5 a table holds psi2 to 1e-3; elsewhere up to chi = 10 rings give psi2 to 4e-3, in
+        about ten milliseconds per impact; beyond, annuli answer, with an error that is not
+        declared. The choice of law is a model error: at the same e other laws differ in psi2, for
+        chi up to 1.8 at e = 0.9 the viscoelastic law by up to 0.021, Hunt and Crossley's by 0.11, a
+        linear spring by 0.62.
 
     Returns
     -------
     psi2 : float or ndarray
-        Tangential velocity of the contact after the impact, in the sense of ``psi1``: negative
-        is reversed for positive psi1. Odd in psi1 to the last bit. A float if both are scalars.
-        With ``derivatives`` a tuple (psi2, d psi2/d psi1, d psi2/d chi). What else is in an array
-        changes an answer by less than 1e-10.
+        Tangential velocity of the contact after the impact, scaled and signed as ``psi1``: if
+        psi1 and psi2 differ in sign, the slip velocity is reversed. Odd in psi1 to the last bit. A
+        float if psi1 and chi are scalars. With ``derivatives`` a tuple (psi2, d psi2/d psi1,
+        d psi2/d chi). Other impacts in an array change an answer by less than 1e-10.
 
     Raises
     ------
     ValueError
         For bad input, with the argument, its value, the rule and the remedy.
     ValueError, PluginError
-        If the law ``tangential.fronts`` is needed, and blocked or cannot be imported.
+        If the law ``tangential.fronts`` is needed, but is blocked or cannot be imported.
     ImpactError
-        If an impact could not be solved at all; none is known.
+        If an impact cannot be solved; no such impact has been found.
 
     Examples
     --------
@@ -140,7 +140,9 @@ def rebound(
     if e != 1.0:
         if derivatives:
             remedy = "take differences of psi2, or leave one of the two out"
-            raise refuse("derivatives", derivatives, "are known for restitution = 1", remedy)
+            raise refuse(
+                "derivatives", derivatives, "are available for restitution = 1 only", remedy
+            )
         psi2 = _damped(velocity.ravel(), ratio.ravel(), float(e)).reshape(velocity.shape)
     else:
         psi2 = _solve(velocity.ravel(), ratio.ravel(), aim).reshape(velocity.shape)
@@ -150,13 +152,13 @@ def rebound(
     table = _table()
     if table is None:
         remedy = f"install a plug-in that offers {GROUP}: {TABLE}, and do not block it"
-        raise refuse("derivatives", derivatives, "only a table knows them", remedy)
+        raise refuse("derivatives", derivatives, "are available from a table only", remedy)
     _, by_psi1, by_chi = table(incidence, inertia, derivatives=True)
     return answer, by_psi1, by_chi
 
 
 def _alone(psi1: float, chi: float) -> float | None:
-    """Return psi2 of one impact from the table, without arrays; None if that is not for it."""
+    """Return psi2 of one impact from the table, without arrays; None outside the table."""
     if not (math.isfinite(psi1) and 0.0 < chi <= TABULATED_CHI):
         return None
     table = _table()
@@ -164,27 +166,27 @@ def _alone(psi1: float, chi: float) -> float | None:
 
 
 def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
-    """Return psi2, shape (impacts,), from the table as far as it goes."""
+    """Return psi2, shape (impacts,), from the table where chi is in range, else solved."""
     table = _table() if tolerance > TABULATED else None
     if table is None:
         return _exact(psi1, chi)
-    known = chi <= TABULATED_CHI
-    if known.all():
+    tabulated = chi <= TABULATED_CHI
+    if tabulated.all():
         return np.asarray(table(psi1, chi))
     psi2 = np.empty_like(psi1)
-    if known.any():
-        psi2[known] = table(psi1[known], chi[known])
-    psi2[~known] = _exact(psi1[~known], chi[~known])
+    if tabulated.any():
+        psi2[tabulated] = table(psi1[tabulated], chi[tabulated])
+    psi2[~tabulated] = _exact(psi1[~tabulated], chi[~tabulated])
     return psi2
 
 
 def _damped(psi1: Array, chi: Array, restitution: float) -> Array:
-    """Return psi2, shape (impacts,), under Tsuji's law, by annuli where no function knows it."""
+    """Return psi2, shape (impacts,), under Tsuji's law; by annuli beyond the largest chi."""
     psi2, left = np.empty_like(psi1), np.ones(psi1.shape, dtype=bool)
     table = _table(DAMPED)
     if table is not None:
-        known = chi <= DAMPED_LARGEST_CHI
-        psi2[known], left = table(psi1[known], chi[known], restitution), ~known
+        in_range = chi <= DAMPED_LARGEST_CHI
+        psi2[in_range], left = table(psi1[in_range], chi[in_range], restitution), ~in_range
     if left.any():
         change = _change(damped(restitution), psi1[left], chi[left])
         psi2[left] = np.copysign(1.0, psi1[left]) * (np.abs(psi1[left]) + change)
@@ -192,35 +194,27 @@ def _damped(psi1: Array, chi: Array, restitution: float) -> Array:
 
 
 def damped(restitution: float) -> Simulation:
-    """Return the laws of a restitution below 1: ``composition.RESTITUTION``, in fixed steps."""
-    from contactlab.compose import composition  # no law before it is needed
+    """Return the laws for a restitution below 1: ``composition.RESTITUTION``, in fixed steps."""
+    from contactlab.compose import composition  # a table needs none of this
     from contactlab.compose.simulation import Simulation
 
-    fine = composition.law("tangential", composition.RESTITUTION["tangential"])
+    tangential = composition.law("tangential", composition.RESTITUTION["tangential"])
     return Simulation(
         normal=composition.law(
             "normal", composition.RESTITUTION["normal"], restitution=restitution
         ),
-        tangential=attrs.evolve(fine, **{str(fine.resolution): ANNULI}),
+        tangential=attrs.evolve(tangential, **{str(tangential.resolution): ANNULI}),
         integrator=composition.fixed_steps(4 * ANNULI),
     )
 
 
 def damped_error(chi: Real, restitution: float) -> Any:
-    """Return the bound of the error of psi2 below a restitution of 1, of the shape of ``chi``.
-
-    Beside Coulomb's law at every point; NaN where none was measured.
-
-    Parameters
-    ----------
-    chi : float or array
-    restitution : float
-    """
+    """Return the bound of the error of psi2 below a restitution of 1; NaN if not measured."""
     if _table(DAMPED) is None:
         return np.full(np.shape(chi), np.nan)
     inside = (chi >= DAMPED_CHI[0]) & (chi <= DAMPED_CHI[1]) & (restitution >= DAMPED_RESTITUTION)
-    known = np.asarray(chi) <= DAMPED_LARGEST_CHI
-    return np.where(inside, DAMPED_ERROR, np.where(known, BEYOND_ERROR, np.nan))
+    measured = np.asarray(chi) <= DAMPED_LARGEST_CHI
+    return np.where(inside, DAMPED_ERROR, np.where(measured, BEYOND_ERROR, np.nan))
 
 
 def _table(name: str = TABLE) -> Callable[..., Any] | None:
@@ -230,39 +224,32 @@ def _table(name: str = TABLE) -> Callable[..., Any] | None:
 
 @cache
 def _installed(name: str, blocking: str) -> Callable[..., Any] | None:
-    """Return the function of an entry point, of contactlab where several distributions offer one.
+    """Return the function of an entry point; contactlab's own if several distributions have one."""
+    from importlib import metadata  # takes 20 ms to import
 
-    Parameters
-    ----------
-    name : str
-    blocking : str
-        What is blocked.
-    """
-    from importlib import metadata  # 20 ms that only those who look for plug-ins pay
-
-    entries, found = set(blocking.replace(",", " ").split()), {}
+    entries, points = set(blocking.replace(",", " ").split()), {}
     for point in metadata.entry_points(group=GROUP, name=name):
         distribution = point.dist.name if point.dist is not None else "unknown"
         if not blocks(entries, f"rebound.{name}", distribution):
-            found[distribution] = point
-    if not found:
+            points[distribution] = point
+    if not points:
         return None
-    if len(found) > 1 and PROJECT not in found:
-        whose = ", ".join(sorted(found))
-        rule = "is offered by several distributions"
-        raise refuse(f"{GROUP}: {name}", whose, rule, f"block all but one: {BLOCK_VARIABLE}")
-    point = found.get(PROJECT) or next(iter(found.values()))
+    if len(points) > 1 and PROJECT not in points:
+        distributions = ", ".join(sorted(points))
+        rule, remedy = "is offered by several distributions", f"block all but one: {BLOCK_VARIABLE}"
+        raise refuse(f"{GROUP}: {name}", distributions, rule, remedy)
+    point = points.get(PROJECT) or next(iter(points.values()))
     return cast("Callable[..., Any]", point.load())
 
 
 def _exact(psi1: Array, chi: Array) -> Array:
-    """Return psi2, shape (impacts,), without any table: the exact solution for abs(psi1)."""
-    from contactlab.compose import composition  # no law before it is needed
+    """Return psi2, shape (impacts,), without a table: the exact solution for abs(psi1)."""
+    from contactlab.compose import composition  # a table needs none of this
     from contactlab.compose.simulation import Simulation
 
     speed = np.abs(psi1)
     change = _change(Simulation(**composition.exact(EXACT)), psi1, chi)
-    # no impact gains energy, nor more impulse than full slip gives: not even by an error
+    # clipped so that no rounding error adds energy, or impulse beyond that of slip throughout
     change = np.clip(change, np.maximum(-2.0 * speed, -4.0 * chi), 0.0)
     return np.asarray(np.copysign(1.0, psi1) * (speed + change))
 
@@ -271,6 +258,6 @@ def _change(simulation: Simulation, psi1: Array, chi: Array) -> Array:
     """Return psi2 - psi1 of impacts, shape (impacts,), for abs(psi1)."""
     from contactlab.impact.scene import Scene
 
-    # Beyond, the energy of slip may not fit into a float.
+    # Beyond LARGEST the energy of slip may overflow.
     scene = Scene.nondimensional(psi1=np.minimum(np.abs(psi1), LARGEST), chi=chi)
     return np.asarray(simulation.sweep(scene).check().psi_change)

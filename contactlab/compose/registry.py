@@ -1,4 +1,4 @@
-"""The registry of laws: found by name among the installed distributions, and made one at a time."""
+"""The registry of laws: finds laws by name among the installed distributions, and makes them."""
 
 from __future__ import annotations
 
@@ -29,23 +29,23 @@ __all__ = [
     "blocked_names",
 ]
 
-#: Names that are not of laws, and may be blocked too.
+#: Beginnings of the names of other plug-ins that may be blocked.
 OTHER_GROUPS = ("rebound.",)
 
 
 class Registry:
     """The laws installed in this environment.
 
-    Entry points of the group ``contactlab`` are read when they are needed first; a module is
-    imported only when one of its laws is made, so that a broken plug-in stops no other.
+    Entry points of the group ``contactlab`` are read at the first use. A module is imported only
+    when one of its laws is made, so that a broken plug-in stops no other plug-in.
 
     Names
     -----
-    1. Each law has a name that no other has, ``distribution:kind.name``.
-    2. ``kind.name`` alone means the law of the distribution ``contactlab`` where that has one;
-       else the law of the one distribution that does. Where several others do it is refused.
-    3. ``CONTACTLAB_BLOCK_PLUGINS`` takes names of either form, and names of distributions: all
-       laws of those are blocked. What is blocked does not count in rule 2.
+    1. Each law has a unique name, ``distribution:kind.name``.
+    2. ``kind.name`` alone means the law of the distribution ``contactlab`` if it offers that name;
+       else the law of the only distribution that offers it. If several others do, it is refused.
+    3. ``CONTACTLAB_BLOCK_PLUGINS`` takes names of either form, and names of distributions, whose
+       laws are then all blocked. Blocked laws do not count in rule 2.
     """
 
     def __init__(self) -> None:
@@ -59,11 +59,11 @@ class Registry:
 
     @cached_property
     def _modules(self) -> list[tuple[str, str]]:
-        """Names and modules of the laws found at first; reading entry points takes a while."""
+        """Names and modules of the laws at first use: reading entry points takes long."""
         return [(info.qualified, info.module) for info in self.installed()]
 
     def installed(self) -> list[PluginInfo]:
-        """Return every law found, sorted by kind and name, without importing any."""
+        """Return every installed law, sorted by kind and name, without an import."""
         now = stamp()
         if now != self._stamp:
             self._found, self._stamp = entry_points(), now
@@ -76,15 +76,15 @@ class Registry:
         offers: dict[str, list[PluginInfo]] = {}
         for info in infos:
             offers.setdefault(info.name, []).append(info)
-        found = [
+        laws = [
             attrs.evolve(info, meant=info is meant(rivals))
             for rivals in offers.values()
             for info in rivals
         ]
-        return sorted(found, key=lambda info: (_rank(info.kind), info.name, info.distribution))
+        return sorted(laws, key=lambda info: (_rank(info.kind), info.name, info.distribution))
 
     def _warn_of_unknown(self, infos: list[PluginInfo]) -> None:
-        """Warn once of each name that is blocked and not installed: misspelt, it blocks nothing."""
+        """Warn once of each blocked name that is not installed: a misspelt name blocks nothing."""
         unknown = {
             entry
             for entry in blocked_names() - self._warned
@@ -92,14 +92,14 @@ class Registry:
             and not any(blocks({entry}, info.name, info.distribution) for info in infos)
         }
         self._warned |= unknown
-        known = {text for info in infos for text in (info.name, info.qualified, info.distribution)}
+        names = {text for info in infos for text in (info.name, info.qualified, info.distribution)}
         for name in sorted(unknown):
-            hint = nearest(name, known).strip()
+            hint = nearest(name, names).strip()
             text = f"{BLOCK_VARIABLE} names {name!r}, which is not installed; {hint}"
             warnings.warn(text.rstrip("; "), PluginWarning, stacklevel=4)
 
     def names(self, kind: str | None = None) -> list[str]:
-        """Return the shortest names of laws that may be made, of one kind or of all."""
+        """Return the shortest names of laws that can be made, of one kind or of all kinds."""
         return sorted(
             {
                 info.known_as
@@ -109,7 +109,7 @@ class Registry:
         )
 
     def clashes(self) -> list[str]:
-        """Return a sentence for each name that several distributions offer: which one it means."""
+        """Return a sentence on each name that several distributions offer, with its meaning."""
         offers: dict[str, list[PluginInfo]] = {}
         for info in self.installed():
             if not (info.blocked or info.malformed):
@@ -117,31 +117,31 @@ class Registry:
         return [clash(rivals) for rivals in offers.values() if len(rivals) > 1]
 
     def info(self, name: str) -> PluginInfo:
-        """Return the one installed law that ``name`` means.
+        """Return the installed law that ``name`` means.
 
         Raises
         ------
         ValueError
-            If there is none (with the nearest match), it is blocked, or several distributions
-            offer it and none of them is ``contactlab``.
+            If the name is not installed (with the nearest match), is blocked, or is offered by
+            several distributions other than ``contactlab``.
         PluginError
             If the name in the entry point is malformed.
         """
         distribution, plain = parted(name)
         installed = self.installed()
-        found = [info for info in installed if info.name == name] or [
+        matches = [info for info in installed if info.name == name] or [
             info
             for info in installed
             if info.name == plain and same_distribution(info.distribution, distribution)
         ]
-        if not found:
+        if not matches:
             raise self._unknown(name)
-        if found[0].malformed:
-            source = f"{name!r} of {found[0].distribution} {found[0].version}"
+        if matches[0].malformed:
+            source = f"{name!r} of {matches[0].distribution} {matches[0].version}"
             raise PluginError(
                 f"{source}: the name must be one of {', '.join(KINDS)}, a dot, a name"
             )
-        usable = [info for info in found if not info.blocked]
+        usable = [info for info in matches if not info.blocked]
         if not usable:
             raise refuse("name", name, f"is blocked by {BLOCK_VARIABLE}", "unset it to use the law")
         law = meant(usable)
@@ -150,12 +150,12 @@ class Registry:
         return law
 
     def at_hand(self, info: PluginInfo) -> bool:
-        """Return whether a law is of this distribution, or its plug-in was imported already."""
+        """Return True for contactlab's own laws, and for plug-ins that were imported before."""
         return info.distribution == hookspecs.PROJECT or info.qualified in self._loaded
 
     def law_class(self, name: str) -> type[Law]:
         """Import the plug-in that offers ``name`` and return the law's class."""
-        key = name, os.environ.get(BLOCK_VARIABLE, "")  # what is blocked changes what is meant
+        key = name, os.environ.get(BLOCK_VARIABLE, "")  # blocking changes the meaning of a name
         if self._meant.get(key) not in self._loaded:
             info = self.info(name)
             if info.qualified not in self._loaded:
@@ -178,12 +178,13 @@ class Registry:
         if not isinstance(name, str):
             raise refuse("name", name, "must be a text such as 'tangential.springs'")
         law = self.law_class(name)
-        known = inspect.signature(law).parameters
+        parameters = inspect.signature(law).parameters
         for option, value in options.items():
-            if option not in known:
-                remedy = f"{nearest(option, known)}it has {', '.join(known) or 'no options'}"
+            if option not in parameters:
+                names = ", ".join(parameters) or "no options"
+                remedy = f"{nearest(option, parameters)}it has {names}"
                 raise refuse(option, value, f"{name} does not know it", remedy)
-        for option, parameter in known.items():
+        for option, parameter in parameters.items():
             if parameter.default is parameter.empty and option not in options:
                 raise ValueError(
                     f"{name}: {option} must be given; in Python create({name!r}, {option}=...), "
@@ -195,7 +196,7 @@ class Registry:
             raise ValueError(f"{name}: {error}") from error
 
     def describe(self, law: Law) -> str:
-        """Return a law's name and version: of its distribution, or its class if unregistered."""
+        """Return a law's name, distribution and version; its class if no distribution offers it."""
         law_class = type(law)
         if law_class not in self._origins:
             self._origins[law_class] = self._origin(law_class)
@@ -205,44 +206,46 @@ class Registry:
         return f"{info.name.partition('.')[2]} ({info.distribution} {info.version})"
 
     def _origin(self, law_class: type[Law]) -> PluginInfo | None:
-        """Return the plug-in that offers this class, asked for by name or not, if any does."""
+        """Return the plug-in that offers this class, imported by name or not; None if none does."""
         for name, module in self._modules:
             if f"{law_class.__module__}.".startswith(f"{module}."):
                 with contextlib.suppress(ValueError, PluginError):
                     self.law_class(name)
-        return next((info for known, info in self._loaded.values() if known is law_class), None)
+        return next((info for each, info in self._loaded.values() if each is law_class), None)
 
     def _unknown(self, name: str) -> ValueError:
-        """Return the refusal of a name that is not installed, with the nearest that is."""
+        """Return the refusal of a name that is not installed, with the nearest installed name."""
         distribution, plain = parted(str(name))
         kind, _, short = plain.rpartition(".")
         names = self.names(kind if kind in KINDS else None)
-        others = [known for known in self.names() if known.endswith(f".{short}")]
+        others = [law for law in self.names() if law.endswith(f".{short}")]
         if distribution:
-            known = {info.distribution for info in self.installed()}
+            distributions = {info.distribution for info in self.installed()}
             offering = sorted(info.qualified for info in self.installed() if info.name == plain)
             if offering:
                 hint = f"{plain!r} is offered as {' and '.join(map(repr, offering))}; "
-            elif not any(same_distribution(one, distribution) for one in known):
-                hint = f"no distribution {distribution!r} has laws; {nearest(distribution, known)}"
+            elif not any(same_distribution(each, distribution) for each in distributions):
+                nearby = nearest(distribution, distributions)
+                hint = f"no distribution {distribution!r} has laws; {nearby}"
             else:
                 hint = ""
         elif kind in KINDS and others:
             hint = f"{short!r} is a law of another kind, {others[0]!r}; "
         else:
-            # The kind, which all of them begin with, would make any two names alike.
-            import difflib  # only for those who misspell
+            import difflib  # needed for a misspelt name only
 
-            known_as = {full.rpartition(".")[2]: full for full in others or names}
+            # Names are compared without their kind, which would make any two similar.
+            full_names = {full.rpartition(".")[2]: full for full in others or names}
             cutoff = 0.0 if others else 0.5
-            found = difflib.get_close_matches(short, known_as, n=1, cutoff=cutoff)
-            hint = f"did you mean {known_as[found[0]]!r}? " if found else ""
+            close = difflib.get_close_matches(short, full_names, n=1, cutoff=cutoff)
+            hint = f"did you mean {full_names[close[0]]!r}? " if close else ""
         return refuse(
             "name", name, "no such law is installed", f"{hint}installed: {', '.join(names)}"
         )
 
 
 def _rank(kind: str) -> int:
+    """Return the place of a kind in ``KINDS``; unknown kinds come last."""
     return KINDS.index(kind) if kind in KINDS else len(KINDS)
 
 

@@ -1,4 +1,4 @@
-"""A normal law as the equation of motion of its impacts, in units in which all look alike."""
+"""The dimensionless normal equation of motion of a scene under a normal law."""
 
 from __future__ import annotations
 
@@ -21,37 +21,36 @@ Array = NDArray[np.float64]
 
 
 class ScaledNormalLaw:
-    """A normal law and its memory in the course of the impacts of a scene.
+    """A normal law and its state for the impacts of a scene, as (3, items) scaled equations.
 
-    Scaled approaches (over the normal speed times ``unit``), rates (over the normal speed) and
-    impulses of the friction load (over the momentum at first touch) of all impacts stand in one
-    array, shape (3, items).
+    The rows of a scaled array are the approach over the normal speed times ``unit``, the rate over
+    the normal speed, and the load impulse over the momentum at first touch.
 
     Attributes
     ----------
     items : int
-        Impacts.
+        Number of impacts.
     speed, mass, radius : array, shape (items,)
         Normal speed (m/s), and normal mass (kg) and radius (m) of the pair.
     unit : array, shape (items,)
-        Of time, in s: the duration of a Hertz impact.
+        Unit of time in s: the duration of a Hertz impact.
     momentum : array, shape (items,)
-        At first touch, in N s.
+        Momentum at first touch, in N s.
     active : array of bool, shape (items,)
-        Impacts still in contact: the others stand still.
+        True for impacts in contact; the others do not move.
     finite : bool
-        Whether the forces found last were.
+        True if all forces of the last evaluation were finite.
     steps, time : int, float
-        The step, from 1, and the time in s, for the sentence of a fault.
+        Number of the step, from 1, and time in s, for the sentence of a fault.
     """
 
     def __init__(self, law: NormalLaw, scene: Scene) -> None:
         self.law, self.scene, self.shape = law, scene, scene.shape
         self.items = math.prod(self.shape)
-        self.speed = self._one_an_item(scene.normal_speed)
-        self.mass = self._one_an_item(scene.pair.normal_mass)
-        self.radius = self._one_an_item(scene.pair.radius)
-        self.unit = self._one_an_item(hertz_scales(scene).duration)
+        self.speed = self._per_item(scene.normal_speed)
+        self.mass = self._per_item(scene.pair.normal_mass)
+        self.radius = self._per_item(scene.pair.radius)
+        self.unit = self._per_item(hertz_scales(scene).duration)
         self.length, self.momentum = self.speed * self.unit, self.mass * self.speed
         #: Change of the scaled rate in a unit of time under 1 N.
         self.response = self.unit / self.momentum
@@ -68,39 +67,33 @@ class ScaledNormalLaw:
         """Return the derivatives of scaled approach, rate and impulse, shape (3, items)."""
         if not self.shape:  # as floats: several times faster
             contact = self._respond(scaled)[0].complete
-            one, other = float(contact.force), float(contact.friction_load)
-            self.finite = math.isfinite(one) and math.isfinite(other)
+            force, load = float(contact.force), float(contact.friction_load)
+            self.finite = math.isfinite(force) and math.isfinite(load)
             response = self.response.item()
-            return np.array([scaled[1], [-one * response], [other * response]])
-        force, _, _, load = self.contact(scaled)
-        self.finite = bool(np.isfinite(np.where(self.active, force + load, 0.0)).all())
-        slope = np.stack([scaled[1], -force * self.response, load * self.response])
+            return np.array([scaled[1], [-force * response], [load * response]])
+        forces, _, _, loads = self.contact(scaled)
+        self.finite = bool(np.isfinite(np.where(self.active, forces + loads, 0.0)).all())
+        slope = np.stack([scaled[1], -forces * self.response, loads * self.response])
         return np.where(self.active, slope, 0.0)
 
     def contact(self, scaled: Array) -> tuple[Array, Array, Array, Array]:
-        """Return force, radius, overlap and friction load, shape (items,) each."""
-        return tuple(self._one_an_item(entry) for entry in self._respond(scaled)[0].complete)
+        """Return force (N), radius (m), overlap (m) and friction load (N), shape (items,) each."""
+        return tuple(self._per_item(entry) for entry in self._respond(scaled)[0].complete)
 
     def remember(self, scaled: Array) -> None:
-        """Replace the state by the one that the law has where the impacts are."""
+        """Store the state that the law returns at these scaled values."""
         self.state = self._respond(scaled)[1]
 
     def fault(self, status: Status, what: str) -> faults.LawFaultError:
-        """Return the error of a law that failed."""
+        """Return the error with a sentence on law, step and time."""
         detail = faults.sentence(self.law, what, self.steps, self.time)
         return faults.LawFaultError(status, detail)
 
     def _respond(self, scaled: Array) -> tuple[NormalContact, Any]:
-        """Return contact and new state as the law gives them.
-
-        Raises
-        ------
-        LawFaultError
-            If the law raises, or returns anything else.
-        """
+        """Return contact and new state, or raise LawFaultError if the law does anything else."""
         approach, rate = self.in_si(scaled)
         try:
-            with np.errstate(all="ignore"):  # and whatever a law makes of it ends here
+            with np.errstate(all="ignore"):  # restores the settings if the law changes them
                 if self.shape:
                     arrays = (batch.locked(each.reshape(self.shape)) for each in (approach, rate))
                     contact, state = self.law.respond(self.state, *arrays)
@@ -118,8 +111,8 @@ class ScaledNormalLaw:
                 raise self.fault(Status.MALFORMED, f"the answer {shown(entry)}")
         return contact, state
 
-    def _one_an_item(self, entry: Any) -> Any:
-        """Return a quantity of the scene's shape, or common to all, with shape (items,)."""
+    def _per_item(self, entry: Any) -> Any:
+        """Return a scalar or an array of the scene's shape as an array of shape (items,)."""
         if not self.shape:
             return np.array([entry], dtype=np.float64)
         return np.array(np.broadcast_to(entry, self.shape), dtype=np.float64).reshape(-1)

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from contactlab.compose import composition
+from contactlab.compose import composition, solve
 from contactlab.compose.composition import Laws
 from contactlab.compose.error_estimate import estimated
-from contactlab.compose.solve import normal_or_failed, outcome, prepare
 from contactlab.compose.sweep import swept
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
@@ -23,7 +22,6 @@ from contactlab.impact.coupling import three_numbers
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.history import Recorder
-from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Clause, Plan
 from contactlab.outcome.result import ImpactResult
 
@@ -33,15 +31,15 @@ if TYPE_CHECKING:
 
 @attrs.frozen(kw_only=True, init=False)
 class Simulation:
-    """A normal law, a tangential law and an integrator, composed.
+    """A normal law, a tangential law and an integrator that fit together.
 
     Parameters
     ----------
     normal, tangential, integrator : str or law, optional
         A name (``"hertz"``), or an object made by ``contactlab.create`` or by your own class.
         The default is exact: Hertz's closed form and the slip front followed event by event.
-        Where one is left out the best is taken that fits those given: see
-        ``contactlab.compose.composition.PREFERRED``.
+        A law that is left out is the first in ``contactlab.compose.composition.PREFERRED`` that
+        fits the others.
 
     Raises
     ------
@@ -71,9 +69,9 @@ class Simulation:
         scene : Scene
             One impact or a batch.
         history : bool or "fields"
-            As of ``run``.
+            The same as in ``run``.
         """
-        return _complete(prepare(self._laws, _scene(scene), _history(history)).plan, scene)
+        return _complete(solve.prepare(self._laws, _scene(scene), _history(history)).plan, scene)
 
     def run(
         self, scene: Scene, *, history: bool | str = False, estimate_error: bool = False
@@ -86,8 +84,8 @@ class Simulation:
         history : bool or "fields"
             Keep the course of the impact; ``"fields"`` keeps traction and stick/slip too.
         estimate_error : bool
-            Estimate the numerical error of psi2, of any laws, by running the scene again at two
-            finer resolutions: ``ImpactResult.psi2_error_estimate``. About twenty times the work.
+            Estimate the numerical error of psi2 by running the scene again at two finer
+            resolutions: ``ImpactResult.psi2_error_estimate``. About twenty times the work.
 
         Returns
         -------
@@ -97,12 +95,13 @@ class Simulation:
         Raises
         ------
         ValueError
-            If ``scene`` is no scene, ``history`` none of its three values, or a history is asked
-            of a batch whose impacts have instants of their own.
+            If ``scene`` is not a Scene, ``history`` is none of its three values, or the history of
+            a batch is requested whose impacts have different instants.
         """
         started = time.perf_counter()
         recorder = Recorder(_scene(scene).shape, with_fields=history == "fields")
-        plan, motion = self._outcome(scene, _history(history), recorder if history else None)
+        observer = recorder if history else None
+        plan, motion = solve.outcome(self._laws, scene, _history(history), observer)
         result = ImpactResult(
             scene=scene,
             plan=_complete(plan, scene),
@@ -113,7 +112,7 @@ class Simulation:
         )
         if not estimate_error:
             return result
-        return attrs.evolve(result, psi2_error_estimate=estimated(self, result))
+        return attrs.evolve(result, psi2_error_estimate=estimated(self._laws, result))
 
     def sweep(
         self,
@@ -126,12 +125,11 @@ class Simulation:
     ) -> ImpactResult:
         """Run many impacts, vectorised, a block at a time.
 
-        Impacts are solved in blocks of as many as the integrator asks for, counted from the first
-        impact: 4000 of the exact solution, 20 where they are followed one by one, 1000 of most;
-        16384 where nothing is marched. What is solved together depends on neither ``chunk`` nor
-        ``executor``, and so does no bit of an answer, of one installation on one kind of
-        processor and one number of BLAS threads (which with NumPy 2 matters to laws that multiply
-        large matrices only).
+        The laws choose the size of a block, counted from the first impact: 4000 for the exact
+        solution, 20 if impacts are followed one by one, 1000 for most other laws, 16384 if nothing
+        is marched. Neither ``chunk`` nor ``executor`` changes the blocks, so neither changes a bit
+        of an answer, within one installation, one kind of processor and one number of BLAS threads
+        (with NumPy 2 that number matters only to laws that multiply large matrices).
 
         Parameters
         ----------
@@ -139,31 +137,31 @@ class Simulation:
         progress : callable, optional
             Called as ``progress(done, total)`` after each chunk.
         chunk : int, optional
-            Impacts between two calls of ``progress``, handed to ``executor`` and kept together,
-            rounded up to whole blocks; one block by default. An interruption loses the chunks
-            that are not done.
+            Impacts of a chunk, rounded up to whole blocks; one block by default. A chunk is what
+            ``progress`` counts, ``executor`` gets and ``keep`` writes. An interruption loses
+            unfinished chunks.
         executor : concurrent.futures.Executor, optional
-            Where chunks are solved; this process by default. Any object with a method ``submit``
-            that returns futures will do: ``ProcessPoolExecutor(4)``, dask's
-            ``client.get_executor()``, an ``MPIPoolExecutor``. Laws are found there by the modules
-            of their classes. A ``ProcessPoolExecutor`` that breaks is replaced, and a chunk that
-            ends its process twice has the status ``WORKER_DIED``, as has a chunk that another
-            executor loses.
+            Solves the chunks; this process by default. Any object with a method ``submit`` that
+            returns futures serves: ``ProcessPoolExecutor(4)``, dask's ``client.get_executor()``,
+            an ``MPIPoolExecutor``. Workers import laws from the modules of their classes. A
+            ``ProcessPoolExecutor`` that breaks is replaced. A chunk has the status ``WORKER_DIED``
+            if it ends its process twice, or if another executor loses it.
         keep : str or Path, optional
-            A folder where each chunk is kept as soon as it is done. The same sweep with the same
-            folder goes on where it stopped; another scene or law is refused.
+            A folder where each chunk is written as soon as it is finished. The same sweep with the
+            same folder resumes where it stopped; another scene or law is refused.
 
         Returns
         -------
         ImpactResult
-            A batch. Interrupting (Ctrl-C) keeps what is done; the rest has the status
-            ``INTERRUPTED``, which ``.check()`` raises.
+            A batch. An interruption (Ctrl-C) keeps finished chunks; the other impacts have the
+            status ``INTERRUPTED``, which ``.check()`` raises.
 
         Raises
         ------
         ValueError
-            If the scenes are none, not alike (bodies beside psi1 and chi) or no scenes; if a law
-            cannot be sent to ``executor``; if ``keep`` holds another sweep.
+            If there are no scenes, an entry is not a Scene, or scenes with bodies stand beside
+            scenes of psi1 and chi; if a law cannot be sent to ``executor``; if ``keep`` holds
+            another sweep.
         """
         started = time.perf_counter()
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
@@ -175,7 +173,7 @@ class Simulation:
                 "for one impact use run",
             )
         plan, motion = swept(
-            self, batch, progress=progress, chunk=chunk, executor=executor, keep=keep
+            self._laws, batch, progress=progress, chunk=chunk, executor=executor, keep=keep
         )
         return ImpactResult(
             scene=batch,
@@ -186,28 +184,22 @@ class Simulation:
         )
 
     def normal_motion(self, scene: Scene) -> NormalMotion:
-        """Return the normal motion of ``scene``; of a law that fails, NaN throughout.
+        """Return the normal motion of ``scene``; all values are NaN if the normal law fails.
 
         Parameters
         ----------
         scene : Scene
             One impact or a batch.
         """
-        return normal_or_failed(self._laws, scene)
+        return solve.normal_or_failed(self._laws, scene)
 
     @property
     def _laws(self) -> Laws:
         return Laws(self.normal, self.tangential, self.integrator)
 
-    def _outcome(
-        self, scene: Scene, history: bool | str, recorder: Recorder | None
-    ) -> tuple[Plan, Motion]:
-        """Return plan and motion; ``recorder`` keeps the history."""
-        return outcome(self._laws, scene, history, recorder)
-
 
 def _complete(plan: Plan, scene: Scene) -> Plan:
-    """Return a plan with what can be said of its scene as a whole only, not of a chunk."""
+    """Return the plan with the cautions about the whole batch, which no chunk can have."""
     cautions = three_numbers(scene)
     if not cautions:
         return plan
@@ -217,19 +209,19 @@ def _complete(plan: Plan, scene: Scene) -> Plan:
 
 
 def _scene(scene: object) -> Scene:
-    """Return ``scene``, or refuse what is none."""
+    """Return ``scene``, or refuse an object of another class."""
     if not isinstance(scene, Scene):
         remedy = "make one: Scene(...)"
         if isinstance(scene, str | Path):
-            remedy = "of a file: read_scene(path) has the scene, and run() runs it"
+            remedy = "for a file use read_scene(path), whose run() runs it"
         elif type(scene).__name__ == "Encounter":
-            remedy = "of bodies in space: collide(encounter, simulation), or encounter.scene"
+            remedy = "for bodies in space use collide(encounter, simulation), or encounter.scene"
         raise refuse("scene", scene, "must be a Scene", remedy)
     return scene
 
 
 def _history(history: bool | str) -> bool | str:
-    """Return ``history``, or refuse what is none of its three values."""
+    """Return ``history``, or refuse a value other than its three."""
     if history in (True, False, "fields"):
         return history
     raise refuse("history", history, "must be True, False or 'fields'")

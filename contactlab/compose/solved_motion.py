@@ -1,4 +1,4 @@
-"""Normal motions of laws without a closed form, kept as tables, and of laws that failed."""
+"""Normal motions kept as tables, and the normal motion of a law that failed."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from contactlab.numeric.lobatto import lobatto, rows
 
 Array = NDArray[np.float64]
 
-#: Relative error of the load impulse that is declared: what steps of the solver's tolerance, see
-#: ``contactlab.compose.normal_motion``, add up to.
+#: Declared relative error of the load impulse: the sum of the errors of all steps, each within
+#: the ``TOLERANCE`` of ``contactlab.compose.normal_motion``.
 ACCURACY = 1e-7
 #: Nodes in a step: polynomials of degree 7 hold the dense output of the solver exactly.
 NODES = 8
-#: Points between nodes at which maxima are looked for.
+#: Points in a step among which a maximum is searched.
 FINE = 129
-#: A cubic rises throughout if its slopes are at most this times the mean one.
+#: A cubic is monotonic if its end slopes are at most this times the mean slope.
 STEEPEST = 3.0
 #: Columns of the table; the radius is squared, which is smooth where the radius begins as a root.
 APPROACH, RATE, FORCE, RADIUS_SQUARED, LOAD, LOAD_IMPULSE = range(6)
@@ -35,21 +35,21 @@ APPROACH, RATE, FORCE, RADIUS_SQUARED, LOAD, LOAD_IMPULSE = range(6)
 
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class MotionTable:
-    """A solved motion as polynomials between the ends of steps.
+    """A solved motion: a polynomial for each column of each step.
 
     Attributes
     ----------
     shape : tuple of int
-        Of the items; () where one motion serves a whole batch.
+        Shape of the batch; () if one motion serves the whole batch.
     edges : array, shape (items, S + 1)
-        Ends of the steps, in units of ``unit``. Each item has its own; the steps that it takes
-        less than another have no width, and stand at separation.
+        Ends of the steps, in units of ``unit``. An item with fewer steps than another has steps
+        of zero width at separation.
     unit : array, shape (items,)
-        Of time, in s.
+        Unit of time in s.
     values : array, shape (items, S, NODES, 6)
-        Approach, rate, force, radius², friction load and its impulse, in SI.
+        Approach, rate, force, radius², friction load and load impulse at the nodes, in SI.
     last, largest : array, shape (items, 6)
-        The same at separation, and the largest value of each.
+        Values of the columns at separation, and their largest values.
     status, detail : array of object, shape (items,)
     """
 
@@ -64,64 +64,51 @@ class MotionTable:
 
     @classmethod
     def made(cls, **entries: Any) -> Self:
-        """Return the table of all entries but ``last`` and ``largest``, which follow from them."""
+        """Return the table; ``last`` and ``largest`` follow from the other entries."""
         table = cls(**entries, last=np.empty(0), largest=_largest(entries["values"]))
         return attrs.evolve(table, last=table.at(table.ends))
 
     @property
     def ends(self) -> Array:
-        """Time of separation, shape (items,), in units of ``unit``."""
+        """Times of separation in units of ``unit``, shape (items,)."""
         return np.asarray(self.edges[:, -1])
 
     def at(self, times: Array) -> Array:
-        """Return the six columns at scaled ``times``, shape (..., items); shape (..., items, 6).
-
-        The load impulse never falls: between nodes it is a cubic whose slopes are the loads, less
-        where it would turn back.
-        """
+        """Return the columns, shape (..., items, 6), at scaled times of shape (..., items)."""
         item = np.arange(len(self.unit))
         index = self._step(times)
         left = self.edges[item, index]
         width = self.edges[item, index + 1] - left
         fraction = np.clip((times - left) / np.where(width > 0.0, width, 1.0), 0.0, 1.0)
         steps = self.values[item, index]
-        found = np.einsum("...n,...nc->...c", rows(lobatto(NODES), fraction), steps)
-        found[..., LOAD_IMPULSE] = _rising(fraction, width * self.unit, steps)
-        return np.asarray(found)
+        columns = np.einsum("...n,...nc->...c", rows(lobatto(NODES), fraction), steps)
+        columns[..., LOAD_IMPULSE] = _rising(fraction, width * self.unit, steps)
+        return np.asarray(columns)
 
     def _step(self, times: Array) -> NDArray[np.intp]:
-        """Return the step that holds each of ``times``: one search over the edges of all items."""
+        """Return the index of the step that contains each of ``times``."""
         count = self.edges.shape[1]
         span = np.where(self.ends > 0.0, self.ends, 1.0)
         item = np.arange(len(span))
-        # Shares of the duration, those of each item apart from those of the others.
-        listed = (self.edges / span[:, None] + 2.0 * item[:, None]).reshape(-1)
-        found = listed.searchsorted(times / span + 2.0 * item) - count * item
-        return np.asarray(np.clip(found - 1, 0, count - 2))
+        # One search for all items: shares of the duration from 0 to 1, plus 2 for each item.
+        shares = (self.edges / span[:, None] + 2.0 * item[:, None]).reshape(-1)
+        after = shares.searchsorted(times / span + 2.0 * item) - count * item
+        return np.asarray(np.clip(after - 1, 0, count - 2))
 
     def take(self, index: NDArray[np.intp]) -> MotionTable:
-        """Return the table of the items that ``index`` counts, which has the shape of ``index``."""
+        """Return the table of some items, in the shape of ``index``, an array of their numbers."""
         columns = ("edges", "unit", "values", "last", "largest", "status", "detail")
         taken = {name: getattr(self, name)[np.ravel(index)] for name in columns}
         return attrs.evolve(self, shape=np.shape(index), **taken)
 
     def shaped(self, values: Array) -> Any:
-        """Return values, one an item, in the shape of the items; one alone as a plain number."""
+        """Return values of shape (items,) in the shape of the batch, or as a plain number."""
         return values.reshape(self.shape) if self.shape else values.item()
 
 
 def _rising(fraction: Array, width: Array, steps: Array) -> Array:
-    """Return the load impulse at a fraction of a step, by a cubic that never falls.
-
-    Parameters
-    ----------
-    fraction : array, shape (...)
-        Of the steps.
-    width : array, shape (...)
-        Of the steps, in s.
-    steps : array, shape (..., NODES, 6)
-        Values at the nodes of the steps.
-    """
+    """Return the load impulse in N s at a fraction of steps of a width in s; it never falls."""
+    # Between nodes it is a cubic whose end slopes are the loads, reduced where it would fall.
     points = lobatto(NODES).points
     node = np.clip(points.searchsorted(fraction) - 1, 0, NODES - 2)
     part = points[node + 1] - points[node]
@@ -141,23 +128,23 @@ def _rising(fraction: Array, width: Array, steps: Array) -> Array:
 
 
 def _largest(values: Array) -> Array:
-    """Return the largest value of each column, shape (items, 6), looked for between nodes too."""
+    """Return the largest value of each column, at nodes or between them, shape (items, 6)."""
     finer = rows(lobatto(NODES), np.linspace(0.0, 1.0, FINE))
-    steps = values.max(axis=2).argmax(axis=1)  # of each item and column
+    steps = values.max(axis=2).argmax(axis=1)  # shape (items, 6)
     near = np.clip(steps + np.array([-1, 0, 1])[:, None, None], 0, values.shape[1] - 1)
     item, column = np.arange(len(values))[:, None], np.arange(values.shape[-1])
-    found = finer @ np.moveaxis(values[item, near, :, column], -1, 2)
-    at = np.clip(found.argmax(axis=2), 1, FINE - 2)[:, :, None]
-    before, here, after = (np.take_along_axis(found, at + k, axis=2) for k in (-1, 0, 1))
-    bend = 2.0 * here - before - after
-    peaked = (here >= before) & (here >= after) & (bend > 0.0)
-    # The vertex of the parabola through the greatest and its neighbours.
-    here = here + np.where(peaked, (after - before) ** 2 / (8.0 * bend), 0.0)
-    return np.asarray(np.maximum(values.max(axis=(1, 2)), here.max(axis=(0, 2))))
+    samples = finer @ np.moveaxis(values[item, near, :, column], -1, 2)
+    at = np.clip(samples.argmax(axis=2), 1, FINE - 2)[:, :, None]
+    before, peak, after = (np.take_along_axis(samples, at + k, axis=2) for k in (-1, 0, 1))
+    bend = 2.0 * peak - before - after
+    curved = (peak >= before) & (peak >= after) & (bend > 0.0)
+    # The vertex of the parabola through the largest sample and its neighbours.
+    peak = peak + np.where(curved, (after - before) ** 2 / (8.0 * bend), 0.0)
+    return np.asarray(np.maximum(values.max(axis=(1, 2)), peak.max(axis=(0, 2))))
 
 
 class SolvedMotion(NormalMotion):
-    """A normal motion by interpolation in a table; even in time along its phase."""
+    """A normal motion interpolated in a table; its phase is proportional to time."""
 
     accuracy = ACCURACY
 
@@ -172,7 +159,7 @@ class SolvedMotion(NormalMotion):
         self.status = batch.filled(table.shaped(table.status), scene.shape)
         self.detail = batch.filled(table.shaped(table.detail), scene.shape)
 
-    @np.errstate(under="ignore")  # interpolation on a node leaves the others a share of 1e-290
+    @np.errstate(under="ignore")  # on a node the weights of the other nodes are about 1e-290
     def at(self, phase: Real) -> NormalSample:
         """Return the motion at ``phase`` in [0, pi], by interpolation."""
         shape = self.table.shape
@@ -180,8 +167,8 @@ class SolvedMotion(NormalMotion):
         outer = np.broadcast_shapes(fraction.shape, shape)
         items = len(self.table.unit)
         share = np.broadcast_to(fraction, outer).reshape(*outer[: len(outer) - len(shape)], items)
-        found = np.moveaxis(self.table.at(share * self.table.ends), -1, 0).reshape(6, *outer)
-        approach, rate, force, radius_squared, load, load_impulse = found
+        columns = np.moveaxis(self.table.at(share * self.table.ends), -1, 0).reshape(6, *outer)
+        approach, rate, force, radius_squared, load, load_impulse = columns
         contact = NormalContact(force, _radius(radius_squared), approach, np.maximum(load, 0.0))
         return NormalSample(fraction * self.duration, approach, rate, contact, load_impulse)
 
@@ -198,7 +185,7 @@ class SolvedMotion(NormalMotion):
 
 
 def _radius(squared: Array) -> Array:
-    """Return the contact radius; interpolation may leave its square below zero."""
+    """Return the contact radius; interpolation may make its square negative."""
     return np.sqrt(np.maximum(squared, 0.0))
 
 
@@ -208,16 +195,6 @@ class FailedMotion(NormalMotion):
     accuracy = math.nan
 
     def __init__(self, law: Law, scene: Scene, status: Status, detail: str) -> None:
-        """Every number is NaN.
-
-        Parameters
-        ----------
-        law : Law
-            The one that failed.
-        scene : Scene
-        status, detail : Status, str
-            How, for every impact.
-        """
         shape = scene.shape
         self.law, self.scene = law, scene
         unknown = batch.spread(math.nan, shape)
@@ -226,7 +203,7 @@ class FailedMotion(NormalMotion):
         self.status, self.detail = batch.filled(status, shape), batch.filled(detail, shape)
 
     def at(self, phase: Real) -> NormalSample:
-        """Return NaN throughout."""
+        """Return a sample whose values are all NaN."""
         nothing = math.nan * (np.asarray(phase) + self.duration)
         contact = NormalContact(nothing, nothing, nothing, nothing)
         return NormalSample(nothing, nothing, nothing, contact, nothing)
@@ -236,8 +213,8 @@ class FailedMotion(NormalMotion):
         return math.pi * np.asarray(fraction)
 
     def take(self, part: Any) -> FailedMotion:
-        """Return the same of some impacts."""
+        """Return the motion of some impacts."""
         status, detail = (
-            np.ravel(np.asarray(e, dtype=object))[0] for e in (self.status, self.detail)
+            np.ravel(np.asarray(entry, dtype=object))[0] for entry in (self.status, self.detail)
         )
         return FailedMotion(self.law, self.scene.take(part), status, detail)

@@ -1,4 +1,4 @@
-"""Sweeps: a batch cut into blocks that are always the same, solved here or by an executor."""
+"""Sweeps: a batch cut into blocks that depend on the laws alone, solved here or by an executor."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from contactlab.compose.composition import Laws
+from contactlab.compose.pieces import Chunk, Piece, solved, unsolved
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import WholeImpactTangentialLaw
@@ -19,72 +21,23 @@ from contactlab.outcome.plan import Plan
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from contactlab.compose.simulation import Simulation
-
-#: Impacts of a block where nothing is marched: as many as fit into the cache.
+#: Impacts of a block if nothing is marched: as many as fit into the cache.
 WHOLE_IMPACTS = 1 << 14
 
 
-class Chunk(NamedTuple):
-    """Impacts ``first`` to ``stop``, without the last, of a sweep: some whole blocks of it."""
-
-    first: int
-    stop: int
-
-
-class Piece(NamedTuple):
-    """The plan and the motion of a chunk."""
-
-    chunk: Chunk
-    plan: Plan
-    motion: Motion
-
-
-def block_of(simulation: Simulation) -> int:
-    """Return how many impacts are solved in one call.
-
-    The last bits of an answer may depend on what is solved beside it: on the iterations of an
-    array solver, and on which arithmetic, of scalars or of vectors, the processor has for a
-    number. So a block depends on the laws alone.
-    """
-    whole_impacts = isinstance(simulation.tangential, WholeImpactTangentialLaw)
-    if whole_impacts and isinstance(simulation.normal, ClosedFormNormalLaw):
+def block_of(laws: Laws) -> int:
+    """Return how many impacts are solved in one call."""
+    # The last bits of an answer may depend on the impacts beside it: on the iterations of an array
+    # solver, and on whether the processor uses scalar or vector arithmetic. So the size of a block
+    # depends on the laws alone.
+    whole_impacts = isinstance(laws.tangential, WholeImpactTangentialLaw)
+    if whole_impacts and isinstance(laws.normal, ClosedFormNormalLaw):
         return WHOLE_IMPACTS
-    return simulation.integrator.chunk(simulation.tangential)
-
-
-def solved(simulation: Simulation, scene: Scene, chunk: Chunk, block: int) -> Piece:
-    """Return the piece of a chunk, ``scene`` being that chunk alone, solved block by block.
-
-    Parameters
-    ----------
-    simulation : Simulation
-    scene : Scene
-        A batch of one axis, of the chunk's length.
-    chunk : Chunk
-        Where it lies in the whole sweep.
-    block : int
-        Most impacts that are advanced together.
-    """
-    size = chunk.stop - chunk.first
-    plans, motions = zip(
-        *(
-            simulation._outcome(scene.take(slice(first, min(first + block, size))), False, None)
-            for first in range(0, size, block)
-        ),
-        strict=True,
-    )
-    return Piece(chunk, Plan.joined(plans), Motion.joined(motions, (size,)))
-
-
-def unsolved(chunk: Chunk, status: Status, detail: str = "") -> Piece:
-    """Return the piece of a chunk that there is no answer to."""
-    shape = (chunk.stop - chunk.first,)
-    return Piece(chunk, Plan.nothing(shape), Motion.nothing(shape, status, detail))
+    return laws.integrator.chunk(laws.tangential)
 
 
 def swept(
-    simulation: Simulation,
+    laws: Laws,
     scene: Scene,
     *,
     progress: Callable[[int, int], object] | None,
@@ -92,53 +45,42 @@ def swept(
     executor: Executor | None,
     keep: str | Path | None,
 ) -> tuple[Plan, Motion]:
-    """Return plan and motion of a one-dimensional batch; see ``Simulation.sweep``.
-
-    Parameters
-    ----------
-    simulation : Simulation
-    scene : Scene
-        Of shape (n,).
-    progress, chunk, executor, keep
-        As ``Simulation.sweep`` has them.
-    """
-    size, block = scene.shape[0], block_of(simulation)
+    """Return plan and motion of a one-dimensional batch; see ``Simulation.sweep``."""
+    size, block = scene.shape[0], block_of(laws)
     step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
     kept = None
     if keep is not None:
-        from contactlab.compose.kept import Kept  # only for those who keep
+        from contactlab.compose.kept import Kept  # needed with ``keep`` only
 
-        kept = Kept(keep, simulation, scene, block)
-    found = [] if kept is None else kept.pieces()
-    done = sum(piece.chunk.stop - piece.chunk.first for piece in found)
-    missing = _cut(_gaps(found, size), step)
+        kept = Kept(keep, laws, scene, block)
+    finished = [] if kept is None else kept.pieces()
+    done = sum(piece.chunk.size for piece in finished)
+    missing = _cut(_gaps(finished, size), step)
     if executor is None:
-        pieces = (solved(simulation, scene.take(slice(*each)), each, block) for each in missing)
+        pieces = (solved(laws, scene.take(slice(*each)), each, block) for each in missing)
     else:
-        from contactlab.compose.executors import (
-            pieces_of,  # only for those who share their work out
-        )
+        from contactlab.compose.executors import pieces_of  # needed with an executor only
 
-        pieces = pieces_of(simulation, scene, list(missing), block, executor)
+        pieces = pieces_of(laws, scene, list(missing), block, executor)
     try:
         for piece in pieces:
             if kept is not None:
                 kept.keep(piece)
-            found.append(piece)
-            done += piece.chunk.stop - piece.chunk.first
+            finished.append(piece)
+            done += piece.chunk.size
             if progress is not None:
                 progress(done, size)
     except KeyboardInterrupt:
-        found += [unsolved(gap, Status.INTERRUPTED) for gap in _gaps(found, size)]
+        finished += [unsolved(gap, Status.INTERRUPTED) for gap in _gaps(finished, size)]
     finally:
         pieces.close()
-    found.sort(key=lambda piece: piece.chunk)
-    plan = Plan.joined([piece.plan for piece in found])
-    return plan, Motion.joined([piece.motion for piece in found], (size,))
+    finished.sort(key=lambda piece: piece.chunk)
+    plan = Plan.joined([piece.plan for piece in finished])
+    return plan, Motion.joined([piece.motion for piece in finished], (size,))
 
 
 def _gaps(pieces: Iterable[Piece], size: int) -> list[Chunk]:
-    """Return what no piece covers."""
+    """Return the chunks that no piece covers."""
     ends = [(0, 0), *sorted(piece.chunk for piece in pieces), (size, size)]
     return [
         Chunk(before, after)
@@ -148,6 +90,7 @@ def _gaps(pieces: Iterable[Piece], size: int) -> list[Chunk]:
 
 
 def _cut(gaps: Iterable[Chunk], step: int) -> Iterator[Chunk]:
+    """Yield the gaps in chunks of at most ``step`` impacts."""
     for gap in gaps:
         for first in range(gap.first, gap.stop, step):
             yield Chunk(first, min(first + step, gap.stop))

@@ -1,4 +1,4 @@
-"""What a worker of a sweep does, and workers that are processes of this machine."""
+"""The work of a sweep's workers, and an executor whose workers are processes of this machine."""
 
 from __future__ import annotations
 
@@ -18,67 +18,47 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.compose import composition
+from contactlab.compose.composition import versions
 from contactlab.compose.installed import short
-from contactlab.compose.registry import KINDS
-from contactlab.compose.simulation import Simulation
-from contactlab.compose.sweep import Chunk, Piece, solved
+from contactlab.compose.pieces import Chunk, Piece, solved
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import whole
 
 #: Most processes: more than any machine has processors.
 MOST = 1024
-#: Seconds that a call has to end after an interrupt.
+#: Time in s for a call to end after an interrupt.
 GRACE = 5.0
 MODULE_REMEDY = "define its class at the top of a module that can be imported"
 
 
 class Reply(NamedTuple):
-    """A piece and the versions of the laws that it was solved by, or what was raised."""
+    """A piece and the versions of its laws by kind, or the exception that was raised."""
 
     piece: Piece | None
     versions: Mapping[str, str]
     raised: Exception | None = None
 
 
-def reply(laws: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
-    """Return a worker's reply to a chunk; executors are given this function to call.
-
-    Parameters
-    ----------
-    laws, part : bytes
-        The pickled simulation, and the pickled scene of the chunk.
-    chunk : Chunk
-    block : int
-        Impacts solved in one call.
-    """
+def reply(sent: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
+    """Return the reply to a chunk, from pickled laws and the pickled scene of the chunk."""
     try:
-        simulation, scene = pickle.loads(laws), _locked(pickle.loads(part))
+        laws, scene = pickle.loads(sent), _locked(pickle.loads(part))
     except Exception as error:
-        told = f"executor: its workers cannot load the laws: {short(error)}"
+        rule = f"executor: its workers cannot load the laws: {short(error)}"
         remedy = f"install them there too, and {MODULE_REMEDY}"
-        return Reply(None, {}, ValueError(f"{told}; {remedy}"))
+        return Reply(None, {}, ValueError(f"{rule}; {remedy}"))
     try:
-        return Reply(solved(simulation, scene, chunk, block), versions(simulation))
+        return Reply(solved(laws, scene, chunk, block), versions(*laws))
     except Exception as error:
         return Reply(None, {}, error)
 
 
-def versions(simulation: Simulation) -> Mapping[str, str]:
-    """Return the versions of the laws by kind."""
-    return composition.versions(*(getattr(simulation, kind) for kind in KINDS))
-
-
 @contextlib.contextmanager
 def processes(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Return an executor of spawned processes, which end with the ``with`` block.
+    """Yield an executor of at most ``workers`` spawned processes, started when they are needed.
 
-    They also end with this program, however it ends. What a law prints in them goes to stderr.
-
-    Parameters
-    ----------
-    workers : int
-        Most processes; they are started as they are needed.
+    The processes end with the ``with`` block, and with this program, however the program ends.
+    Laws that print there write to stderr.
     """
     workers = whole("workers", workers, most=MOST)
     pool = ProcessPoolExecutor(workers, mp_context=_Spawn(), initializer=_begin)
@@ -89,7 +69,7 @@ def processes(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 def stop(pool: ProcessPoolExecutor) -> None:
-    """Interrupt the calls of a pool and end its processes, by force where a call goes on."""
+    """Interrupt the calls of a pool and end its processes, by force after ``GRACE``."""
     running = list((pool._processes or {}).values())
     for process in running:
         if process.is_alive():
@@ -124,12 +104,12 @@ def _begin() -> None:
     signal.signal(signal.SIGINT, _interrupt)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-    os.dup2(2, 1)  # stdout belongs to the program
+    os.dup2(2, 1)  # stdout belongs to the parent
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
 def _interrupt(_: int, frame: FrameType | None) -> None:
-    """Raise KeyboardInterrupt, but in ``reply`` only: half an answer would block the pool."""
+    """Raise KeyboardInterrupt inside ``reply`` only: half a reply would block the pool."""
     while frame is not None:
         if frame.f_code is reply.__code__:
             raise KeyboardInterrupt
@@ -137,6 +117,7 @@ def _interrupt(_: int, frame: FrameType | None) -> None:
 
 
 def _end_with_parent() -> None:
+    """Wait for the parent process to end, then end this one."""
     parent = multiprocessing.parent_process()
     assert parent is not None
     parent.join()
@@ -144,7 +125,7 @@ def _end_with_parent() -> None:
 
 
 def _locked(tree: Any) -> Any:
-    """Return a tree with its arrays read-only: pickling forgets that they are."""
+    """Return a tree with its arrays read-only: pickling loses that flag."""
     if attrs.has(type(tree)):
         for field in attrs.fields(type(tree)):
             _locked(getattr(tree, field.name))

@@ -8,6 +8,7 @@ import json
 import pytest
 
 from contactlab.cli import bench, stability
+from contactlab.compose import solve
 from contactlab.compose.simulation import Simulation
 from contactlab.study import paper_figures, validation, work_precision
 from contactlab.study.bench_methods import Method
@@ -41,7 +42,7 @@ def test_bench(run, monkeypatch, tmp_path):
 
 def test_a_sweep_that_is_interrupted_within_a_study_ends_the_study(run, monkeypatch):
     """A sweep returns what is done; its time, and its gaps, are not those of the law."""
-    monkeypatch.setattr(Simulation, "_outcome", interrupting(Simulation._outcome, 0))
+    monkeypatch.setattr(solve, "outcome", interrupting(solve.outcome, 0))
     with pytest.raises(KeyboardInterrupt):
         work_precision._sweep_time(Simulation(tangential="coulomb", integrator="symplectic"))
     monkeypatch.setattr(validation, "_checks", lambda: iter([validation._rigid]))

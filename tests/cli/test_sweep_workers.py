@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from contactlab.compose.simulation import Simulation
+from contactlab.compose import solve
 
 SWEEP = ("sweep", "--psi1", "0:9:3000", "--chi", "1.4412", "--tangential", "springs")
 
@@ -76,15 +76,15 @@ def test_killed_and_resumed_it_writes_the_same_file(run, tmp_path, workers):
 
 
 def test_interrupted_it_keeps_what_is_done(run, monkeypatch, tmp_path):
-    solve, calls = Simulation._outcome, []
+    outcome, calls = solve.outcome, []
 
     def interrupted(*arguments, **keywords):
         calls.append(None)
         if len(calls) == 2:
             raise KeyboardInterrupt
-        return solve(*arguments, **keywords)
+        return outcome(*arguments, **keywords)
 
-    monkeypatch.setattr(Simulation, "_outcome", interrupted)
+    monkeypatch.setattr(solve, "outcome", interrupted)
     out = tmp_path / "a.npz"
     assert run(*SWEEP, "--out", out, "--resume").status == 130
     with np.load(out) as content:

@@ -120,7 +120,7 @@ def test_what_collide_refuses(bad):
 def test_refusals_of_what_is_meant_otherwise():
     with pytest.raises(ValueError, match=r"by name: restitution=0.95"):
         collide(meeting(), 0.95)
-    with pytest.raises(ValueError, match="make one of them all"):
+    with pytest.raises(ValueError, match="make a single Encounter"):
         collide([meeting(), meeting()])
     with pytest.raises(ValueError, match=r"collide\(encounter, simulation\)"):
         Simulation().run(meeting())

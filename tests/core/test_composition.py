@@ -78,7 +78,7 @@ def test_laws_that_do_not_fit_are_refused_naming_both_and_what_would_fit():
     with pytest.raises(ValueError, match=r"Nameless: must be derived from .*SteppedTangentialLaw"):
         Simulation(normal="hertz", tangential=Nameless(), integrator="symplectic")
     with pytest.raises(
-        ValueError, match=r"Events: runs a PhasedTangentialLaw, and tangential = Annulus is none"
+        ValueError, match=r"Events: runs a PhasedTangentialLaw, and tangential = Annulus is not one"
     ):
         Simulation(tangential="annulus", integrator="events")
 

@@ -78,7 +78,7 @@ def test_what_holds_no_sweep_is_refused_and_left_alone(tmp_path):
     simulation, folder = Simulation(**RIGID), tmp_path / "kept"
     folder.mkdir()
     (folder / "thesis.txt").write_text("mine")
-    with pytest.raises(ValueError, match="holds something else"):
+    with pytest.raises(ValueError, match="holds no sweep"):
         simulation.sweep(scene(), keep=folder)
     with pytest.raises(ValueError, match="must be the path of a folder"):
         simulation.sweep(scene(), keep=3)
@@ -104,7 +104,7 @@ def test_damaged_files_are_refused(tmp_path):
             simulation.sweep(scene(), keep=folder)
     piece.write_bytes(whole)
     piece.rename(piece.with_name("impacts-40-90.npz"))
-    with pytest.raises(ValueError, match=r"by its content.* again, or delete this file"):
+    with pytest.raises(ValueError, match=r"not those of its name.*, or delete this file"):
         simulation.sweep(scene(), keep=folder)
     (folder / "sweep.json").write_text("[")
     with pytest.raises(ValueError, match="cannot be read"):

@@ -325,8 +325,8 @@ def test_a_law_that_is_not_there_is_named(workers, monkeypatch):
 
 def test_other_versions_there_are_refused(monkeypatch):
     versions = itertools.chain([{"normal": "hertz 1"}], itertools.repeat({"normal": "hertz 2"}))
-    monkeypatch.setattr(executors, "versions", lambda _: next(versions))
-    monkeypatch.setattr(workers_module, "versions", lambda _: next(versions))
+    monkeypatch.setattr(executors, "versions", lambda *_: next(versions))
+    monkeypatch.setattr(workers_module, "versions", lambda *_: next(versions))
     with (
         ThreadPoolExecutor(1) as executor,
         pytest.raises(ValueError, match=r"hertz 2.*hertz 1.*same versions"),

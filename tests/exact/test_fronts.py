@@ -251,9 +251,9 @@ def test_fields_show_the_front(psi1):
 
 
 def test_laws_that_cannot_run_under_events_are_refused():
-    with pytest.raises(ValueError, match=r"PaperSteps: runs a Stepped.*Fronts is none"):
+    with pytest.raises(ValueError, match=r"PaperSteps: runs a Stepped.*Fronts is not one"):
         Simulation(tangential="fronts", integrator="paper")
-    with pytest.raises(ValueError, match=r"Events: runs a PhasedTangentialLaw.*Annulus is none"):
+    with pytest.raises(ValueError, match=r"Events: runs a PhasedTangentialLaw.*Annulus is not one"):
         Simulation(tangential="annulus", integrator="events")
 
 
