@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.simulation import Simulation
-from contactlab.fitting import determinacy
+from contactlab.fitting import determined
 from contactlab.fitting.bootstrap import bootstrapped
 from contactlab.fitting.diagnosis import CHANCE, Diagnosis, diagnosed
 from contactlab.fitting.measurements import Measurements, read_measurements
@@ -103,12 +103,12 @@ def fit(
     table = read_measurements(measurements).only(quantities)
     laws = simulation_of(simulation)
     problem = Problem.of(_model(table, scene, parameters, laws), table)
-    determinacy.check_enough(problem)
+    determined.check_enough(problem)
     counted = None if samples else progress
     values, *others = _solutions(problem, counted)
     told: tuple[str, ...] = ()
     slipped: list[str] = []
-    if idle := determinacy.idle(problem, values):
+    if idle := determined.idle(problem, values):
         told = (f"{', '.join(idle)}: not met, for no parameter moves it under these laws",)
         slipped, _ = slips(problem, table.given, values, problem.measured)
         table = table.only([name for name in table.measured if name not in idle])
@@ -116,11 +116,11 @@ def fit(
         values, *others = _solutions(problem)
     diagnosis = diagnosed(problem, table, values)
     try:
-        determinacy.check_scatter(problem)
-        determinacy.check_determined(problem, values)
+        determined.check_scatter(problem)
+        determined.check_determined(problem, values)
         found, reaches = _outcome(problem, table, values, diagnosis)
-        determinacy.check_precise(problem, values, reaches)
-        determinacy.check_single(problem, [values, *others])
+        determined.check_precise(problem, values, reaches)
+        determined.check_single(problem, [values, *others])
     except ValueError as error:
         said = (*slipped, *diagnosis.sentences, *_of_errors(problem, values))
         if not said:
