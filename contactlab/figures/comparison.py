@@ -103,17 +103,7 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
 
 
 def _codes(axes: Axes, comparison: Comparison, quantity: str, varied: str) -> None:
-    """Draw the series that the scene file carries, as points.
-
-    Parameters
-    ----------
-    axes : Axes
-    comparison : Comparison
-    quantity : str
-        What is drawn, up.
-    varied : str
-        What it is drawn against.
-    """
+    """Draw the series that the scene file carries, as points."""
     found = [item.measured for item in comparison.agreements]
     for number, item in enumerate(one for one in found if (one.quantity, one.against) == (
         quantity, varied

@@ -105,19 +105,7 @@ def as_svg(
 def _size(
     *, columns: int, heights: tuple[float, ...], wide: bool, width: Width | None
 ) -> tuple[float, float]:
-    """Return width and height of a figure in inches; arguments are those of ``save``.
-
-    Parameters
-    ----------
-    columns : int
-        Of axes; where the figure is narrow, they stand one below the other.
-    heights : tuple of float
-        Relative heights of the rows.
-    wide : bool
-        Whether there is a long legend.
-    width : {"one", "two"} or None
-        Columns of a page.
-    """
+    """Return width and height of a figure in inches; arguments are those of ``save``."""
     across, up = figure_size(width)
     up *= sum(heights) / max(heights)
     if width is None:
@@ -137,18 +125,7 @@ def _drawn(
     heights: tuple[float, ...],
     size: tuple[float, float],
 ) -> Figure:
-    """Return a figure that is drawn; arguments are those of ``save``.
-
-    Parameters
-    ----------
-    draw : callable
-        Takes the axes: one, or an array of them, shape (rows, columns).
-    rows, columns : int
-    heights : tuple of float
-        Relative heights of the rows.
-    size : tuple of float
-        Width and height in inches.
-    """
+    """Return a figure that is drawn; arguments are those of ``save``."""
     figure = Figure(figsize=size)
     FigureCanvasAgg(figure)
     if columns > 1 and size[0] < NARROW:
@@ -162,15 +139,7 @@ def _drawn(
 
 
 def _stacked(figure: Figure, *, rows: int, columns: int, heights: tuple[float, ...]) -> Any:
-    """Return axes, shape (rows, columns), the second column below the first and so on.
-
-    Parameters
-    ----------
-    figure : Figure
-    rows, columns : int
-    heights : tuple of float
-        Of the rows of a column, relative to each other.
-    """
+    """Return axes, shape (rows, columns), the second column below the first and so on."""
     ratios = {"height_ratios": heights * columns}
     stack = figure.subplots(rows * columns, 1, gridspec_kw=ratios, squeeze=False)
     axes = stack.reshape(columns, rows).T

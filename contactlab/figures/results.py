@@ -106,16 +106,7 @@ def _forces(axes: Axes, result: Any) -> Axes:
 
 
 def _quantities(axes: Axes, result: Any, x: str, y: str) -> Axes:
-    """Draw one quantity of a batch over another: a curve, or points where one x has several.
-
-    Parameters
-    ----------
-    axes : Axes
-    result : ImpactResult
-        Of a batch of any shape.
-    x, y : str
-        Names of quantities, across and up.
-    """
+    """Draw one quantity of a batch over another: a curve, or points where one x has several."""
     scene = result.scene
     across, up = (quantity_named(name, where=where) for name, where in ((x, "x"), (y, "y")))
     abscissa, ordinate = (quantity.of(result).ravel() for quantity in (across, up))
@@ -135,17 +126,7 @@ def _quantities(axes: Axes, result: Any, x: str, y: str) -> Axes:
 
 
 def _band(axes: Axes, result: Any, x: Any, y: Any, order: Any) -> None:
-    """Draw the numerical error of psi2, estimated or else declared, where it can be seen.
-
-    Parameters
-    ----------
-    axes : Axes
-    result : ImpactResult
-    x, y : array, shape (impacts,)
-        psi1 or another quantity in its own unit, and psi2.
-    order : array of int, shape (impacts,)
-        Which sorts x.
-    """
+    """Draw the numerical error of psi2, estimated or else declared, where it can be seen."""
     error: Any = result.psi2_error_estimate
     if error is None:
         error = result.plan.psi2_error

@@ -99,14 +99,7 @@ def draw_stability(
 
 
 def _fill(panels: Any, regions: Any, laws: Sequence[str], integrators: Sequence[str]) -> None:
-    """Draw the panels.
-
-    Parameters
-    ----------
-    panels : array of Axes, shape (laws, integrators)
-    regions : mapping of (law, integrator) to Region
-    laws, integrators : sequence of str
-    """
+    """Draw the panels."""
     lowest = {name: law for law in laws for name in integrators if (law, name) in regions}
     for row, law in enumerate(laws):
         for column, integrator in enumerate(integrators):

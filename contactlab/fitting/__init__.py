@@ -1,4 +1,4 @@
-"""Parameters of laws and scenes from measured impacts: estimates, intervals, ranking of laws."""
+"""Fits of laws and scenes to measured impacts: estimates, intervals, ranking of laws."""
 
 from contactlab.fitting.estimation import fit
 from contactlab.fitting.measurements import (

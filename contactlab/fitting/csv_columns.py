@@ -57,13 +57,7 @@ class Heading(NamedTuple):
 
 
 def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
-    """Return the role, the name and the factor of a column.
-
-    Raises
-    ------
-    ValueError
-        If the name is unknown, with the nearest; or if the unit is missing or not convertible.
-    """
+    """Return the role, the name and the factor of a column."""
     alias = columns.get(text.strip(), text)
     if alias.lstrip().startswith("#") or not alias.strip():
         return Heading("unused", text)
@@ -119,13 +113,7 @@ def _factor(text: str, name: str, unit: str, own: str) -> float:
 
 
 def read_text(path: Path) -> str:
-    """Return the text of a CSV file in whichever encoding it has.
-
-    Raises
-    ------
-    ValueError
-        If there is no such file, or it holds no text.
-    """
+    """Return the text of a CSV file in whichever encoding it has."""
     remedy = "give the path of a CSV of impacts"
     coded = content(path, kind="a table of impacts", remedy=remedy)
     for encoding in ENCODINGS:
@@ -143,11 +131,6 @@ def read_columns(text: str, names: Mapping[str, str]) -> dict[str, list[float]]:
 
     Columns are separated by commas; or by semicolons or tabs, and then a number may have a
     decimal comma.
-
-    Raises
-    ------
-    ValueError
-        For a table without rows, a bad heading or a bad number, with its line.
     """
     headings, rows, decimal_comma = _rows(text)
     if len(set(headings)) < len(headings):

@@ -54,10 +54,6 @@ def check_scatter(problem: Problem) -> None:
 
     The parameters can meet as many numbers exactly. The residuals would then be zero, and with
     them the estimated error that weights the quantity beside the others.
-
-    Raises
-    ------
-    ValueError
     """
     if len(problem.measured) == 1:
         return
@@ -85,13 +81,7 @@ def idle(problem: Problem, values: Array) -> list[str]:
 
 
 def check_determined(problem: Problem, values: Array) -> None:
-    """Refuse parameters without effect on the measured numbers, or with indistinguishable effects.
-
-    Raises
-    ------
-    ValueError
-        With names of the parameters, and a measurement that would determine them.
-    """
+    """Refuse parameters without effect, or with indistinguishable effects, on the data."""
     parameters = problem.model.parameters
     effects = problem.linearised(values, problem.sizes())[1] * _sizes(parameters, values)
     lengths = np.sqrt(np.sum(effects**2, axis=0) / len(effects))
@@ -110,19 +100,7 @@ def check_determined(problem: Problem, values: Array) -> None:
 
 
 def check_precise(problem: Problem, values: Array, reaches: Array) -> None:
-    """Refuse parameters whose interval is too wide beside their range or value.
-
-    Parameters
-    ----------
-    problem : Problem
-    values, reaches : array, shape (parameters,)
-        Best values, and half-widths of their 95 % intervals; NaN without an interval.
-
-    Raises
-    ------
-    ValueError
-        With the name of the parameter, and a measurement that would determine it.
-    """
+    """Refuse parameters whose interval is too wide beside their range or value."""
     for place, parameter in enumerate(problem.model.parameters):
         value, reach = float(values[place]), float(reaches[place])
         allowed = VAGUE_IN_RANGE * parameter.width
@@ -136,19 +114,7 @@ def check_precise(problem: Problem, values: Array, reaches: Array) -> None:
 
 
 def check_single(problem: Problem, minima: list[Array]) -> None:
-    """Refuse data that two sets of parameter values meet about equally well.
-
-    Parameters
-    ----------
-    problem : Problem
-    minima : list of array
-        Values of the parameters at each minimum, the best first.
-
-    Raises
-    ------
-    ValueError
-        With both sets, and a measurement that would distinguish them.
-    """
+    """Refuse data that two sets of parameter values meet about equally well."""
     for second in minima[1:]:
         if problem.criterion(second) - problem.criterion(minima[0]) < CLOSE:
             both = " and ".join(

@@ -216,10 +216,10 @@ def _from_scene_file(file: SceneFile) -> Measurements:
 
 
 def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
-    """Return a scene file with the impacts of a table in the place of its measured values.
+    """Return a scene file whose measured series are the columns of a table.
 
-    They are compared at the angles (or whatever else varies) of the table, and at what the scene
-    says of the rest, such as its speed.
+    The one column that varies, such as the angle, is the abscissa. The scene provides all other
+    entries, such as the speed.
 
     Raises
     ------
@@ -230,8 +230,8 @@ def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
         raise ValueError(f"{file.path}: needs a [sweep] to draw measured values beside")
     moving = [name for name, values in table.given.items() if not _constant(values)]
     if len(moving) != 1:
-        told = f"these vary by more than {SAME:.0%}: {', '.join(moving) or 'none'}"
-        raise ValueError(f"{table.source}: one column must vary, such as angle_deg; {told}")
+        varying = f"these vary by more than {SAME:.0%}: {', '.join(moving) or 'none'}"
+        raise ValueError(f"{table.source}: one column must vary, such as angle_deg; {varying}")
     _check_speed(file, table)
     x = table.given[moving[0]]
     return attrs.evolve(
@@ -244,42 +244,33 @@ def _constant(values: Array) -> bool:
 
 
 def _check_speed(file: SceneFile, table: Measurements) -> None:
-    """Refuse a scene whose speed is not that of the measurement."""
+    """Refuse a scene at another speed than the measurement."""
     scene = file.scene
     own = {
         "speed": np.hypot(scene.normal_speed, scene.tangential_velocity),
         "normal_speed": np.asarray(scene.normal_speed),
     }
     for name in own.keys() & table.given.keys() - file.varied.keys():
-        there, here = float(np.mean(table.given[name])), float(np.mean(own[name]))
-        if abs(there - here) > SAME * there:
+        measured, in_scene = float(np.mean(table.given[name])), float(np.mean(own[name]))
+        if abs(measured - in_scene) > SAME * measured:
             raise ValueError(
-                f"{table.source}: {name} is {there:.4g} m/s, and {here:.4g} m/s in {file.path}; "
-                "write that of the measurement there"
+                f"{table.source}: {name} is {measured:.4g} m/s, and {in_scene:.4g} m/s in "
+                f"{file.path}; write the measured one in the scene"
             )
 
 
 def _series(table: Measurements, quantity: str, against: str, x: Array) -> Measured:
-    """Return the numbers of one quantity that were measured.
-
-    Parameters
-    ----------
-    table : Measurements
-    quantity, against : str
-        What was measured, and the entry of the scene that varied.
-    x : array, shape (n,)
-        Of that entry.
-    """
+    """Return the measured numbers of one quantity over the entry ``against``."""
     values = table.measured[quantity]
-    there = np.isfinite(values)
+    present = np.isfinite(values)
     errors = table.errors.get(quantity, np.zeros(len(values)))
     return Measured(
         quantity=quantity,
         against=against,
-        x=x[there],
-        values=values[there],
-        x_error=np.zeros(int(there.sum())),
-        error=errors[there],
+        x=x[present],
+        values=values[present],
+        x_error=np.zeros(int(present.sum())),
+        error=errors[present],
         label="measured",
         source=table.source or "the data",
     )
