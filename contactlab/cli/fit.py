@@ -68,6 +68,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="SAMPLES",
         help=f"samples of the bootstrap of the first law (default {SAMPLES}; 0 for none)",
     )
+    parser.add_argument(
+        "--column",
+        type=_column,
+        action="append",
+        default=[],
+        metavar="HEADING=NAME",
+        help="name a column of the CSV: 'impact angle [deg]=incidence_angle'; 'remark=#' leaves "
+        "it unread; may be repeated",
+    )
     shared.add_figure(parser, "draw measured values, laws and residuals")
     parser.add_argument(
         "--csv", type=shared.file_of(".csv"), metavar="FILE.csv", help="write the residuals"
@@ -76,13 +85,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     shared.add_progress(parser)
 
 
+def _column(text: str) -> tuple[str, str]:
+    """Return the heading and the name in ``"impact angle [deg]=incidence_angle"``."""
+    heading, _, name = text.rpartition("=")
+    if not heading.strip() or not name.strip():
+        raise argparse.ArgumentTypeError(f"{text!r}: write HEADING=NAME")
+    return heading.strip(), name.strip()
+
+
 def execute(arguments: argparse.Namespace) -> int:
     """Fit and report; 1 if one of several laws could not be fitted."""
     whole("--bootstrap", arguments.bootstrap, least=0, most=100_000)
     for number, name in enumerate(arguments.files, start=1):
         distinct({f"FILE {number}": name, "--csv": arguments.csv, "--figure": arguments.figure})
     data, path = _files(arguments.files)
-    impacts = read_measurements(data)
+    impacts = read_measurements(data, columns=dict(arguments.column))
     defaults = {"friction_coefficient": SOME_FRICTION}
     file = read_scene(path, entries=impacts.given, defaults=defaults)
     simulations = _simulations(arguments, file)

@@ -1,4 +1,4 @@
-"""Figures: one function each, which takes data and Axes and returns the Axes.
+"""Figures: each function takes Axes and data, and returns the Axes.
 
-Nothing here chooses a backend or opens a window; that is the caller's business.
+The functions choose no backend and open no window; the caller does.
 """

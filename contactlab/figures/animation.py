@@ -28,24 +28,24 @@ from contactlab.outcome.columns import scaled_forces
 from contactlab.outcome.files import written
 from contactlab.outcome.result import ImpactResult
 
-#: Frames before, during and after contact, and how long each is shown, in ms.
+#: Frames before, during and after contact, and the duration of a frame, in ms.
 ARRIVING, IN_CONTACT, LEAVING = 14, 72, 22
 FRAME_TIME = 60
-#: How far the sphere flies before contact, in radii of its own.
+#: Length of the flight before and after contact, in radii of the sphere.
 FLIGHT = 2.2
-#: Inches, dots an inch: 960 by 480 dots.
+#: Size in inches, and dots per inch: 960 by 480 dots.
 SIZE, DOTS = (9.6, 4.8), 100
-#: A legend beside axes of a fixed shape finds its place within the picture in so many passes.
+#: Layout passes after which a legend beside axes of a fixed shape lies within the picture.
 LAYOUT_PASSES = 3
 #: Dots along the side of the picture of the contact.
 DISC = 160
 SPOKES = 4
-#: Of a frame: with so many, the file is small, and the edges of letters are smooth.
+#: Colours of a frame: enough for smooth edges of letters, few enough for a small file.
 COLOURS = 32
 
 
 class Frame(NamedTuple):
-    """What one frame shows.
+    """The content of one frame.
 
     Attributes
     ----------
@@ -71,8 +71,8 @@ def animate(
     ----------
     path : str or Path
     result : ImpactResult
-        Of one impact, ``run(scene, history="fields")``. The sphere is drawn where the scene has
-        one, the contact from above where the law gives the fields ``radius``, ``stuck``
+        Result of one impact, ``run(scene, history="fields")``. The sphere is drawn if the scene
+        has a sphere; the contact from above if the history has the fields ``radius``, ``stuck``
         and ``slipping``.
     progress : callable, optional
         Called as ``progress(done, total)`` after each frame.
@@ -80,7 +80,7 @@ def animate(
     Raises
     ------
     KeyboardInterrupt
-        On Ctrl-C, after the frames that are done have been written.
+        On Ctrl-C, after the finished frames have been written.
     ValueError
         If the result has no history of a single impact.
     """
@@ -92,7 +92,7 @@ def animate(
             "must have the history of a single impact",
             "run(scene, history='fields')",
         )
-    from PIL import Image  # matplotlib needs it, so it is there
+    from PIL import Image  # a requirement of matplotlib
 
     adaptive = Image.Palette.ADAPTIVE
     pictures: list[Image.Image] = []
@@ -125,11 +125,11 @@ def _frames(
     assert result.history is not None
     with styled():
         figure = Figure(figsize=SIZE, dpi=DOTS)
-        canvas: Any = FigureCanvasAgg(figure)  # matplotlib leaves its drawing untyped
+        canvas: Any = FigureCanvasAgg(figure)  # untyped in matplotlib
         panels = _panels(figure, result)
         for _ in range(LAYOUT_PASSES):
             canvas.draw()
-        figure.set_layout_engine("none")  # laid out once, not in every frame
+        figure.set_layout_engine("none")  # no layout in later frames
         sequence = _sequence(result)
         for done, frame in enumerate(sequence, start=1):
             for panel in panels:
@@ -141,6 +141,7 @@ def _frames(
 
 
 def _sequence(result: ImpactResult) -> list[Frame]:
+    """Return the frames in their order."""
     assert result.history is not None
     last = len(result.history.time) - 1
     if result.scene.sphere is None:
@@ -158,10 +159,12 @@ def _sequence(result: ImpactResult) -> list[Frame]:
 
 
 def _spin(spin: Any) -> str:
+    """Return a spin in words, in rad/s."""
     return f"{float(spin) + 0.0:.3g} rad/s".replace("-", "\N{MINUS SIGN}")
 
 
 def _seconds(duration: float, result: ImpactResult) -> str:
+    """Return a duration in words, in a readable unit; scaled without bodies."""
     if result.scene.sphere is None:
         return f"T = {duration:.4g}"
     for factor, unit in ((1.0, "s"), (1e3, "ms"), (1e6, "µs"), (1e9, "ns")):
@@ -171,25 +174,26 @@ def _seconds(duration: float, result: ImpactResult) -> str:
 
 
 def _panels(figure: Figure, result: ImpactResult) -> list[Any]:
-    """Return the panels that there is something to show in."""
+    """Return the panels for which scene and history have data."""
     assert result.history is not None
-    sphere = result.scene.sphere is not None
-    disc = {"radius", "stuck", "slipping"} <= set(result.history.fields)
-    columns = figure.add_gridspec(1, 1 + sphere, width_ratios=[1.15, 1.0][: 1 + sphere])
-    right = columns[0, sphere].subgridspec(1 + disc, 1, height_ratios=[1.0, 1.15][: 1 + disc])
+    has_sphere = result.scene.sphere is not None
+    has_disc = {"radius", "stuck", "slipping"} <= set(result.history.fields)
+    columns = figure.add_gridspec(1, 1 + has_sphere, width_ratios=[1.15, 1.0][: 1 + has_sphere])
+    ratios = [1.0, 1.15][: 1 + has_disc]
+    right = columns[0, has_sphere].subgridspec(1 + has_disc, 1, height_ratios=ratios)
     panels: list[Any] = [Forces(figure.add_subplot(right[0]), result)]
-    if disc:
+    if has_disc:
         panels.append(Disc(figure.add_subplot(right[1]), result))
-    if sphere:
+    if has_sphere:
         panels.append(Ball(figure.add_subplot(columns[0, 0]), result))
     return panels
 
 
 class Ball:
-    """The sphere: its path before and after, and how it spins.
+    """The sphere: its path before, during and after contact, and its spin.
 
-    Lengths are radii, in flight and in contact: a soft ball is seen to roll on, to give way and to
-    turn back while it touches, and a hard one is not.
+    Lengths are in radii. Motion in contact is to the same scale as flight, so that only a soft
+    ball visibly moves and turns while it touches.
     """
 
     def __init__(self, axes: Axes, result: ImpactResult) -> None:
@@ -226,14 +230,14 @@ class Ball:
         """Show one frame."""
         leaving = int(frame.flight > 0.0)
         x, y = self.place[frame.instant] + self.velocity[leaving] * frame.flight
-        # positive spin adds to the tangential velocity at the contact, below the centre:
-        # seen from here, with the tangential velocity to the right, it turns anticlockwise
+        # Positive spin adds to the tangential velocity at the contact, below the centre. With the
+        # tangential velocity to the right, the sphere turns anticlockwise.
         angle = self.turned[frame.instant] + self.spin[leaving] * frame.flight
         self.circle.center = (float(x), 1.0 + float(y))
         for number, mark in enumerate(self.marks):
-            at = angle + 2.0 * math.pi * number / SPOKES
+            spoke = angle + 2.0 * math.pi * number / SPOKES
             reach = np.array([0.25, 0.95 if number == 0 else 0.6])
-            mark.set_data(x + reach * math.cos(at), 1.0 + y + reach * math.sin(at))
+            mark.set_data(x + reach * math.cos(spoke), 1.0 + y + reach * math.sin(spoke))
             mark.set_linewidth(2.2 if number == 0 else 1.0)
         self.words.set_text(frame.words)
 
@@ -241,16 +245,16 @@ class Ball:
 def in_contact(
     result: ImpactResult,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return where the centre of the sphere is during contact, and how far the sphere has turned.
+    """Return the place of the centre, in radii, and the angle of the sphere during contact, in rad.
 
-    Velocity and spin change in proportion to the slip velocity, both by the impulse of friction.
+    The impulse of friction changes velocity and spin in proportion to the slip velocity.
 
     Returns
     -------
     place : array, shape (K, 2)
-        From the centre at first touch, in radii: along the surface, and away from it.
+        Displacement since first touch, in radii: along the surface, and away from the surface.
     turned : array, shape (K,)
-        Angle since first touch, in rad; sign of the spin.
+        Angle since first touch, in rad, with the sign of the spin.
     """
     history, scene = result.history, result.scene
     assert history is not None
@@ -268,7 +272,7 @@ def in_contact(
 
 
 class Forces:
-    """The tangential force over time inside friction's limit, drawn up to the instant."""
+    """The tangential force over time, up to the instant of the frame, with the friction limit."""
 
     def __init__(self, axes: Axes, result: ImpactResult) -> None:
         self.time, self.tangential, normal = scaled_forces(result)
@@ -290,7 +294,7 @@ class Forces:
 
 
 class Disc:
-    """The contact seen from above: what sticks, what slips and which way."""
+    """The contact seen from above: stick, and slip forward or backward."""
 
     def __init__(self, axes: Axes, result: ImpactResult) -> None:
         history = result.history

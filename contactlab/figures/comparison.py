@@ -1,4 +1,4 @@
-"""Laws side by side: the answers above, what parts them below."""
+"""Laws side by side: quantities above, differences below."""
 
 from __future__ import annotations
 
@@ -32,29 +32,27 @@ POINTS: dict[str, Any] = {
     "zorder": 5,
 }  # fmt: skip
 
-
-#: Laws this close to the first, over the range drawn, would lie within its line: they are named
-#: with it.
+#: A law within this share of the range from the first law is named beside the first, not drawn.
 AS_GOOD_AS = 0.01
 FORM_DASHES: tuple[Any, ...] = ("-", (0, (6, 1.5)), (0, (2.5, 1.2)), (0, (1, 1)))
 MARKERS = "os^Dv"
-#: What points without error bars take of the look of measured ones.
+#: Entries of ``POINTS`` that points without error bars share.
 CODE_LOOK = ("color", "linestyle", "markersize", "markerfacecolor", "markeredgewidth", "zorder")
 
 
 def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) -> tuple[Axes, Axes]:
-    """Draw many laws: the first thick, above; below what the others are off by.
+    """Draw many laws above, the first thick; below, differences from the first law.
 
-    Laws that agree with the first are named with it; those that make no force are left out.
-    Forms of one law share its colour. Bands are numerical errors.
+    Laws that agree with the first are named beside the first; laws without force are left out.
+    Forms of one law share a colour. Bands are numerical errors.
 
     Parameters
     ----------
     upper, lower : Axes
-        Of the curves and of the differences.
+        Axes of the curves, and of the differences.
     comparison : Comparison
     quantity : str
-        Name of what is compared, such as ``"psi2"``.
+        Name of a quantity, such as ``"psi2"``.
     """
     varied, x, ordered = _abscissa(comparison, None)
     first, *others = comparison.names
@@ -63,16 +61,16 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
     drawn: list[str] = []
     close: list[str] = []
     for name in others:
-        off = np.abs(comparison.difference(quantity, name))
+        difference = np.abs(comparison.difference(quantity, name))
         if (np.nan_to_num(comparison.values("psi2", name) - comparison.scene.psi1) == 0.0).all():
             continue
-        (close if np.nanmax(off) < AS_GOOD_AS * size else drawn).append(name)
+        (close if np.nanmax(difference) < AS_GOOD_AS * size else drawn).append(name)
     drawn.sort(key=lambda name: -float(np.nanmax(np.abs(comparison.difference(quantity, name)))))
     families = list(dict.fromkeys(name.split()[0] for name in sorted(drawn)))
-    known = f"{first}, the reference"
+    words = f"{first}, the reference"
     if close:
-        known += "; on its line:\n" + ",\n".join(close)
-    upper.plot(x, ordered(exact), color="black", linewidth=3.2, label=verbatim(known), zorder=4)
+        words += "; on its line:\n" + ",\n".join(close)
+    upper.plot(x, ordered(exact), color="black", linewidth=3.2, label=verbatim(words), zorder=4)
     for axes in (upper, lower):
         zero_line(axes)
     forms: dict[str, int] = {}
@@ -85,11 +83,11 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
             "linewidth": 1.6,
         }
         values = ordered(comparison.values(quantity, name))
-        apart = ordered(comparison.difference(quantity, name))
+        difference = ordered(comparison.difference(quantity, name))
         half = ordered(comparison.band(quantity, name))
         upper.plot(x, values, label=verbatim(name), zorder=3, **look)
-        lower.plot(x, apart, **look)
-        for axes, middle in ((upper, values), (lower, apart)):
+        lower.plot(x, difference, **look)
+        for axes, middle in ((upper, values), (lower, difference)):
             error_band(axes, x, middle, half, look)
     _codes(upper, comparison, quantity, varied)
     upper.set_ylabel(label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
@@ -103,21 +101,10 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
 
 
 def _codes(axes: Axes, comparison: Comparison, quantity: str, varied: str) -> None:
-    """Draw the series that the scene file carries, as points.
-
-    Parameters
-    ----------
-    axes : Axes
-    comparison : Comparison
-    quantity : str
-        What is drawn, up.
-    varied : str
-        What it is drawn against.
-    """
-    found = [item.measured for item in comparison.agreements]
-    for number, item in enumerate(one for one in found if (one.quantity, one.against) == (
-        quantity, varied
-    )):  # fmt: skip
+    """Draw the measured series of the scene file as points."""
+    series = [item.measured for item in comparison.agreements]
+    drawn = [item for item in series if (item.quantity, item.against) == (quantity, varied)]
+    for number, item in enumerate(drawn):
         look = {key: POINTS[key] for key in CODE_LOOK} | {"marker": MARKERS[number % len(MARKERS)]}
         axes.plot(item.x, item.values, label=verbatim(item.label), **look)
 
@@ -125,20 +112,20 @@ def _codes(axes: Axes, comparison: Comparison, quantity: str, varied: str) -> No
 def laws_over_sweep(
     axes: Axes, comparison: Comparison, quantity: str, agreement: Agreement | None = None
 ) -> Axes:
-    """Draw a quantity over the sweep, one curve a law, with measured points if there are any.
+    """Draw a quantity over the sweep, a curve for each law, with any measured points.
 
-    A sweep of every combination of several entries is drawn over the one of most values, with a
-    curve for each combination of the others, which the title names.
+    The abscissa of a grid of several entries is the entry with most values. Each combination of
+    the other entries has a curve; the title names these entries.
 
     Parameters
     ----------
     axes : Axes
     comparison : Comparison
-        Of a sweep.
+        Comparison of a sweep.
     quantity : str
-        By its name in ``contactlab.outcome.quantities``.
+        Name of a column in ``contactlab.outcome.columns``.
     agreement : Agreement, optional
-        With measured values, drawn too.
+        Agreement with measured values, which are drawn too.
     """
     varied, x, ordered = _abscissa(comparison, agreement)
     for number, name in enumerate(comparison.names):
@@ -160,9 +147,9 @@ def laws_over_sweep(
         )
     axes.set_xlabel(label(varied, entry_unit(varied)))
     axes.set_ylabel(label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
-    others = [name for name in _axes(comparison) if name != varied]
-    if others and varied in _axes(comparison):
-        axes.set_title(f"a curve for each {' and '.join(map(verbatim, others))}")
+    parted = [name for name in _axes(comparison) if name != varied]
+    if parted and varied in _axes(comparison):
+        axes.set_title(f"a curve for each {' and '.join(map(verbatim, parted))}")
     axes.legend()
     return axes
 
@@ -170,17 +157,17 @@ def laws_over_sweep(
 def differences(
     axes: Axes, comparison: Comparison, quantity: str, agreement: Agreement | None = None
 ) -> Axes:
-    """Draw each law less the measured values, or, where there are none, less the first law.
+    """Draw the differences of laws from measured values, or without these from the first law.
 
     Parameters
     ----------
     axes : Axes
     comparison : Comparison
-        Of a sweep.
+        Comparison of a sweep.
     quantity : str
-        By its name in ``contactlab.outcome.quantities``.
+        Name of a column in ``contactlab.outcome.columns``.
     agreement : Agreement, optional
-        With measured values, drawn too.
+        Agreement with measured values, which are drawn too.
     """
     varied, x, ordered = _abscissa(comparison, agreement)
     zero_line(axes)
@@ -200,13 +187,13 @@ def differences(
         elif number:
             axes.plot(x, ordered(comparison.difference(quantity, name)), **style)
     axes.set_xlabel(label(varied, entry_unit(varied)))
-    other = "measured" if agreement is not None else names[0]
-    axes.set_ylabel(label(f"law $-$ {other}", QUANTITIES[quantity].unit_in(comparison.scene)))
+    reference = "measured" if agreement is not None else names[0]
+    axes.set_ylabel(label(f"law $-$ {reference}", QUANTITIES[quantity].unit_in(comparison.scene)))
     return axes
 
 
 def forces_over_contact(axes: Axes, comparison: Comparison) -> Axes:
-    """Draw the tangential force of each law over one impact, inside the limit of friction."""
+    """Draw the tangential force of each law over one impact, with the friction limit."""
     zero_line(axes)
     drawn = False
     for number, run in enumerate(comparison.runs):
@@ -224,7 +211,7 @@ def forces_over_contact(axes: Axes, comparison: Comparison) -> Axes:
 
 
 def _axes(comparison: Comparison) -> Mapping[str, Any]:
-    """Return the entries that vary independently, where there are several."""
+    """Return the axes of a grid of several entries; empty for other sweeps."""
     scene = comparison.scene
     return scene.axes if len(scene.axes) > 1 else {}
 
@@ -232,16 +219,16 @@ def _axes(comparison: Comparison) -> Mapping[str, Any]:
 def _abscissa(
     comparison: Comparison, agreement: Agreement | None
 ) -> tuple[str, Any, Callable[[Any], Any]]:
-    """Return the name and the values to draw against, and what brings a quantity in their order.
+    """Return name and values of the abscissa, and a function that orders a quantity alike.
 
-    That is what the measurement varied; or else the sweep's first entry, or of several that vary
-    independently the one of most values. Over these, NaN parts one curve from the next.
+    The abscissa is the measured entry, else the axis of a grid with most values, else the first
+    entry of the sweep. NaN separates the curves of a grid.
     """
     several = _axes(comparison)
     if agreement is not None:
         name = agreement.measured.against
     elif several:
-        name = max(several, key=lambda one: len(several[one]))
+        name = max(several, key=lambda entry: len(several[entry]))
     else:
         name = next(iter(comparison.varied))
     if name not in comparison.varied:

@@ -1,4 +1,4 @@
-"""Figures as files, drawn without a window."""
+"""Picture files, drawn without a window."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from contactlab.figures.style import NARROW, RESOLUTION, Look, Width, figure_siz
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 
-#: Form of picture by the end of the file's name.
+#: Format of a picture by the suffix of its file.
 FORMATS = {".png": "png", ".pdf": "pdf", ".svg": "svg"}
-#: Nothing that differs from run to run goes into a file.
+#: Metadata without dates, so that equal figures make equal files.
 METADATA: dict[str, dict[str, Any]] = {
     "png": {},
     "pdf": {"CreationDate": None},
     "svg": {"Date": None},
 }
-#: The same names in an SVG every time; TrueType in a PDF, as journals refuse matplotlib's Type 3.
+#: Constant identifiers in an SVG; TrueType in a PDF, as journals refuse matplotlib's Type 3.
 WRITING: Any = {"svg.hashsalt": "contactlab", "pdf.fonttype": 42}
 
 
 @attrs.frozen
 class Picture:
-    """A picture in a file, which a notebook shows where it is the value of a cell.
+    """A picture file; a notebook shows the picture as the value of a cell.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Picture:
         return self.path.read_text("utf-8") if self.path.suffix.lower() == ".svg" else None
 
 
-#: Heights over those of a figure with one panel and a short legend.
+#: Factors on the height of a figure with one panel and a short legend.
 NARROWER, LEGEND_BESIDE, LEGEND_BELOW = 0.8, 1.25, 1.9
 
 
@@ -61,26 +61,26 @@ def save(
     look: Look = "print",
     width: Width | None = None,
 ) -> Picture:
-    """Draw on one Axes, or on an array of them, write a picture and return it.
+    """Draw on one Axes or an array of Axes, write the picture, and return it.
 
-    The canvas is made here, without pyplot: no backend is chosen for the process, nothing
-    stays open, and a display is not needed.
+    The canvas is made without pyplot: the process keeps its backend, no figure stays open, and no
+    display is needed.
 
     Parameters
     ----------
     path : Path
-        Its end says the form: see ``FORMATS``.
+        The suffix selects the format: see ``FORMATS``.
     draw : callable
-        Given the Axes, or an array of them of shape (rows, columns).
+        Function of the Axes, or of an array of Axes of shape (rows, columns).
     rows, columns : int
     heights : tuple of float
         Heights of the rows, relative to each other.
     wide : bool
-        Whether there is a long legend.
+        True for a long legend.
     look : {"print", "slides"}
-        Of a page or of a screen: see ``contactlab.figures.style``.
+        Look of a page, or of a screen: see ``contactlab.figures.style``.
     width : {"one", "two"}, optional
-        Columns of a page that the picture fills, in the size it is printed at.
+        Columns of a page that the picture fills, at the size of print.
     """
     size = _size(columns=columns, heights=heights, wide=wide, width=width)
     with styled(look, width):
@@ -92,7 +92,7 @@ def save(
 def as_svg(
     draw: Callable[[Any], object], *, rows: int = 1, heights: tuple[float, ...] = (1.0,)
 ) -> str:
-    """Return a picture as SVG that can stand within a page; arguments are those of ``save``."""
+    """Return a picture as an SVG element for a page; arguments are those of ``save``."""
     text = io.StringIO()
     with styled(), mpl.rc_context({"svg.hashsalt": "contactlab"}):
         size = _size(columns=1, heights=heights, wide=False, width=None)
@@ -105,19 +105,7 @@ def as_svg(
 def _size(
     *, columns: int, heights: tuple[float, ...], wide: bool, width: Width | None
 ) -> tuple[float, float]:
-    """Return width and height of a figure in inches; arguments are those of ``save``.
-
-    Parameters
-    ----------
-    columns : int
-        Of axes; where the figure is narrow, they stand one below the other.
-    heights : tuple of float
-        Relative heights of the rows.
-    wide : bool
-        Whether there is a long legend.
-    width : {"one", "two"} or None
-        Columns of a page.
-    """
+    """Return width and height of a figure in inches; arguments are those of ``save``."""
     across, up = figure_size(width)
     up *= sum(heights) / max(heights)
     if width is None:
@@ -137,18 +125,7 @@ def _drawn(
     heights: tuple[float, ...],
     size: tuple[float, float],
 ) -> Figure:
-    """Return a figure that is drawn; arguments are those of ``save``.
-
-    Parameters
-    ----------
-    draw : callable
-        Takes the axes: one, or an array of them, shape (rows, columns).
-    rows, columns : int
-    heights : tuple of float
-        Relative heights of the rows.
-    size : tuple of float
-        Width and height in inches.
-    """
+    """Return a drawn figure; ``size`` is in inches, other arguments are those of ``save``."""
     figure = Figure(figsize=size)
     FigureCanvasAgg(figure)
     if columns > 1 and size[0] < NARROW:
@@ -162,15 +139,7 @@ def _drawn(
 
 
 def _stacked(figure: Figure, *, rows: int, columns: int, heights: tuple[float, ...]) -> Any:
-    """Return axes, shape (rows, columns), the second column below the first and so on.
-
-    Parameters
-    ----------
-    figure : Figure
-    rows, columns : int
-    heights : tuple of float
-        Of the rows of a column, relative to each other.
-    """
+    """Return axes, shape (rows, columns), with each column below the column before."""
     ratios = {"height_ratios": heights * columns}
     stack = figure.subplots(rows * columns, 1, gridspec_kw=ratios, squeeze=False)
     axes = stack.reshape(columns, rows).T
@@ -183,12 +152,12 @@ def _stacked(figure: Figure, *, rows: int, columns: int, heights: tuple[float, .
 
 
 def save_figure(figure: Figure, path: str | Path, **options: Any) -> None:
-    """Write a figure, whole or not at all; options are those of ``savefig``.
+    """Write a figure to a temporary file, then rename; options are those of ``savefig``.
 
     Raises
     ------
     ValueError
-        If the name does not end in one of ``FORMATS``.
+        If the suffix is not in ``FORMATS``.
     """
     form = FORMATS.get(Path(path).suffix.lower())
     if form is None:

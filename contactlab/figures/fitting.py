@@ -1,4 +1,4 @@
-"""Fits: measured values and laws above, residuals below."""
+"""Figures of fits: measured values and laws above, residuals below."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MARKERS = "os^Dv<"
 
 
 def draw_fits(path: Path, fits: Mapping[str, Fit], **look: Any) -> None:
-    """Draw every quantity that was measured in a column of its own, and write a picture.
+    """Draw each measured quantity in a column of panels, and write a picture.
 
     Options ``look`` and ``width`` are those of ``contactlab.figures.files.save``.
     """
@@ -31,25 +31,25 @@ def draw_fits(path: Path, fits: Mapping[str, Fit], **look: Any) -> None:
             measured_and_laws(axes[0, column], fits, name)
             residuals(axes[1, column], fits, name)
             axes[0, column].set_xlabel("")
-            axes[0, column].get_legend().remove()  # the same laws in the same colours
-        known = axes[0, 0].get_legend_handles_labels()
-        axes[0, 0].figure.legend(*known, loc="outside upper left", ncols=len(names))
+            axes[0, column].get_legend().remove()  # one legend serves all panels
+        entries = axes[0, 0].get_legend_handles_labels()
+        axes[0, 0].figure.legend(*entries, loc="outside upper left", ncols=len(names))
         axes[0, 0].figure.align_ylabels()
 
     save(path, draw, rows=2, columns=len(names), heights=(2.0, 1.0), **look)
 
 
 def measured_and_laws(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axes:
-    """Draw measured values of a quantity with their errors, and what each law says there."""
+    """Draw measured values of a quantity with their errors, and the predictions of each law."""
     first = next(iter(fits.values()))
     x, words = _abscissa(first)
     measured = first.measurements.measured[quantity]
-    for number, (name, one) in enumerate(fits.items()):
+    for number, (name, fit) in enumerate(fits.items()):
         look = law_style(number) | {"marker": MARKERS[number % 6], "markersize": 3.0}
-        there = np.isfinite(measured)
-        law = one.predicted[quantity][there]
-        axes.plot(*_means(x[there], law), label=_legend(name, one), markevery=[], **look)
-        axes.plot(x[there], law, **(look | {"linestyle": "none"}))
+        present = np.isfinite(measured)
+        law = fit.predicted[quantity][present]
+        axes.plot(*_means(x[present], law), label=_legend(name, fit), markevery=[], **look)
+        axes.plot(x[present], law, **(look | {"linestyle": "none"}))
     errors = first.measurements.errors.get(quantity)
     axes.errorbar(x, measured, yerr=errors, label="measured", **POINTS)
     axes.set_xlabel(words)
@@ -59,21 +59,21 @@ def measured_and_laws(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axe
 
 
 def _means(x: Any, values: Any) -> tuple[Any, Any]:
-    """Return the means of what has the same abscissa: a repeat is no step of the law's curve."""
-    places, which = np.unique(x, return_inverse=True)
-    return places, np.bincount(which, values) / np.bincount(which)
+    """Return the distinct abscissas and the mean value at each, so that a curve has no steps."""
+    distinct, place = np.unique(x, return_inverse=True)
+    return distinct, np.bincount(place, values) / np.bincount(place)
 
 
 def residuals(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axes:
-    """Draw measured less predicted of each law."""
+    """Draw the residuals, measured less predicted, of each law."""
     zero_line(axes)
-    for number, one in enumerate(fits.values()):
-        x, words = _abscissa(one)
+    for number, fit in enumerate(fits.values()):
+        x, words = _abscissa(fit)
         look = {"color": law_style(number)["color"], "linestyle": "none"}
-        errors = one.measurements.errors.get(quantity)
+        errors = fit.measurements.errors.get(quantity)
         axes.errorbar(
             x,
-            one.residuals[quantity],
+            fit.residuals[quantity],
             yerr=errors,
             marker=MARKERS[number % 6],
             markersize=4.0,
@@ -85,9 +85,9 @@ def residuals(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axes:
     return axes
 
 
-def _abscissa(one: Fit) -> tuple[Any, str]:
-    """Return what to draw against: the angle of incidence, or else what varied most."""
-    given = one.measurements.given
+def _abscissa(fit: Fit) -> tuple[Any, str]:
+    """Return abscissa and label: the angle of incidence, else the first entry that varies."""
+    given = fit.measurements.given
     if "angle_deg" in given:
         return given["angle_deg"], label("angle_deg", "deg")
     if {"normal_speed", "tangential_velocity"} <= set(given):
@@ -96,12 +96,13 @@ def _abscissa(one: Fit) -> tuple[Any, str]:
     varied = [name for name, values in given.items() if np.ptp(values) > 0.0]
     if varied:
         return given[varied[0]], label(varied[0], entry_unit(varied[0]))
-    return np.arange(1.0, 1.0 + len(one.measurements)), "impact"
+    return np.arange(1.0, 1.0 + len(fit.measurements)), "impact"
 
 
-def _legend(name: str, one: Fit) -> str:
+def _legend(name: str, fit: Fit) -> str:
+    """Return the name of a law with its parameters."""
     values = ", ".join(
-        f"{key.rpartition('.')[2].replace('_', ' ')} {part.value:.3g}"
-        for key, part in one.parameters.items()
+        f"{key.rpartition('.')[2].replace('_', ' ')} {estimate.value:.3g}"
+        for key, estimate in fit.parameters.items()
     )
     return verbatim(f"{name}: {values}")

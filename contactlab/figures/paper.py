@@ -25,13 +25,13 @@ SOLID_CHI_RANGE = (3.5 / 3.0, 3.5 / 2.0)  # nu = 0.5 and nu = 0 in eq. (38)
 
 
 def draw(axes: Axes, data: FigureData) -> Axes:
-    """Draw a figure of the paper from its numbers, with the function of its name if one is here."""
+    """Draw a figure of the paper: by ``figure_<number>`` if defined, else by ``curves``."""
     drawn: Axes = globals().get(f"figure_{data.number}", curves)(axes, data)
     return drawn
 
 
 def curves(axes: Axes, data: FigureData) -> Axes:
-    """Draw every curve with its name or parameter in a legend."""
+    """Draw all curves, with their names or parameters in a legend."""
     for curve, colour in zip(data.curves, ordered_colours(len(data.curves)), strict=True):
         name = curve.name if np.isnan(curve.parameter) else f"{curve.parameter:g}"
         axes.plot(curve.x, curve.y, color=colour, label=name)
@@ -103,6 +103,7 @@ _BESIDE: Mapping[str, Any] = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)
 def _forces(
     axes: Axes, data: FigureData, name: Callable[[float], str] = lambda value: f"{value:g}"
 ) -> None:
+    """Draw the tangential forces of a figure with the friction limit."""
     normal, *tangential = data.curves
     zero_line(axes)
     friction_limit(axes, normal.x, normal.y)
@@ -113,6 +114,7 @@ def _forces(
 
 
 def _reflexion(axes: Axes, data: FigureData) -> None:
+    """Draw psi2 of the elastic law, of the exact solution and of the rigid-body theory."""
     zero_line(axes)
     elastic, rigid, exact = data.curves
     axes.plot(

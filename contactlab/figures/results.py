@@ -1,4 +1,4 @@
-"""A result drawn by one call: forces over the contact, or one quantity over another."""
+"""Figure of a result: forces over the contact, or one quantity over another."""
 
 from __future__ import annotations
 
@@ -32,24 +32,24 @@ def draw_result(
     *,
     width: Width | None = None,
 ) -> Axes:
-    """Draw a batch as ``y`` over ``x``, a single impact as its forces over the contact.
+    """Draw ``y`` over ``x`` for a batch, or forces over the contact for a single impact.
 
     Parameters
     ----------
     axes : Axes or None
-        None: a new figure of ``matplotlib.pyplot``.
+        None makes a new figure of ``matplotlib.pyplot``.
     result : ImpactResult
     x, y : str or None
-        Columns of the exports, angles also in degrees (``rebound_angle_deg``); psi1 and psi2
-        where not given. Only for a batch.
+        Columns of exports, angles also in degrees (``rebound_angle_deg``); psi1 and psi2 by
+        default. Only for a batch.
     width : {"one", "two"}, optional
         Columns of a page that a new figure fills.
 
     Raises
     ------
     ValueError
-        If a quantity is not known or not defined for the scene; if a single impact has no
-        history.
+        For an unknown quantity, or a quantity undefined for the scene; or if a single impact has
+        no history.
     """
     if not result.scene.shape:
         if x is not None or y is not None:
@@ -63,7 +63,7 @@ def draw_result(
 
 
 def draw_history(axes: Axes | None, history: Any, *, width: Width | None = None) -> Axes:
-    """Draw normal and tangential force over time, in the history's units."""
+    """Draw normal and tangential force over time, in the units of the history."""
     force, time = history.unit("normal_force"), history.unit("time")
     with _on(axes, width) as drawn:
         zero_line(drawn)
@@ -78,13 +78,13 @@ def draw_history(axes: Axes | None, history: Any, *, width: Width | None = None)
 
 @contextmanager
 def _on(axes: Axes | None, width: Width | None) -> Iterator[Axes]:
-    """Give the Axes, or those of a new figure; on a new one all is drawn in the package's look."""
+    """Yield the Axes, or Axes of a new figure inside the style of the package."""
     if axes is not None and width is not None:
         raise refuse("width", width, "is that of a new figure", "leave it out where axes are given")
     if axes is not None:
         yield axes
         return
-    from matplotlib import pyplot  # only here: it chooses a backend for the process
+    from matplotlib import pyplot  # chooses a backend for the process
 
     size = None if width is None else figure_size(width)
     with styled(width=width):
@@ -92,6 +92,7 @@ def _on(axes: Axes | None, width: Width | None) -> Iterator[Axes]:
 
 
 def _forces(axes: Axes, result: Any) -> Axes:
+    """Draw the tangential force of a single impact with the friction limit."""
     history = result.history
     if history is None or not history.time.size:
         raise refuse(
@@ -106,16 +107,7 @@ def _forces(axes: Axes, result: Any) -> Axes:
 
 
 def _quantities(axes: Axes, result: Any, x: str, y: str) -> Axes:
-    """Draw one quantity of a batch over another: a curve, or points where one x has several.
-
-    Parameters
-    ----------
-    axes : Axes
-    result : ImpactResult
-        Of a batch of any shape.
-    x, y : str
-        Names of quantities, across and up.
-    """
+    """Draw one quantity of a batch over another: a curve, or points if abscissas repeat."""
     scene = result.scene
     across, up = (quantity_named(name, where=where) for name, where in ((x, "x"), (y, "y")))
     abscissa, ordinate = (quantity.of(result).ravel() for quantity in (across, up))
@@ -123,7 +115,6 @@ def _quantities(axes: Axes, result: Any, x: str, y: str) -> Axes:
         if np.isnan(values).all():
             raise refuse(where, name, "is defined for none of these impacts", "give another")
     order = np.argsort(abscissa, kind="stable")
-    # many impacts at one abscissa are a cloud, not a curve
     curve = np.unique(abscissa).size == abscissa.size
     look: dict[str, Any] = {"marker": "" if curve else ".", "linestyle": "-" if curve else "none"}
     axes.plot(abscissa[order], ordinate[order], color=LAW_COLOURS[0], **look)
@@ -135,17 +126,7 @@ def _quantities(axes: Axes, result: Any, x: str, y: str) -> Axes:
 
 
 def _band(axes: Axes, result: Any, x: Any, y: Any, order: Any) -> None:
-    """Draw the numerical error of psi2, estimated or else declared, where it can be seen.
-
-    Parameters
-    ----------
-    axes : Axes
-    result : ImpactResult
-    x, y : array, shape (impacts,)
-        psi1 or another quantity in its own unit, and psi2.
-    order : array of int, shape (impacts,)
-        Which sorts x.
-    """
+    """Draw the visible numerical error of psi2, estimated or else declared."""
     error: Any = result.psi2_error_estimate
     if error is None:
         error = result.plan.psi2_error

@@ -1,8 +1,8 @@
-"""The map of usable regions: resolution against chi, a panel a method; below it, model errors.
+"""Stability map: resolution over chi in a panel for each method; model errors below.
 
-Numerical error and model error are drawn apart. A panel shows how close a method comes to its
-law's own exact answer. Where that is not the answer of the elastic continuum, the colours are
-others, so that no fine step of a rough model looks like an accurate answer.
+Numerical error and model error are drawn apart. A panel shows the distance of a method from the
+exact solution of its law. Laws that do not converge to the elastic continuum have other colours,
+so that a fine step of a rough model does not look like an accurate answer.
 """
 
 from __future__ import annotations
@@ -44,26 +44,26 @@ from contactlab.study.stability_map import (
     Region,
 )
 
-#: Errors over the range at which the colour changes: whole decades.
+#: Errors over the range of psi2 at which the colour changes: whole decades.
 DECADES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
-#: Colours of a model's numerical error, pale to dark as the others; its palest are the page's.
+#: Colours for laws that do not converge to the continuum, without the palest, which are white.
 MODEL_MAP, MODEL_BEGIN = "Purples", 0.3
 WRONG_COLOUR, RAISED_COLOUR = "#D00000", "#F08000"
 REFUSED_COLOUR, UNTRIED_COLOUR = "#E4E4E4", "#FBF3E4"
 PANEL_WIDTH, PANEL_HEIGHT, MODELS_HEIGHT = 2.4, 2.0, 2.6
-#: Of answers to which no exact one is known.
+#: Look of answers without a known exact solution.
 UNKNOWN_LOOK: Any = {"edgecolor": QUIET, "hatch": "...."}
 LIMIT_LOOK: Any = {"color": "black", "linestyle": (0, (4, 2)), "linewidth": 1.1}
-#: From the left edge of a panel to the name of its law, in points: beyond ticks and label.
+#: Offset of the name of a law from the left edge of its panel, in points: beyond ticks and label.
 NAME_PLACE = (-58.0, 0.0)
-#: Model errors below this are drawn at it: where bodies slip throughout it is rounding.
+#: Least model error drawn; smaller ones, from slip throughout, are rounding.
 LEAST_MODEL = 1e-6
 
 
 def draw_stability(
     path: Path, found: Stability, *, look: Look = "print", width: Width | None = None
 ) -> None:
-    """Draw a panel a method and the model errors below, and write a picture.
+    """Draw a panel for each method and the model errors below, and write a picture.
 
     Parameters
     ----------
@@ -99,14 +99,7 @@ def draw_stability(
 
 
 def _fill(panels: Any, regions: Any, laws: Sequence[str], integrators: Sequence[str]) -> None:
-    """Draw the panels.
-
-    Parameters
-    ----------
-    panels : array of Axes, shape (laws, integrators)
-    regions : mapping of (law, integrator) to Region
-    laws, integrators : sequence of str
-    """
+    """Draw the regions in their panels."""
     lowest = {name: law for law in laws for name in integrators if (law, name) in regions}
     for row, law in enumerate(laws):
         for column, integrator in enumerate(integrators):
@@ -127,12 +120,12 @@ def _fill(panels: Any, regions: Any, laws: Sequence[str], integrators: Sequence[
 
 
 def _bars(figure: Figure, panels: Any, regions: Sequence[Region]) -> None:
-    """Draw the bars of the colours that are there, one below the other."""
+    """Draw the colour bars in use, one below the other."""
     words = {
         True: "numerical error of $\\psi_2$\nover its range, from\nthe exact solution",
         False: "numerical error of $\\psi_2$\nover its range, from the\nlaw's own, other limit",
     }
-    shown = [known for known in words if any(item.converges is known for item in regions)]
+    shown = [key for key in words if any(item.converges is key for item in regions)]
     parts = np.array_split(np.arange(len(panels)), len(shown))
     for converges, rows in zip(shown, parts, strict=True):
         colours, norm = error_colours(converges)
@@ -145,7 +138,7 @@ def _bars(figure: Figure, panels: Any, regions: Sequence[Region]) -> None:
 
 
 def _legend(figure: Figure, regions: Sequence[Region]) -> None:
-    """Say what the other colours are."""
+    """Draw the legend of the colours that are no errors."""
     entries: list[Any] = [
         Patch(facecolor=REFUSED_COLOUR, edgecolor=QUIET, hatch="////",
               label="refused (by default: refined)"),
@@ -160,12 +153,13 @@ def _legend(figure: Figure, regions: Sequence[Region]) -> None:
 
 
 def _rank(integrator: str) -> tuple[int, str]:
-    known = ("paper", "symplectic", "adaptive", "events")
-    return (known.index(integrator) if integrator in known else len(known)), integrator
+    """Return the sort key of an integrator: built-in ones first, then by name."""
+    order = ("paper", "symplectic", "adaptive", "events")
+    return (order.index(integrator) if integrator in order else len(order)), integrator
 
 
 def _empty(axes: Axes) -> None:
-    """Say that law and integrator do not fit."""
+    """Draw the words for a law and an integrator that do not fit."""
     axes.text(0.5, 0.5, "does not fit", transform=axes.transAxes, ha="center", color=QUIET)
     axes.set_xticks([])
     axes.set_yticks([])
@@ -173,7 +167,7 @@ def _empty(axes: Axes) -> None:
 
 
 def error_colours(converges: bool) -> tuple[Colormap, BoundaryNorm]:
-    """Return the colours of numerical errors: of laws that converge to the continuum, or others."""
+    """Return colours of numerical errors, for laws that converge to the continuum or do not."""
     colours: Colormap = mpl.colormaps[ORDERED_MAP + "_r"]
     if not converges:
         shades = mpl.colormaps[MODEL_MAP](np.linspace(MODEL_BEGIN, 1.0, colours.N))
@@ -182,13 +176,13 @@ def error_colours(converges: bool) -> tuple[Colormap, BoundaryNorm]:
 
 
 def usable_region(axes: Axes, region: Region) -> Axes:
-    """Draw one method's region: error in colour, refusal hatched, silent wrong red, raise orange.
+    """Draw the region of a method: errors coloured, refused hatched, wrong red, raised orange.
 
     Parameters
     ----------
     axes : Axes
     region : Region
-        Its errors are drawn in the colours of ``error_colours(region.converges)``.
+        The colours of its errors are ``error_colours(region.converges)``.
     """
     tolerance = region.word == "tolerance"
     fineness = np.array(region.resolutions)
@@ -220,7 +214,7 @@ def usable_region(axes: Axes, region: Region) -> Axes:
     if tolerance:
         axes.invert_yaxis()
     else:
-        # omega dt = 2, theory §4
+        # The stability limit is omega dt = 2, theory §4.
         axes.plot(chi, LIMIT * np.sqrt(chi), **LIMIT_LOOK)
         axes.set_ylim(fine[0], fine[-1])
     axes.set_ylabel(region.word)
@@ -228,7 +222,7 @@ def usable_region(axes: Axes, region: Region) -> Axes:
 
 
 def model_errors(axes: Axes, models: Sequence[ModelError]) -> Axes:
-    """Draw the model error of each law over chi, which no resolution makes smaller."""
+    """Draw the model error of each law over chi."""
     for number, item in enumerate(models):
         look = law_style(number) | {"marker": "os^Dv<"[number % 6], "markersize": 3.5}
         error = np.maximum(item.error, LEAST_MODEL)  # keeps NaN
@@ -243,7 +237,7 @@ def model_errors(axes: Axes, models: Sequence[ModelError]) -> Axes:
 
 
 def _edges(centres: Any) -> Any:
-    """Return cell edges half-way between centres, on a logarithmic scale."""
+    """Return the edges of cells half-way between centres, on a logarithmic scale."""
     logs = np.log(centres)
     middles = 0.5 * (logs[1:] + logs[:-1])
     first, last = logs[0] - (middles[0] - logs[0]), logs[-1] + (logs[-1] - middles[-1])

@@ -1,4 +1,4 @@
-"""The map of stick and slip over radius and time."""
+"""Map of stick and slip over radius and time."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from contactlab.figures.style import LAW_COLOURS, TIME_LABEL
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.result import ImpactResult
 
-#: What an annulus may do, its colour and its number in the map.
+#: Colours of the states of an annulus, in the order of their numbers in the map.
 STATES = {"slip, backward": LAW_COLOURS[1], "stick": "#C4C4C4", "slip, forward": LAW_COLOURS[0]}
 NO_CONTACT = "#FFFFFF"
 
 
 def draw_stick_slip(axes: Axes, result: ImpactResult) -> Axes:
-    """Draw where the contact sticks and slips over one impact, ``run(scene, history="fields")``.
+    """Draw stick and slip over the contact of one impact, ``run(scene, history="fields")``.
 
     Raises
     ------
     ValueError
-        If the result is of a batch, or has no fields ``radius``, ``stuck`` and ``slipping``.
+        For a batch, or without the fields ``radius``, ``stuck`` and ``slipping``.
     """
     history = result.history
     single = history is not None and not result.scene.shape
@@ -48,13 +48,13 @@ def stick_slip_map(
     stuck: NDArray[np.bool_],
     slipping: NDArray[np.int8],
 ) -> Axes:
-    """Draw which annuli stick and which slip.
+    """Draw the state of each annulus over time.
 
     Parameters
     ----------
     axes : Axes
     time : array, shape (K,)
-        t over the duration of contact, increasing.
+        Time over the duration of contact, increasing.
     radius : array, shape (n,)
         Middle of each annulus over the largest contact radius.
     stuck : array of bool, shape (K, n)

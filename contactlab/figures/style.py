@@ -1,4 +1,4 @@
-"""One look for every figure: legible in print, in grey, and to the colour-blind."""
+"""Style of all figures: legible in print, in grey, and to the colour-blind."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ from contactlab.numeric.checks import refuse
 Look = Literal["print", "slides"]
 Width = Literal["one", "two"]
 
-#: Okabe and Ito's palette, in an order that keeps neighbours apart; for things without order.
+#: Okabe and Ito's palette for unordered curves, with contrast between neighbours.
 LAW_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 LAW_DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.5, 1.5)), "-", "-")
-#: Of words on a figure that are no label.
+#: Look of annotations.
 ASIDE: Any = {"color": "#555555", "fontsize": "small"}
 MEASURED_COLOUR = "#000000"
 QUIET = "#8C8C8C"
-#: A map whose lightness grows evenly, for things in order; its yellow end is too pale for lines.
+#: Colour map of even lightness for ordered curves, and its end: yellow is too pale for lines.
 ORDERED_MAP, ORDERED_END = "viridis", 0.86
 
-#: Width, where none is asked for, and height over it, in inches: a column and a half of a journal.
+#: Default width and height in inches: a column and a half of a journal.
 WIDTH, HEIGHT = 5.6, 3.9
-#: Widths of a column and of two, in inches: they fit the columns of nearly all journals.
+#: Widths of one and of two columns in inches, for nearly all journals.
 WIDTHS: dict[Width, float] = {"one": 3.4, "two": 7.0}
 RESOLUTION = 200
-#: In a figure narrower than this, in inches, a long legend stands below the axes, not beside them.
+#: Width in inches below which a long legend stands below the axes, not beside.
 NARROW = 4.5
 BELOW: Any = {"loc": "upper center", "bbox_to_anchor": (0.45, -0.45), "borderaxespad": 0.0}
-#: An error band is drawn where it is wider than this share of the height of the axes: half of a
-#: line's width, below which it would be hidden by its own curve.
+#: Least half-width of an error band over the height of the axes: half the width of a line, below
+#: which the curve hides the band.
 VISIBLE = 0.004
 
-SETTINGS: Any = {  # matplotlib types the keys of this one by one
+SETTINGS: Any = {  # matplotlib types each key
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",
     "font.size": 11.0,
@@ -57,7 +57,7 @@ SETTINGS: Any = {  # matplotlib types the keys of this one by one
 }
 
 TIME_LABEL = r"time over duration of contact $t/t_{\mathrm{c}}$"
-#: Quantities as the paper writes them; units are added from their own metadata.
+#: Quantities in the words and symbols of the paper, without units.
 SYMBOLS = {
     "psi1": r"local angle of incidence $\psi_1$",
     "psi2": r"local angle of reflexion $\psi_2$",
@@ -73,8 +73,7 @@ SYMBOLS = {
     "friction_coefficient": r"friction coefficient $\mu$",
 }
 
-
-#: What is other on a screen, seen from the last row: sans serif, larger, bolder.
+#: Differences for a screen seen from the last row: sans serif, larger, bolder.
 SLIDES: Any = {
     "font.family": "DejaVu Sans",
     "mathtext.fontset": "dejavusans",
@@ -84,7 +83,7 @@ SLIDES: Any = {
     "axes.linewidth": 1.2,
     "lines.linewidth": 2.6,
 }
-#: Text and lines at the width they are printed at: no letter below 7 points.
+#: Text and lines at the size of print: no letter below 7 points.
 PRINTED: dict[Width, Any] = {
     "one": {
         "font.size": 8.0,
@@ -105,22 +104,22 @@ LOOKS: dict[Look, Any] = {"print": SETTINGS, "slides": SETTINGS | SLIDES}
 
 
 def figure_size(width: Width | None) -> tuple[float, float]:
-    """Return width and height, in inches, of a figure of one pair of axes.
+    """Return width and height, in inches, of a figure with one Axes.
 
     Raises
     ------
     ValueError
-        If there is no such width.
+        If the width is not in ``WIDTHS``.
     """
     if width is not None and width not in WIDTHS:
         raise refuse("width", width, f"must be one of {', '.join(map(repr, WIDTHS))}")
     inches = WIDTH if width is None else WIDTHS[width]
-    # across two columns a figure as high as it should be would fill the page
+    # Full height across two columns would fill the page.
     return inches, inches * HEIGHT / WIDTH * (0.8 if width == "two" else 1.0)
 
 
 def figure_width(axes: Axes) -> float:
-    """Return the width, in inches, of the figure that axes stand in."""
+    """Return the width of the figure of the axes, in inches."""
     figure = axes.get_figure(root=True)
     assert figure is not None
     return float(figure.get_figwidth())
@@ -128,14 +127,14 @@ def figure_width(axes: Axes) -> float:
 
 @contextmanager
 def styled(look: Look = "print", width: Width | None = None) -> Iterator[None]:
-    """Apply the look inside a ``with`` block and leave the user's settings as they were.
+    """Apply a look inside a ``with`` block; the user's settings return afterwards.
 
     Parameters
     ----------
     look : {"print", "slides"}
-        Of a page, or of a screen seen from the last row.
+        Look of a page, or of a screen seen from the last row.
     width : {"one", "two"}, optional
-        Columns of a page that the figure fills: its text then has the sizes of print.
+        Columns of a page that the figure fills, with text at the size of print.
     """
     sizes = {} if width is None else PRINTED[width]
     with mpl.rc_context(LOOKS[look] | sizes):
@@ -143,18 +142,18 @@ def styled(look: Look = "print", width: Width | None = None) -> Iterator[None]:
 
 
 def error_band(axes: Axes, x: Any, middle: Any, half: Any, look: Mapping[str, Any]) -> Axes:
-    """Shade the numerical error around a curve, where it is known and wide enough to be seen.
+    """Shade the numerical error around a curve if any of it is wide enough to be visible.
 
     Parameters
     ----------
     axes : Axes
-        With the curves drawn: its height decides what can be seen.
+        Axes with the curves drawn; their height sets the visible width.
     x, middle : array, shape (points,)
         The curve, in the units of the axes.
     half : array, shape (points,)
-        Numerical error in the unit of ``middle``; NaN where unknown.
+        Numerical error in the unit of ``middle``; NaN if not declared.
     look : mapping
-        Of the curve; and its label, if the band is to be named.
+        Look of the curve, with ``label`` to name the band.
     """
     half = np.nan_to_num(half)
     lower, upper = axes.get_ylim()
@@ -165,37 +164,37 @@ def error_band(axes: Axes, x: Any, middle: Any, half: Any, look: Mapping[str, An
 
 
 def label(name: str, unit: str = "1") -> str:
-    """Return an axis label: the quantity as the paper writes it, with its unit."""
+    """Return an axis label: the quantity in the words of the paper, with its unit."""
     words = SYMBOLS.get(name, name.replace("_", " ").replace(".", " "))
     shown = {"1": "", "deg": " (°)"}.get(unit, f" ({unit})")
     return words + shown
 
 
 def verbatim(text: str) -> str:
-    """Return text of a file, or a name, as it is to be drawn: a dollar begins no formula."""
+    """Return text with dollars escaped, so that matplotlib reads no formula."""
     return text.replace("$", r"\$")
 
 
 def ordered_colours(count: int) -> list[Any]:
-    """Return colours for ``count`` things in order."""
+    """Return ``count`` ordered colours."""
     colours = mpl.colormaps[ORDERED_MAP]
     return [colours(place) for place in np.linspace(0.0, ORDERED_END, count)]
 
 
 def law_style(number: int) -> dict[str, Any]:
-    """Return colour and dashes of the law that is listed at place ``number``."""
+    """Return colour and dashes of the law at place ``number``."""
     place = number % len(LAW_COLOURS)
     return {"color": LAW_COLOURS[place], "linestyle": LAW_DASHES[place]}
 
 
 def zero_line(axes: Axes) -> Axes:
-    """Draw y = 0 quietly, behind everything."""
+    """Draw y = 0 in grey, behind everything."""
     axes.axhline(0.0, color=QUIET, linewidth=0.8, zorder=0)
     return axes
 
 
 def force_axes(axes: Axes) -> Axes:
-    """Label the axes of a tangential force over the contact, from first touch to separation."""
+    """Label the axes of a tangential force, from first touch to separation."""
     axes.set_xlabel(TIME_LABEL)
     axes.set_ylabel(r"tangential force $F/(\mu P_{\max})$")
     axes.set_xlim(0.0, 1.0)
@@ -203,7 +202,7 @@ def force_axes(axes: Axes) -> Axes:
 
 
 def friction_limit(axes: Axes, time: Any, normal_force: Any) -> Axes:
-    """Draw P/P_max and its mirror image, with a word: inside them |F| <= mu P."""
+    """Draw the friction limit, plus and minus P/P_max, with its name."""
     look: Any = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.9, "zorder": 4}
     axes.plot(time, normal_force, **look)
     axes.plot(time, -normal_force, **look)

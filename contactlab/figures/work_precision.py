@@ -1,4 +1,4 @@
-"""Error against run time, log-log, with the Pareto front."""
+"""Error over run time on logarithmic scales, with the Pareto front."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from contactlab.figures.style import ASIDE, LAW_COLOURS, NARROW, QUIET, figure_w
 from contactlab.study.work_precision import Benchmark
 
 MARKERS = {"paper": "o", "symplectic": "s", "adaptive": "D", "events": "*"}
-#: Said of laws that answer whole impacts.
+#: Name in place of an integrator for laws that answer whole impacts.
 NONE = "none needed"
-#: Errors below this are drawn at it: the axis would otherwise be all rounding.
+#: Least error drawn; smaller ones are rounding.
 FLOOR = 1e-12
 
 
 def work_precision(axes: Axes, benchmark: Benchmark) -> Axes:
-    """Draw each method's ladder: colour is the law, marker the integrator; lower left is better.
+    """Draw error over run time of each method: colours are laws, markers are integrators.
 
     A second law of one colour has dashes and hollow markers.
     """
@@ -58,7 +58,7 @@ def work_precision(axes: Axes, benchmark: Benchmark) -> Axes:
 
 
 def _legends(axes: Axes, methods: list[str]) -> None:
-    """Say what the colours are, and what the markers."""
+    """Draw the legends of laws and of integrators."""
     laws = list(dict.fromkeys(method.partition(" / ")[0] for method in methods))
     integrators = {method.partition(" / ")[2] for method in methods}
     whole = [method for method in methods if " / " not in method]
@@ -89,14 +89,14 @@ def _legends(axes: Axes, methods: list[str]) -> None:
         )
         return
     beside: dict[str, Any] = {"bbox_to_anchor": (1.0, 0.5), "alignment": "left"}
-    # The last one is what the layout makes room for, so the wider.
+    # The layout makes room for the last legend only: draw the wider one last.
     first = axes.legend(handles=markers, title="integrator", loc="upper left", **beside)
     axes.add_artist(first)
     axes.legend(handles=colours, title="law", loc="lower left", **beside)
 
 
 def _line(place: int) -> dict[str, Any]:
-    """Return the look of the law listed at ``place``."""
+    """Return the look of the law at ``place``."""
     colour = LAW_COLOURS[place % len(LAW_COLOURS)]
     if place // len(LAW_COLOURS) % 2:
         return {"color": colour, "linestyle": "--", "markerfacecolor": "white"}

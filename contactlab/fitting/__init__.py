@@ -1,10 +1,13 @@
-"""Parameters of laws and scenes from measured impacts: estimates, intervals, ranking of laws."""
+"""Fits of laws and scenes to measured impacts: estimates, intervals, ranking of laws."""
 
 from contactlab.fitting.estimation import fit
-from contactlab.fitting.measurements import Measurements, read_measurements
+from contactlab.fitting.measurements import (
+    Measurements,
+    read_measurements,
+    with_measurements,
+)
 from contactlab.fitting.outcome import Estimate, Fit
 from contactlab.fitting.ranking import Ranked, in_order, rank
-from contactlab.fitting.series import with_measurements
 
 __all__ = [
     "Estimate",

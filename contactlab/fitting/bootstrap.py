@@ -1,4 +1,4 @@
-"""Intervals by the bootstrap: the fit again, of data made of the fit and its own residuals."""
+"""Intervals by the bootstrap: fits of data made of the best fit and its own residuals."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from contactlab.fitting.problem import Problem, solved
 
 Array = NDArray[np.float64]
 
-#: Samples from which an interruption keeps them: of fewer, a 95 % interval is two of them.
+#: An interruption keeps at least this many samples; fewer make no 95 % interval.
 FEWEST = 100
 
 
@@ -26,28 +26,16 @@ def bootstrapped(
     tail: float,
     progress: Callable[[int, int], object] | None = None,
 ) -> tuple[list[tuple[float, float]], int]:
-    """Return an interval for each parameter, between quantiles of the samples, and their number.
+    """Return the interval of each parameter, in its unit, and the number of samples.
 
-    Interrupting (Ctrl-C) keeps the samples that are done if they are enough.
-
-    Parameters
-    ----------
-    problem : Problem
-    values : array, shape (parameters,)
-        The best values.
-    samples : int
-    seed : int
-        Of the random numbers: the same intervals each time.
-    tail : float
-        Share of the samples on either side.
-    progress : callable, optional
-        Called as ``progress(done, samples)``.
+    The intervals lie between quantiles of the samples: ``tail`` is the share on either side. An
+    interruption (Ctrl-C) keeps the finished samples if there are at least ``FEWEST``.
 
     Notes
     -----
-    The residuals of each impact, widened by sqrt(n/(n - p)), are added to what the fit predicts
-    with a sign drawn at random (the wild bootstrap). Impacts stay as they are, a larger scatter
-    of some stays theirs, and quantities of one impact stay correlated: Wu, Ann. Statist. 14
+    The wild bootstrap: residuals, widened by sqrt(n/(n - p)), are added to the prediction, with
+    one random sign for all quantities of an impact. Each impact so keeps its own scatter, and
+    the quantities of an impact stay correlated: Wu, Ann. Statist. 14
     (1986) 1261-1295, doi:10.1214/aos/1176350142.
     """
     generator = np.random.default_rng(seed)
@@ -55,19 +43,19 @@ def bootstrapped(
     scales = problem.scales(residuals)
     numbers = sum(problem.counts.values())
     wider = math.sqrt(numbers / max(numbers - len(values), 1))
-    found: list[Array] = []
+    drawn: list[Array] = []
     try:
-        while len(found) < samples:
+        while len(drawn) < samples:
             signs = wider * generator.choice([-1.0, 1.0], len(residuals[next(iter(residuals))]))
             measured = {
                 name: numbers_measured + (signs - 1.0) * residuals[name]
                 for name, numbers_measured in problem.measured.items()
             }
-            found.append(solved(attrs.evolve(problem, measured=measured), values, scales))
+            drawn.append(solved(attrs.evolve(problem, measured=measured), values, scales))
             if progress is not None:
-                progress(len(found), samples)
+                progress(len(drawn), samples)
     except KeyboardInterrupt:
-        if len(found) < FEWEST:
+        if len(drawn) < FEWEST:
             raise
-    ends = np.quantile(np.array(found), [tail, 1.0 - tail], axis=0)
-    return [(float(low), float(high)) for low, high in ends.T], len(found)
+    ends = np.quantile(np.array(drawn), [tail, 1.0 - tail], axis=0)
+    return [(float(low), float(high)) for low, high in ends.T], len(drawn)

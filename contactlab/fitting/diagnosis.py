@@ -1,4 +1,4 @@
-"""What a fit has to say of the measurement: slips, outliers, patterns, unlikely numbers."""
+"""Diagnosis of a measurement by its fit: slips, outliers, patterns, unlikely numbers."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from contactlab.fitting.slips import slips, tilted
 
 Array = NDArray[np.float64]
 
-#: Chance with which normal scatter under the right law is told to follow a column.
+#: A pattern is reported if normal scatter under the right law makes it with less than this chance.
 CHANCE = 1e-3
-#: Beside outliers, which explain the residuals better, a pattern is told below this chance.
+#: The same limit beside outliers, which explain the residuals better.
 POSSIBLE = 1e-5
 
 
@@ -26,11 +26,11 @@ class Diagnosis:
     Attributes
     ----------
     slips : tuple of str
-        Columns that are met far better if read another way, and numbers that nobody measures.
+        Columns that a fit meets far better if read another way, and implausible numbers.
     others : tuple of str
-        Outliers, patterns and leverage; empty if there is a slip, which would explain them.
+        Outliers, patterns and leverage; empty after a slip, which would explain them.
     robust : list of float or None
-        Values of the robust fit; None where there are too few numbers.
+        Values of the robust fit; None for too few numbers.
     """
 
     slips: tuple[str, ...]
@@ -39,25 +39,17 @@ class Diagnosis:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """All sentences."""
+        """Sentences of ``slips``, then of ``others``."""
         return self.slips + self.others
 
 
 def diagnosed(problem: Problem, table: Measurements, values: Array) -> Diagnosis:
-    """Return what is to be said of a measurement and its fit.
-
-    Parameters
-    ----------
-    problem : Problem
-    table : Measurements
-    values : array, shape (parameters,)
-        The best values.
-    """
+    """Return the diagnosis of a measurement at the best values, shape (parameters,)."""
     robust: list[float] | list[None] = [None] * len(values)
     far = outliers.none(problem, values)
     if sum(problem.counts.values()) >= outliers.LEAST + len(values) - 1:
-        found, scales = outliers.robust(problem, values)
-        far, robust = outliers.outliers(problem, found, scales), found.tolist()
+        robust_values, scales = outliers.robust(problem, values)
+        far, robust = outliers.outliers(problem, robust_values, scales), robust_values.tolist()
     certain, possible = slips(problem, table.given, values, far.rest.measured)
     unlikely = plausible.unlikely_numbers(problem, table)
     slipped = (*certain, *unlikely)
@@ -68,28 +60,20 @@ def diagnosed(problem: Problem, table: Measurements, values: Array) -> Diagnosis
 def _others(
     problem: Problem, table: Measurements, values: Array, far: outliers.Outliers
 ) -> tuple[str, ...]:
-    """Return sentences on outliers, patterns and leverage.
-
-    Parameters
-    ----------
-    problem : Problem
-    table : Measurements
-    values : array, shape (parameters,)
-    far : Outliers
-    """
+    """Return sentences on outliers, patterns and leverage."""
     chance, tilt = tilted(problem, table.given, values)
     if tilt and chance <= far.chance:
         return (tilt,)
-    found: list[str] = []
+    sentences: list[str] = []
     scales = problem.scales(problem.residuals(values[None]))
     seen = patterns.pattern(problem, values, scales, table.given)
     if far.places and far.chance <= seen.chance:
-        found += outliers.told(problem, far)
+        sentences += outliers.described(problem, far)
         if seen.chance < POSSIBLE:
-            found.append(f"or, with every number kept, {seen.words}")
+            sentences.append(f"or, with every number kept, {seen.words}")
         problem, values = far.rest, far.values
         scales = problem.scales(problem.residuals(values[None]))
         seen = patterns.pattern(problem, values, scales, table.given)
     if seen.chance < CHANCE:
-        found.append(seen.words)
-    return (*found, *patterns.leverage(problem, values, scales))
+        sentences.append(seen.words)
+    return (*sentences, *patterns.leverage(problem, values, scales))

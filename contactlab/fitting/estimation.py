@@ -1,4 +1,4 @@
-"""``fit``: the one entry to fitting."""
+"""``fit``: parameters of scenes and laws from measured impacts."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.simulation import Simulation
-from contactlab.fitting import determinacy
+from contactlab.fitting import determined
 from contactlab.fitting.bootstrap import bootstrapped
 from contactlab.fitting.diagnosis import CHANCE, Diagnosis, diagnosed
 from contactlab.fitting.measurements import Measurements, read_measurements
@@ -27,15 +27,15 @@ from contactlab.scene_file import SceneFile
 
 Array = NDArray[np.float64]
 
-#: Both tails of an interval outside which one estimate in twenty lies.
+#: Share of each tail beyond a 95 % interval.
 TAIL = 0.025
-#: A reduced chi square beyond this says that errors, or the law, do not fit the data.
+#: Reduced chi square above which stated errors are too small, or the law does not fit.
 LARGE_CHI_SQUARE = 2.0
-#: Residuals below this share of the errors given say that these are in another unit, or limits.
+#: Share of the stated errors below which residuals suggest another unit, or limits.
 SMALL_RATIO = 0.5
-#: Searches that end so near to each other have found one minimum.
+#: Relative and absolute distance below which two searches have reached the same minimum.
 SAME = 1e-3
-#: Nearness, of its range, of a value to the end of it.
+#: A value lies at the end of its range if nearer than this share of the range.
 AT_END = 1e-6
 
 
@@ -55,21 +55,21 @@ def fit(
     Parameters
     ----------
     measurements : path of a CSV file, mapping, or SceneFile
-        Columns by their headings, ``{"angle_deg": [...], "tangential_restitution": [...]}``: see
-        ``contactlab guide fitting``. A scene file has its ``[[measured]]`` values.
+        Columns by their headings: ``{"angle_deg": [...], "tangential_restitution": [...]}``, see
+        ``contactlab guide fitting``; or the ``[[measured]]`` values of a scene file.
     scene : Scene, SceneFile or path
-        Bodies, and what the measurements do not say; may be left out where these are a scene file.
+        Bodies, and entries without a column; may be left out if ``measurements`` is a scene file.
     parameters : sequence of str
         ``friction_coefficient``, ``stiffness_ratio`` (kappa = G*/E*), or an option of a law:
         ``normal.restitution``, ``tangential.beta0``.
     simulation : Simulation, optional
         The laws; by default the exact elastic ones by their table.
     quantities : sequence of str, optional
-        Those of the measured quantities that are to be met; all by default.
+        Measured quantities to fit; all by default.
     bootstrap : int
         Samples of the bootstrap; 0 for none.
     seed : int
-        Of the bootstrap's random numbers.
+        Seed of the bootstrap's random numbers.
     progress : callable, optional
         Called as ``progress(done, total)`` after each sample; without a bootstrap after each
         search, and after the diagnosis.
@@ -81,19 +81,19 @@ def fit(
     Raises
     ------
     ValueError
-        For bad input; and where the data do not determine a parameter, with a measurement that
+        For bad input; or if the data do not determine a parameter, with a measurement that
         would.
     ImpactError
         If a law does not follow an impact.
 
     Notes
     -----
-    Known errors (columns ``..._error``) are taken as they are, and intervals widened by the
-    square root of the reduced chi square if that is above 1. Where errors are not known, those
-    of each quantity are estimated by its residuals.
+    Errors of columns ``..._error`` weight the residuals; a reduced chi square above 1 widens the
+    intervals by its square root. Without such a column the error of a quantity is estimated
+    from its residuals.
 
-    Interrupting (Ctrl-C) keeps the samples of the bootstrap from a hundred on; ``samples`` and a
-    note of the fit tell how many they are.
+    An interruption (Ctrl-C) keeps the finished samples of the bootstrap if there are at least a
+    hundred; ``samples`` and a note of the fit state their number.
     """
     if scene is None and isinstance(measurements, SceneFile):
         scene = measurements
@@ -103,39 +103,39 @@ def fit(
     table = read_measurements(measurements).only(quantities)
     laws = simulation_of(simulation)
     problem = Problem.of(_model(table, scene, parameters, laws), table)
-    determinacy.check_enough(problem)
+    determined.check_enough(problem)
     counted = None if samples else progress
     values, *others = _solutions(problem, counted)
-    told: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
     slipped: list[str] = []
-    if idle := determinacy.idle(problem, values):
-        told = (f"{', '.join(idle)}: not met, for no parameter moves it under these laws",)
+    if idle := determined.idle(problem, values):
+        left_out = (f"{', '.join(idle)}: not met, for no parameter moves it under these laws",)
         slipped, _ = slips(problem, table.given, values, problem.measured)
         table = table.only([name for name in table.measured if name not in idle])
         problem = Problem.of(_model(table, scene, parameters, laws), table)
         values, *others = _solutions(problem)
     diagnosis = diagnosed(problem, table, values)
     try:
-        determinacy.check_scatter(problem)
-        determinacy.check_determined(problem, values)
-        found, reaches = _outcome(problem, table, values, diagnosis)
-        determinacy.check_precise(problem, values, reaches)
-        determinacy.check_single(problem, [values, *others])
+        determined.check_scatter(problem)
+        determined.check_determined(problem, values)
+        outcome, reaches = _outcome(problem, table, values, diagnosis)
+        determined.check_precise(problem, values, reaches)
+        determined.check_single(problem, [values, *others])
     except ValueError as error:
-        said = (*slipped, *diagnosis.sentences, *_of_errors(problem, values))
-        if not said:
+        causes = (*slipped, *diagnosis.sentences, *_error_notes(problem, values))
+        if not causes:
             raise
-        raise ValueError(f"{'. '.join(said)}. As it is, {error}") from None
-    found = attrs.evolve(found, notes=(*told, *slipped, *found.notes))
+        raise ValueError(f"{'. '.join(causes)}. As it is, {error}") from None
+    outcome = attrs.evolve(outcome, notes=(*left_out, *slipped, *outcome.notes))
     if counted is not None:
         counted(1, 1)
     if not samples:
-        return found
-    return _with_bootstrap(found, problem, values, samples, seed=seed, progress=progress)
+        return outcome
+    return _with_bootstrap(outcome, problem, values, samples, seed=seed, progress=progress)
 
 
 def _with_bootstrap(
-    found: Fit,
+    outcome: Fit,
     problem: Problem,
     values: Array,
     samples: int,
@@ -143,94 +143,64 @@ def _with_bootstrap(
     seed: int,
     progress: Callable[[int, int], object] | None,
 ) -> Fit:
-    """Return the fit with the intervals of the bootstrap beside the others.
-
-    Parameters
-    ----------
-    found : Fit
-    problem : Problem
-    values : array, shape (parameters,)
-        The best values.
-    samples, seed, progress
-        As ``bootstrap``, ``seed`` and ``progress`` of ``fit``.
-    """
+    """Return the fit with the intervals of the bootstrap added."""
     intervals, done = bootstrapped(
         problem, values, samples, seed=seed, tail=TAIL, progress=progress
     )
     estimates = {
-        name: attrs.evolve(one, bootstrap=interval)
-        for (name, one), interval in zip(found.parameters.items(), intervals, strict=True)
+        name: attrs.evolve(estimate, bootstrap=interval)
+        for (name, estimate), interval in zip(outcome.parameters.items(), intervals, strict=True)
     }
-    notes = found.notes
+    notes = outcome.notes
     if done < samples:
         notes += (f"bootstrap: interrupted, intervals are those of {done} samples of {samples}",)
-    return attrs.evolve(found, parameters=estimates, notes=notes, samples=done)
+    return attrs.evolve(outcome, parameters=estimates, notes=notes, samples=done)
 
 
 def _model(
     table: Measurements, scene: object, parameters: Sequence[str], simulation: Simulation | None
 ) -> Model:
-    """Return the model of the measured impacts with the parameters asked for.
-
-    Parameters
-    ----------
-    table : Measurements
-    scene : Scene, SceneFile or path
-        What the columns of the table leave open.
-    parameters : list of str
-        Names, each once.
-    simulation : Simulation or None
-        None: the laws of the scene file, or the default ones.
-    """
+    """Return the model of the measured impacts with the named parameters."""
     if isinstance(parameters, str) or not parameters:
         raise refuse(
             "parameters", parameters, "must be a list of names", "['friction_coefficient']"
         )
     setup = Setup(scene_of(scene, table.given, len(table)), simulation)
-    found = tuple(parameter_named(name, setup) for name in parameters)
-    names = [parameter.name for parameter in found]
+    fitted = tuple(parameter_named(name, setup) for name in parameters)
+    names = [parameter.name for parameter in fitted]
     if len(set(names)) < len(names):
         raise refuse("parameters", list(parameters), "names one of them twice")
-    return Model(setup=setup, parameters=found)
+    return Model(setup=setup, parameters=fitted)
 
 
 def _solutions(
     problem: Problem, progress: Callable[[int, int], object] | None = None
 ) -> list[Array]:
-    """Return the minima that searches from several starts have come to, the best first."""
-    found: list[Array] = []
+    """Return the minima of searches from several starts, the best first."""
+    minima: list[Array] = []
     starts = starting(problem)
     for done, start in enumerate(starts, start=1):
         values = solved(problem, start)
         if progress is not None:
             progress(done, len(starts) + 1)  # the diagnosis is the last
-        if not any(np.allclose(values, known, rtol=SAME, atol=SAME) for known in found):
-            found.append(values)
-    return sorted(found, key=problem.criterion) if len(found) > 1 else found
+        if not any(np.allclose(values, minimum, rtol=SAME, atol=SAME) for minimum in minima):
+            minima.append(values)
+    return sorted(minima, key=problem.criterion) if len(minima) > 1 else minima
 
 
 def _outcome(
     problem: Problem, table: Measurements, values: Array, diagnosis: Diagnosis
 ) -> tuple[Fit, Array]:
-    """Return the fit with intervals from the covariance, and their half-widths.
-
-    Parameters
-    ----------
-    problem : Problem
-    table : Measurements
-    values : array, shape (parameters,)
-        The best values.
-    diagnosis : Diagnosis
-    """
-    from scipy.special import stdtrit  # only those who fit pay for it
+    """Return the fit with intervals from the covariance, and their half-widths."""
+    from scipy.special import stdtrit  # only a fit needs scipy
 
     parameters = problem.model.parameters
     scales = problem.scales(problem.residuals(values[None]))
     weighted, jacobian = problem.linearised(values, scales)
     freedom = len(weighted) - len(values)
     mean_square = float(weighted @ weighted) / freedom if freedom > 0 else math.nan
-    known = all(name in problem.errors for name in problem.measured)
-    factor = max(mean_square, 1.0) if known and freedom else 1.0 if known else mean_square
+    stated = all(name in problem.errors for name in problem.measured)
+    factor = max(mean_square, 1.0) if stated and freedom else 1.0 if stated else mean_square
     size = np.sqrt(np.sum(jacobian**2, axis=0))
     covariance = np.linalg.inv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
     errors = np.sqrt(factor * np.diag(covariance))
@@ -238,52 +208,54 @@ def _outcome(
     low, high = problem.bounds()
     estimates = {}
     for place, parameter in enumerate(parameters):
-        value, off = float(values[place]), float(reaches[place])
-        ends = (float(max(value - off, low[place])), float(min(value + off, high[place])))
+        value, reach = float(values[place]), float(reaches[place])
+        ends = (float(max(value - reach, low[place])), float(min(value + reach, high[place])))
         estimates[parameter.name] = Estimate(
             name=parameter.name,
             unit=parameter.unit,
             value=value,
             standard_error=float(errors[place]),
-            interval=ends if off == off else (math.nan, math.nan),
+            interval=ends if not math.isnan(reach) else (math.nan, math.nan),
             robust=diagnosis.robust[place],
         )
     deviation = np.sqrt(np.diag(covariance))
     predicted = problem.model.predicted(values[None], list(problem.measured))
-    found = Fit(
+    intervals = {name: estimate.interval for name, estimate in estimates.items()}
+    outcome = Fit(
         parameters=estimates,
         correlation=covariance / np.outer(deviation, deviation),
         laws=problem.model.laws(values),
         measurements=table,
         predicted={name: rows[0] for name, rows in predicted.items()},
         aic=problem.criterion(values),
-        reduced_chi_square=mean_square if known else None,
+        reduced_chi_square=mean_square if stated else None,
         notes=(
             *diagnosis.sentences,
-            *unlikely_parameters(problem, {n: one.interval for n, one in estimates.items()}),
+            *unlikely_parameters(problem, intervals),
             *(() if diagnosis.sentences else _moved(estimates)),
-            *_of_errors(problem, values),
+            *_error_notes(problem, values),
             *_notes(problem, values, freedom),
         ),
     )
-    return found, reaches
+    return outcome, reaches
 
 
 def _moved(estimates: Mapping[str, Estimate]) -> list[str]:
-    """Return a sentence for each parameter whose robust value lies outside of its interval."""
+    """Return a sentence for each parameter whose robust value lies outside its interval."""
     return [
-        f"a robust fit, which a few far numbers hardly move, gives {name} = {one.robust:.4g}, "
+        f"a robust fit, which a few far numbers hardly move, gives {name} = {estimate.robust:.4g}, "
         "outside of the interval: look at the impacts that are farthest off"
-        for name, one in estimates.items()
-        if one.robust is not None and not one.interval[0] <= one.robust <= one.interval[1]
+        for name, estimate in estimates.items()
+        if estimate.robust is not None
+        and not estimate.interval[0] <= estimate.robust <= estimate.interval[1]
     ]
 
 
-def _of_errors(problem: Problem, values: Array) -> list[str]:
-    """Return a sentence for each quantity whose scatter is not that of the errors given."""
-    from scipy.special import chdtr, chdtrc  # only those who fit pay for it
+def _error_notes(problem: Problem, values: Array) -> list[str]:
+    """Return a sentence for each quantity whose scatter contradicts its stated errors."""
+    from scipy.special import chdtr, chdtrc  # only a fit needs scipy
 
-    found = []
+    notes = []
     for name in problem.errors.keys() & problem.measured.keys():
         rows = problem.residuals(values[None])[name][0] / problem.errors[name]
         freedom = problem.counts[name] - len(values)
@@ -292,29 +264,29 @@ def _of_errors(problem: Problem, values: Array) -> list[str]:
         square = float(np.nansum(rows**2))
         ratio = math.sqrt(square / freedom)
         if ratio**2 > LARGE_CHI_SQUARE and chdtrc(freedom, square) < CHANCE:
-            found.append(
+            notes.append(
                 f"{name}: residuals are {ratio:.2g} times the errors given: these are too small, "
                 "or the law is not that of the data; intervals are widened by as much"
             )
         alike = np.nanmin(problem.measured[name]) == np.nanmax(problem.measured[name])
         if ratio < SMALL_RATIO and not alike and chdtr(freedom, square) < CHANCE:
-            found.append(
+            notes.append(
                 f"{name}: residuals are {ratio:.2g} times the errors given: these are too large; "
                 f"look at the unit of {name}_error, and whether they are standard errors"
             )
-    return found
+    return notes
 
 
 def _notes(problem: Problem, values: Array, freedom: int) -> list[str]:
-    """Return what a reader of the estimates should be wary of, a sentence each."""
-    found = []
+    """Return sentences on values at the end of their range, and on missing scatter."""
+    notes = []
     for parameter, value in zip(problem.model.parameters, values.tolist(), strict=True):
         near = AT_END * parameter.width
         if math.isfinite(near) and min(value - parameter.least, parameter.most - value) <= near:
-            found.append(
+            notes.append(
                 f"{parameter.name} lies at the end of its range, {parameter.least:.4g} to "
                 f"{parameter.most:.4g}: the law may not be that of the data"
             )
     if freedom == 0:
-        found.append("as many numbers as parameters: nothing is left to tell the scatter by")
-    return found
+        notes.append("as many numbers as parameters: nothing is left to tell the scatter by")
+    return notes

@@ -1,4 +1,4 @@
-"""Measured impacts: what was given before, and what was found after."""
+"""Measured impacts, read from a CSV file, a mapping of columns, or a scene file."""
 
 from __future__ import annotations
 
@@ -10,12 +10,15 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.fitting.csv_rows import read_rows
-from contactlab.fitting.headings import ERROR, Heading, read_heading
+from contactlab.fitting.csv_columns import ERROR, read_columns, read_heading, read_text
 from contactlab.numeric.checks import real, refuse
 from contactlab.scene_file import SceneFile
+from contactlab.scene_file.measured import Measured
 
 Array = NDArray[np.float64]
+
+#: A column that varies by less than this share of its mean was kept constant.
+SAME = 0.1
 
 
 @attrs.frozen(kw_only=True, eq=False)
@@ -25,14 +28,15 @@ class Measurements:
     Attributes
     ----------
     given : mapping of str to array, shape (n,)
-        What was set: entries of a scene file such as ``angle_deg``, in its units.
+        Entries of a scene before the impact such as ``angle_deg``, in the units of a scene file.
     measured : mapping of str to array, shape (n,)
-        What was found: quantities of a result, in their units; NaN where one was not measured.
+        Quantities of a result after the impact, in their units; NaN where not measured.
     errors : mapping of str to array, shape (n,)
-        Standard errors of those quantities for which they are known.
+        Standard errors of measured quantities.
     unused : tuple of str
         Columns that a fit does not need.
     source : str
+        Path of the file; empty for a mapping.
     """
 
     given: Mapping[str, Array]
@@ -46,12 +50,12 @@ class Measurements:
         return len(next(iter(self.measured.values())))
 
     def only(self, quantities: Sequence[str] | None) -> Measurements:
-        """Return the measurements of some quantities, and of those impacts that have any.
+        """Return the measurements of some quantities, without impacts that have none of them.
 
         Raises
         ------
         ValueError
-            If one of them was not measured.
+            If a quantity was not measured.
         """
         if quantities is None:
             return self
@@ -70,96 +74,78 @@ class Measurements:
         )
 
 
-def read_measurements(content: object) -> Measurements:
+def read_measurements(content: object, *, columns: Mapping[str, str] | None = None) -> Measurements:
     """Return measurements from a CSV file, a mapping of columns, or the series of a scene file.
 
     Parameters
     ----------
     content : path, mapping or SceneFile
-        Headings are names with units, ``rebound_spin (rad/s)``: entries of a scene before the
-        impact, quantities of a result after it, as exports write them. ``(1)`` may be left out,
-        and the unit of what ends in ``_deg``. ``<quantity>_error`` holds standard errors.
+        Each heading is a name and its unit, ``rebound_spin (rad/s)`` or ``rebound_spin_rad_s``:
+        an entry of a scene before the impact, or a quantity of a result after the impact. The
+        unit ``(1)`` may be left out. ``<quantity>_error`` holds standard errors. A column whose
+        heading begins with ``#`` is not read.
+    columns : mapping of str to str, optional
+        Names for headings of another kind: ``{"impact angle [deg]": "incidence_angle"}``. The
+        unit is that of the name, else that of the heading. ``"#"`` leaves the column unread.
 
     Raises
     ------
     ValueError
-        If the file cannot be read, or a heading or a number is not understood, with its place.
+        If the file cannot be read, or for a bad heading or number, with its place.
     """
+    names = {text.strip(): name for text, name in (columns or {}).items()}
+    if isinstance(content, Mapping):
+        return _from_columns(dict(content), names, "")
+    if isinstance(content, str | Path):
+        return _from_csv(Path(content), names)
+    if names:
+        raise refuse("columns", names, "need a CSV file, or a mapping of columns")
     if isinstance(content, Measurements):
         return content
     if isinstance(content, SceneFile):
-        return _of_scene_file(content)
-    if isinstance(content, Mapping):
-        return _made(dict(content), "")
-    if isinstance(content, str | Path):
-        return _of_csv(Path(content))
+        return _from_scene_file(content)
     raise refuse("measurements", content, "must be a CSV file, or a mapping of columns")
 
 
-def _of_csv(path: Path) -> Measurements:
-    headings, rows = read_rows(path)
-    columns: dict[str, list[float]] = {heading: [] for heading in headings}
-    if len(columns) < len(headings):
-        raise ValueError(f"{path}: two columns have the same heading")
+def _from_csv(path: Path, names: Mapping[str, str]) -> Measurements:
+    """Return the measurements of a CSV file; every refusal begins with its path."""
+    text = read_text(path)
     try:
-        roles = {heading: read_heading(heading) for heading in headings}
-        for line, row in rows:
-            if len(row) != len(headings):
-                told = f"has {len(row)} columns, the headings are {len(headings)}"
-                raise ValueError(f"line {line}: {told}")
-            for heading, cell in zip(headings, row, strict=True):
-                columns[heading].append(_number(cell, heading, roles[heading], line))
-        return _made(columns, str(path))
+        return _from_columns(read_columns(text, names), names, str(path))
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 
 
-def _number(cell: str, heading: str, role: Heading, line: int) -> float:
-    """Return the number in a cell; NaN where it is missing and may be.
-
-    Parameters
-    ----------
-    cell : str
-        As it stands in the file.
-    heading : str
-        Of its column, for the refusal.
-    role : Heading
-        What the column is for.
-    line : int
-        Of the file, the first being 1.
-    """
-    if role.role == "unused" or (not cell.strip() and role.role != "given"):
-        return float("nan")
-    try:
-        return float(cell)
-    except ValueError:
-        told = "is empty" if not cell.strip() else f"{cell!r} is not a number"
-        raise ValueError(f"line {line}, {heading!r}: {told}") from None
-
-
-def _made(columns: dict[str, Any], source: str) -> Measurements:
+def _from_columns(columns: dict[str, Any], names: Mapping[str, str], source: str) -> Measurements:
     """Return measurements of columns by their headings."""
+    headings = [str(text) for text in columns]
+    stripped = [text.strip() for text in headings]
+    for text in names:
+        if text not in stripped:
+            raise refuse("columns", text, "is not a heading", f"had: {', '.join(stripped)}")
     parts: dict[str, dict[str, Array]] = {"given": {}, "measured": {}, "error": {}}
     unused: list[str] = []
-    for text, content in columns.items():
-        role, name, factor = read_heading(str(text))
+    for text, content in zip(headings, columns.values(), strict=True):
+        role, name, factor = read_heading(text, names)
         if role == "unused":
-            unused.append(str(text))
+            unused.append(text)
             continue
         if name in parts[role]:
             raise ValueError(f"heading {text!r}: {name} is there twice")
-        parts[role][name] = _column(str(text), content, gaps=role != "given") * factor
-    _complete(parts, unused)
+        parts[role][name] = _column(text, content, gaps=role != "given") * factor
+    given, measured, errors = parts.values()
+    _leave_out_duplicates(given, measured, unused)
+    _check_columns(given, measured, errors)
+    if "angle_deg" in given and "normal_speed" in given:
+        slope = np.tan(np.radians(given.pop("angle_deg")))
+        given["tangential_velocity"] = given["normal_speed"] * slope
     return Measurements(
-        given=parts["given"],
-        measured=parts["measured"],
-        errors=parts["error"],
-        unused=tuple(unused),
-        source=source,
+        given=given, measured=measured, errors=errors, unused=tuple(unused), source=source
     )
 
 
 def _column(text: str, content: Any, *, gaps: bool) -> Array:
+    """Return the numbers of a column, shape (n,); NaN only if it may have gaps."""
     values = np.atleast_1d(np.asarray(content))
     if values.ndim != 1 or values.dtype.kind not in "iuf" or not values.size:
         raise refuse(text, content, "must be a list of numbers", "one for each impact")
@@ -171,17 +157,28 @@ def _column(text: str, content: Any, *, gaps: bool) -> Array:
     return np.atleast_1d(real(text, values))
 
 
-def _complete(parts: dict[str, dict[str, Array]], unused: list[str]) -> None:
-    """Check that the columns belong together, and make the velocities from an angle."""
-    given, measured, errors = parts["given"], parts["measured"], parts["error"]
+def _leave_out_duplicates(
+    given: dict[str, Array], measured: dict[str, Array], unused: list[str]
+) -> None:
+    """Move columns of an export that other columns determine to the unused ones."""
     if {"speed", "normal_speed"} & set(given):
-        # Formed with the friction and stiffness that are sought, as an export has them.
+        # psi1, chi and psi2 are formed with the friction and stiffness that are fitted.
         for part, name in ((given, "psi1"), (given, "chi"), (measured, "psi2")):
             if part.pop(name, None) is not None:
                 unused.append(name)
+    if "angle_deg" in given and "tangential_velocity" in given:
+        del given["angle_deg"]
+        unused.append("angle_deg")
+
+
+def _check_columns(
+    given: dict[str, Array], measured: dict[str, Array], errors: dict[str, Array]
+) -> None:
+    """Refuse columns that do not belong together."""
     if not measured:
         raise ValueError("nothing was measured: no column is a quantity of a rebound")
-    lengths = {name: len(values) for part in parts.values() for name, values in part.items()}
+    lengths = {name: len(values) for name, values in (given | measured).items()}
+    lengths |= {f"{name}{ERROR}": len(values) for name, values in errors.items()}
     if len(set(lengths.values())) > 1:
         listed = ", ".join(f"{name} {length}" for name, length in lengths.items())
         raise ValueError(f"the columns must be of equal length; they have {listed}")
@@ -193,15 +190,9 @@ def _complete(parts: dict[str, dict[str, Array]], unused: list[str]) -> None:
             raise ValueError(f"{name}{ERROR}: there is no column {name}")
         if not np.all(values[np.isfinite(measured[name])] > 0.0):
             raise ValueError(f"{name}{ERROR}: must be positive wherever {name} was measured")
-    if "angle_deg" in given and "tangential_velocity" in given:
-        unused.append("angle_deg")  # as an export has it, beside the velocities
-        del given["angle_deg"]
-    elif "angle_deg" in given and "normal_speed" in given:
-        slope = np.tan(np.radians(given.pop("angle_deg")))
-        given["tangential_velocity"] = given["normal_speed"] * slope
 
 
-def _of_scene_file(file: SceneFile) -> Measurements:
+def _from_scene_file(file: SceneFile) -> Measurements:
     """Return the series of a scene file, one below the other."""
     if not file.measured:
         raise ValueError(f"{file.path}: has no [[measured]] values; give a CSV file of them")
@@ -221,4 +212,65 @@ def _of_scene_file(file: SceneFile) -> Measurements:
         measured=measured,
         errors={},
         source=str(file.path),
+    )
+
+
+def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
+    """Return a scene file whose measured series are the columns of a table.
+
+    The one column that varies, such as the angle, is the abscissa. The scene provides all other
+    entries, such as the speed.
+
+    Raises
+    ------
+    ValueError
+        If the file has no sweep, if more than one column varies, or the speeds differ.
+    """
+    if not file.varied:
+        raise ValueError(f"{file.path}: needs a [sweep] to draw measured values beside")
+    moving = [name for name, values in table.given.items() if not _constant(values)]
+    if len(moving) != 1:
+        varying = f"these vary by more than {SAME:.0%}: {', '.join(moving) or 'none'}"
+        raise ValueError(f"{table.source}: one column must vary, such as angle_deg; {varying}")
+    _check_speed(file, table)
+    x = table.given[moving[0]]
+    return attrs.evolve(
+        file, measured=tuple(_series(table, name, moving[0], x) for name in table.measured)
+    )
+
+
+def _constant(values: Array) -> bool:
+    return bool(np.ptp(values) <= SAME * abs(float(np.mean(values))))
+
+
+def _check_speed(file: SceneFile, table: Measurements) -> None:
+    """Refuse a scene at another speed than the measurement."""
+    scene = file.scene
+    own = {
+        "speed": np.hypot(scene.normal_speed, scene.tangential_velocity),
+        "normal_speed": np.asarray(scene.normal_speed),
+    }
+    for name in own.keys() & table.given.keys() - file.varied.keys():
+        measured, in_scene = float(np.mean(table.given[name])), float(np.mean(own[name]))
+        if abs(measured - in_scene) > SAME * measured:
+            raise ValueError(
+                f"{table.source}: {name} is {measured:.4g} m/s, and {in_scene:.4g} m/s in "
+                f"{file.path}; write the measured one in the scene"
+            )
+
+
+def _series(table: Measurements, quantity: str, against: str, x: Array) -> Measured:
+    """Return the measured numbers of one quantity over the entry ``against``."""
+    values = table.measured[quantity]
+    present = np.isfinite(values)
+    errors = table.errors.get(quantity, np.zeros(len(values)))
+    return Measured(
+        quantity=quantity,
+        against=against,
+        x=x[present],
+        values=values[present],
+        x_error=np.zeros(int(present.sum())),
+        error=errors[present],
+        label="measured",
+        source=table.source or "the data",
     )

@@ -1,4 +1,4 @@
-"""What a scene and laws, with numbers put in, say of the measured quantities."""
+"""Prediction of measured quantities from parameters of a scene and of laws."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from contactlab.study.interrupts import uninterrupted
 
 Array = NDArray[np.float64]
 
-#: Friction of a scene file that says none; every parameter has its own start besides.
+#: Friction of a scene file without a friction coefficient; searches have their own starts.
 SOME_FRICTION = 0.1
 TABULATED = "exact elastic law (tabulated rebound)"
 POLAR, CARTESIAN = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
@@ -28,7 +28,7 @@ POLAR, CARTESIAN = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity
 
 @attrs.frozen(kw_only=True, eq=False)
 class Model:
-    """A scene, laws, and the parameters that are put into them."""
+    """A scene, laws, and the parameters to fit."""
 
     setup: Setup
     parameters: tuple[Parameter, ...]
@@ -37,38 +37,28 @@ class Model:
 
     @tabled.default
     def _(self) -> bool:
-        """Return whether a table answers: also for other numbers of its normal law."""
-        kinds = {getattr(one, "kind", "normal") for one in self.parameters}
+        """Return whether the table of rebounds holds at all values of the parameters."""
+        kinds = {getattr(parameter, "kind", "normal") for parameter in self.parameters}
         return kinds <= {"normal"} and tabulated.holds(self.setup.simulation)
 
     def predicted(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
-        """Return quantities of all impacts, shape (m, n), at m points of the parameters.
+        """Return quantities of all impacts, shape (m, n), at points of shape (m, parameters).
 
-        Points that differ in numbers of the scene alone are run together, in one batch.
-
-        Parameters
-        ----------
-        points : array, shape (m, parameters)
-        quantities : sequence of str
-
-        Raises
-        ------
-        ImpactError
-            If a law did not follow one of the impacts.
+        Points with equal options of laws run together in one batch.
         """
-        alone = [place for place, one in enumerate(self.parameters) if not one.batched]
+        alone = [place for place, p in enumerate(self.parameters) if not p.batched]
         _, group = np.unique(points[:, alone], axis=0, return_inverse=True)
-        group = np.reshape(group, -1)  # another shape in some versions of numpy
+        group = np.reshape(group, -1)  # its shape depends on the version of numpy
         shape = (len(points), self.setup.scene.shape[0])
-        found = {name: np.empty(shape) for name in quantities}
+        predicted = {name: np.empty(shape) for name in quantities}
         for number in range(int(group.max()) + 1):
             rows = np.flatnonzero(group == number)
             for name, values in self._together(points[rows], quantities).items():
-                found[name][rows] = values
-        return found
+                predicted[name][rows] = values
+        return predicted
 
     def _together(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
-        """Return the quantities at points with the same laws, from one batch of impacts."""
+        """Return the quantities, shape (m, n), at points with equal laws, from one batch."""
         many, count = len(points), self.setup.scene.shape[0]
         setup = self.setup._replace(scene=self._times(many))
         for parameter, column in zip(self.parameters, points.T, strict=True):
@@ -82,7 +72,7 @@ class Model:
         return {name: QUANTITIES[name].of(result).reshape(many, count) for name in quantities}
 
     def _times(self, many: int) -> Scene:
-        """Return the impacts so many times over."""
+        """Return the batch of impacts repeated ``many`` times."""
         scene = self.setup.scene
         if many == 1:
             return scene
@@ -95,7 +85,7 @@ class Model:
         return attrs.evolve(self, setup=self.setup._replace(scene=scene))
 
     def laws(self, values: Array) -> str:
-        """Return the laws in words, with these values of the parameters in them."""
+        """Return the laws in words, with the values of the parameters."""
         setup = self.setup
         for parameter, value in zip(self.parameters, values.tolist(), strict=True):
             setup = parameter.applied(setup, float(f"{value:.6g}"))
@@ -108,21 +98,7 @@ class Model:
 
 
 def scene_of(scene: object, given: Mapping[str, Array], count: int) -> Scene:
-    """Return the batch of the measured impacts.
-
-    Parameters
-    ----------
-    scene : Scene, SceneFile or path
-        Bodies, and what the measurements do not say. A file needs no friction coefficient.
-    given : mapping of str to array, shape (count,)
-        Entries of the scene, from the measurements; they stand in place of the scene's own.
-    count : int
-
-    Raises
-    ------
-    ValueError
-        If the scene has none of the entries, or another number of impacts.
-    """
+    """Return the batch of the measured impacts."""
     if isinstance(scene, SceneFile):
         scene = scene.path
     if not isinstance(scene, Scene):
@@ -138,7 +114,7 @@ def scene_of(scene: object, given: Mapping[str, Array], count: int) -> Scene:
 
 
 def _velocities(given: Mapping[str, Array], scene: Scene) -> dict[str, Any]:
-    """Return the fields of a scene that measured entries stand for."""
+    """Return the fields of a scene that the measured entries set."""
     fields: dict[str, Any] = {}
     speed = np.hypot(scene.normal_speed, scene.tangential_velocity)
     for name, values in given.items():
@@ -158,7 +134,7 @@ def _velocities(given: Mapping[str, Array], scene: Scene) -> dict[str, Any]:
 
 
 def simulation_of(value: object) -> Simulation | None:
-    """Return the laws to fit with: None for the tabulated exact rebound."""
+    """Return the laws to fit; None for the tabulated exact rebound."""
     if value is None or isinstance(value, Simulation):
         return value
     raise refuse("simulation", value, "must be a Simulation", "or None for the exact elastic law")

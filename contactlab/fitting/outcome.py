@@ -27,13 +27,13 @@ class Estimate:
     name, unit : str
     value : float
     standard_error : float
-        From the covariance; NaN if no number is left over to tell the scatter by.
+        From the covariance; NaN if no number is left to estimate the scatter.
     interval : tuple of float
         95 % interval from the covariance and Student's t.
     bootstrap : tuple of float or None
-        95 % interval of the bootstrap, if one was made.
+        95 % interval of the bootstrap; None without a bootstrap.
     robust : float or None
-        Value of a second fit, which a few far numbers hardly move; None for too few numbers.
+        Value of the robust fit, which few outliers hardly move; None for too few numbers.
     """
 
     name: str
@@ -47,7 +47,7 @@ class Estimate:
 
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class Fit:
-    """Parameters that meet measured impacts best, and how well they do.
+    """Best parameters, their errors, and the residuals.
 
     Attributes
     ----------
@@ -59,13 +59,13 @@ class Fit:
         Quantities at the best values.
     aic : float
         Akaike's criterion up to a constant, to compare laws over the same measurements: lower
-        is better, by 10 is beyond doubt.
+        is better, and a difference of 10 is beyond doubt.
     reduced_chi_square : float or None
-        Mean square of residuals over their known errors, a degree of freedom; None where
-        errors are not known.
+        Sum of squares of residuals over their stated errors, per degree of freedom; None
+        without stated errors.
     notes : tuple of str
     samples : int
-        Of the bootstrap; fewer than asked for where Ctrl-C has ended it, 0 for none.
+        Samples of the bootstrap; fewer than requested after Ctrl-C, 0 without a bootstrap.
     """
 
     parameters: Mapping[str, Estimate]
@@ -86,13 +86,13 @@ class Fit:
 
     @property
     def residuals(self) -> dict[str, Array]:
-        """Measured less predicted, shape (n,), by quantity; NaN where it was not measured."""
+        """Measured less predicted, shape (n,), by quantity; NaN where not measured."""
         measured = self.measurements.measured
         return {name: values - self.predicted[name] for name, values in measured.items()}
 
     @property
     def counts(self) -> dict[str, int]:
-        """Measured numbers, by quantity."""
+        """Count of measured numbers, by quantity."""
         return {name: int(np.isfinite(r).sum()) for name, r in self.residuals.items()}
 
     @property
@@ -112,14 +112,14 @@ class Fit:
             "laws": self.laws,
             "parameters": {
                 name: {
-                    "value": one.value,
-                    "unit": one.unit,
-                    "standard_error": json_value(one.standard_error),
-                    "interval_95": [json_value(end) for end in one.interval],
-                    "bootstrap_95": list(one.bootstrap) if one.bootstrap else None,
-                    "robust": one.robust,
+                    "value": estimate.value,
+                    "unit": estimate.unit,
+                    "standard_error": json_value(estimate.standard_error),
+                    "interval_95": [json_value(end) for end in estimate.interval],
+                    "bootstrap_95": list(estimate.bootstrap) if estimate.bootstrap else None,
+                    "robust": estimate.robust,
                 }
-                for name, one in self.parameters.items()
+                for name, estimate in self.parameters.items()
             },
             "correlation": json_value(self.correlation),
             "rms": self.rms,
@@ -136,13 +136,15 @@ class Fit:
     def __repr__(self) -> str:
         """Return parameters and residuals as a table."""
         lines = [f"Fit of {len(self.measurements)} impacts to {self.laws}"]
-        for name, one in self.parameters.items():
-            low, high = one.interval
-            unit = "" if one.unit == "1" else f" {one.unit}"
-            error = f"± {one.standard_error:.2g}, 95 % {low:.4g} to {high:.4g}"
-            lines.append(f"  {name:24} {one.value:.5g}{unit} {error}")
-            if one.bootstrap:
-                lines[-1] += f" (bootstrap {one.bootstrap[0]:.4g} to {one.bootstrap[1]:.4g})"
+        for name, estimate in self.parameters.items():
+            low, high = estimate.interval
+            unit = "" if estimate.unit == "1" else f" {estimate.unit}"
+            error = f"± {estimate.standard_error:.2g}, 95 % {low:.4g} to {high:.4g}"
+            lines.append(f"  {name:24} {estimate.value:.5g}{unit} {error}")
+            if estimate.bootstrap:
+                lines[-1] += (
+                    f" (bootstrap {estimate.bootstrap[0]:.4g} to {estimate.bootstrap[1]:.4g})"
+                )
         for name, rms in self.rms.items():
             lines.append(f"  {name:24} rms {rms:.3g}, largest {self.largest[name]:.3g}")
         return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])

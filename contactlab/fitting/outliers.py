@@ -1,4 +1,4 @@
-"""A robust second fit, and the numbers that do not go with the others."""
+"""A robust second fit, and outliers."""
 
 from __future__ import annotations
 
@@ -14,34 +14,34 @@ from contactlab.fitting.problem import Problem, grid, minimum
 
 Array = NDArray[np.float64]
 
-#: The median absolute deviation of normal scatter is this much smaller than its standard error.
+#: Standard deviation of normal scatter over its median absolute deviation.
 NORMAL = 1.4826
-#: Residuals of the robust fit, in units of its scatter, beyond which numbers are left out for a
-#: try: the fit of the rest, not this, decides.
+#: Candidate outliers have residuals beyond these, in units of the scatter of the robust fit; the
+#: fit without them decides.
 CUTS = (20.0, 10.0, 6.0, 4.5, 3.5)
-#: A larger share of the numbers is no slip, and fewer numbers say too little of their scatter.
+#: Largest share of outliers, and least count of numbers that shows a scatter.
 FEW, LEAST = 0.3, 6
-#: Chance with which normal scatter is taken for outliers.
+#: Chance of taking normal scatter for outliers.
 CHANCE = 1e-3
 #: Scatter below this share of the largest number is numerical error.
 NUMERICAL = 1e-4
-#: Impacts that are listed one by one.
+#: Most impacts that a sentence lists.
 LISTED = 8
 
 
 class Outliers(NamedTuple):
-    """Numbers that do not go with the others.
+    """Outliers, and the fit without them.
 
     Attributes
     ----------
     chance : float
-        With which normal scatter would look like it; 1 if there are none.
+        Chance that normal scatter makes such outliers; 1 without outliers.
     places : mapping of str to array of int
-        Rows, by quantity.
+        Rows of the outliers, by quantity.
     rest : Problem
-        Without them.
+        The problem without the outliers.
     values : array, shape (parameters,)
-        That meet the rest best.
+        Best values of the rest.
     """
 
     chance: float
@@ -51,18 +51,12 @@ class Outliers(NamedTuple):
 
 
 def robust(problem: Problem, values: Array) -> tuple[Array, dict[str, Any]]:
-    """Return values that few far numbers hardly move, and the scatter of the others by quantity.
-
-    Parameters
-    ----------
-    problem : Problem
-    values : array, shape (parameters,)
-        The best values by least squares.
+    """Return robust values, shape (parameters,), and the scatter by quantity.
 
     Notes
     -----
-    ``scipy.optimize.least_squares`` with the loss "soft_l1": first nearly the least absolute
-    deviations, then with the scatter that these show.
+    ``scipy.optimize.least_squares`` with the loss "soft_l1": first at a small scale, which nearly
+    gives the least absolute deviations, then at the scatter of the first fit.
     """
     scales = {
         name: 0.1 * np.asarray(scale)
@@ -76,38 +70,30 @@ def robust(problem: Problem, values: Array) -> tuple[Array, dict[str, Any]]:
 
 
 def scatter(problem: Problem, values: Array) -> dict[str, Any]:
-    """Return the scatter of each quantity by the median of its absolute residuals.
+    """Return the scatter of each quantity, in its unit, from its median absolute residual.
 
-    Where errors are given it is as many times these for all numbers of the quantity.
+    Stated errors set the ratios of the scatter within a quantity.
     """
     number = sum(problem.counts.values())
     wider = math.sqrt(number / max(number - len(values), 1))
-    found: dict[str, Any] = {}
+    scales: dict[str, Any] = {}
     sizes = problem.sizes()
     for name, rows in problem.residuals(values[None]).items():
         errors = problem.errors.get(name, np.ones(rows.shape[1]))
         middle = float(np.nanmedian(np.abs(rows[0] / errors)))
-        found[name] = errors * max(NORMAL * wider * middle, NUMERICAL * sizes[name] / errors.max())
-    return found
+        scales[name] = errors * max(NORMAL * wider * middle, NUMERICAL * sizes[name] / errors.max())
+    return scales
 
 
 def outliers(problem: Problem, values: Array, scales: Mapping[str, Any]) -> Outliers:
-    """Return the numbers without which the rest is met so well as chance never makes it.
-
-    Parameters
-    ----------
-    problem : Problem
-    values : array, shape (parameters,)
-        Of the robust fit.
-    scales : mapping of str to array
-        Its scatter.
+    """Return the numbers whose removal improves the fit beyond chance.
 
     Notes
     -----
     The F test of k numbers with a mean of their own, times the number of ways to choose k
-    (Bonferroni): the numbers farthest from the robust fit are tried, some more each time.
+    (Bonferroni). Candidates are the k numbers farthest from the robust fit, for growing k.
     """
-    from scipy.special import fdtrc, gammaln  # only those who fit pay for it
+    from scipy.special import fdtrc, gammaln  # only a fit needs scipy
 
     off = {
         name: np.abs(rows[0]) / scales[name]
@@ -142,24 +128,24 @@ def outliers(problem: Problem, values: Array, scales: Mapping[str, Any]) -> Outl
 
 
 def none(problem: Problem, values: Array) -> Outliers:
-    """Return that there are no outliers."""
+    """Return the problem without outliers."""
     return Outliers(1.0, {}, problem, values)
 
 
-def told(problem: Problem, found: Outliers) -> list[str]:
+def described(problem: Problem, far: Outliers) -> list[str]:
     """Return a sentence for each quantity that has outliers."""
     residuals = {
         name: problem.measured[name] - rows[0]
-        for name, rows in problem.model.predicted(found.values[None], list(found.places)).items()
+        for name, rows in problem.model.predicted(far.values[None], list(far.places)).items()
     }
     without = ", ".join(
-        f"{one.name} is {value:.4g}"
-        for one, value in zip(problem.model.parameters, found.values, strict=True)
+        f"{parameter.name} is {value:.4g}"
+        for parameter, value in zip(problem.model.parameters, far.values, strict=True)
     )
     sentences = []
-    for name, places in found.places.items():
-        others = np.delete(residuals[name], places)
-        rms = float(np.sqrt(np.nanmean(others**2)))
+    for name, places in far.places.items():
+        kept = np.delete(residuals[name], places)
+        rms = float(np.sqrt(np.nanmean(kept**2)))
         largest = float(np.max(np.abs(residuals[name][places])))
         rows = [str(place + 1) for place in places[:LISTED]]
         if len(places) > LISTED:

@@ -1,4 +1,4 @@
-"""What can be fitted: numbers of a scene, and options of laws."""
+"""Parameters to fit: numbers of a scene, and options of laws."""
 
 from __future__ import annotations
 
@@ -20,19 +20,18 @@ from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule, nearest
 
-#: Range in which a coefficient of friction is looked for, and where the search begins.
+#: Range of the friction coefficient, and starts of the searches.
 FRICTION, FRICTION_STARTS = (1e-6, 10.0), tuple(np.geomspace(0.004, 4.0, 25).tolist())
 #: kappa = 2(1-nu)/(2-nu) of isotropic solids, from nu = 0.5 to nu = -1.
 STIFFNESS = (2.0 / 3.0, 4.0 / 3.0)
-#: Numbers at which an option's rule is tried, to find the interval in which it holds.
+#: Trial numbers that bracket the interval in which the rule of an option holds.
 TRIED = np.concatenate([-np.geomspace(1e12, 1e-6, 37), [0.0], np.geomspace(1e-6, 1e12, 37)])
-#: Starts that are tried of a parameter with a finite range: the best of few may be where nothing
-#: depends on it.
+#: Starts of a parameter with a finite range; few starts may all lie where it has no effect.
 STARTS = 15
 
 
 class Setup(NamedTuple):
-    """A scene and the laws that it is run with; no laws stand for the tabulated exact rebound."""
+    """A scene and its laws; None stands for the tabulated exact rebound."""
 
     scene: Scene
     simulation: Simulation | None
@@ -40,14 +39,14 @@ class Setup(NamedTuple):
 
 @attrs.frozen(kw_only=True)
 class Parameter(abc.ABC):
-    """A number to be found, between ``least`` and ``most``.
+    """A number to fit, between ``least`` and ``most``.
 
     Attributes
     ----------
     name, unit : str
     least, most : float
     starts : tuple of float
-        Where the search begins: the best of these.
+        Candidate values at which searches begin.
     """
 
     name: str
@@ -58,7 +57,7 @@ class Parameter(abc.ABC):
 
     @property
     def width(self) -> float:
-        """Width of the range; infinite where it has no end, or one without a meaning."""
+        """Width of the range; infinite if unbounded."""
         return self.most - self.least
 
     @property
@@ -68,15 +67,15 @@ class Parameter(abc.ABC):
 
     @abc.abstractmethod
     def applied(self, setup: Setup, value: Real) -> Setup:
-        """Return the scene and the laws with this number, or one for each impact, in them."""
+        """Return scene and laws with this value, a number or an array over the impacts."""
 
 
 class FrictionCoefficient(Parameter):
-    """Coulomb's coefficient, of all impacts alike."""
+    """The friction coefficient of all impacts."""
 
     @property
     def width(self) -> float:
-        """Infinite: there is no greatest coefficient of friction."""
+        """Infinite: ``most`` only bounds the search."""
         return math.inf
 
     def applied(self, setup: Setup, value: Real) -> Setup:
@@ -87,8 +86,8 @@ class FrictionCoefficient(Parameter):
 class StiffnessRatio(Parameter):
     """Kappa = G*/E*, the ratio of the initial tangential to the normal stiffness of the contact.
 
-    It is all that a rebound says of shear moduli. Both bodies are given the Poisson's ratio that
-    belongs to it, kappa = 2(1-nu)/(2-nu), and keep their compliance in normal contact, (1-nu)/(2G).
+    A rebound depends on the shear moduli through kappa alone. Both bodies get the Poisson's ratio
+    of kappa = 2(1-nu)/(2-nu), and keep their compliance in normal contact, (1-nu)/(2G).
     """
 
     def applied(self, setup: Setup, value: Real) -> Setup:
@@ -112,14 +111,14 @@ class StiffnessRatio(Parameter):
 
 @attrs.frozen(kw_only=True)
 class LawOption(Parameter):
-    """An option of one of the three laws that is a real number."""
+    """A real-valued option of a law."""
 
     kind: str
     option: str
 
     @property
     def batched(self) -> bool:
-        """False: a law has one number for all impacts."""
+        """False: a law has one value for all impacts."""
         return False
 
     def applied(self, setup: Setup, value: Real) -> Setup:
@@ -133,28 +132,23 @@ class LawOption(Parameter):
 def parameter_named(name: str, setup: Setup) -> Parameter:
     """Return a parameter by name: a number of the scene, or ``kind.option`` of a law.
 
-    The kind may be left out where only one of the laws has an option of that name.
-
-    Raises
-    ------
-    ValueError
-        If scene and laws have no such number, with the nearest match.
+    The kind may be left out if only one law has an option of that name.
     """
-    known = _known(setup)
+    choices = _choices(setup)
     short: dict[str, list[str]] = {}
-    for full in known:
+    for full in choices:
         short.setdefault(full.rpartition(".")[2], []).append(full)
-    if name not in known and len(short.get(name, ())) == 1:
+    if name not in choices and len(short.get(name, ())) == 1:
         name = short[name][0]
-    if name in known:
-        return known[name]()
-    near = nearest(name, [*known, *short])
-    told = f"known here: {', '.join(known)}" if known else "nothing can be fitted here"
+    if name in choices:
+        return choices[name]()
+    near = nearest(name, [*choices, *short])
+    listed = f"known here: {', '.join(choices)}" if choices else "nothing can be fitted here"
     remedy = "; options of a law are there once it is chosen and they have a number"
     if having := _laws_with(name.rpartition(".")[2]):
         remedy = f"; it is an option of {', '.join(having)}: choose one of them"
     raise ValueError(
-        f"parameters = {name!r}: scene and laws have no such number; {near}{told}{remedy}"
+        f"parameters = {name!r}: scene and laws have no such number; {near}{listed}{remedy}"
     )
 
 
@@ -162,23 +156,24 @@ def _laws_with(option: str) -> list[str]:
     """Return the installed normal and tangential laws with an option of that name."""
     kinds = [kind for kind in KINDS if kind != "integrator"]
     names = [name for kind in kinds for name in REGISTRY.names(kind)]
-    found = []
+    matching = []
     for name in names:
         try:
             options = inspect.signature(REGISTRY.law_class(name)).parameters
-        except (ValueError, PluginError):  # broken: it is not one to be advised
+        except (ValueError, PluginError):  # a broken plug-in is no remedy
             continue
-        found += [name] if option in options else []
-    return found
+        matching += [name] if option in options else []
+    return matching
 
 
-def _known(setup: Setup) -> dict[str, Callable[[], Parameter]]:
-    found: dict[str, Callable[[], Parameter]] = {}
+def _choices(setup: Setup) -> dict[str, Callable[[], Parameter]]:
+    """Return makers of the parameters that scene and laws have, by name."""
+    choices: dict[str, Callable[[], Parameter]] = {}
     if isinstance(setup.scene.sphere, Sphere):
-        found["friction_coefficient"] = lambda: FrictionCoefficient(
+        choices["friction_coefficient"] = lambda: FrictionCoefficient(
             name="friction_coefficient", least=FRICTION[0], most=FRICTION[1], starts=FRICTION_STARTS
         )
-        found["stiffness_ratio"] = lambda: StiffnessRatio(
+        choices["stiffness_ratio"] = lambda: StiffnessRatio(
             name="stiffness_ratio",
             least=STIFFNESS[0],
             most=STIFFNESS[1],
@@ -191,24 +186,12 @@ def _known(setup: Setup) -> dict[str, Callable[[], Parameter]]:
             if field.init and isinstance(value, float) and kind != "integrator":
                 full = f"{kind}.{field.name}"
                 tabled = tabulated.holds(setup.simulation)
-                found[full] = partial(_option, kind, field, value, tabled=tabled)
-    return found
+                choices[full] = partial(_option, kind, field, value, tabled=tabled)
+    return choices
 
 
 def _option(kind: str, field: attrs.Attribute[Any], value: float, *, tabled: bool) -> LawOption:
-    """Return an option of a law.
-
-    Parameters
-    ----------
-    kind : str
-        "normal" or "tangential".
-    field : attrs.Attribute
-        Of the law's class, with unit and rule.
-    value : float
-        That the law has.
-    tabled : bool
-        Whether a table of rebounds answers: searches for a restitution begin where it holds.
-    """
+    """Return the parameter of an option; searches begin where the table, if used, holds."""
     least, most = _range(field.metadata.get("rule"), value)
     finite = math.isfinite(least) and math.isfinite(most)
     first = max(least, DAMPED_RESTITUTION) if tabled and field.name == "restitution" else least
@@ -224,12 +207,12 @@ def _option(kind: str, field: attrs.Attribute[Any], value: float, *, tabled: boo
 
 
 def _evenly(least: float, most: float) -> tuple[float, ...]:
-    """Return numbers between two, the ends left out."""
+    """Return numbers evenly between two ends, without the ends."""
     return tuple(np.linspace(least, most, STARTS + 2)[1:-1].tolist())
 
 
 def _range(rule: Rule | None, value: float) -> tuple[float, float]:
-    """Return the interval around ``value`` in which a rule of a law's option holds."""
+    """Return the ends of the interval around ``value`` in which a rule holds."""
     if rule is None:
         return -math.inf, math.inf
     return _end(rule, value, np.flip(TRIED[value > TRIED])), _end(rule, value, TRIED[value < TRIED])

@@ -1,4 +1,4 @@
-"""Numbers that hardly any measurement or material has."""
+"""Implausible numbers of measurements and of materials."""
 
 from __future__ import annotations
 
@@ -13,42 +13,44 @@ from contactlab.fitting.problem import Problem
 
 Array = NDArray[np.float64]
 
-#: Parameters outside of these are unlikely: the lowest friction of lubricated solids and that of
+#: Plausible ranges of parameters: from the lowest friction of lubricated solids to that of
 #: rubber on a rough plate; the ratio of stiffnesses for Poisson's ratios from 0.5 to 0.
 LIKELY = {
     "friction_coefficient": (0.01, 2.0, "slides on thin ice or sticks like soft rubber"),
     "stiffness_ratio": (0.66, 1.01, "has no Poisson's ratio from 0 to 0.5"),
     "normal.restitution": (0.1, 1.0, "hardly rebounds"),
 }
-#: Numbers before the impact that are seldom measured: least and greatest magnitude.
+#: Plausible magnitudes before the impact: least and greatest.
 SET = {"speed": (1e-3, 300.0), "normal_speed": (1e-3, 300.0), "spin": (0.0, 1e5)}
 RADIUS = (1e-6, 0.5)
-#: Angles in degrees that would all be as small if they were in radians.
+#: Angles below this, in degrees, may be in radians.
 RADIANS = 1.58
-#: Restitutions and this margin for scatter; of more numbers than this share outside it is told.
+#: Possible restitutions with a margin for scatter, and the share outside that is reported.
 BOUNDS, SHARE = {"normal_restitution": (-0.1, 1.1), "slip_restitution": (-1.1, 1.1)}, 1 / 3
-#: What holds beside these for a ball without spin before the impact.
+#: Additional bounds without spin before the impact.
 WITHOUT_SPIN = {"tangential_restitution": (-0.1, 1.1)}
 
 
 def unlikely_numbers(problem: Problem, table: Measurements) -> list[str]:
-    """Return a sentence for each column of numbers that hardly any measurement has."""
-    scene, found = problem.model.setup.scene, []
+    """Return a sentence for each column of implausible numbers."""
+    scene, sentences = problem.model.setup.scene, []
     for name, (least, most) in SET.items():
         size: Any = np.abs(table.given.get(name, np.zeros(0)))
         size = size[size > 0.0]
         if size.size and (np.median(size) < least or np.median(size) > most):
-            found.append(f"{name} of about {np.median(size):.3g} is unlikely: look at its unit")
+            sentences.append(f"{name} of about {np.median(size):.3g} is unlikely: look at its unit")
     angle = table.given.get("angle_deg")
     if angle is not None and len(angle) > 2 and 0.3 < np.max(np.abs(angle)) < RADIANS:
-        found.append(
+        sentences.append(
             f"angle_deg lies between {angle.min():.3g} and {angle.max():.3g} degrees: it may be "
             "in radians"
         )
     if scene.sphere is not None:
         radius = float(np.median(np.asarray(scene.sphere.radius)))
         if not RADIUS[0] < radius < RADIUS[1]:
-            found.append(f"the radius of the sphere, {radius:.3g} m, is unlikely: look at its unit")
+            sentences.append(
+                f"the radius of the sphere, {radius:.3g} m, is unlikely: look at its unit"
+            )
     bounds = BOUNDS | ({} if np.any(scene.spin) else WITHOUT_SPIN)
     for name, values in table.measured.items():
         if name not in bounds:
@@ -56,17 +58,17 @@ def unlikely_numbers(problem: Problem, table: Measurements) -> list[str]:
         least, most = bounds[name]
         outside = np.sum((values < least) | (values > most))
         if outside > SHARE * np.isfinite(values).sum():
-            found.append(
+            sentences.append(
                 f"{name}: {outside} numbers lie beyond {least:g} and {most:g}, which no rebound "
                 "does: look at its unit, its sign and whether columns have moved"
             )
-    return found
+    return sentences
 
 
 def unlikely_parameters(
     problem: Problem, intervals: Mapping[str, tuple[float, float]]
 ) -> list[str]:
-    """Return a sentence for each parameter whose interval lies outside what materials have."""
+    """Return a sentence for each parameter whose interval lies outside its plausible range."""
     columns = ", ".join([*problem.measured, "speed", "the radius"])
     return [
         f"{name} from {low:.3g} to {high:.3g} is unlikely, as if a pair of materials that "

@@ -1,4 +1,4 @@
-"""Laws by how well they meet the same measurements, each with its own best parameters."""
+"""Ranking of laws by their fits to the same measurements."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from contactlab.outcome.result import ImpactError
 
 @attrs.frozen(kw_only=True)
 class Ranked:
-    """A law and its fit, or why there is none."""
+    """A law and its fit; without a fit, ``refusal`` gives the reason."""
 
     name: str
     fit: Fit | None
@@ -32,14 +32,14 @@ def rank(
     parameters: Sequence[str] = ("friction_coefficient",),
     **options: Any,
 ) -> list[Ranked]:
-    """Return laws in the order of Akaike's criterion, the best first, those without a fit last.
+    """Return laws in the order of Akaike's criterion, the best first, laws without a fit last.
 
     Parameters
     ----------
     measurements, scene, parameters
         As for ``fit``.
     simulations : mapping of str to Simulation
-        By the names under which they are to appear; None stands for the exact elastic laws.
+        Laws by the names to report; None stands for the exact elastic laws.
     progress : callable, optional
         Called as ``progress(done, total)`` after each law.
     **options
@@ -48,21 +48,21 @@ def rank(
     Raises
     ------
     ValueError
-        If the measurements cannot be read. What a single law cannot do is in its ``refusal``.
+        If the measurements cannot be read. The failure of a single law is in its ``refusal``.
     """
     table = read_measurements(measurements)
-    found = []
+    ranked = []
     for done, (name, simulation) in enumerate(simulations.items(), start=1):
         keywords = options | {"parameters": parameters, "simulation": simulation}
         try:
-            found.append(Ranked(name=name, fit=fit(table, scene, **keywords)))
+            ranked.append(Ranked(name=name, fit=fit(table, scene, **keywords)))
         except (ValueError, ImpactError) as error:
-            found.append(Ranked(name=name, fit=None, refusal=str(error)))
+            ranked.append(Ranked(name=name, fit=None, refusal=str(error)))
         if progress is not None:
             progress(done, len(simulations))
-    return in_order(found)
+    return in_order(ranked)
 
 
 def in_order(ranked: Iterable[Ranked]) -> list[Ranked]:
-    """Return laws with the lowest Akaike criterion first, those without a fit last."""
-    return sorted(ranked, key=lambda one: (one.fit is None, one.fit.aic if one.fit else 0.0))
+    """Return laws with the lowest Akaike criterion first, laws without a fit last."""
+    return sorted(ranked, key=lambda law: (law.fit is None, law.fit.aic if law.fit else 0.0))

@@ -1,4 +1,4 @@
-"""Other ways to read the columns of a measurement: units, angles and signs that people mistake."""
+"""Other readings of the columns of a measurement: mistaken units, angles, signs and rows."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from contactlab.outcome.columns import QUANTITIES
 Array = NDArray[np.float64]
 
 RPM = 2.0 * math.pi / 60.0
-#: What numbers under a heading of a unit may be in by mistake, and their factor to that unit.
+#: Mistaken units of numbers, by the unit of their quantity, with factors to that unit.
 MISTAKEN = {
     "deg": {"in radians": math.degrees(1.0), "in degrees under a heading in rad": math.radians(1)},
     "rad/s": {
@@ -37,25 +37,26 @@ MISTAKEN = {
     },
 }  # fmt: skip
 MISTAKEN["rad"] = MISTAKEN["deg"]
-#: Fewer numbers of a quantity than this show no shift by a row.
+#: Least count of numbers that shows a shift by a row.
 ROWS = 6
 SURFACE, SIGN = "measured from the surface, not from the normal", "of the opposite sign"
-#: Quantities that are taken for each other: of the centre, and of the contact point.
+#: Quantities of the centre and of the contact point, which are easily exchanged.
 TAKEN_FOR = {
     "rebound_angle_deg": "local_rebound_angle_deg",
     "rebound_angle": "local_rebound_angle",
     "tangential_restitution": "slip_restitution",
     "rebound_tangential_velocity": "rebound_slip_velocity",
 }
-TAKEN_FOR |= {other: name for name, other in TAKEN_FOR.items()}
+TAKEN_FOR |= {local: centre for centre, local in TAKEN_FOR.items()}
 
 
 class Reading(NamedTuple):
-    """A measurement read another way.
+    """A measurement with columns read another way.
 
-    ``words`` say what it supposes; ``problem`` has its impacts and numbers, in the order of the
-    quantities as they were measured; ``factors`` are what numbers were multiplied by; ``rest`` are
-    the numbers as they were without those that the reading has no place for, if there are such.
+    ``words`` state the supposed mistake. ``problem`` has the impacts and numbers of this reading,
+    in the order of the measured quantities. ``factors`` are the factors on the numbers, by
+    quantity. ``rest`` are the original numbers without those that the reading drops; None if the
+    reading drops no number.
     """
 
     words: str
@@ -65,7 +66,7 @@ class Reading(NamedTuple):
 
 
 def readings(problem: Problem, given: Collection[str]) -> Iterator[Reading]:
-    """Yield every other way to read a measurement; ``given`` are columns before the impact."""
+    """Yield every other reading; ``given`` are the columns before the impact."""
     impacts = dict(_impacts(problem.model.setup.scene, given))
     for words, scene in impacts.items():
         yield Reading(words, attrs.evolve(problem, model=problem.model.at(scene)), {})
@@ -84,14 +85,14 @@ def readings(problem: Problem, given: Collection[str]) -> Iterator[Reading]:
 
 
 def _impacts(scene: Scene, given: Collection[str]) -> Iterator[tuple[str, Scene]]:
-    """Yield other impacts: angle, speed, spin before, and the size of the ball."""
+    """Yield scenes with another angle, speed, spin before, or size of the ball."""
     normal: Any = np.asarray(scene.normal_speed)
     along: Any = np.asarray(scene.tangential_velocity)
     angle: Any = np.degrees(np.arctan2(along, normal))
     name = "angle_deg" if "angle_deg" in given else "the angle of incidence"
-    for way, other in (("in radians", np.degrees(angle)), (SURFACE, 90.0 - angle)):
-        if np.all(np.abs(other) < 90.0):
-            yield f"{name} looks as if {way}", turned(scene, np.radians(other), given)
+    for way, reread in (("in radians", np.degrees(angle)), (SURFACE, 90.0 - angle)):
+        if np.all(np.abs(reread) < 90.0):
+            yield f"{name} looks as if {way}", turned(scene, np.radians(reread), given)
     if {"normal_speed", "tangential_velocity"} <= set(given) and np.all(along > 0.0):
         words = "normal_speed and tangential_velocity look as if exchanged"
         yield words, attrs.evolve(scene, normal_speed=along, tangential_velocity=normal)
@@ -117,7 +118,7 @@ def _impacts(scene: Scene, given: Collection[str]) -> Iterator[tuple[str, Scene]
 
 
 def turned(scene: Scene, angle: Array, given: Collection[str]) -> Scene:
-    """Return impacts at other angles, in rad, at the speed that the table gives."""
+    """Return impacts at other angles, in rad, with the normal speed or speed of the table."""
     normal: Any = np.asarray(scene.normal_speed)
     if "normal_speed" in given:
         return attrs.evolve(scene, tangential_velocity=normal * np.tan(angle))
@@ -127,7 +128,7 @@ def turned(scene: Scene, angle: Array, given: Collection[str]) -> Scene:
 
 
 def _numbers(problem: Problem) -> Iterator[Reading]:
-    """Yield other numbers of the same impacts."""
+    """Yield readings with other numbers after the same impacts."""
     measured = problem.measured
     for name in measured:
         unit = QUANTITIES[name].unit
@@ -137,16 +138,16 @@ def _numbers(problem: Problem) -> Iterator[Reading]:
         if unit in ("deg", "rad"):
             read = _with(problem, name, _way(name, SURFACE))
             yield Reading(f"{name} looks as if {SURFACE}", read, {})
-        other = TAKEN_FOR.get(name)
-        if other and other not in measured:
-            read = _renamed(problem, {name: other})
-            yield Reading(f"{name} looks as if its numbers were those of {other}", read, {})
+        twin = TAKEN_FOR.get(name)
+        if twin and twin not in measured:
+            read = _renamed(problem, {name: twin})
+            yield Reading(f"{name} looks as if its numbers were those of {twin}", read, {})
     names = list(measured)
-    for place, one in enumerate(names):
-        for two in names[place + 1 :]:
-            if QUANTITIES[one].unit == QUANTITIES[two].unit:
-                read = _renamed(problem, {one: two, two: one})
-                yield Reading(f"{one} and {two} look as if exchanged", read, {})
+    for place, first in enumerate(names):
+        for second in names[place + 1 :]:
+            if QUANTITIES[first].unit == QUANTITIES[second].unit:
+                read = _renamed(problem, {first: second, second: first})
+                yield Reading(f"{first} and {second} look as if exchanged", read, {})
     listed = " and ".join(names)
     look = "looks" if len(names) == 1 else "look"
     if min(problem.counts.values()) < ROWS:
@@ -160,7 +161,7 @@ def _numbers(problem: Problem) -> Iterator[Reading]:
 
 
 def _way(name: str, way: str) -> Callable[[Array], Array]:
-    """Return how numbers of a quantity are to be read if they were written in this way."""
+    """Return the function that corrects numbers of a quantity written in this way."""
     unit = QUANTITIES[name].unit
     if way == SURFACE:
         right = 90.0 if unit == "deg" else 0.5 * math.pi
@@ -170,7 +171,7 @@ def _way(name: str, way: str) -> Callable[[Array], Array]:
 
 
 def _with(problem: Problem, name: str, change: Callable[[Array], Array]) -> Problem:
-    """Return the problem with other numbers of one quantity."""
+    """Return the problem with the numbers of one quantity changed."""
     numbers = change(problem.measured[name])
     return attrs.evolve(problem, measured={**problem.measured, name: numbers})
 
@@ -183,7 +184,7 @@ def _renamed(problem: Problem, names: Mapping[str, str]) -> Problem:
 
 
 def _shifted(values: Array, step: int) -> Array:
-    """Return numbers moved by a row; the one that is not known is NaN."""
-    found = np.roll(values, step)
-    found[-1 if step < 0 else 0] = np.nan
-    return found
+    """Return numbers moved by a row; the number at the open end is NaN."""
+    moved = np.roll(values, step)
+    moved[-1 if step < 0 else 0] = np.nan
+    return moved

@@ -1,4 +1,4 @@
-"""Impacts whose rebound is tabulated: elastic ones, and those of one restitution by Tsuji's law."""
+"""Impacts with a tabulated rebound: elastic, or with one restitution by Tsuji's law."""
 
 from __future__ import annotations
 
@@ -19,9 +19,8 @@ from contactlab.outcome.result import ImpactResult
 def holds(simulation: Simulation | None) -> bool:
     """Return whether ``contactlab.rebound`` answers for these laws.
 
-    None stands for the exact elastic laws. Others are tabulated if their normal law is that of
-    ``rebound(restitution=)``, and the rest is what that normal law gets where nothing else is
-    chosen: partial slip by Coulomb's law.
+    None stands for the exact elastic laws. Other laws are tabulated if their normal law is the
+    one of ``rebound(restitution=)`` and tangential law and integrator are the defaults.
     """
     if simulation is None:
         return True
@@ -37,7 +36,7 @@ def _normal_law() -> type:
 
 
 def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
-    """Return the impacts of a batch by the table of psi2; friction work is not worked out."""
+    """Return the impacts of a batch by the table of psi2; friction work is NaN."""
     shape = scene.shape
     if simulation is None:
         psi2, course = rebound(scene.psi1, scene.chi), Simulation().normal_motion(scene)

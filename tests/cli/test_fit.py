@@ -63,6 +63,17 @@ def test_tables(run, impacts):
     assert "columns not used: # remark" in ran.out
 
 
+def test_a_column_is_named_on_the_command_line(run, impacts):
+    plain = run("fit", impacts, KHARAZ, "--bootstrap", 0, "--json")
+    text = impacts.read_text(encoding="utf-8")
+    impacts.write_text(text.replace("angle (deg)", "a = 1 [deg]"), encoding="utf-8")
+    named = ("--column", "a = 1 [deg]=incidence_angle")
+    ran = run("fit", impacts, KHARAZ, "--bootstrap", 0, "--json", *named)
+    assert ran.status == 0
+    assert json.loads(ran.out) == json.loads(plain.out)
+    assert "write HEADING=NAME" in run("fit", impacts, KHARAZ, "--column", "angle").err
+
+
 def test_a_parameter_has_a_row_with_its_intervals(run, impacts):
     options = ("--laws", "coulomb", "--bootstrap", 5)
     ran = run("fit", impacts, KHARAZ, *options)

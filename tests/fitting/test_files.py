@@ -52,6 +52,56 @@ def test_the_first_column_may_be_one_that_is_not_read(tmp_path):
     assert found.unused == ("#Test",)
 
 
+@pytest.mark.parametrize(
+    ("headings", "names"),
+    [
+        ("incidence_angle_deg,speed_m_s,rebound_angle_deg,rebound_spin_rpm", {}),
+        ("Angle (deg),speed [m/s],rebound angle (deg),rebound spin_1_min", {}),
+        (
+            "impact angle [deg],v_m_s,out_deg,w",
+            {
+                "impact angle [deg]": "incidence_angle",
+                "v_m_s": "speed",
+                "out_deg": "rebound_angle",
+                "w": "rebound_spin (rpm)",
+            },
+        ),
+    ],
+    ids=["units in names", "units in brackets", "mapped"],
+)
+def test_columns_are_named_by_the_list_of_columns(tmp_path, headings, names):
+    content = "\n".join([headings, *PLAIN.splitlines()[1:]])
+    path = tmp_path / "named.csv"
+    path.write_text(content, encoding="utf-8")
+    same(read_measurements(path, columns=names), read(tmp_path, PLAIN.encode()))
+
+
+def test_a_name_in_degrees_does_not_overrule_a_heading_in_radians():
+    columns = {"in [rad]": [0.5], "e": [0.9], "e_s": [0.1]}
+    names = {"in [rad]": "angle_deg", "e": "slip_restitution", "e_s": "slip_restitution_error (1)"}
+    found = read_measurements(columns, columns=names)
+    np.testing.assert_allclose(found.given["angle_deg"], np.degrees(0.5), rtol=1e-15)
+    assert found.errors["slip_restitution"] == 0.1
+
+
+def test_a_published_table_is_read_by_a_mapping(tmp_path):
+    """The headings of a file of Kharaz and others' spins (2001): words, degrees, rad/s."""
+    path = tmp_path / "spin.csv"
+    path.write_text(
+        "# digitised\ndigitised_by,incidence_deg,spin_rad_s\nmfix,6.0,-135.5\nlethe,20.0,-540.0\n",
+        encoding="utf-8",
+    )
+    names = {
+        "digitised_by": "#",
+        "incidence_deg": "incidence_angle",
+        "spin_rad_s": "rebound_spin",
+    }
+    found = read_measurements(path, columns=names)
+    np.testing.assert_array_equal(found.given["angle_deg"], [6.0, 20.0])
+    np.testing.assert_array_equal(found.measured["rebound_spin"], [-135.5, -540.0])
+    assert found.unused == ("digitised_by",)
+
+
 def test_the_rebound_speed_of_what_slips_throughout():
     """Coulomb's impulse: v - 2 mu v1 along the target, and v1 back from it."""
     impacts = scene(0.1, np.array([60.0, 70.0]))

@@ -178,6 +178,12 @@ def test_bad_arguments(arguments, words):
         ({"speed (m/s": [1.0]}, "write a name and its unit"),
         ({"angle_deg": [5.0]}, "nothing was measured"),
         ({"angle_deg": [5.0, 6.0], "slip_restitution": [0.1]}, "equal length"),
+        (
+            {"angle_deg": [5.0], "slip_restitution": [0.1], "slip_restitution_error": [0.1, 0.2]},
+            "slip_restitution_error 2",
+        ),
+        ({"angle": [0.5], "psi2": [0.1]}, "has no unit; write 'angle (deg)', or (rad)"),
+        ({"spin_rpm (rad/s)": [0.5], "psi2": [0.1]}, "neither an entry of a scene"),
         ({"slip_restitution": [np.nan]}, "holds no number"),
         ({"slip_restitution": [np.inf, np.nan]}, "must be finite"),
         ({"slip_restitution": ["a"]}, "must be a list of numbers"),
@@ -192,11 +198,29 @@ def test_bad_columns(columns, words):
 
 
 @pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        ({"anlge": "angle_deg"}, "columns = 'anlge': is not a heading; had: alpha, psi2"),
+        ({"alpha": "incidence_angle"}, "heading 'alpha': has no unit"),
+        ({"alpha": "rebound_spin (deg)"}, "heading 'alpha'"),
+    ],
+)
+def test_bad_names_of_columns(names, words):
+    with pytest.raises(ValueError, match=re.escape(words)):
+        read_measurements({"alpha": [1.0], "psi2": [0.5]}, columns=names)
+    with pytest.raises(ValueError, match="need a CSV file"):
+        read_measurements(read_measurements({"psi2": [0.5]}), columns=names)
+
+
+@pytest.mark.parametrize(
     ("text", "words"),
     [
         ("", "needs a line of headings"),
         ("psi2\n", "needs a line of headings"),
-        ("psi2;angle_deg\n1;1.002,5\n", "line 2: '1.002,5': write numbers without marks"),
+        (
+            "psi2;angle_deg\n1;1.002,5\n",
+            "line 2, 'angle_deg': '1.002,5': write numbers without marks",
+        ),
         ("# made up, by hand\n1,2\n", "heading ' by hand'"),
         ("# angle_deg,psi2\n1,2\n", "line 1: begins with #, so that 'angle_deg' would not"),
         ("# made up\npsi2,angle_deg\n1,2\n1\n", "line 4: has 1 columns, the headings are 2"),
