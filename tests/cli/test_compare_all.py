@@ -72,12 +72,12 @@ def test_pressing_alone_in_closed_form():
 
 
 def test_a_normal_law_leaves_out_what_does_not_fit():
-    """Over a damped contact the exact law has nothing to say: springs are the reference."""
+    """Over a damped contact the exact law has nothing to say: the law of Coulomb at every point is the default."""
     found = candidates(LawChoice(normal="hertz"))
     assert next(iter(found.simulations)) == "fronts"
     assert found.left_out == {}
     law = Damped()
-    assert contactlab.compose.composition.preferred("tangential", law) == "springs"
+    assert contactlab.compose.composition.preferred("tangential", law) == "annulus"
 
 
 def test_without_a_scene_it_is_that_of_the_codes(run):
