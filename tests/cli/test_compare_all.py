@@ -72,7 +72,7 @@ def test_pressing_alone_in_closed_form():
 
 
 def test_a_normal_law_leaves_out_what_does_not_fit():
-    """Over a damped contact the exact law has nothing to say: the law of Coulomb at every point is the default."""
+    """Over a damped contact the exact law has nothing to say, and annuli are the default."""
     found = candidates(LawChoice(normal="hertz"))
     assert next(iter(found.simulations)) == "fronts"
     assert found.left_out == {}
