@@ -111,7 +111,7 @@ def sweep_section(
 ) -> Section:
     """Return one row for each impact: entries that vary, by name and unit, quantities, status.
 
-    At most ``most`` rows, evenly spread with both ends, if given.
+    If ``most`` is not None, at most this number of rows, evenly spread with both ends.
     """
     columns = {heading(name, unit): values for name, (unit, values) in varied.items()}
     for name in SWEEP_TABLE:
