@@ -125,5 +125,6 @@ def _report(benchmark: Benchmark) -> str:
 
 
 def _write_csv(path: Path, benchmark: Benchmark) -> None:
+    """Write all rows of the benchmark."""
     names = [field.name for field in attrs.fields(Row)]
     write_table(path, names, ([getattr(row, name) for name in names] for row in benchmark.rows))

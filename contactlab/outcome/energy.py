@@ -25,6 +25,7 @@ LARGEST_SLIP = 1.1
 
 
 def _energy() -> Any:
+    """Return an attribute in J."""
     return attrs.field(metadata={"unit": "J"})
 
 

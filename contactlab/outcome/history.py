@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 
 def _column(unit: str) -> Any:
+    """Return an attribute with its unit."""
     return attrs.field(metadata={"unit": unit})
 
 

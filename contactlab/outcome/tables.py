@@ -171,6 +171,7 @@ def _defined(result: ImpactResult, headings: list[str], rows: list[Row]) -> Sect
 
 
 def _velocities(result: ImpactResult) -> list[Row]:
+    """Return velocities before and after the impact."""
     scene, bodies = result.scene, result.scene.sphere is not None
     after_tangential = result.rebound_tangential_velocity
     after_angle = QUANTITIES["rebound_angle_deg"].read(result)
@@ -192,6 +193,7 @@ def _velocities(result: ImpactResult) -> list[Row]:
 
 
 def _contact(result: ImpactResult) -> list[Row]:
+    """Return restitutions, duration and maxima of the contact."""
     scene, motion = result.scene, result.motion
     rows: list[Row] = [
         ["chi", scene.chi, "1"],
@@ -206,6 +208,7 @@ def _contact(result: ImpactResult) -> list[Row]:
 
 
 def _energy(result: ImpactResult) -> list[Row]:
+    """Return the energy books."""
     energy = result.energy
     return [
         ["start", energy.start, "J"],

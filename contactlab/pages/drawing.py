@@ -45,10 +45,12 @@ def scene_drawing(result: ImpactResult) -> str:
 
 
 def _speed(velocity: tuple[float, float]) -> str:
+    """Return the magnitude of a velocity as text."""
     return number(math.hypot(*velocity), digits=3)
 
 
 def _surface(curved: bool) -> str:
+    """Return the surface of a half-space or a sphere."""
     w, d = WIDTH * SCALE, DEPTH * SCALE
     if curved:
         r = 2.5 * SCALE
@@ -59,6 +61,7 @@ def _surface(curved: bool) -> str:
 
 
 def _circle() -> str:
+    """Return the sphere."""
     return f"<circle cx='0' cy='{-SCALE:g}' r='{SCALE:g}' fill='#cfe3f1' stroke='black'/>"
 
 

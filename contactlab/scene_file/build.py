@@ -55,6 +55,7 @@ def _present(table: Table, keys: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _material(table: Table) -> Material:
+    """Return the material of a body."""
     material = table.table("material", known=MATERIAL_KEYS)
     material.require("poisson_ratio", "for example 0.3")
     if material.has("shear_modulus") == material.has("young_modulus"):
@@ -66,6 +67,7 @@ def _material(table: Table) -> Material:
 
 
 def _sphere(table: Table) -> Sphere:
+    """Return a sphere; its mass needs a value of its own or a density."""
     numbers = _numbers(table, ("radius",)) | _present(table, ("mass", "gyration_ratio"))
     material = _material(table)
     if material.density is None and not table.has("mass"):
@@ -77,6 +79,7 @@ def _sphere(table: Table) -> Sphere:
 
 
 def _target(root: Table) -> Sphere | HalfSpace:
+    """Return the target, a half-space or a sphere."""
     raw = root.require("target", 'add [target] with kind = "half-space" or "sphere"')
     kinds = {"half-space": ("kind", "material"), "sphere": ("kind", *SPHERE_KEYS)}
     kind = raw.get("kind") if isinstance(raw, Mapping) else None
@@ -109,6 +112,7 @@ def _encounter(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Enco
 
 
 def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:
+    """Return the scene of an impact with polar or normal and tangential velocity."""
     numbers = _numbers(table, ("friction_coefficient",)) | _present(table, ("spin",))
     polar, cartesian = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
     if table.has(*polar) and table.has(*cartesian):

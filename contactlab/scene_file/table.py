@@ -84,6 +84,7 @@ class Table:
             raise ValueError(f"{self.path}: {rule}; check their units") from error
 
     def _unknown(self, key: str) -> ValueError:
+        """Return the error of an unknown key."""
         return ValueError(f"{self.at(key)}: is not a known key; {nearest_of(key, self.known)}")
 
 
