@@ -13,7 +13,7 @@ import contextlib
 import sys
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import add_scene, given
+from contactlab.cli.scene import add_scene, inputs
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,12 +24,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Run the impact, draw it and print the path; an impact that failed is an error."""
-    scene, simulation = given(arguments)[1:]
+    """Run the impact, draw it and print the path; raise ``ImpactError`` if the impact fails."""
+    _, scene, simulation = inputs(arguments)
     if scene.shape:
-        raise ValueError("scene: must be a single impact, this one is a sweep; leave [sweep] out")
+        raise ValueError("scene: must be a single impact, not a sweep; leave out [sweep]")
     with shared.progress(arguments.progress, "frames") as progress:
-        with contextlib.redirect_stdout(sys.stderr):  # what a plug-in prints is not our output
+        with contextlib.redirect_stdout(sys.stderr):  # plug-ins may print
             result = simulation.run(scene, history="fields").check()
         from contactlab.figures.animation import animate  # matplotlib only when drawing
 

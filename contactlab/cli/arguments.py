@@ -1,4 +1,4 @@
-"""Arguments that several subcommands share, and what they mean."""
+"""Arguments that several subcommands share, and their conversion."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from contactlab.cli.progress import progress as progress  # the subcommands' own
+from contactlab.cli.progress import progress as progress  # exported to the subcommands
 from contactlab.compose.registry import KINDS
 from contactlab.outcome.files import distinct, unwritable
 
-#: Exit statuses; the last two are what a shell reports of a program ended by a signal.
+#: Exit statuses; the last two are those of a shell for a program that a signal ended.
 OK, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
 
 
 def finite(text: str) -> float:
-    """Return a finite number, or refuse the text."""
+    """Return the text as a finite number."""
     try:
         value = float(text)
     except ValueError:
@@ -29,13 +29,13 @@ def finite(text: str) -> float:
 
 
 def names(text: str) -> list[str]:
-    """Return the names in a list separated by commas."""
-    found = [name.strip() for name in text.split(",") if name.strip()]
-    if not found:
+    """Return the names in a list separated by commas, without repetition."""
+    words = [name.strip() for name in text.split(",") if name.strip()]
+    if not words:
         raise argparse.ArgumentTypeError("needs at least one name")
-    if len(set(found)) < len(found):
-        raise argparse.ArgumentTypeError(f"{text!r} names one of them twice")
-    return found
+    if len(set(words)) < len(words):
+        raise argparse.ArgumentTypeError(f"{text!r}: a name is repeated")
+    return words
 
 
 def setting(text: str) -> tuple[str, Any]:
@@ -43,18 +43,18 @@ def setting(text: str) -> tuple[str, Any]:
     path, equals, value = text.partition("=")
     if not equals or not path.strip() or not value.strip():
         raise argparse.ArgumentTypeError(f"{text!r}: write it as tangential.annuli=50")
-    import tomllib  # only for those who set an option
+    import tomllib  # only for --set
 
     try:
         return path.strip(), tomllib.loads(f"value = {value.strip()}")["value"]
     except tomllib.TOMLDecodeError:
-        return path.strip(), value.strip()  # a word needs no quotes on the command line
-    except (RecursionError, ValueError) as error:  # too deep, or of too many digits
+        return path.strip(), value.strip()  # words need no quotes
+    except (RecursionError, ValueError) as error:  # nested too deep, or too many digits
         raise argparse.ArgumentTypeError(f"{path.strip()}: {error}") from None
 
 
 def file_of(*suffixes: str) -> Callable[[str], Path]:
-    """Return a converter to a path that can be written and has one of the suffixes."""
+    """Return a converter of text to a writable path with one of the suffixes."""
 
     def convert(text: str) -> Path:
         path = Path(text)
@@ -67,12 +67,12 @@ def file_of(*suffixes: str) -> Callable[[str], Path]:
     return convert
 
 
-#: Forms of picture; those of ``contactlab.figures.files.FORMATS``, which loads matplotlib.
+#: Suffixes of pictures, as in ``contactlab.figures.files.FORMATS``, which loads matplotlib.
 PICTURES = (".png", ".pdf", ".svg")
 
 
 def add_figure(parser: argparse.ArgumentParser, words: str) -> None:
-    """Add ``--figure``, ``--style`` and ``--width``; ``words`` say what is drawn."""
+    """Add ``--figure`` with ``words`` as its help, ``--style`` and ``--width``."""
     parser.add_argument(
         "--figure", type=file_of(*PICTURES), metavar="FILE", help=f"{words} (.png, .pdf or .svg)"
     )
@@ -92,31 +92,24 @@ def add_look(parser: argparse.ArgumentParser) -> None:
 
 
 def look(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Return look and width of a figure, as ``contactlab.figures.files.save`` takes them."""
+    """Return the options ``look`` and ``width`` of ``contactlab.figures.files.save``."""
     return {"look": arguments.style, "width": arguments.width}
 
 
 def check_outputs(arguments: argparse.Namespace) -> None:
-    """Refuse two outputs that are the same file, or one that is the scene."""
-    given = vars(arguments)
-    outputs = {f"--{name}": path for name, path in given.items() if isinstance(path, Path)}
-    distinct({"SCENE.toml": given.get("scene"), **outputs})
+    """Refuse an output that is the same file as another output or the scene."""
+    values = vars(arguments)
+    outputs = {f"--{name}": path for name, path in values.items() if isinstance(path, Path)}
+    distinct({"SCENE.toml": values.get("scene"), **outputs})
 
 
 def save(
     *writings: tuple[Path | None, Callable[[Path], object]], progress_wanted: bool | None
 ) -> int:
-    """Write the files that are asked for, and return the status of the command.
+    """Write each file whose path is not None, and return the exit status.
 
-    A file that cannot be written is said on stderr: after long work it must not take the other
-    files, and what is printed, with it.
-
-    Parameters
-    ----------
-    *writings : tuple of path and callable
-        None for a path where no file is asked for.
-    progress_wanted : bool or None
-        As ``--progress`` has it.
+    A file that cannot be written is reported on stderr, so that the other files and the printed
+    results of long work are not lost.
     """
     status = OK
     wanted = [(path, write) for path, write in writings if path is not None]
@@ -135,7 +128,7 @@ def save(
 def add_laws(
     parser: argparse.ArgumentParser, *, kinds: Sequence[str] = KINDS, many: bool = False
 ) -> None:
-    """Add ``--normal``, ``--tangential``, ``--integrator``, or some of them, and ``--set``."""
+    """Add ``--set`` and an option for each kind of law; with ``many`` a list of names."""
     for kind in kinds:
         word = "integrator" if kind == "integrator" else f"{kind} law"
         parser.add_argument(
@@ -166,7 +159,7 @@ def add_progress(parser: argparse.ArgumentParser) -> None:
 
 
 def add_report(parser: argparse.ArgumentParser) -> None:
-    """Add what reports over all laws share: the laws, the size, the outputs."""
+    """Add laws, size and outputs of a report over all laws."""
     parser.add_argument(
         "--law",
         action="append",

@@ -26,7 +26,7 @@ from contactlab.outcome.tables import time
 from contactlab.study.bench_methods import methods
 from contactlab.study.work_precision import Benchmark, Row, bench
 
-#: Why a report may not be complete.
+#: Reason for an incomplete report.
 BUDGET = "the budget ran out"
 
 
@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the laws, the size, and the outputs."""
     shared.add_report(parser)
     parser.add_argument(
-        "--markdown", action="store_true", help="print a row or two of each law, as Markdown"
+        "--markdown", action="store_true", help="print a row or two for each law, as Markdown"
     )
 
 
@@ -42,7 +42,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the benchmark and report."""
     shared.check_budget(arguments.budget)
     if arguments.json and arguments.markdown:
-        raise ValueError("--json, --markdown: are two forms of the same table; leave out one")
+        raise ValueError("--json, --markdown: cannot be combined; leave out one")
     chosen = methods(arguments.law)
     with shared.progress(arguments.progress, "bench") as progress:
         benchmark = bench(chosen, quick=arguments.quick, budget=arguments.budget, progress=progress)
@@ -59,6 +59,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _draw(path: Path, benchmark: Benchmark, **look: Any) -> None:
+    """Draw error against run time; ``look`` as in ``arguments.look``."""
     if not benchmark.rows:
         print("no figure drawn: nothing was measured", file=sys.stderr)
         return
@@ -69,6 +70,7 @@ def _draw(path: Path, benchmark: Benchmark, **look: Any) -> None:
 
 
 def _content(benchmark: Benchmark) -> dict[str, object]:
+    """Return the content of the JSON."""
     rows = [
         {key: json_value(value) for key, value in attrs.asdict(row).items()}
         for row in benchmark.rows
@@ -78,7 +80,7 @@ def _content(benchmark: Benchmark) -> dict[str, object]:
 
 
 def markdown(benchmark: Benchmark) -> str:
-    """Return the short table as Markdown."""
+    """Return the short table, a row or two for each law, as Markdown."""
     lines = [["law, integrator", "resolution", "psi2 rms", "worst", "energy books", "one impact",
               "in a sweep"], ["---"] * 7]  # fmt: skip
     for row in benchmark.short():
@@ -87,18 +89,21 @@ def markdown(benchmark: Benchmark) -> str:
         numbers = [f"{value:.1e}" for value in (row.error_rms, row.error_worst, row.books_worst)]
         lines.append([name, row.options, *numbers, *_times(row)])
     text = "\n".join(f"| {' | '.join(line)} |" for line in lines)
-    return text if benchmark.complete else f"{text}\n\n{_why_not(benchmark)}"
+    return text if benchmark.complete else f"{text}\n\n{_incomplete(benchmark)}"
 
 
 def _times(row: Row) -> list[str]:
+    """Return the run time of one impact alone and in a sweep, a dash for NaN."""
     return [time(value) if value == value else "-" for value in (row.time_s, row.sweep_time_s)]
 
 
-def _why_not(benchmark: Benchmark) -> str:
+def _incomplete(benchmark: Benchmark) -> str:
+    """Return why the report is not complete."""
     return f"not complete: {'interrupted' if benchmark.interrupted else BUDGET}"
 
 
 def _report(benchmark: Benchmark) -> str:
+    """Return the full table and the orders of convergence."""
     front = benchmark.front()
     lines = []
     for row in benchmark.rows:
@@ -116,9 +121,10 @@ def _report(benchmark: Benchmark) -> str:
         text += "\n\n" + table(["method", "order observed"], orders, digits=3)
     if benchmark.complete:
         return text
-    return f"{text}\n\n{_why_not(benchmark)}"
+    return f"{text}\n\n{_incomplete(benchmark)}"
 
 
 def _write_csv(path: Path, benchmark: Benchmark) -> None:
+    """Write all rows of the benchmark."""
     names = [field.name for field in attrs.fields(Row)]
     write_table(path, names, ([getattr(row, name) for name in names] for row in benchmark.rows))

@@ -17,13 +17,13 @@ from contactlab.scene_file import LawChoice, read_scene
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the scene, without which there are no data to cite, and the laws."""
+    """Add the scene, whose data are cited, and the laws."""
     parser.add_argument("scene", nargs="?", metavar="SCENE.toml", help="a scene or a sweep")
     shared.add_laws(parser, many=True)
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Print the entries, the data's first and contactlab's last."""
+    """Print the entries: data first, then laws, contactlab last."""
     file = read_scene(arguments.scene) if arguments.scene else None
     laws = file.laws if file else LawChoice()
     arguments.tangential = arguments.tangential or [laws.resolved().tangential]

@@ -1,8 +1,8 @@
 """Run several laws on one scene or sweep: differences, cost, and measured values.
 
 With --all every installed friction law that fits is run, each under the integrator that suits it,
-and gets one row: its distance from the exact law, energy made from nothing, force from normal load
-alone, cost. Without a scene that is a solid sphere hit at 65 angles.
+and has one row: distance from the exact law, energy from nothing, force from load alone, cost.
+The default scene is the impact of a solid sphere at 65 angles.
 
 Examples
 --------
@@ -39,7 +39,7 @@ from contactlab.study.compare import Comparison, compare
 from contactlab.study.compare_export import plain_score, to_dict, write_csv
 from contactlab.study.scores import DEFAULT_SCENE, candidates, scores
 
-#: Compared where nothing else is asked for: the paper's elastic law and the rigid one.
+#: Default laws: the paper's elastic law and Coulomb's law for rigid bodies.
 DEFAULT_LAWS = ["annulus", "coulomb"]
 
 
@@ -62,7 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--quantity",
         type=shared.names,
         metavar="A,B,...",
-        help="what to compare (default: what was measured, or psi2)",
+        help="quantities to compare (default: the measured quantities, or psi2)",
     )
     shared.add_figure(parser, "also draw the comparison")
     parser.add_argument(
@@ -77,15 +77,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Compare and report; 1 if a law did not follow every impact."""
+    """Compare and report; the status is 1 if a law failed in an impact."""
     for quantity in arguments.quantity or ():
         quantity_named(quantity, where="--quantity")
     file = _file(arguments)
     if arguments.all:
         compared = _all(arguments, file)
     else:
-        own = file.laws.resolved().tangential
-        arguments.tangential = arguments.tangential or list(dict.fromkeys([own, *DEFAULT_LAWS]))
+        law = file.laws.resolved().tangential
+        arguments.tangential = arguments.tangential or list(dict.fromkeys([law, *DEFAULT_LAWS]))
         compared = simulations(arguments, file.laws)
     with shared.progress(arguments.progress, "runs") as progress:
         comparison = compare(
@@ -104,14 +104,12 @@ def execute(arguments: argparse.Namespace) -> int:
         content = to_dict(comparison, quantities) | {"title": file.title}
         content["complete"] = not comparison.interrupted
         if arguments.all:
-            found = scores(comparison, compared)
-            content["scores"] = [plain_score(score) for score in found]
+            content["scores"] = [plain_score(score) for score in scores(comparison, compared)]
         print(json.dumps(content, indent=2, allow_nan=False))
     elif arguments.csv:
         write_csv(comparison, quantities, sys.stdout)
     elif arguments.all:
-        found = scores(comparison, compared)
-        print(side_by_side.describe_scores(found, comparison, file))
+        print(side_by_side.describe_scores(scores(comparison, compared), comparison, file))
     else:
         print(side_by_side.describe(comparison, quantities, file))
     failures = comparison.failures()
@@ -125,11 +123,11 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _file(arguments: argparse.Namespace) -> SceneFile:
-    """Return the scene file, or what stands in place of one: psi1 and chi."""
-    given = {name: getattr(arguments, name) for name in ("psi1", "chi")}
-    varied = {name: value for name, value in given.items() if np.ndim(value)}
-    missing = [f"--{name}" for name, value in given.items() if value is None]
-    if len(missing) == len(given):
+    """Return the scene file, the default one, or a nameless one from psi1 and chi."""
+    parameters = {name: getattr(arguments, name) for name in ("psi1", "chi")}
+    varied = {name: value for name, value in parameters.items() if np.ndim(value)}
+    missing = [f"--{name}" for name, value in parameters.items() if value is None]
+    if len(missing) == len(parameters):
         return read_scene(arguments.scene or DEFAULT_SCENE)
     check_alone(arguments)
     if missing:
@@ -141,7 +139,7 @@ def _file(arguments: argparse.Namespace) -> SceneFile:
         title="",
         citation="",
         notes="",
-        scene=Scene.nondimensional(**given),
+        scene=Scene.nondimensional(**parameters),
         varied=varied,
         laws=LawChoice(),
         encounter=None,
@@ -151,6 +149,7 @@ def _file(arguments: argparse.Namespace) -> SceneFile:
 
 
 def _draw(path: Path, arguments: argparse.Namespace, comparison: Comparison) -> None:
+    """Draw the comparison, or all laws."""
     from contactlab.cli.drawing import draw_all, draw_comparison  # matplotlib only when drawing
 
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
@@ -161,13 +160,7 @@ def _draw(path: Path, arguments: argparse.Namespace, comparison: Comparison) -> 
 
 
 def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation]:
-    """Return every law that fits, and say on stderr which do not.
-
-    Raises
-    ------
-    ValueError
-        With laws that were asked for beside all, or a file of a single impact.
-    """
+    """Return the simulations of all laws that fit; report the others on stderr."""
     if arguments.tangential or arguments.integrator or (arguments.normal and arguments.normal[1:]):
         raise ValueError(
             "--all takes every tangential law, each under its integrator; leave out --tangential "
@@ -176,35 +169,35 @@ def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation
     for path, _ in arguments.settings:
         if path.count(".") < 2 and kind_of(path) != "normal":
             example = "--set integrator.symplectic.steps=400"
-            raise ValueError(f"--set {path}: with --all say of which law, such as {example}")
+            raise ValueError(f"--set {path}: with --all name one law, such as {example}")
     if not file.scene.shape:
         raise ValueError(
             f"{file.path}: --all compares over a sweep; a file needs [sweep], and "
             "--psi1 a range START:STOP:COUNT"
         )
     chosen = file.laws.choose(normal=arguments.normal[0] if arguments.normal else None)
-    found = candidates(chosen.set(dict(arguments.settings)))
-    for name, reason in found.left_out.items():
+    fitting = candidates(chosen.set(dict(arguments.settings)))
+    for name, reason in fitting.left_out.items():
         print(f"contactlab compare: {name} is left out: {reason}", file=sys.stderr)
-    return found.simulations
+    return fitting.simulations
 
 
 def simulations(arguments: argparse.Namespace, laws: LawChoice) -> dict[str, Simulation]:
-    """Return every combination of the laws asked for, named by what differs between them.
+    """Return all combinations of the requested laws, named by the kinds that differ.
 
-    ``laws`` says which where the arguments do not. Its integrator is taken for the laws that it
-    runs, another that suits for the others.
+    ``laws`` holds the laws of kinds without a request. Its integrator is replaced
+    by the preferred one for tangential laws that it does not run.
     """
-    asked = {kind: getattr(arguments, kind) or [getattr(laws, kind)] for kind in KINDS}
-    asked = {
+    requested = {kind: getattr(arguments, kind) or [getattr(laws, kind)] for kind in KINDS}
+    requested = {
         kind: [name and short_name(full_name(kind, name)) for name in names]
-        for kind, names in asked.items()
+        for kind, names in requested.items()
     }
-    several = [kind for kind in KINDS if len(asked[kind]) > 1] or ["tangential"]
-    found = {}
+    several = [kind for kind in KINDS if len(requested[kind]) > 1] or ["tangential"]
+    combinations = {}
     used: set[str] = set()
     offered: set[str] = set()
-    for combination in itertools.product(*asked.values()):
+    for combination in itertools.product(*requested.values()):
         chosen = dict(zip(KINDS, combination, strict=True))
         choice = laws.choose(**chosen)
         choice = (choice if arguments.integrator else choice.suited()).resolved()
@@ -212,39 +205,28 @@ def simulations(arguments: argparse.Namespace, laws: LawChoice) -> dict[str, Sim
             path: value for path, value in arguments.settings if _knows(choice, path, used, offered)
         }
         name = " + ".join(getattr(choice, kind) for kind in several)
-        found[name] = choice.set(settings).simulation()
+        combinations[name] = choice.set(settings).simulation()
     for path, _ in arguments.settings:
         if path not in used:
             raise ValueError(
-                f"--set {path}: none of the laws asked for has this option; "
-                f"{nearest(path, offered)}they have {', '.join(sorted(offered)) or 'none'}"
+                f"--set {path}: none of the laws chosen has this option; "
+                f"{nearest(path, offered)}known: {', '.join(sorted(offered)) or 'none'}"
             )
-    return found
+    return combinations
 
 
 def _knows(choice: LawChoice, path: str, used: set[str], offered: set[str]) -> bool:
-    """Return True if the option is one of the chosen laws', and note that it was used.
-
-    Parameters
-    ----------
-    choice : LawChoice
-    path : str
-        As it was given: ``tangential.springs``, or ``tangential.annulus.annuli`` for one law.
-    used : set of str
-        Paths that some law takes; added to.
-    offered : set of str
-        Paths that the laws would take; added to.
-    """
+    """Return whether a chosen law has the option; add to the ``used`` and ``offered`` paths."""
     owner, _, option = path.rpartition(".")
     kind = kind_of(owner)
     if kind not in KINDS:
         used.add(path)
-        return True  # let the choice refuse it, with the remedy
+        return True  # LawChoice.set refuses this path
     chosen = full_name(kind, getattr(choice, kind))
     options = inspect.signature(REGISTRY.law_class(chosen)).parameters
-    offered.update(f"{kind}.{each}" for each in options)
+    offered.update(f"{kind}.{name}" for name in options)
     if owner != kind and not same_law(owner, chosen):
         return False
-    known = option in options
-    used.update([path] if known else [])
-    return known
+    has_option = option in options
+    used.update([path] if has_option else [])
+    return has_option

@@ -1,4 +1,4 @@
-"""A result in words and tables, as the terminal shows it."""
+"""A result as text and tables for the terminal."""
 
 from __future__ import annotations
 
@@ -20,19 +20,9 @@ def describe(
     varied: Mapping[str, Any],
     collision: Collision | None = None,
 ) -> str:
-    """Return the whole report of one impact, or of a sweep.
-
-    Parameters
-    ----------
-    result : ImpactResult
-    title : str
-    varied : mapping of str to array
-        What a sweep varies.
-    collision : Collision, optional
-        Both bodies in space, where the scene was given by vectors.
-    """
+    """Return the report of one impact or a sweep, with vectors if ``collision`` is given."""
     plan = result.plan
-    warned = "\n".join(f"caution:  {text}" for text in error_cautions(result))
+    cautions = "\n".join(f"caution:  {text}" for text in error_cautions(result))
     if result.scene.shape:
         shown = {name: (entry_unit(name), values) for name, values in varied.items()}
         body = [table(*sweep_section(result, shown)), largest_imbalance(result)]
@@ -42,12 +32,13 @@ def describe(
         if collision is not None:
             body.insert(1, table(["in space", "before", "after", "unit"], _space(collision)))
             plan = collision.plan
-    end = "\n".join(f"{name + ':':9} {words}" for name, words in closing(result))
-    return "\n\n".join([title] * bool(title) + [*body, *[warned] * bool(warned), str(plan), end])
+    ending = "\n".join(f"{name + ':':9} {words}" for name, words in closing(result))
+    parts = [title, *body, cautions, str(plan), ending]
+    return "\n\n".join(part for part in parts if part)
 
 
 def _space(collision: Collision) -> list[list[str]]:
-    """Return the vectors of both bodies, and the impulse."""
+    """Return rows with the vectors of both bodies and the impulse."""
     rows = []
     for name, unit in VECTORS:
         before = getattr(collision.encounter, name, None)
@@ -57,4 +48,5 @@ def _space(collision: Collision) -> list[list[str]]:
 
 
 def _vector(numbers: Any) -> str:
-    return f"({', '.join(f'{each:.6g}' for each in numbers.tolist())})"
+    """Return a vector as text."""
+    return f"({', '.join(f'{number:.6g}' for number in numbers.tolist())})"

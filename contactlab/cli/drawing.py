@@ -1,4 +1,4 @@
-"""What the command line draws; importing this loads matplotlib."""
+"""Figures of the command line; importing this module loads matplotlib."""
 
 from __future__ import annotations
 
@@ -19,23 +19,14 @@ from contactlab.study.compare import Comparison
 def draw_comparison(
     path: Path, comparison: Comparison, quantities: Sequence[str], **look: Any
 ) -> None:
-    """Draw the laws over the sweep, or over one contact, and their differences.
-
-    Parameters
-    ----------
-    path : Path
-    comparison : Comparison
-    quantities : sequence of str
-    **look
-        Options ``look`` and ``width`` of ``contactlab.figures.files.save``.
-    """
+    """Draw laws and differences over a sweep, or forces over one contact."""
     if not comparison.scene.shape:
         save(path, lambda axes: forces_over_contact(axes, comparison), **look)
         return
     panels: list[tuple[str, Any]] = []
     for name in quantities:
-        found = [item for item in comparison.agreements if item.measured.quantity == name]
-        panels += [(name, item) for item in found] or [(name, None)]
+        agreements = [item for item in comparison.agreements if item.measured.quantity == name]
+        panels += [(name, item) for item in agreements] or [(name, None)]
 
     def draw(axes: Any) -> None:
         for column, (name, agreement) in enumerate(panels):
@@ -51,16 +42,7 @@ def draw_comparison(
 
 
 def draw_all(path: Path, comparison: Comparison, quantity: str, **look: Any) -> None:
-    """Draw every law over the sweep, and below what parts it from the first.
-
-    Parameters
-    ----------
-    path : Path
-    comparison : Comparison
-    quantity : str
-    **look
-        Options ``look`` and ``width`` of ``contactlab.figures.files.save``.
-    """
+    """Draw every law over the sweep, and below its difference from the first law."""
 
     def draw(axes: Any) -> None:
         all_laws(axes[0, 0], axes[1, 0], comparison, quantity)
@@ -69,4 +51,5 @@ def draw_all(path: Path, comparison: Comparison, quantity: str, **look: Any) -> 
 
 
 def _labels(axes: Any) -> list[str]:
+    """Return the labels of the legend."""
     return axes.get_legend_handles_labels()[1]  # type: ignore[no-any-return]

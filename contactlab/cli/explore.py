@@ -1,4 +1,4 @@
-"""Write a page with sliders for psi1 and chi, for a browser: no network is needed.
+"""Write a page with sliders for psi1 and chi, for a browser without a network.
 
 Examples
 --------
@@ -16,13 +16,13 @@ from contactlab.pages.explore import CHI, PSI1, explore_page
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add where the sliders stand first, and the file."""
+    """Add the first values of the sliders, and the file."""
     for name, axis in (("psi1", PSI1), ("chi", CHI)):
         parser.add_argument(
             f"--{name}",
             type=shared.finite,
             default=axis.first,
-            help=f"where the slider stands first (default: {axis.first:g})",
+            help=f"first value of the slider (default: {axis.first:g})",
         )
     parser.add_argument("--out", type=shared.file_of(".html"), required=True, metavar="FILE.html")
     shared.add_progress(parser)

@@ -1,4 +1,4 @@
-"""Draw the paper's Figs 1-4, as PNG if nothing else is asked for, with their numbers as CSV.
+"""Draw the paper's Figs 1-4, as PNG by default, with their numbers as CSV.
 
 Examples
 --------
@@ -23,20 +23,20 @@ from contactlab.study.paper_figures import FigureData, figures
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the folder, the figures, their form and the laws."""
     parser.add_argument(
-        "--out", required=True, type=Path, metavar="DIR", help="folder for the files; made if new"
+        "--out", required=True, type=Path, metavar="DIR", help="folder for the files"
     )
     parser.add_argument(
         "--only",
         type=_numbers,
         default=list(figures()),
         metavar="1,2,...",
-        help="some of the figures",
+        help="numbers of the figures to draw (default: all)",
     )
     parser.add_argument(
         "--format",
         choices=[end[1:] for end in shared.PICTURES],
         default="png",
-        help="of the pictures",
+        help="format of the pictures",
     )
     shared.add_look(parser)
     shared.add_laws(parser)
@@ -50,7 +50,7 @@ def execute(arguments: argparse.Namespace) -> int:
         arguments.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ValueError(
-            f"--out {arguments.out}: no folder can be made: {error.strerror}"
+            f"--out {arguments.out}: cannot make the folder: {error.strerror}"
         ) from None
     if why_not := unwritable(arguments.out / "figure-1.csv"):
         raise ValueError(f"--out {arguments.out}: {why_not}")
@@ -72,6 +72,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _write_csv(path: Path, data: FigureData) -> None:
+    """Write the points of all curves, one row for each point."""
     rows = (
         [name, "" if parameter != parameter else parameter, x, y]
         for name, parameter, x, y in data.rows()
@@ -80,9 +81,10 @@ def _write_csv(path: Path, data: FigureData) -> None:
 
 
 def _numbers(text: str) -> list[int]:
-    found = [word.strip() for word in text.split(",")]
-    unknown = [word for word in found if word not in map(str, figures())]
+    """Return the numbers of figures in a list separated by commas."""
+    words = [word.strip() for word in text.split(",")]
+    unknown = [word for word in words if word not in map(str, figures())]
     if unknown:
-        known = ", ".join(map(str, figures()))
-        raise argparse.ArgumentTypeError(f"{unknown[0]!r}: the paper's figures are {known}")
-    return [int(word) for word in dict.fromkeys(found)]
+        numbers = ", ".join(map(str, figures()))
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r}: the paper's figures are {numbers}")
+    return [int(word) for word in dict.fromkeys(words)]

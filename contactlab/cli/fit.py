@@ -25,7 +25,7 @@ from contactlab.numeric.checks import whole
 from contactlab.outcome.files import distinct
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 
-#: The name of the exact elastic laws by their table, which are no law that is installed.
+#: Name of the exact elastic laws, computed from a table; no installed law has this name.
 EXACT = "exact"
 SAMPLES = 200
 
@@ -52,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[EXACT],
         metavar="A,B,...",
         help="tangential laws, the first reported and all ranked; exact (default) is the exact "
-        "elastic one by its table",
+        "elastic law, computed from a table",
     )
     shared.add_laws(parser, kinds=("normal", "integrator"))
     parser.add_argument(
@@ -94,7 +94,7 @@ def _column(text: str) -> tuple[str, str]:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Fit and report; 1 if one of several laws could not be fitted."""
+    """Fit and report; the status is 1 if one of several laws could not be fitted."""
     whole("--bootstrap", arguments.bootstrap, least=0, most=100_000)
     for number, name in enumerate(arguments.files, start=1):
         distinct({f"FILE {number}": name, "--csv": arguments.csv, "--figure": arguments.figure})
@@ -103,61 +103,53 @@ def execute(arguments: argparse.Namespace) -> int:
     defaults = {"friction_coefficient": SOME_FRICTION}
     file = read_scene(path, entries=impacts.given, defaults=defaults)
     simulations = _simulations(arguments, file)
-    asked: dict[str, Any] = {"parameters": arguments.fit, "quantities": arguments.quantity}
+    selection: dict[str, Any] = {"parameters": arguments.fit, "quantities": arguments.quantity}
     first, *others = simulations
     ranked: list[Ranked] = []
-    found: Fit | None = None
+    fitted: Fit | None = None
     interrupted = False
     try:
         with shared.progress(arguments.progress, "searches") as progress:
-            found = fit(impacts, path, simulation=simulations[first], progress=progress, **asked)
+            fitted = fit(
+                impacts, path, simulation=simulations[first], progress=progress, **selection
+            )
         with shared.progress(arguments.progress, "laws") as progress:
             for done, name in enumerate(others, start=1):
                 if progress is not None:
                     progress(done, len(simulations))
-                ranked += rank(impacts, path, {name: simulations[name]}, **asked)
+                ranked += rank(impacts, path, {name: simulations[name]}, **selection)
         if arguments.bootstrap:
             with shared.progress(arguments.progress, "bootstrap") as progress:
                 options = {"bootstrap": arguments.bootstrap, "progress": progress}
-                found = fit(impacts, path, simulation=simulations[first], **asked, **options)
-    except KeyboardInterrupt:  # what is done is worth telling
-        if found is None:
+                fitted = fit(impacts, path, simulation=simulations[first], **selection, **options)
+    except KeyboardInterrupt:  # report what is done
+        if fitted is None:
             raise
         interrupted = True
-    interrupted |= 0 < found.samples < arguments.bootstrap
+    interrupted |= 0 < fitted.samples < arguments.bootstrap
     if ranked:
-        ranked = in_order([*ranked, Ranked(name=first, fit=found)])
-    shown = [one for one in ranked if one.fit] or [Ranked(name=first, fit=found)]
+        ranked = in_order([*ranked, Ranked(name=first, fit=fitted)])
+    shown = [law for law in ranked if law.fit] or [Ranked(name=first, fit=fitted)]
     saved = shared.save(
         (arguments.figure, lambda file: _draw(file, shown, **shared.look(arguments))),
         (arguments.csv, lambda file: write_residuals(file, shown)),
         progress_wanted=arguments.progress,
     )
-    _report(found, ranked, complete=not interrupted, as_json=arguments.json)
+    _report(fitted, ranked, complete=not interrupted, as_json=arguments.json)
     return shared.INTERRUPTED if interrupted else max(saved, _failures(ranked))
 
 
-def _report(found: Fit, ranked: list[Ranked], *, complete: bool, as_json: bool) -> None:
-    """Print the fit and the ranking.
-
-    Parameters
-    ----------
-    found : Fit
-    ranked : list of Ranked
-        The same data under other laws, the best first; empty if not asked for.
-    complete : bool
-        False after an interruption.
-    as_json : bool
-    """
+def _report(fitted: Fit, ranked: list[Ranked], *, complete: bool, as_json: bool) -> None:
+    """Print the fit, and the ranking unless ``ranked`` is empty."""
     if as_json:
         rows = [
-            {"law": one.name, "refusal": one.refusal, "fit": one.fit and one.fit.to_dict()}
-            for one in ranked
+            {"law": law.name, "refusal": law.refusal, "fit": law.fit and law.fit.to_dict()}
+            for law in ranked
         ]
-        content = found.to_dict() | {"ranking": rows, "complete": complete}
+        content = fitted.to_dict() | {"ranking": rows, "complete": complete}
         print(json.dumps(content, indent=2, allow_nan=False))
         return
-    print(describe(found))
+    print(describe(fitted))
     if ranked:
         print("\n" + ranking(ranked))
     if not complete:
@@ -165,15 +157,15 @@ def _report(found: Fit, ranked: list[Ranked], *, complete: bool, as_json: bool) 
 
 
 def _failures(ranked: list[Ranked]) -> int:
-    """Say which laws could not be fitted, and return the status."""
-    failed = [one for one in ranked if one.fit is None]
-    for one in failed:
-        print(f"contactlab fit: {one.name}: {one.refusal}", file=sys.stderr)
+    """Report on stderr the laws that could not be fitted, and return the exit status."""
+    failed = [law for law in ranked if law.fit is None]
+    for law in failed:
+        print(f"contactlab fit: {law.name}: {law.refusal}", file=sys.stderr)
     return shared.FAILED if failed else shared.OK
 
 
 def _files(names: list[str]) -> tuple[Any, Path]:
-    """Return what was measured, and the file with the bodies."""
+    """Return the measured impacts, and the path of the scene file with the bodies."""
     scenes = [name for name in names if name.lower().endswith(".toml")]
     tables = [name for name in names if name not in scenes]
     if len(scenes) != 1 or len(tables) > 1:
@@ -186,22 +178,23 @@ def _files(names: list[str]) -> tuple[Any, Path]:
 
 
 def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation | None]:
-    """Return the laws by their names: the file's normal law, the tangential ones asked for."""
+    """Return a simulation for each name in ``--laws``, None for the exact table."""
     normal = arguments.normal or file.laws.normal
-    found: dict[str, Simulation | None] = {}
+    simulations: dict[str, Simulation | None] = {}
     for name in arguments.laws:
         if name == EXACT and normal in (None, DEFAULT_NORMAL) and not arguments.settings:
-            found[name] = None
+            simulations[name] = None
             continue
-        kept = {key: value for key, value in file.laws.options.items() if key.startswith("normal")}
+        options = {k: v for k, v in file.laws.options.items() if k.startswith("normal")}
         choice = LawChoice(
-            normal=file.laws.normal, integrator=arguments.integrator, options=kept
+            normal=file.laws.normal, integrator=arguments.integrator, options=options
         ).choose(normal=arguments.normal, tangential=None if name == EXACT else name)
-        found[name] = choice.set(dict(arguments.settings)).simulation()
-    return found
+        simulations[name] = choice.set(dict(arguments.settings)).simulation()
+    return simulations
 
 
 def _draw(path: Path, shown: list[Ranked], **look: Any) -> None:
+    """Draw measured values, laws and residuals."""
     from contactlab.figures.fitting import draw_fits  # matplotlib only when drawing
 
-    draw_fits(path, {one.name: one.fit for one in shown if one.fit}, **look)
+    draw_fits(path, {law.name: law.fit for law in shown if law.fit}, **look)

@@ -1,4 +1,4 @@
-"""A fit as tables, for reading, and its residuals as a file."""
+"""A fit as tables, and its residuals as a file."""
 
 from __future__ import annotations
 
@@ -15,70 +15,70 @@ from contactlab.outcome.files import write_table
 from contactlab.outcome.tables import heading
 
 
-def describe(found: Fit) -> str:
-    """Return parameters with their intervals, and residuals, as tables."""
+def describe(fit: Fit) -> str:
+    """Return parameters with their intervals and residuals as tables."""
     headings = ["parameter", "value", "standard error", "95 % from", "to"]
     rows: list[list[Any]] = []
-    for one in found.parameters.values():
-        name = heading(one.name, one.unit)
-        robust = () if one.robust is None else (one.robust,)
-        more = (*(one.bootstrap or ()), *robust)
-        rows.append([name, one.value, one.standard_error, *one.interval, *more])
-    if any(one.bootstrap for one in found.parameters.values()):
+    for parameter in fit.parameters.values():
+        name = heading(parameter.name, parameter.unit)
+        robust = () if parameter.robust is None else (parameter.robust,)
+        more = (*(parameter.bootstrap or ()), *robust)
+        rows.append([name, parameter.value, parameter.standard_error, *parameter.interval, *more])
+    if any(parameter.bootstrap for parameter in fit.parameters.values()):
         headings += ["bootstrap from", "to"]
-    if any(one.robust is not None for one in found.parameters.values()):
+    if any(parameter.robust is not None for parameter in fit.parameters.values()):
         headings.append("robust")
-    measured = found.measurements.measured
+    measured = fit.measurements.measured
     residuals = [
-        [name, QUANTITIES[name].unit, found.counts[name], found.rms[name],
-         found.largest[name]]
+        [name, QUANTITIES[name].unit, fit.counts[name], fit.rms[name],
+         fit.largest[name]]
         for name in measured
     ]  # fmt: skip
     parts = [
-        f"{len(found.measurements)} impacts of {found.measurements.source or 'the data'}; "
-        f"laws: {found.laws}",
+        f"{len(fit.measurements)} impacts of {fit.measurements.source or 'the data'}; "
+        f"laws: {fit.laws}",
         table(headings, rows, digits=5),
         table(["measured", "unit", "numbers", "rms residual", "largest"], residuals, digits=3),
     ]
-    if found.measurements.unused:
-        parts.append(f"columns not used: {', '.join(found.measurements.unused)}")
-    if found.reduced_chi_square is not None:
-        parts.append(f"reduced chi square: {found.reduced_chi_square:.3g}")
-    parts += [f"note: {note}" for note in found.notes]
+    if fit.measurements.unused:
+        parts.append(f"columns not used: {', '.join(fit.measurements.unused)}")
+    if fit.reduced_chi_square is not None:
+        parts.append(f"reduced chi square: {fit.reduced_chi_square:.3g}")
+    parts += [f"note: {note}" for note in fit.notes]
     return "\n\n".join(parts)
 
 
 def ranking(ranked: list[Ranked]) -> str:
-    """Return the laws in order, each with its own parameters."""
-    fits = [one.fit for one in ranked if one.fit]
+    """Return a table of the laws in order, each with its fitted parameters."""
+    fits = [law.fit for law in ranked if law.fit]
     names, quantities = list(fits[0].parameters), list(fits[0].rms)
     headings = ["law", "AIC - best", *names, *(f"rms {name}" for name in quantities)]
-    best = min(one.aic for one in fits)
+    best = min(law.aic for law in fits)
     rows = [
-        [one.name, one.fit.aic - best, *(one.fit[name] for name in names), *one.fit.rms.values()]
-        if one.fit
-        else [one.name, *[None] * (1 + len(names) + len(quantities))]
-        for one in ranked
+        [law.name, law.fit.aic - best, *(law.fit[name] for name in names), *law.fit.rms.values()]
+        if law.fit
+        else [law.name, *[None] * (1 + len(names) + len(quantities))]
+        for law in ranked
     ]
     return f"laws by fit (a difference of 10 is beyond doubt)\n{table(headings, rows, digits=4)}"
 
 
 def write_residuals(path: Path, shown: list[Ranked]) -> None:
-    """Write a row for each measured number and law."""
+    """Write the residuals as CSV, law row for each measured number and law."""
     rows: list[list[Any]] = []
-    given: list[str] = []
-    for one in shown:
-        assert one.fit is not None
-        content = one.fit.measurements
-        given = list(content.given)
-        for name, residuals in one.fit.residuals.items():
+    entries: list[str] = []
+    for law in shown:
+        assert law.fit is not None
+        content = law.fit.measurements
+        entries = list(content.given)
+        for name, residuals in law.fit.residuals.items():
             columns = [*content.given.values(), content.measured[name]]
-            columns += [one.fit.predicted[name], residuals]
+            columns += [law.fit.predicted[name], residuals]
             rows += [
-                [one.name, name, QUANTITIES[name].unit, impact + 1]
+                [law.name, name, QUANTITIES[name].unit, impact + 1]
                 + [float(column[impact]) for column in columns]
                 for impact in np.flatnonzero(np.isfinite(residuals)).tolist()
             ]
-    headings = [f"{name} ({entry_unit(name)})" for name in given]
+    headings = [f"{name} ({entry_unit(name)})" for name in entries]
     head = ["law", "quantity", "unit", "impact", *headings, "measured", "predicted", "residual"]
     write_table(path, head, rows)

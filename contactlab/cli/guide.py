@@ -16,12 +16,12 @@ import re
 
 from contactlab.numeric.checks import refuse
 
-#: Topics in the order in which a newcomer reads them; each is a file of ``contactlab/guide``.
+#: Topics in reading order; each is a file of ``contactlab/guide``.
 TOPICS = (
     "getting-started", "units-and-signs", "choosing", "how-far-to-trust", "plans-and-statuses",
     "for-a-paper", "command-line", "fitting", "extending", "version-2", "theory", "glossary",
 )  # fmt: skip
-#: The heading of a numbered section, as in ``## 5. The slip front``.
+#: Heading of a numbered section, such as ``## 5. The slip front``.
 SECTION = re.compile(r"^## (\d+)\. ", re.MULTILINE)
 
 
@@ -29,41 +29,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the topic and the section."""
     parser.add_argument("topic", nargs="?", metavar="TOPIC", help="leave it out for the list")
     parser.add_argument(
-        "section", nargs="?", metavar="SECTION", help="number of one section, of the theory"
+        "section", nargs="?", metavar="SECTION", help="number of a section, for theory"
     )
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Print the list of topics, a topic, or one section of it."""
+    """Print the list of topics, a topic, or one section of a topic."""
     if arguments.topic is None:
         width = max(map(len, TOPICS))
         for topic in TOPICS:
             print(f"{topic.ljust(width)}  {summary(topic)}")
-        print("\ncontactlab guide TOPIC prints one of them.")
+        print("\ncontactlab guide TOPIC prints a topic.")
         return 0
-    found = text(arguments.topic)
+    shown = text(arguments.topic)
     if arguments.section is not None:
-        found = sections(found).get(arguments.section.lstrip("§"), "")
-        if not found:
+        shown = sections(shown).get(arguments.section.lstrip("§"), "")
+        if not shown:
             raise refuse(
                 "section",
                 arguments.section,
                 f"is not a section of {arguments.topic!r}",
                 "leave it out for the whole topic",
             )
-    print(found.rstrip())
+    print(shown.rstrip())
     return 0
 
 
 def text(topic: str) -> str:
-    """Return the Markdown of a topic.
-
-    Raises
-    ------
-    ValueError
-        If there is no such topic, with the nearest match.
-    """
-    from importlib import resources  # only those who read the guide pay for it
+    """Return the Markdown of a topic."""
+    from importlib import resources  # only when the guide is read
 
     name = topic.removesuffix(".md")
     if name not in TOPICS:
@@ -74,12 +68,12 @@ def text(topic: str) -> str:
 
 
 def summary(topic: str) -> str:
-    """Return the line below the title, which says what a topic is about."""
+    """Return the summary of a topic: the line below its title."""
     return text(topic).split("\n", 3)[2]
 
 
 def sections(markdown: str) -> dict[str, str]:
-    """Return the numbered sections of a topic by their numbers, each from its heading on."""
+    """Return the numbered sections of a topic by number, each with its heading."""
     starts = list(SECTION.finditer(markdown))
     ends = [*(start.start() for start in starts), len(markdown)][1:]
     return {

@@ -1,4 +1,4 @@
-"""The command ``contactlab``: finds the subcommand, and turns errors into one line each."""
+"""The command ``contactlab``: runs a subcommand, and prints each error on one line."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from contactlab.contracts.status import Status
 if TYPE_CHECKING:
     from _typeshed import SupportsWrite
 
-#: A new subcommand is a module of this package and its name here.
+#: Subcommands, each a module of this package.
 COMMANDS = (
     "run", "sweep", "compare", "fit", "bench", "stability", "validate", "figures", "animate",
     "explore", "report", "cite", "materials", "plugins", "guide",
@@ -48,10 +48,10 @@ exit status: 0 success, 1 a run failed, 2 bad input, 130 interrupted
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that refuses in one line, and says where help is."""
+    """A parser whose errors are one line that names ``--help``."""
 
     def error(self, message: str) -> NoReturn:
-        """Print the message, with the nearest match to a wrong choice, and exit."""
+        """Print the message with the nearest match to a wrong choice, and exit."""
         wrong = re.search(r"invalid choice: '(.*?)' \(choose from (.*)\)", message)
         if wrong:
             near = difflib.get_close_matches(wrong[1], re.findall(r"[\w-]+", wrong[2]), n=1)
@@ -59,7 +59,7 @@ class Parser(argparse.ArgumentParser):
         self.exit(BAD_INPUT, f"{self.prog}: error: {message} (see {self.prog} --help)\n")
 
     def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:
-        """Print help or an error; argparse's own keeps silent where it cannot be written."""
+        """Print help or an error; the method of argparse hides write errors."""
         print(message, end="", file=sys.stderr if file is None else file)
 
 
@@ -75,7 +75,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print("contactlab: interrupted", file=sys.stderr)
             return INTERRUPTED
         except BrokenPipeError:
-            _leave_stdout()  # the reader has gone, as with "| head"
+            _leave_stdout()  # the reader has closed the pipe
             return BROKEN_PIPE
         except (ValueError, contactlab.PluginError, contactlab.ImpactError, OSError) as error:
             if parsed.traceback:
@@ -91,7 +91,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _execute(words: list[str], parsed: argparse.Namespace) -> int:
-    """Read the words into ``parsed`` and do what they say."""
+    """Parse the words into ``parsed``, run the subcommand and return its status."""
     try:
         _, unknown = _parser(_needed(words)).parse_known_args(words, parsed)
         if unknown:
@@ -105,15 +105,15 @@ def _execute(words: list[str], parsed: argparse.Namespace) -> int:
 
 @contextlib.contextmanager
 def _warned() -> Iterator[None]:
-    """Show what the registry warns of in one line, as errors are."""
+    """Print warnings about plug-ins on one line, as errors."""
     with warnings.catch_warnings():
-        usual = warnings.showwarning
+        show_other = warnings.showwarning
 
         def show(message: Warning | str, category: type[Warning], *where: Any) -> None:
             if issubclass(category, PluginWarning):
                 print(f"contactlab: warning: {message}", file=sys.stderr)
             else:
-                usual(message, category, *where)
+                show_other(message, category, *where)
 
         warnings.simplefilter("always", PluginWarning)
         warnings.showwarning = show  # type: ignore[assignment]
@@ -121,7 +121,7 @@ def _warned() -> Iterator[None]:
 
 
 def _leave_stdout() -> None:
-    """Let the flush at exit not fail in its turn, if it is stdout that cannot be written to."""
+    """Send stdout to the null device if it cannot be flushed, so that the exit does not fail."""
     try:
         sys.stdout.flush()
     except OSError:
@@ -130,7 +130,7 @@ def _leave_stdout() -> None:
 
 
 def _needed(words: Sequence[str]) -> Sequence[str]:
-    """Return the subcommands that the parser needs to know: the one named, or all for help."""
+    """Return the subcommands that the parser needs: the one in ``words``, or all for help."""
     for word in words:
         if word in COMMANDS:
             return (word,)
@@ -141,7 +141,7 @@ def _needed(words: Sequence[str]) -> Sequence[str]:
 
 
 def _parser(names: Sequence[str]) -> argparse.ArgumentParser:
-    """Return the parser with some subcommands; only their modules are imported."""
+    """Return the parser with the subcommands ``names``, importing only their modules."""
     raw = argparse.RawDescriptionHelpFormatter
     parser = Parser(
         prog="contactlab",
@@ -151,7 +151,7 @@ def _parser(names: Sequence[str]) -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=contactlab.__version__)
     parser.add_argument(
-        "--traceback", action="store_true", help="show where an error came from (before COMMAND)"
+        "--traceback", action="store_true", help="show the traceback of an error (before COMMAND)"
     )
     commands = parser.add_subparsers(
         dest="command", metavar="COMMAND", required=True, parser_class=Parser
@@ -174,7 +174,7 @@ def _parser(names: Sequence[str]) -> argparse.ArgumentParser:
 
 
 def _join_negative_numbers(words: list[str]) -> list[str]:
-    """Join ``--psi1 -1e-3`` with "=": argparse would take such a number for an option."""
+    """Join ``--psi1 -1e-3`` with "=", because argparse takes the number for an option."""
     joined: list[str] = []
     for word in words:
         if joined and joined[-1].startswith("--") and "=" not in joined[-1] and _is_negative(word):
@@ -185,6 +185,7 @@ def _join_negative_numbers(words: list[str]) -> list[str]:
 
 
 def _is_negative(word: str) -> bool:
+    """Return whether a word is a negative number, or a range that starts with one."""
     try:
         float(word.partition(":")[0])
     except ValueError:
@@ -193,6 +194,7 @@ def _is_negative(word: str) -> bool:
 
 
 def _one_line(error: BaseException) -> str:
+    """Return the message of an error on one line."""
     return " ".join(str(error).split()) or type(error).__name__
 
 

@@ -1,4 +1,4 @@
-"""List the materials that have a name, or print one with its sources.
+"""List the named materials, or print one with its sources.
 
 Examples
 --------
@@ -27,37 +27,37 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Print the list of materials, or one of them."""
-    one = arguments.name is not None
-    found = (materials.entry(arguments.name),) if one else materials.entries()
+    """Print the list of materials, or single material with its sources."""
+    single = arguments.name is not None
+    entries = (materials.entry(arguments.name),) if single else materials.entries()
     if arguments.json:
-        content = {"materials": [attrs.asdict(entry) for entry in found]}
+        content = {"materials": [attrs.asdict(entry) for entry in entries]}
         print(json.dumps(content | {"references": materials.references()}, indent=2))
         return shared.OK
     headings = ["material", "E (GPa)", "nu", "density (kg/m³)"]
     rows = [
         [entry.name, entry.young_modulus / 1e9, entry.poisson_ratio, entry.density]
-        for entry in found
+        for entry in entries
     ]
     print(table(headings, rows))
-    if one:
-        print(_sources(found[0]))
+    if single:
+        print(_sources(entries[0]))
     else:
-        print("\ncontactlab materials NAME prints one with its sources.")
+        print("\ncontactlab materials NAME prints a material with its sources.")
         print('In a scene file: material = "steel"; in Python: Material.named("steel").')
     return shared.OK
 
 
 def _sources(entry: materials.Entry) -> str:
-    """Return where the numbers of a material come from, the works written out."""
+    """Return the sources of a material's numbers, with full references."""
     lines = [f"\nelastic constants: {entry.elastic_source}", f"density: {entry.density_source}"]
     if entry.yield_stress is not None:
         lines.append(f"yield stress: {entry.yield_stress / 1e6:.4g} MPa, {entry.yield_source}")
     lines += [f"note: {entry.note}"] if entry.note else []
-    told = " ".join(lines)
+    cited = " ".join(lines)
     works = [
         f"{key}: {text}"
         for key, text in materials.references().items()
-        if re.search(rf"\b{key}\b", told)
+        if re.search(rf"\b{key}\b", cited)
     ]
     return "\n".join([*lines, "", *works])

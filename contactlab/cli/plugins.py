@@ -1,4 +1,4 @@
-"""List the installed laws, show one, or put one through the checks of its contract.
+"""List the installed laws, show a law, or check a law against its contract.
 
 Examples
 --------
@@ -30,8 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add ``list``, ``show NAME`` and ``check NAME``."""
     actions = parser.add_subparsers(dest="action", metavar="list|show|check", required=True)
     listing = actions.add_parser("list", help="name, kind, distribution and version of every law")
-    show = actions.add_parser("show", help="the same of one law, what it does and its options")
-    check = actions.add_parser("check", help="put a law through its contract; exit 1 if it fails")
+    show = actions.add_parser("show", help="description and options of a law")
+    check = actions.add_parser("check", help="check a law against its contract; exit 1 if it fails")
     for action in (show, check):
         action.add_argument(
             "name", metavar="NAME", help="such as tangential.annulus, or my-laws:tangential.annulus"
@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Print what the entry points say, or what the checks find."""
+    """Print the list of laws, one law, or the outcomes of its checks."""
     if arguments.action == "check":
         return _check(arguments)
     if arguments.action == "show":
@@ -64,7 +64,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _show(arguments: argparse.Namespace) -> int:
-    """Print where a law comes from, what it is and what it takes; only here it is imported."""
+    """Print origin, contract and options of a law; only this action imports the law."""
     entry: dict[str, Any] = _entry(REGISTRY.info(arguments.name))
     law = REGISTRY.law_class(arguments.name)
     entry["summary"] = (inspect.getdoc(law) or "").partition("\n")[0]
@@ -73,18 +73,18 @@ def _show(arguments: argparse.Namespace) -> int:
     if issubclass(law, TangentialLaw):
         entry["is a"] = [way.__name__ for way in WAYS if issubclass(law, way)]
     entry["needs"], entry["offers"] = sorted(law.needs), sorted(law.offers)
-    taken, sources = options(law), references(law)
+    accepted, sources = options(law), references(law)
     if arguments.json:
-        more = {"options": [option.to_dict() for option in taken], "references": sources}
-        print(json.dumps(entry | more, indent=2))
+        details = {"options": [option.to_dict() for option in accepted], "references": sources}
+        print(json.dumps(entry | details, indent=2))
         return OK
     width = max(map(len, entry))
     for key, value in entry.items():
         text = (", ".join(value) or "none") if isinstance(value, list) else value
         print(f"{key.ljust(width)}  {text}")
-    print("\noptions" if taken else "\noptions: none")
-    for option in taken:
-        print(f"  {_headed(option)}")
+    print("\noptions" if accepted else "\noptions: none")
+    for option in accepted:
+        print(f"  {_with_unit(option)}")
         for words in (option.meaning, option.rule):
             print(_indented(words, "      "), end="")
     if sources:
@@ -94,13 +94,13 @@ def _show(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _headed(option: Option) -> str:
-    """Return an option with its default and unit."""
+def _with_unit(option: Option) -> str:
+    """Return an option with its default and unit as text."""
     return f"{option} ({option.unit})" if option.unit not in ("", "1") else str(option)
 
 
 def _indented(words: str, margin: str) -> str:
-    """Return lines of a terminal's width, each with its end; nothing of no words."""
+    """Return words wrapped to the terminal's width, each line with its end."""
     lines = textwrap.wrap(
         words.replace("``", ""), WIDTH, initial_indent=margin, subsequent_indent=margin,
         break_long_words=False, break_on_hyphens=False,
@@ -109,7 +109,7 @@ def _indented(words: str, margin: str) -> str:
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    """Put a law through its contract; the kit is loaded only here."""
+    """Check a law against its contract; only this action imports the conformance kit."""
     from contactlab.testing import examine
 
     with progress(arguments.progress, f"checking {arguments.name}") as counted:
@@ -117,19 +117,20 @@ def _check(arguments: argparse.Namespace) -> int:
     failures = [outcome for outcome in outcomes if not outcome.verdict.good]
     if arguments.json:
         entries = [
-            {"check": one.check, "outcome": one.verdict.value, "sentence": one.sentence}
-            for one in outcomes
+            {"check": outcome.check, "outcome": outcome.verdict.value, "sentence": outcome.sentence}
+            for outcome in outcomes
         ]
         print(json.dumps({"name": arguments.name, "good": not failures, "checks": entries}))
     else:
-        rows = [(one.check, one.verdict.value, one.sentence) for one in outcomes]
+        rows = [(outcome.check, outcome.verdict.value, outcome.sentence) for outcome in outcomes]
         print(table(("check", "outcome", "sentence"), rows))
-        counts = Counter(one.verdict.value for one in outcomes)
+        counts = Counter(outcome.verdict.value for outcome in outcomes)
         print(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
     return FAILED if failures else OK
 
 
 def _entry(info: PluginInfo) -> dict[str, str | bool]:
+    """Return the entry of a law in the JSON."""
     return {
         "name": info.name,
         "known_as": info.known_as,

@@ -1,4 +1,4 @@
-"""The line of progress of long work."""
+"""The progress line of long work."""
 
 from __future__ import annotations
 
@@ -9,21 +9,16 @@ import time
 from collections.abc import Callable
 from typing import Self
 
-#: Nothing is shown of work shorter than this, in s.
+#: Work shorter than this shows no progress, in s.
 QUIET = 2.0
-#: Time between two states of the line, and between two lines where it is no terminal, in s.
+#: Time between updates of the line on a terminal, and between lines elsewhere, in s.
 OFTEN, SELDOM = 0.5, 10.0
 
 
 class Progress:
-    """Percentage and time left on stderr, kept up to date by a thread inside a ``with`` block.
+    """Percentage and time left on stderr, updated by a thread inside a ``with`` block.
 
-    Parameters
-    ----------
-    what : str
-        What is counted.
-    terminal : bool
-        Whether one line is written over; else there are lines now and then.
+    On a terminal one line is overwritten; elsewhere each update is a new line.
     """
 
     def __init__(self, what: str, *, terminal: bool) -> None:
@@ -34,20 +29,21 @@ class Progress:
         self._thread = threading.Thread(target=self._show, daemon=True)
 
     def __enter__(self) -> Self:
-        """Begin the line."""
+        """Start the thread."""
         self._thread.start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Wipe the line out, or end it with the time that all took."""
+        """Stop the thread, which clears the line or prints the total time."""
         self._ended.set()
         self._thread.join()
 
     def __call__(self, done: int, total: int) -> None:
-        """Count ``done`` of ``total``."""
+        """Set the count to ``done`` of ``total``."""
         self._count = done, total, time.perf_counter()
 
     def _show(self) -> None:
+        """Update the line until the block ends."""
         pause = QUIET
         while not self._ended.wait(pause):
             pause = OFTEN if self._terminal else SELDOM
@@ -60,20 +56,21 @@ class Progress:
             self._put(f"{self._what}: 100 % ({done}/{total}), took {in_words(elapsed)}")
 
     def _put(self, text: str) -> None:
+        """Print one state of the line."""
         if self._terminal:
             getattr(sys.stderr, "overwrite", lambda _: None)(text)
         else:
             print(text, file=sys.stderr, flush=True)
 
     def line(self) -> str:
-        """Return what is done, and the time left; the time so far where nothing is known of it."""
+        """Return the count and the time left, or the time so far before anything is done."""
         (done, total, counted), now = self._count, time.perf_counter()
         elapsed = in_words(now - self._started)
         if not done:
             return f"{self._what}: {elapsed} so far"
-        each = (counted - self._started) / done
-        present = max(each - (now - counted), 0.0)  # of the one that is being done
-        left = present + each * (total - done - 1) if done < total else 0.0
+        time_each = (counted - self._started) / done
+        remainder = max(time_each - (now - counted), 0.0)  # time left for the item at work
+        left = remainder + time_each * (total - done - 1) if done < total else 0.0
         head = f"{self._what}: {100 * done // total} % ({done}/{total})"
         return f"{head}, {in_words(left)} left" if left else f"{head}, {elapsed} so far"
 
@@ -81,7 +78,7 @@ class Progress:
 def progress(
     wanted: bool | None, what: str
 ) -> contextlib.AbstractContextManager[Callable[[int, int], object] | None]:
-    """Return the line of progress on stderr, or of None: by default only on a terminal."""
+    """Return the progress line, or a context of None; by default only a terminal has the line."""
     terminal = sys.stderr.isatty()
     if not (terminal if wanted is None else wanted):
         return contextlib.nullcontext()
@@ -89,7 +86,7 @@ def progress(
 
 
 def in_words(seconds: float) -> str:
-    """Return a time to wait for, in whole seconds, minutes or hours."""
+    """Return a time as text in whole seconds or minutes, or in hours."""
     for unit, size in (("s", 1.0), ("min", 60.0)):
         if seconds < 90.0 * size:
             return f"{seconds / size:.0f} {unit}"

@@ -19,7 +19,7 @@ from contactlab.outcome.files import written
 from contactlab.scene_file import read_scene
 from contactlab.study.compare import compare
 
-#: Compared with the file's own law where nothing else is asked for.
+#: Default laws to compare with the file's own.
 DEFAULT_LAWS = ("fronts", "coulomb")
 
 
@@ -30,8 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--tangential",
         type=shared.names,
         metavar="A,B,...",
-        help="tangential laws to compare with the file's own (default: those of "
-        "fronts, coulomb that fit its normal law)",
+        help="tangential laws to compare with the file's own (default: fronts and coulomb, "
+        "if they fit its normal law)",
     )
     parser.add_argument("--normal", metavar="NAME", help="normal law in place of the file's own")
     parser.add_argument(
@@ -50,7 +50,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the scene under the laws, write the page and print its path."""
     file = read_scene(arguments.scene)
     if arguments.measured:
-        from contactlab.fitting import read_measurements, with_measurements  # when asked for
+        from contactlab.fitting import read_measurements, with_measurements  # only for --measured
 
         file = with_measurements(file, read_measurements(arguments.measured))
     laws = file.laws.choose(normal=arguments.normal, integrator=arguments.integrator)
@@ -68,7 +68,7 @@ def execute(arguments: argparse.Namespace) -> int:
                 raise
     with (
         shared.progress(arguments.progress, "laws") as progress,
-        contextlib.redirect_stdout(sys.stderr),  # what a plug-in prints is not our output
+        contextlib.redirect_stdout(sys.stderr),  # plug-ins may print
     ):
         from contactlab.pages.report import report_page  # matplotlib only when drawing
 

@@ -24,7 +24,7 @@ import numpy as np
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.describe import describe
-from contactlab.cli.scene import add_scene, given
+from contactlab.cli.scene import add_scene, inputs
 from contactlab.compose.collision import Collision
 from contactlab.contracts.status import Status
 from contactlab.outcome import export
@@ -48,14 +48,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--history",
         type=shared.file_of(".csv"),
         metavar="FILE.csv",
-        help="also write the course of a single impact",
+        help="also write the history of a single impact",
     )
     shared.add_figure(parser, "also draw the forces over the contact, or psi2 over psi1")
     parser.add_argument(
         "--stick-slip",
         type=shared.file_of(*shared.PICTURES),
         metavar="FILE",
-        help="also draw where the contact of a single impact sticks and slips",
+        help="also draw regions of stick and slip over the contact of a single impact",
     )
     parser.add_argument(
         "--estimate",
@@ -67,17 +67,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Run and report; 1 if an impact was not followed to its end."""
-    file, scene, simulation = given(arguments)
+    """Run and report; the status is 1 if an impact failed."""
+    file, scene, simulation = inputs(arguments)
     for name in ("history", "stick_slip"):
         if getattr(arguments, name) and scene.shape:
             option = name.replace("_", "-")
             raise ValueError(
-                f"--{option}: needs a single impact, this scene is a sweep; leave it out"
+                f"--{option}: needs a single impact, this scene is a sweep; leave out --{option}"
             )
     with (
         shared.progress(arguments.progress, "impacts" if scene.shape else "impact") as progress,
-        contextlib.redirect_stdout(sys.stderr),  # what a plug-in prints is not our output
+        contextlib.redirect_stdout(sys.stderr),  # plug-ins may print
     ):
         if scene.shape:
             result = simulation.sweep(scene, progress=progress)
@@ -97,8 +97,8 @@ def execute(arguments: argparse.Namespace) -> int:
         progress_wanted=arguments.progress,
     )
     varied: Mapping[str, Any] = file.varied if file else {}
-    met = file.encounter if file else None
-    collision = None if met is None else Collision.of(met, result)
+    encounter = file.encounter if file else None
+    collision = None if encounter is None else Collision.of(encounter, result)
     if not arguments.json:
         title = file.title if file else ""
         print(describe(result, title=title, varied=varied, collision=collision))
@@ -107,14 +107,14 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def draw(path: Path, result: ImpactResult, **look: Any) -> None:
-    """Write a picture of a result."""
+    """Draw a result with ``ImpactResult.plot``; ``look`` as in ``arguments.look``."""
     from contactlab.figures.files import save  # matplotlib only when drawing
 
     save(path, lambda axes: result.plot(axes=axes), **look)
 
 
 def draw_map(path: Path, result: ImpactResult, **look: Any) -> None:
-    """Write the map of stick and slip of an impact."""
+    """Draw the map of stick and slip of an impact."""
     from contactlab.figures.files import save  # matplotlib only when drawing
     from contactlab.figures.stick_slip import draw_stick_slip
 
@@ -128,17 +128,7 @@ def report(
     varied: Mapping[str, Any] | None = None,
     collision: Collision | None = None,
 ) -> int:
-    """Print JSON if asked, say on stderr what went wrong, and return the status of the command.
-
-    Parameters
-    ----------
-    result : ImpactResult
-    as_json : bool
-    varied : mapping of str to array, optional
-        What a sweep varies.
-    collision : Collision, optional
-        Both bodies in space, where the scene was given by vectors.
-    """
+    """Print JSON if ``as_json``, report failures on stderr, and return the exit status."""
     if as_json:
         swept = {name: json_value(values) for name, values in (varied or {}).items()}
         content = export.to_dict(result) | {"varied": swept}

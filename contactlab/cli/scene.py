@@ -1,4 +1,4 @@
-"""The scene of a subcommand: a file, or psi1 and chi; and the laws to run it with."""
+"""The scene of a subcommand, from a file or from psi1 and chi, and its laws."""
 
 from __future__ import annotations
 
@@ -12,21 +12,16 @@ from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 
-#: Most impacts of a range: a slip of the finger should not fill the memory.
+#: Most impacts of a range, so that a typing error does not fill the memory.
 MOST_IMPACTS = 1_000_000
 
 
-class Given(NamedTuple):
-    """What the arguments of a subcommand stand for; ``file`` is None for psi1 and chi."""
+class Inputs(NamedTuple):
+    """Scene and laws of a subcommand; ``file`` is None for psi1 and chi."""
 
     file: SceneFile | None
     scene: Scene
     simulation: Simulation
-
-    @property
-    def title(self) -> str:
-        """Return the title of the file."""
-        return self.file.title if self.file else ""
 
 
 def add_scene(parser: argparse.ArgumentParser) -> None:
@@ -42,7 +37,7 @@ def add_scene(parser: argparse.ArgumentParser) -> None:
 
 
 def add_ranges(parser: argparse.ArgumentParser) -> None:
-    """Add ``--psi1`` and ``--chi``, of which each may be a range."""
+    """Add ``--psi1`` and ``--chi``, each one number or a range."""
     for name, words in (("psi1", "angle of incidence (29)"), ("chi", "inertia ratio (38)")):
         parser.add_argument(
             f"--{name}", type=numbers, metavar="START:STOP:COUNT", help=f"{words}; or one number"
@@ -69,24 +64,20 @@ def numbers(text: str) -> Any:
 def check_alone(arguments: argparse.Namespace) -> None:
     """Refuse psi1 or chi beside a scene file."""
     if arguments.scene and not (arguments.psi1 is None and arguments.chi is None):
-        raise ValueError("--psi1, --chi: stand in place of a scene file; leave out one of them")
+        raise ValueError(
+            "--psi1, --chi: cannot be combined with a scene file; leave out one of them"
+        )
 
 
-def given(arguments: argparse.Namespace) -> Given:
-    """Return the scene and the simulation.
-
-    Raises
-    ------
-    ValueError
-        If neither a file nor both numbers are given, or a file and a number.
-    """
+def inputs(arguments: argparse.Namespace) -> Inputs:
+    """Return the scene and the simulation of the arguments."""
     file = read_scene(arguments.scene) if arguments.scene else None
     scene = _scene(arguments, file)
-    return Given(file, scene, composed(arguments, file.laws if file else LawChoice()))
+    return Inputs(file, scene, composed(arguments, file.laws if file else LawChoice()))
 
 
 def composed(arguments: argparse.Namespace, choice: LawChoice) -> Simulation:
-    """Return the laws of ``choice``, but for those that the arguments name, with their options."""
+    """Return the laws of ``choice``, replaced by the laws and options of the arguments."""
     choice = choice.choose(
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )
@@ -94,6 +85,7 @@ def composed(arguments: argparse.Namespace, choice: LawChoice) -> Simulation:
 
 
 def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Scene:
+    """Return the scene of the file, or of psi1 and chi."""
     check_alone(arguments)
     if file is not None:
         return file.scene

@@ -1,4 +1,4 @@
-"""A comparison as tables, for reading."""
+"""A comparison as tables."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from contactlab.scene_file import SceneFile
 from contactlab.study.compare import Agreement, Comparison
 from contactlab.study.scores import Score
 
-#: What a row of scores shows as 0: rounding.
+#: Scores below this are rounding errors and shown as 0.
 ZERO = 1e-12
 
 
 def default_quantities(comparison: Comparison) -> list[str]:
-    """Return what was measured; failing that psi2, or for one impact whatever is defined."""
+    """Return the measured quantities, or psi2 of a sweep, or all defined ones of one impact."""
     measured = [agreement.measured.quantity for agreement in comparison.agreements]
     if measured:
         return list(dict.fromkeys(measured))
@@ -37,11 +37,11 @@ def default_quantities(comparison: Comparison) -> list[str]:
 def describe(comparison: Comparison, quantities: Sequence[str], file: SceneFile) -> str:
     """Return title, tables, agreement with measured values, cautions and cost."""
     parts = [part for part in (file.title, _wrapped(file.citation)) if part]
-    of: dict[str, list[Agreement]] = {name: [] for name in quantities}
+    by_quantity: dict[str, list[Agreement]] = {name: [] for name in quantities}
     for agreement in comparison.agreements:
-        of.setdefault(agreement.measured.quantity, []).append(agreement)
+        by_quantity.setdefault(agreement.measured.quantity, []).append(agreement)
     if comparison.scene.shape:
-        for name, agreements in of.items():
+        for name, agreements in by_quantity.items():
             parts += [_points(agreement) for agreement in agreements]
             if not agreements:
                 parts.append(_over_sweep(comparison, name))
@@ -54,7 +54,7 @@ def describe(comparison: Comparison, quantities: Sequence[str], file: SceneFile)
 
 
 def describe_scores(scores: Sequence[Score], comparison: Comparison, file: SceneFile) -> str:
-    """Return title and one row a law; the rows after the first in the order of their rms."""
+    """Return title and one row for each law: the reference first, the others by rms."""
     reference = scores[0].law
     headings = [
         "law", "integrator", "psi2: rms", "worst", "at psi1", "numerical error",
@@ -72,34 +72,36 @@ def describe_scores(scores: Sequence[Score], comparison: Comparison, file: Scene
         ])  # fmt: skip
     count = comparison.scene.shape[0]
     notes = (
-        f"psi2: distance from {reference} over {count} impacts, which is the error of the model "
-        "and the numerical error together. Numerical error of psi2: the largest that is "
-        "estimated, or declared. Energy from nothing: over the energy at the start. Force from "
-        "load alone: what pressing adds to a sheared contact, over mu P_max; a dash for laws that "
-        "answer to no step. Time: in the sweep."
+        f"psi2: distance from {reference} over {count} impacts, model error and numerical error "
+        "together. Numerical error of psi2: the largest estimated or declared one. Energy from "
+        "nothing: over the energy at the start. Force from load alone: what pressing adds to a "
+        "sheared contact, over mu P_max; a dash for laws that are not stepped. Time: in the sweep."
     )
     parts = [part for part in (file.title, _wrapped(file.citation)) if part]
     return "\n\n".join([*parts, table(headings, rows), _wrapped(notes)])
 
 
 def _short(value: object) -> str:
+    """Return text, or a number with two digits, 0 if it is a rounding error."""
     if isinstance(value, str):
         return value
     return "0" if abs(float(value)) < ZERO else number(value, digits=2)  # type: ignore[arg-type]
 
 
 def _one_impact(comparison: Comparison, quantities: Sequence[str]) -> str:
+    """Return the quantities of one impact under all laws, one row each."""
     first, *others = comparison.names
     headings = ["", *comparison.names, *(f"{name} - {first}" for name in others), "unit"]
     rows = []
     for name in quantities:
         values = [float(comparison.values(name, law)) for law in comparison.names]
-        apart = [float(comparison.difference(name, law)) for law in others]
-        rows.append([name, *values, *apart, QUANTITIES[name].unit_in(comparison.scene)])
+        differences = [float(comparison.difference(name, law)) for law in others]
+        rows.append([name, *values, *differences, QUANTITIES[name].unit_in(comparison.scene)])
     return table(headings, rows)
 
 
 def _over_sweep(comparison: Comparison, quantity: str) -> str:
+    """Return one quantity under all laws, one row for each impact."""
     first, *others = comparison.names
     headings = [*map(_with_unit, comparison.varied)]
     headings += [*comparison.names, *(f"{name} - {first}" for name in others)]
@@ -111,6 +113,7 @@ def _over_sweep(comparison: Comparison, quantity: str) -> str:
 
 
 def _points(agreement: Agreement) -> str:
+    """Return measured values beside the laws, one row for each value."""
     measured = agreement.measured
     names = list(agreement.predicted)
     headings = [_with_unit(measured.against), "measured", "reading error"]
@@ -123,6 +126,7 @@ def _points(agreement: Agreement) -> str:
 
 
 def _agreement(comparison: Comparison) -> str:
+    """Return the rms and largest distance of each law from measured values."""
     rows = []
     for agreement in comparison.agreements:
         measured = agreement.measured
@@ -137,19 +141,20 @@ def _agreement(comparison: Comparison) -> str:
 
 
 def _cautions(comparison: Comparison) -> str:
-    """Return what the plans are wary of, each sentence once with the laws that it is about."""
+    """Return the cautions of all plans, each once with the names of its laws."""
     about: dict[str, list[str]] = {}
     for run in comparison.runs:
         for sentence in run.result.plan.cautions:
             about.setdefault(str(sentence), []).append(run.name)
-    told = []
+    lines = []
     for text, laws in about.items():
-        everybody = len(laws) == len(comparison.runs) > 1
-        told.append(f"caution, {'all laws' if everybody else ', '.join(laws)}: {text}")
-    return "\n".join(textwrap.fill(line, width=96, subsequent_indent="  ") for line in told)
+        all_laws = len(laws) == len(comparison.runs) > 1
+        lines.append(f"caution, {'all laws' if all_laws else ', '.join(laws)}: {text}")
+    return "\n".join(textwrap.fill(line, width=96, subsequent_indent="  ") for line in lines)
 
 
 def _cost(comparison: Comparison) -> str:
+    """Return run time and number of successful impacts of each law."""
     first = comparison.runs[0].run_time_per_impact
     rows = []
     for run in comparison.runs:
@@ -161,9 +166,11 @@ def _cost(comparison: Comparison) -> str:
 
 
 def _with_unit(entry: str) -> str:
+    """Return the heading of an entry with its unit."""
     unit = entry_unit(entry)
     return entry if unit in ("1", "deg") else f"{entry} ({unit})"
 
 
 def _wrapped(text: str) -> str:
+    """Return a text in lines of 96 characters."""
     return textwrap.fill(" ".join(text.split()), width=96)

@@ -1,4 +1,4 @@
-"""Run stiff and extreme cases over every law and integrator; find answers silently wrong.
+"""Run stiff and extreme cases over every law and integrator; find silently wrong answers.
 
 Examples
 --------
@@ -29,7 +29,7 @@ from contactlab.study.stability_cases import Case
 from contactlab.study.stability_map import Region
 from contactlab.study.stability_outcome import RAISED, WRONG, Outcome, judge
 
-#: Failures listed one by one under the table; all of them are in the CSV and the JSON.
+#: Most failures listed under the table; CSV and JSON hold all of them.
 LISTED = 40
 #: Outcomes, in the order of the table.
 WORDS = ("answered", "coarse", "refused", "skipped", RAISED, WRONG)
@@ -41,20 +41,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Run the report; a single silently wrong answer makes it fail."""
+    """Run the report; the status is 1 if any answer is silently wrong or a law raised."""
     shared.check_budget(arguments.budget)
     if arguments.width == "one":
         raise ValueError("--width one: the map is too wide for one column; use --width two")
-    kept: list[Outcome] = []
+    judgements: list[Outcome] = []
 
     def judged(case: Case) -> Outcome:
-        kept.append(judge(case))
-        return kept[-1]
+        judgements.append(judge(case))
+        return judgements[-1]
 
     why_not = "the budget ran out"
     try:
         with shared.progress(arguments.progress, "stability") as progress:
-            found = stability(
+            result = stability(
                 methods(arguments.law),
                 quick=arguments.quick,
                 budget=arguments.budget,
@@ -62,92 +62,97 @@ def execute(arguments: argparse.Namespace) -> int:
                 judged=judged,
             )
     except KeyboardInterrupt:
-        # What is done of the map is listed with the other outcomes.
-        found, why_not = Stability(outcomes=tuple(kept), regions=(), complete=False), "interrupted"
+        # The outcomes of an unfinished map are listed with the others.
+        why_not = "interrupted"
+        result = Stability(outcomes=tuple(judgements), regions=(), complete=False)
     saved = shared.save(
-        (arguments.csv, lambda path: _write_csv(path, found)),
-        (arguments.figure, lambda path: _draw(path, found, why_not, **shared.look(arguments))),
+        (arguments.csv, lambda path: _write_csv(path, result)),
+        (arguments.figure, lambda path: _draw(path, result, why_not, **shared.look(arguments))),
         progress_wanted=arguments.progress,
     )
-    content = json.dumps(_content(found), indent=2) if arguments.json else report(found, why_not)
+    content = json.dumps(_content(result), indent=2) if arguments.json else report(result, why_not)
     print(content)
     if why_not == "interrupted":
         return shared.INTERRUPTED
-    return shared.FAILED if found.failures() else saved
+    return shared.FAILED if result.failures() else saved
 
 
-def _draw(path: Path, found: Stability, why_not: str, **look: Any) -> None:
-    if not found.regions and not found.models:
-        why = "there is nothing to map" if found.complete else f"{why_not} before it was done"
+def _draw(path: Path, result: Stability, why_not: str, **look: Any) -> None:
+    """Draw the map, or report on stderr why there is none."""
+    if not result.regions and not result.models:
+        why = "there is nothing to map" if result.complete else f"{why_not} before the map was done"
         print(f"no map drawn: {why}", file=sys.stderr)
         return
     from contactlab.figures.stability import draw_stability  # matplotlib only when drawing
 
-    draw_stability(path, found, **look)
+    draw_stability(path, result, **look)
 
 
-def report(found: Stability, why_not: str = "the budget ran out") -> str:
-    """Return the table, the failures and the totals; ``why_not`` is said if not complete."""
-    families = list(dict.fromkeys(item.family for item in found.outcomes))
-    names = list(dict.fromkeys(item.method for item in found.outcomes))
-    errors = [[name, *(found.worst(name, family) for family in families)] for name in names]
-    counts = [[name, *(found.counts(name)[word] for word in WORDS)] for name in names]
+def report(result: Stability, why_not: str = "the budget ran out") -> str:
+    """Return tables, failures and totals, and ``why_not`` if the report is not complete."""
+    families = list(dict.fromkeys(item.family for item in result.outcomes))
+    names = list(dict.fromkeys(item.method for item in result.outcomes))
+    errors = [[name, *(result.worst(name, family) for family in families)] for name in names]
+    counts = [[name, *(result.counts(name)[word] for word in WORDS)] for name in names]
     parts = [table(["worst error", *families], errors, digits=1), table(["runs", *WORDS], counts)]
-    if found.regions:
+    if result.regions:
         rows = [
             [item.method, item.word, item.tried, item.count(RAISED), item.count(WRONG)]
-            for item in found.regions
+            for item in result.regions
         ]
         parts.append(table(["map", "against chi", "tried", *WORDS[-2:]], rows))
-    if found.models:
-        rows = [[item.law, *_worst(item)] for item in found.models]
+    if result.models:
+        rows = [[item.law, *_worst(item)] for item in result.models]
         parts.append(table(["model error", "worst", "at chi"], rows, digits=1))
-    failures = found.failures()
+    failures = result.failures()
     if failures:
         rows = [[item.method, item.case, item.outcome, item.note] for item in failures[:LISTED]]
         parts.append(table(["method", "case", "", ""], rows))
     parts.append(
-        f"{found.tried()} runs tried, {found.silently_wrong()} silently wrong; "
-        f"{found.skipped()} more were skipped as too much work.\nErrors are numerical, from the "
-        "law's own exact answer, over the range that physics leaves to psi2,\nof answers whose "
-        "declared or estimated error is below a quarter of it: the others are counted as coarse.\n"
-        "A law whose exact answer is not that of the elastic continuum is listed with its model "
+        f"{result.tried()} runs tried, {result.silently_wrong()} silently wrong; "
+        f"{result.skipped()} more were skipped as too much work.\nErrors are numerical: distances "
+        "from the law's own exact answer, over the range of psi2.\nAnswers whose declared or "
+        "estimated error is a quarter of the range or more are counted as coarse\nand have no "
+        "error in the table.\n"
+        "A law whose exact answer differs from the elastic continuum is listed with its model "
         "error."
     )
-    if not found.complete:
+    if not result.complete:
         parts.append(f"not complete: {why_not}")
     return "\n\n".join(parts)
 
 
 def _worst(item: ModelError) -> tuple[float, float]:
-    """Return the largest model error of a law, and the chi that it is found at."""
+    """Return the largest model error of a law and its chi, NaN if there is none."""
     if np.all(np.isnan(item.error)):
         return np.nan, np.nan
     place = int(np.nanargmax(item.error))
     return float(item.error[place]), item.chis[place]
 
 
-def _content(found: Stability) -> dict[str, object]:
+def _content(result: Stability) -> dict[str, object]:
+    """Return the content of the JSON."""
     regions = [
         {**_plain(item), "failures": [_plain(failed) for failed in item.failures]}
-        for item in found.regions
+        for item in result.regions
     ]
     return {
-        "outcomes": [_plain(item) for item in found.outcomes],
+        "outcomes": [_plain(item) for item in result.outcomes],
         "map": regions,
-        "model_errors": [_plain(item) for item in found.models],
-        "tried": found.tried(),
-        "silently_wrong": found.silently_wrong(),
-        "complete": found.complete,
+        "model_errors": [_plain(item) for item in result.models],
+        "tried": result.tried(),
+        "silently_wrong": result.silently_wrong(),
+        "complete": result.complete,
     }
 
 
 def _plain(item: Outcome | Region | ModelError) -> dict[str, object]:
+    """Return the fields of an item for JSON."""
     return {key: json_value(value) for key, value in attrs.asdict(item, recurse=False).items()}
 
 
-def _write_csv(path: Path, found: Stability) -> None:
-    """Write a row for each outcome; of the map, for what is wrong or raised."""
-    listed = [*found.outcomes, *(item for region in found.regions for item in region.failures)]
+def _write_csv(path: Path, result: Stability) -> None:
+    """Write one row for each outcome, and for each failure of the map."""
+    listed = [*result.outcomes, *(item for region in result.regions for item in region.failures)]
     names = [field.name for field in attrs.fields(Outcome)]
     write_table(path, names, ([getattr(item, name) for name in names] for item in listed))

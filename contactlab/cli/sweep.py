@@ -35,9 +35,9 @@ from contactlab.scene_file import LawChoice, read_scene
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-#: Columns that are printed.
+#: Printed columns.
 SHOWN = ("psi1", "chi", "psi2", "status")
-#: Rows that are printed of a sweep that is written to a file.
+#: Most rows printed of a sweep that a file holds.
 MOST_ROWS = 25
 
 
@@ -53,7 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--resume",
         action="store_true",
-        help="keep what is done beside the file of --out, and go on where such a sweep stopped",
+        help="keep finished impacts in a folder beside --out, and continue a stopped sweep",
     )
     parser.add_argument("--workers", type=int, metavar="N", help="share the work among N processes")
     shared.add_figure(parser, "also draw psi2 over psi1")
@@ -61,7 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Run the sweep and report; 1 if an impact was not followed to its end."""
+    """Run the sweep and report; the status is 1 if an impact failed."""
     file = read_scene(arguments.scene) if arguments.scene else None
     check_alone(arguments)
     scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
@@ -72,7 +72,7 @@ def execute(arguments: argparse.Namespace) -> int:
     before = 0 if keep is None else _done(keep)
     with (
         shared.progress(arguments.progress, "impacts") as progress,
-        contextlib.redirect_stdout(sys.stderr),  # what a plug-in prints is not our output
+        contextlib.redirect_stdout(sys.stderr),  # plug-ins may print
         _executor(arguments.workers) as executor,
     ):
         result = simulation.sweep(scene, progress=progress, executor=executor, keep=keep)
@@ -97,7 +97,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | None) -> None:
-    """Print a row an impact; of many that are in a file, some that are evenly spread."""
+    """Print one row for each impact; evenly spread rows if a file ``out`` holds all."""
     most = None if out is None else MOST_ROWS
     if varied:
         shown = {name: (entry_unit(name), values) for name, values in varied.items()}
@@ -110,30 +110,30 @@ def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | No
 
 
 def _executor(count: int | None) -> AbstractContextManager[Executor | None]:
-    """Return processes for the work; None for this one."""
+    """Return a context with worker processes, or with None for no ``count``."""
     if count is None:
         return contextlib.nullcontext()
-    from contactlab.compose.workers import processes  # only for those who ask for some
+    from contactlab.compose.workers import processes  # only for --workers
 
     return processes(count)
 
 
 def _folder(out: Path | None) -> Path:
-    """Return the folder beside ``out`` where a sweep is kept until it is done."""
+    """Return the folder beside ``out`` for the finished impacts of a sweep."""
     if out is None:
-        raise ValueError("--resume: needs --out FILE; what is done is kept beside it")
+        raise ValueError("--resume: needs --out FILE; finished impacts are kept beside this file")
     return out.with_name(f"{out.name}.kept")
 
 
 def _done(folder: Path) -> int:
-    """Return how many impacts are there from before."""
+    """Return the number of impacts that an earlier run finished."""
     from contactlab.compose.kept import count
 
     return count(folder)
 
 
 def _clear(folder: Path, result: ImpactResult) -> None:
-    """Delete what was kept of a sweep that is done; what is to be tried again needs the rest."""
+    """Delete the finished impacts of a sweep, unless some impacts will be tried again."""
     from contactlab.compose.kept import TRIED_AGAIN, remove
 
     if not any(status in TRIED_AGAIN for status in result.status):
@@ -141,7 +141,7 @@ def _clear(folder: Path, result: ImpactResult) -> None:
 
 
 def _ranges(psi1: Any, chi: Any) -> Scene:
-    """Return every psi1 with every chi, psi1 varying fastest."""
+    """Return the scene of every psi1 with every chi, psi1 varying fastest."""
     if psi1 is None or chi is None:
         missing = " and ".join(n for n, v in (("--psi1", psi1), ("--chi", chi)) if v is None)
         raise ValueError(f"{missing}: must be given, or a sweep file")
@@ -153,6 +153,7 @@ def _ranges(psi1: Any, chi: Any) -> Scene:
 
 
 def _rows(result: ImpactResult) -> list[tuple[float, float, float, str]]:
+    """Return the printed columns of each impact."""
     shape = result.scene.shape
     columns = [
         np.broadcast_to(np.asarray(column), shape).tolist()

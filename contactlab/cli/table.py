@@ -1,4 +1,4 @@
-"""Plain text tables: numbers to the right, text to the left."""
+"""Plain text tables with numbers aligned right and text aligned left."""
 
 from __future__ import annotations
 
@@ -9,15 +9,14 @@ from typing import Any
 
 from contactlab.outcome.tables import number
 
-#: Columns of a terminal that a table keeps to, if it can, and the least for a text.
+#: Width of a table in characters, and least width of a column of text that is wrapped.
 WIDTH, LEAST_TEXT = 100, 30
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[Any]], *, digits: int = 6) -> str:
-    """Return rows under their headings, columns of text to the left, numbers to the right.
+    """Return a table as text: headings, a rule, rows.
 
-    A table that would be wider than ``WIDTH`` has headings of several lines, and a last
-    column of text that goes on below.
+    In a table wider than ``WIDTH`` the headings and a last column of text are wrapped.
     """
     texts = [all(isinstance(row[place], str) for row in rows) for place in range(len(headings))]
     body = [[[number(item, digits=digits)] for item in row] for row in rows]
@@ -31,32 +30,33 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[Any]], *, digits: int
                 row[-1] = textwrap.wrap(row[-1][0], room) or [""]
     widths = _widths([head, *body])
     height = max(map(len, head))
-    head = [[""] * (height - len(cell)) + cell for cell in head]  # headings stand on the rule
+    head = [[""] * (height - len(cell)) + cell for cell in head]  # align headings at the bottom
     rule = [["-" * width] for width in widths]
     return "\n".join(line for row in (head, rule, *body) for line in _lines(row, widths, texts))
 
 
 def _lines(row: Sequence[Sequence[str]], widths: Sequence[int], texts: Sequence[bool]) -> list[str]:
-    """Return the lines of a row whose cells have one line or several."""
-    found = []
+    """Return the lines of a row; each cell is a list of lines."""
+    lines = []
     for level in range(max(map(len, row))):
         cells = [cell[level] if level < len(cell) else "" for cell in row]
         placed = [
             cell.ljust(width) if text else cell.rjust(width)
             for cell, width, text in zip(cells, widths, texts, strict=True)
         ]
-        found.append("  ".join(placed).rstrip())
-    return found
+        lines.append("  ".join(placed).rstrip())
+    return lines
 
 
 def _widths(rows: Sequence[Sequence[Sequence[str]]]) -> list[int]:
+    """Return the width of each column in characters."""
     return [
         max(len(line) for cell in column for line in cell) for column in zip(*rows, strict=True)
     ]
 
 
 def _folded(heading: str, width: int) -> list[str]:
-    """Break a heading after underscores and at blanks, in lines about as wide as its column."""
+    """Return a heading in lines about as wide as its column, split at underscores and blanks."""
     words = re.findall(r"[^_ ]+_?|_", heading)
     lines: list[str] = []
     for word, blank in zip(words, [" " + word in heading for word in words], strict=True):

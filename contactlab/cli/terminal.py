@@ -1,8 +1,8 @@
-"""The two streams of a command, made fit to be seen on any terminal.
+"""Standard output and error of a command, safe for any terminal.
 
-Text from a scene file or of a plug-in may hold control characters, which would move the cursor
-or change colours, and symbols that an ASCII terminal has not. Whatever is printed, by anyone,
-goes through ``Printed``, which writes both in letters.
+Text from a scene file or a plug-in may hold control characters, which move the cursor or change
+colours, and symbols that an ASCII terminal cannot show. All output goes through ``Printed``,
+which replaces both by letters.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ import unicodedata
 from collections.abc import Iterable, Iterator
 from typing import Any, TextIO
 
-#: Characters that a terminal obeys, or that change the direction of writing; not tab and newline.
+#: Control characters, and characters that change the direction of text; not tab and newline.
 OBEYED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
-#: Symbols in letters, for terminals without them; the micro sign is not the letter mu.
+#: Letters for symbols that a terminal cannot show; the micro sign is not the letter mu.
 LETTERS = {
     "\N{MICRO SIGN}": "u", "\N{GREEK SMALL LETTER MU}": "mu", "\N{GREEK SMALL LETTER NU}": "nu",
     "\N{GREEK SMALL LETTER RHO}": "rho", "ψ": "psi", "χ": "chi", "ω": "omega", "κ": "kappa",
@@ -30,17 +30,17 @@ LETTERS = {
 }  # fmt: skip
 
 
-#: Held while a stream writes: a thread writes the line of progress.
+#: Lock of all writing, because a thread writes the progress line.
 LOCK = threading.RLock()
 
 
 def safe(text: str) -> str:
-    """Return text with the characters that a terminal obeys written out, ESC as ``x1b``."""
-    return OBEYED.sub(lambda found: found[0].encode("unicode_escape").decode("ascii"), text)
+    """Return text with control characters written as escapes, ESC as ``x1b``."""
+    return OBEYED.sub(lambda match: match[0].encode("unicode_escape").decode("ascii"), text)
 
 
 def fitting(text: str, encoding: str) -> str:
-    """Return text with symbols that ``encoding`` has not in letters, at worst a question mark."""
+    """Return text with letters, at worst a question mark, for symbols not in ``encoding``."""
     try:
         text.encode(encoding)
     except UnicodeEncodeError:
@@ -53,14 +53,9 @@ def fitting(text: str, encoding: str) -> str:
 
 
 class Printed:
-    """A text stream that passes on only what the stream below can show.
+    """A text stream that writes safe text to ``stream``.
 
-    Parameters
-    ----------
-    stream : text stream
-        Where the text goes.
-    other : Printed, optional
-        The stream of the same terminal that has the line of progress.
+    ``other`` is the stream of the same terminal that shows the progress line.
     """
 
     def __init__(self, stream: TextIO, other: Printed | None = None) -> None:
@@ -68,7 +63,7 @@ class Printed:
         self._line_shown = self._within_line = False
 
     def write(self, text: str) -> int:
-        """Write text, after the line of progress has been wiped out."""
+        """Clear the progress line, write the text, and return its length."""
         with LOCK:
             self._liner.overwrite("")
             self._stream.write(self._fit(text))
@@ -81,7 +76,7 @@ class Printed:
         self.write("".join(lines))
 
     def overwrite(self, text: str) -> None:
-        """Put ``text`` in place of the line of progress, unless a printed line is unfinished."""
+        """Replace the progress line by ``text``, unless a printed line is unfinished."""
         with LOCK:
             if not self._within_line and (text or self._line_shown):
                 self._stream.write(("\r\x1b[K" if self._line_shown else "") + self._fit(text))
@@ -89,6 +84,7 @@ class Printed:
                 self._line_shown = bool(text)
 
     def _fit(self, text: str) -> str:
+        """Return the text in characters that the stream can show."""
         return fitting(safe(text), getattr(self._stream, "encoding", None) or "utf-8")
 
     def __getattr__(self, name: str) -> Any:
@@ -97,7 +93,7 @@ class Printed:
 
 @contextlib.contextmanager
 def fitted() -> Iterator[None]:
-    """Put ``Printed`` over stdout and stderr inside a ``with`` block."""
+    """Redirect stdout and stderr through ``Printed`` inside a ``with`` block."""
     # A program without a terminal may have no streams; print would then take stdout for stderr.
     err = Printed(sys.stderr or io.StringIO())
     out = Printed(sys.stdout or io.StringIO(), err)

@@ -24,7 +24,7 @@ from contactlab.outcome.tables import heading
 from contactlab.study.evidence import Evidence, gather
 from contactlab.study.validation import Finding, judged, validate
 
-#: Laws that a picture shows, as far as they are installed: a reader tells no more apart.
+#: Laws in a picture, if installed; more curves could not be distinguished.
 DRAWN = ("fronts", "springs, tsuji restitution=0.98", "mindlin_cap", "coulomb")
 
 
@@ -38,14 +38,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Validate and report; 1 if a bound is not met."""
+    """Validate and report; the status is 1 if a bound is not met."""
     folder: Path | None = arguments.figures
     if folder is not None and not folder.parent.is_dir():
         raise ValueError(f"--figures {folder}: there is no folder {folder.parent}")
     findings: list[Finding] = []
     gathered: list[Evidence] = []
     interrupted = False
-    try:  # extend keeps what came before an interruption
+    try:  # extend keeps the findings before an interruption
         with shared.progress(arguments.progress, "checks") as progress:
             findings.extend(validate(progress))
         with shared.progress(arguments.progress, "sources") as progress:
@@ -59,36 +59,37 @@ def execute(arguments: argparse.Namespace) -> int:
     if folder is not None:
         folder.mkdir(exist_ok=True)
         drawings = [
-            (folder / f"{one.source.name}.png", lambda path, one=one: _draw(path, one))
-            for one in gathered
+            (folder / f"{item.source.name}.png", lambda path, item=item: _draw(path, item))
+            for item in gathered
         ]
         saved = shared.save(*drawings, progress_wanted=arguments.progress)
     if arguments.json:
         checks = [attrs.asdict(finding) | {"ok": finding.ok} for finding in findings]
         content = {
             "checks": [{key: json_value(value) for key, value in row.items()} for row in checks],
-            "sources": [_plain(one) for one in gathered],
+            "sources": [_plain(item) for item in gathered],
             "complete": not interrupted,
         }
         print(json.dumps(content, indent=2, allow_nan=False))
     else:
         ending = ["not complete: interrupted"] if interrupted else []
-        print("\n\n".join([_checks(findings), *map(_told, gathered), *ending]))
+        print("\n\n".join([_checks(findings), *map(_agreement, gathered), *ending]))
     if interrupted:
         return shared.INTERRUPTED
     return saved if all(finding.ok for finding in findings) else shared.FAILED
 
 
 def _checks(findings: list[Finding]) -> str:
+    """Return the findings as a table."""
     rows = [
-        [one.what, one.against, one.difference, one.bound, "ok" if one.ok else "FAILS"]
-        for one in findings
+        [item.what, item.against, item.difference, item.bound, "ok" if item.ok else "FAILS"]
+        for item in findings
     ]
     return table(["what", "against", "worst difference", "bound", ""], rows, digits=2)
 
 
-def _told(evidence: Evidence) -> str:
-    """Return a source, what every law is off by, and what to think of it."""
+def _agreement(evidence: Evidence) -> str:
+    """Return a source with its citation and notes, and the distance of every law from it."""
     agreements = evidence.comparison.agreements
     headings = ["law"]
     rows: list[list[Any]] = [[law] for law in evidence.laws]
@@ -99,8 +100,7 @@ def _told(evidence: Evidence) -> str:
         headings += [f"{name} rms", "largest", "at"]
         for row in rows:
             law = str(row[0])
-            found: list[Any] = [agreement.rms(law), agreement.largest(law)]
-            row += [*found, agreement.where_largest(law)]
+            row += [agreement.rms(law), agreement.largest(law), agreement.where_largest(law)]
     scatters = [evidence.scatter(agreement) for agreement in agreements]
     if any(scatter == scatter for scatter in scatters):
         reading: list[Any] = ["(scatter of readings)"]
@@ -119,7 +119,7 @@ def _told(evidence: Evidence) -> str:
 
 
 def _plain(evidence: Evidence) -> dict[str, Any]:
-    """Return a source as plain numbers and text."""
+    """Return a source and the distances of the laws from it for JSON."""
     return {
         "name": evidence.source.name,
         "kind": evidence.source.kind,
@@ -146,6 +146,7 @@ def _plain(evidence: Evidence) -> dict[str, Any]:
 
 
 def _draw(path: Path, evidence: Evidence) -> None:
+    """Draw the main laws over the values of one source."""
     from contactlab.cli.drawing import draw_comparison  # matplotlib only when drawing
 
     shown = evidence.comparison.only(DRAWN)

@@ -1,7 +1,7 @@
-"""The columns of a result: one list for text, files, frames, figures, fits and scene files.
+"""The columns of a result, for text, files, frames, figures, fits and scene files.
 
-To add a column, add a line to ``COLUMNS``; an angle is a quantity in degrees too. The tables for
-reading show the columns that ``SWEEP_TABLE`` and ``COMPARISON_TABLE`` name.
+To add a column, add a line to ``COLUMNS``; every angle is available in degrees too. The tables
+for reading show the columns in ``SWEEP_TABLE`` and ``COMPARISON_TABLE``.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ class Column(NamedTuple):
     ----------
     name : str
     unit : str
-        Empty for words.
+        Empty for a column of words.
     path : str
-        The attribute of the result that holds it, such as ``"scene.chi"``.
+        Attribute of the result, such as ``"scene.chi"``.
     factor : float
-        From the unit of the attribute to that of the column.
+        Unit of the attribute over the unit of the column.
     """
 
     name: str
@@ -38,22 +38,22 @@ class Column(NamedTuple):
     factor: float = 1.0
 
     def read(self, result: Any) -> Any:
-        """Return the values as the result holds them; None where the scene defines none."""
+        """Return the values with the result's own type, or None if the scene defines no value."""
         value = attrgetter(self.path)(result)
         return value if value is None or self.factor == 1.0 else value * self.factor
 
     def of(self, result: Any) -> NDArray[np.float64]:
-        """Return an array of the scene's shape; NaN where the scene defines no value."""
+        """Return the values as an array of the scene's shape, NaN if the scene defines no value."""
         value = self.read(result)
         number = np.nan if value is None else value
         return np.array(np.broadcast_to(np.asarray(number, dtype=np.float64), result.scene.shape))
 
     def unit_in(self, scene: Scene) -> str:
-        """Return the unit that the numbers have in ``scene``."""
+        """Return the unit of the values in ``scene``."""
         return unit_in(self.unit, scene)
 
 
-#: The columns of every file, in their order: name, unit, and where the result holds it.
+#: The columns of every file, in order: name, unit, attribute of the result.
 COLUMNS = (
     Column("psi1", "1", "psi1"),
     Column("chi", "1", "scene.chi"),
@@ -81,8 +81,8 @@ COLUMNS = (
     Column("status", "", "status"),
 )
 
-#: The columns of the table of a sweep, and of a comparison of single impacts; a column that no
-#: impact defines is left out.
+#: The columns of the table of a sweep, and of a comparison of single impacts. Tables leave out a
+#: column that no impact defines.
 SWEEP_TABLE = (
     "psi1", "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg",
     "rebound_spin", "friction_work",
@@ -94,16 +94,16 @@ COMPARISON_TABLE = (
 
 
 def numeric_columns() -> dict[str, Column]:
-    """Return the columns that hold numbers, by name: angles in degrees and the speed too."""
-    found = {}
+    """Return the columns of numbers by name, with angles in degrees and the rebound speed added."""
+    numeric = {}
     for column in COLUMNS:
         if column.unit:
-            found[column.name] = column
+            numeric[column.name] = column
         if column.unit == "rad":
             name = f"{column.name}_deg"
-            found[name] = Column(name, "deg", column.path, 180.0 / np.pi)
-    found["rebound_speed"] = Column("rebound_speed", "m/s", "rebound_speed")
-    return found
+            numeric[name] = Column(name, "deg", column.path, 180.0 / np.pi)
+    numeric["rebound_speed"] = Column("rebound_speed", "m/s", "rebound_speed")
+    return numeric
 
 
 QUANTITIES = numeric_columns()
@@ -115,7 +115,7 @@ def quantity_named(name: str, *, where: str = "quantity") -> Column:
     Raises
     ------
     ValueError
-        If there is none, with the nearest match.
+        If no quantity has this name; the message gives the nearest match.
     """
     if name in QUANTITIES:
         return QUANTITIES[name]
@@ -125,22 +125,22 @@ def quantity_named(name: str, *, where: str = "quantity") -> Column:
 
 def columns(result: Any) -> list[tuple[str, str, Any]]:
     """Return name, unit and values of every column; grid axes that are not columns come first."""
-    found = [(column.name, column.unit, column.read(result)) for column in COLUMNS]
+    table = [(column.name, column.unit, column.read(result)) for column in COLUMNS]
     if not result.scene.axes:
-        return found
+        return table
     varied = product(result.scene.axes)
     for column in COLUMNS:
         varied.pop(column.name, None)
-    return [(name, entry_unit(name), values) for name, values in varied.items()] + found
+    return [(name, entry_unit(name), values) for name, values in varied.items()] + table
 
 
 def unit_in(unit: str, scene: Scene) -> str:
-    """Return the unit that a column has in ``scene``: the paper's own have only angles."""
+    """Return the unit of a column in ``scene``; without bodies only angles have one."""
     return "1" if scene.sphere is None and unit not in ("rad", "deg") else unit
 
 
 def csv_heading(name: str, unit: str, scene: Scene) -> str:
-    """Return the heading of a CSV column: its name, and its unit unless it holds words."""
+    """Return the heading of a CSV column: name and unit, or name alone for words."""
     return f"{name} ({unit_in(unit, scene)})" if unit else name
 
 
@@ -155,7 +155,7 @@ def scaled_forces(result: Any) -> tuple[Any, Any, Any]:
 
 
 def json_value(value: Any) -> Any:
-    """Return ``value`` as JSON takes it: floats, lists, None for what is undefined."""
+    """Return ``value`` for JSON: statuses by name, arrays as lists, None for numbers not finite."""
     if isinstance(value, Status):
         return value.name
     if isinstance(value, np.ndarray):

@@ -15,16 +15,17 @@ from contactlab.numeric.checks import Real
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.motion import Motion
 
-#: e beyond this is energy from nothing, and not the error of a scheme: the fewest steps
-#: that an explicit one takes leave e - 1 = 3e-3.
+#: A normal restitution above this is energy from nothing, and no integration error: an explicit
+#: scheme with the fewest steps leaves e - 1 = 3e-3.
 LARGEST_RESTITUTION = 1.02
-#: Slip faster at the end than this many times the slip at the start is energy from nothing too:
-#: the capped spring of discrete-element codes, which makes some by its nature, stays below it
-#: between elastic spheres, and passes it under strongly damped normal laws.
+#: A slip velocity at the end above this multiple of the slip velocity at the start is energy from
+#: nothing too. The capped spring of discrete-element codes makes some energy; its slip velocity
+#: stays below this bound between elastic spheres, and exceeds it under strongly damped normal laws.
 LARGEST_SLIP = 1.1
 
 
 def _energy() -> Any:
+    """Return an attribute in J."""
     return attrs.field(metadata={"unit": "J"})
 
 
@@ -37,12 +38,12 @@ class EnergyLedger:
     start, end : float or array
         ½ M_n v_z² + ½ M_t v_x² before and after.
     normal_loss : float or array
-        ½ M_n v_z² before less after: what a dissipative normal law takes up; zero if elastic.
+        ½ M_n v_z² before less after: loss of a dissipative normal law; zero if elastic.
     friction_work : float or array
-        Added up by the law from traction and slip, step by step.
+        Sum over the steps, computed by the law from traction and slip.
     imbalance : float or array
-        start - end - normal_loss - friction_work: zero in an exact solution. Normal force
-        does no work in slip, nor friction in approach, so the two losses are apart.
+        start - end - normal_loss - friction_work: zero in an exact solution. The losses are
+        independent: the normal force does no work in slip, friction none in approach.
     """
 
     start: Real = _energy()
@@ -53,7 +54,7 @@ class EnergyLedger:
 
     @property
     def relative_imbalance(self) -> Real:
-        """Imbalance over the energy at the start."""
+        """Imbalance over the energy at the start, unit 1."""
         with np.errstate(under="ignore"):
             return self.imbalance / self.start
 
@@ -64,7 +65,7 @@ class EnergyLedger:
 
 
 def ledger(scene: Scene, motion: Motion) -> EnergyLedger:
-    """Return the books of ``motion``, from the velocities alone but for the friction work."""
+    """Return the energy books of ``motion``, in J, from its velocities and its friction work."""
     before = (scene.normal_speed, scene.slip_velocity)
     after = (motion.normal_velocity, motion.slip_velocity_change)
     return books(scene.pair, before, after, motion.friction_work)
@@ -73,18 +74,7 @@ def ledger(scene: Scene, motion: Motion) -> EnergyLedger:
 def books(
     pair: Pair, before: tuple[Real, Real], after: tuple[Real, Real], friction_work: Real
 ) -> EnergyLedger:
-    """Return the books of two bodies.
-
-    Parameters
-    ----------
-    pair : Pair
-    before : tuple
-        Rate of approach and slip velocity, in m/s.
-    after : tuple
-        Rate of approach, and the change of the slip velocity, in m/s.
-    friction_work : float or array
-        In J.
-    """
+    """Return the energy books from (rate, slip velocity) and (rate, change of slip velocity)."""
     (speed, slip), (rate, change) = before, after
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         # Products, not powers: a float raised to a power raises OverflowError.
@@ -104,10 +94,10 @@ def books(
 
 @np.errstate(all="ignore")
 def balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
-    """Return ``motion``, its status ``UNBALANCED`` where energy came from nothing, or went.
+    """Return ``motion`` with status ``UNBALANCED`` where the energy books do not balance.
 
-    That is where the books miss by more than ``bound``, over the energy at the start; and
-    where the bodies part, or slip, faster than they met.
+    The imbalance over the energy at the start exceeds ``bound``, or the bodies separate or slip
+    faster than at first touch.
     """
     speed: Any = abs(motion.normal_velocity)
     fast = speed > LARGEST_RESTITUTION * scene.normal_speed
@@ -117,27 +107,27 @@ def balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
         )
         motion = motion.failing(fast, Status.UNBALANCED, detail)
     books = ledger(scene, motion)
-    miss: Any = abs(books.imbalance)
-    missing = miss > bound * books.start
-    if some(missing):
+    imbalance: Any = abs(books.imbalance)
+    unbalanced = imbalance > bound * books.start
+    if some(unbalanced):
         share = abs(books.relative_imbalance)
         detail = _sentences(
             f"Off by {{:.2g}} of the energy at the start; declared: {bound:.2g}.", share
         )
-        motion = motion.failing(missing, Status.UNBALANCED, detail)
+        motion = motion.failing(unbalanced, Status.UNBALANCED, detail)
     before: Any = abs(scene.slip_velocity)
     after: Any = abs(scene.slip_velocity + motion.slip_velocity_change)
-    slips = after > LARGEST_SLIP * before
-    if some(slips):
+    slips_fast = after > LARGEST_SLIP * before
+    if some(slips_fast):
         detail = _sentences(
             "The contact slips {:.4g} times as fast as it met.", np.divide(after, before)
         )
-        motion = motion.failing(slips, Status.UNBALANCED, detail)
+        motion = motion.failing(slips_fast, Status.UNBALANCED, detail)
     return motion
 
 
 def _sentences(sentence: str, numbers: Any) -> Any:
-    """Return the sentence with its number in it, for each impact."""
+    """Return the sentence of each impact with its number filled in, in the shape of ``numbers``."""
     if not np.ndim(numbers):
         return sentence.format(float(numbers))
     sentences = [sentence.format(number) for number in np.ravel(numbers).tolist()]

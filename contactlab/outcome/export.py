@@ -1,6 +1,6 @@
-"""Results as files: JSON, CSV, npz, with the columns of ``contactlab.outcome.columns``.
+"""Write results as JSON, CSV or npz, with the columns of ``contactlab.outcome.columns``.
 
-To add a form of file, add a writer and a line in ``WRITERS``.
+To add a file format, add a writer and a line in ``WRITERS``.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from contactlab.outcome.result import ImpactResult
 
 
 def to_dict(result: ImpactResult) -> dict[str, Any]:
-    """Return everything but the history as plain numbers, lists and text."""
+    """Return the result without its history as plain numbers, lists and text."""
     numbers = {name: json_value(values) for name, _, values in columns(result)}
     return numbers | {
         "detail": json_value(result.motion.detail),
@@ -32,7 +32,7 @@ def to_dict(result: ImpactResult) -> dict[str, Any]:
 
 
 def write_json(result: ImpactResult, path: str | Path) -> None:
-    """Write ``to_dict`` and the history, if there is one."""
+    """Write ``to_dict``, and the history if the result has one."""
     content = to_dict(result)
     if result.history is not None:
         course = result.history.columns() | result.history.fields
@@ -43,7 +43,7 @@ def write_json(result: ImpactResult, path: str | Path) -> None:
 
 
 def write_csv(result: ImpactResult, path: str | Path) -> None:
-    """Write one row an impact, the unit in each heading."""
+    """Write one row for each impact, with the unit in each heading."""
     table = columns(result)
     headings = [csv_heading(name, unit, result.scene) for name, unit, _ in table]
     cells = [_spread(values, result.scene.shape) for _, _, values in table]
@@ -51,13 +51,7 @@ def write_csv(result: ImpactResult, path: str | Path) -> None:
 
 
 def write_history_csv(result: ImpactResult, path: str | Path) -> None:
-    """Write one row an instant of a single impact's history.
-
-    Raises
-    ------
-    ValueError
-        If no history was asked for, or the result is a batch.
-    """
+    """Write the history of a single impact, one row for each instant."""
     history = result.history
     if history is None or result.scene.shape:
         raise ValueError("result: has no history of a single impact; run(scene, history=True)")
@@ -72,16 +66,16 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
     if result.history is not None:
         course = result.history.columns() | result.history.fields
         arrays |= {f"history_{name}": column for name, column in course.items()}
-    with written(path, binary=True) as stream:  # a path that ends otherwise would get .npz added
+    with written(path, binary=True) as stream:  # numpy adds .npz to any other path
         np.savez_compressed(stream, **arrays)
 
 
-#: Form of file by the end of its name.
+#: Writer of each file format, by suffix.
 WRITERS = {".json": write_json, ".csv": write_csv, ".npz": write_npz}
 
 
 def _flat(value: Any, shape: tuple[int, ...]) -> Any:
-    """Return a column as an array of numbers, or of the names of statuses."""
+    """Return a column as a flat array of numbers, or of names of statuses."""
     array = np.asarray(math.nan if value is None else value)
     if array.dtype == object:
         return np.array(_spread(value, shape))
@@ -89,5 +83,6 @@ def _flat(value: Any, shape: tuple[int, ...]) -> Any:
 
 
 def _spread(value: Any, shape: tuple[int, ...]) -> list[Any]:
+    """Return a column as a list with one item for each impact, statuses by name."""
     items = np.broadcast_to(np.asarray(value, dtype=object), shape).ravel().tolist()
     return [math.nan if item is None else getattr(item, "name", item) for item in items]

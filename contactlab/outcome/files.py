@@ -1,7 +1,7 @@
-"""Files are written to a temporary file, then renamed: a file is whole or not there.
+"""Files are written to a temporary file, then renamed: a file is complete or absent.
 
 Every file that contactlab writes goes through ``written``. A full disk, an error or a killed
-process leaves the old file as it was; only a killed process leaves a file
+process leaves the old file unchanged; only a killed process leaves a file
 ``.contactlab-*.part`` behind.
 """
 
@@ -16,30 +16,16 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-#: How text is written; a name of a file that is no UTF-8, or was not read as such, as it is.
+#: Options of ``open`` for text; surrogates let file names that are not UTF-8 pass unchanged.
 TEXT: dict[str, Any] = {
     "mode": "x", "encoding": "utf-8", "errors": "surrogateescape", "newline": "",
 }  # fmt: skip
-#: Most bytes of a file that people write, a scene or a table: a sweep of a million numbers fits.
+#: Largest scene or table that is read, in bytes: enough for a sweep of a million numbers.
 LARGEST = 32_000_000
 
 
 def content(path: Path, *, kind: str, remedy: str) -> bytes:
-    """Return the content of a regular file of a size to be expected.
-
-    Parameters
-    ----------
-    path : Path
-    kind : str
-        What it should be, for the refusal of its size: ``"a scene"``.
-    remedy : str
-        What to do where there is no such file.
-
-    Raises
-    ------
-    ValueError
-        With the path, if there is no such file, or it cannot be read or is too large.
-    """
+    """Return the bytes of a regular file; messages name its ``kind``, such as ``"a scene"``."""
     try:
         status = os.stat(path)
         if not stat.S_ISREG(status.st_mode):  # a pipe may never end, or never begin
@@ -56,21 +42,11 @@ def content(path: Path, *, kind: str, remedy: str) -> bytes:
 
 @contextlib.contextmanager
 def written(path: str | Path, *, binary: bool = False) -> Iterator[Any]:
-    """Return a stream whose content takes the place of ``path`` when the block ends well.
+    """Return a stream whose content replaces ``path`` when the block ends without an error.
 
-    Text is UTF-8 without translation of line ends, as ``csv`` asks for. The new file has the
-    permissions of the old one; a symbolic link stays, and what it points to is replaced.
-
-    Parameters
-    ----------
-    path : str or Path
-    binary : bool
-        Whether the stream takes bytes.
-
-    Raises
-    ------
-    OSError
-        With the path, if it cannot be written to the end; the old file then is as it was.
+    Text is UTF-8 without translation of line ends, as ``csv`` requires. The new file has the
+    permissions of the old one; if ``path`` is a symbolic link, the file behind the link is
+    replaced. An ``OSError`` names ``path``, and leaves the old file unchanged.
     """
     if why_not := unwritable(path):
         raise OSError(f"{path}: {why_not}")
@@ -97,7 +73,7 @@ def written(path: str | Path, *, binary: bool = False) -> Iterator[Any]:
 def write_table(
     path: str | Path, headings: Sequence[str], rows: Iterable[Sequence[object]]
 ) -> None:
-    """Write a CSV file of a line of headings, and rows."""
+    """Write a CSV file: a line of headings, then the rows."""
     with written(path) as stream:
         writer = csv.writer(stream)
         writer.writerow(headings)
@@ -105,7 +81,7 @@ def write_table(
 
 
 def unwritable(path: str | Path) -> str:
-    """Return why a file could not be written at ``path``, as far as can be known beforehand."""
+    """Return why ``path`` cannot be written, empty if no reason shows beforehand."""
     target = os.path.realpath(path)
     folder = os.path.dirname(target)
     try:
@@ -114,7 +90,7 @@ def unwritable(path: str | Path) -> str:
         if not os.access(target, os.W_OK):
             return "is protected against writing"
     except FileNotFoundError:
-        pass  # there is no old file
+        pass  # a new file
     except OSError as error:
         return str(error.strerror)
     if not os.path.isdir(folder):
@@ -125,17 +101,11 @@ def unwritable(path: str | Path) -> str:
 
 
 def distinct(outputs: Mapping[str, str | Path | None]) -> None:
-    """Refuse two outputs, keyed by their names for the message, that are one file.
-
-    Raises
-    ------
-    ValueError
-        With both names.
-    """
-    seen: dict[str, str] = {}
+    """Refuse two outputs that are the same file; the message names both by their keys."""
+    names: dict[str, str] = {}
     for name, path in outputs.items():
-        place = path and os.path.normcase(os.path.realpath(path))
-        if place in seen:
-            raise ValueError(f"{seen[place]}, {name}: {path} is the same file; give two")
-        if place:
-            seen[str(place)] = name
+        real_path = path and os.path.normcase(os.path.realpath(path))
+        if real_path in names:
+            raise ValueError(f"{names[real_path]}, {name}: {path} is the same file; give two")
+        if real_path:
+            names[str(real_path)] = name

@@ -1,4 +1,4 @@
-"""Results as labelled tables of pandas and labelled arrays of xarray, both of them optional."""
+"""Results as tables of pandas and labelled arrays of xarray; both packages are optional."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from contactlab.outcome.columns import unit_in
 
 
 class Labelled(NamedTuple):
-    """The columns of a result that are defined for its scene, and their axes.
+    """The columns that the scene of a result defines, and their axes.
 
     Attributes
     ----------
     columns : dict of str to array, shape of the scene
-        Without those that are axes; statuses by their names.
+        The columns that are no axes; statuses by name.
     axes : dict of str to array, shape (n_i,)
-        Of a grid; empty for any other batch, and for one impact.
+        Axes of a grid; empty for any other batch, and for one impact.
     units : dict of str to str
-        Of both; empty for words.
+        Units of columns and axes; empty for words.
     """
 
     columns: dict[str, Any]
@@ -30,7 +30,7 @@ class Labelled(NamedTuple):
 
 
 def to_dataframe(result: Any) -> Any:
-    """Return a ``pandas.DataFrame`` of one row an impact; see ``ImpactResult.to_dataframe``."""
+    """Return a ``pandas.DataFrame``, one row for each impact: ``ImpactResult.to_dataframe``."""
     pandas = _needed("pandas", "to_dataframe")
     columns, axes, units = _labelled(result)
     if axes:
@@ -43,9 +43,9 @@ def to_dataframe(result: Any) -> Any:
 
 
 def to_xarray(result: Any) -> Any:
-    """Return an ``xarray.Dataset`` with a dimension for each axis; see ``ImpactResult.to_xarray``.
+    """Return an ``xarray.Dataset``, one dimension for each axis: ``ImpactResult.to_xarray``.
 
-    A batch that is no grid has the dimension ``impact``, or ``impact_0``, ``impact_1``, ...
+    A batch that is not a grid has the dimension ``impact``, or ``impact_0``, ``impact_1``, ...
     """
     xarray = _needed("xarray", "to_xarray")
     columns, axes, units = _labelled(result)
@@ -66,11 +66,12 @@ def to_xarray(result: Any) -> Any:
 
 
 def _labelled(result: Any) -> Labelled:
+    """Return columns, axes and units of a result."""
     scene = result.scene
     axes = dict(scene.axes)
     columns, units = {}, {}
     for name, unit, values in all_columns(result):
-        if values is None:  # not defined for a scene without bodies
+        if values is None:  # a scene without bodies
             continue
         units[name] = unit_in(unit, scene) if unit else ""
         if name in axes:
@@ -82,7 +83,7 @@ def _labelled(result: Any) -> Labelled:
 
 
 def _needed(module: str, method: str) -> Any:
-    """Return an optional module, or say how to get it."""
+    """Return an optional module, or raise ``ImportError`` with the command that installs it."""
     try:
         return importlib.import_module(module)
     except ImportError as error:

@@ -1,4 +1,4 @@
-"""The history of an impact: recorded only when asked for."""
+"""The history of an impact, recorded only on request."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 
 def _column(unit: str) -> Any:
+    """Return an attribute with its unit."""
     return attrs.field(metadata={"unit": unit})
 
 
@@ -26,7 +27,7 @@ def _column(unit: str) -> Any:
 class History:
     """Arrays over the instants of an impact, shape (K, ...): instants first, then the batch.
 
-    Signs: ``tangential_force`` is positive where it opposes positive slip velocity.
+    ``tangential_force`` is positive where it opposes a positive slip velocity.
     """
 
     time: Array = _column("s")
@@ -39,20 +40,20 @@ class History:
     fields: dict[str, NDArray[Any]] = attrs.field(factory=dict)
 
     def __repr__(self) -> str:
-        """Return how many instants there are, and the fields."""
+        """Return the number of instants, the last time and the fields."""
         if not self.time.size:
             return "History(no instants)"
         fields = ", ".join(self.fields) or "no fields"
         return f"History({len(self.time)} instants to {np.max(self.time):.4g} s; {fields})"
 
     def columns(self) -> dict[str, Array]:
-        """Return the one-number-an-instant columns by name."""
+        """Return the columns with one number for each instant, by name."""
         return {name: getattr(self, name) for name in _names()}
 
     def plot(self, *, axes: Axes | None = None, width: Width | None = None) -> Axes:
         """Draw the forces over time on ``axes``, or on a new figure of ``matplotlib.pyplot``.
 
-        The ``width``, ``"one"`` or ``"two"`` columns of a page, is that of a new figure.
+        A new figure fills ``width`` columns of a page, ``"one"`` or ``"two"``.
         """
         from contactlab.figures.results import draw_history  # matplotlib only when drawing
 
@@ -65,20 +66,12 @@ class History:
 
 
 def _names() -> list[str]:
-    """Return the names of the columns with one number an instant, in their order."""
+    """Return the names of the columns with one number for each instant, in order."""
     return [item.name for item in attrs.fields(History) if item.name != "fields"]
 
 
 class Recorder:
-    """An observer that keeps what it is shown.
-
-    Parameters
-    ----------
-    shape : tuple of int
-        Batch shape.
-    with_fields : bool
-        Whether the law's fields (traction, stuck, ...) are asked for at every instant.
-    """
+    """An observer that keeps every sample, with the law's fields if ``with_fields``."""
 
     def __init__(self, shape: tuple[int, ...], *, with_fields: bool) -> None:
         self._shape = shape
@@ -87,7 +80,7 @@ class Recorder:
         self._fields: list[dict[str, Any]] = []
 
     def __call__(self, sample: Sample) -> None:
-        """Keep one instant."""
+        """Keep the sample of one instant."""
         time, approach, rate, contact, slip_velocity, force, _ = sample
         row = (time, approach, rate, contact.force, contact.radius, slip_velocity, force)
         self._rows.append(row)
@@ -95,7 +88,7 @@ class Recorder:
             self._fields.append(dict(sample.fields()))
 
     def history(self) -> History:
-        """Return what was recorded; no instants at all give arrays of length 0."""
+        """Return the history of the samples; its arrays have length 0 if there are none."""
         columns = {}
         for index, name in enumerate(_names()):
             rows = [np.broadcast_to(row[index], self._shape) for row in self._rows]

@@ -1,4 +1,4 @@
-"""The motion of an impact, normal and tangential: what a result is made of."""
+"""The motion of an impact, normal and tangential."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from contactlab.numeric.checks import Real
 
 @attrs.frozen(kw_only=True, eq=False)
 class Motion(TangentialMotion):
-    """A tangential motion, and how the normal motion that it went along began and ended.
+    """A tangential motion with the duration, the maxima and the end of its normal motion.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Motion(TangentialMotion):
 
     @classmethod
     def along(cls, normal: NormalMotion, tangential: TangentialMotion) -> Self:
-        """Return both together, read-only; where the bodies did not part there is no motion."""
+        """Return the motion of one batch from its two parts; its arrays are read-only."""
         shape = normal.scene.shape
         entries: dict[str, Any] = {
             "duration": normal.duration,
@@ -59,10 +59,10 @@ class Motion(TangentialMotion):
 
 
 def sound(motion: Motion) -> Motion:
-    """Return ``motion``, its status ``NON_FINITE`` where a success holds such a number.
+    """Return ``motion`` with status ``NON_FINITE`` where a success holds a number not finite.
 
-    Integrators look at what they use as they go; this also finds what overflows on the way back
-    to SI, and what an integrator forgets.
+    Integrators check the quantities that they use; this check adds overflows in the conversion
+    to SI, and quantities that an integrator does not check.
     """
     if motion.status is Status.SUCCESS:
         if all(math.isfinite(getattr(motion, name)) for name in motion.numbers()):

@@ -1,4 +1,4 @@
-"""What a result says of its numerical error: declared, estimated, and whether the two agree."""
+"""The numerical error of a result in words: declared, estimated, and whether the two agree."""
 
 from __future__ import annotations
 
@@ -12,54 +12,54 @@ from contactlab.numeric.arrays import for_share
 if TYPE_CHECKING:
     from contactlab.outcome.result import ImpactResult
 
-#: An estimate this many times the declared error contradicts it. Estimates are mostly within a
-#: factor of three of the true error.
+#: Ratio of estimated to declared error above which the declaration is false. Estimates are mostly
+#: within a factor of three of the true error.
 CONTRADICTS = 10.0
 
 
 def error_words(result: ImpactResult) -> str:
-    """Return the numerical error of psi2, estimated and declared, or what is not known of it."""
+    """Return the numerical error of psi2 in words, estimated and declared."""
     estimate, declared = _errors(result)
-    known = []
+    parts = []
     if np.isfinite(estimate).any():
-        known.append(f"{_largest(estimate, 'about')}, estimated{_missing(estimate)}")
+        parts.append(f"{_largest(estimate, 'about')}, estimated{_missing(estimate)}")
     elif result.psi2_error_estimate is None:
-        known.append("not estimated")
+        parts.append("not estimated")
     else:
-        known.append("no estimate: no finer resolution shows one")
+        parts.append("no estimate: no finer resolution shows one")
     if np.isfinite(declared).any():
-        known.append(f"{_largest(declared, 'at most')}, declared{_missing(declared)}")
+        parts.append(f"{_largest(declared, 'at most')}, declared{_missing(declared)}")
     else:
-        known.append("not declared")
-    return "; ".join(known)
+        parts.append("not declared")
+    return "; ".join(parts)
 
 
 def error_cautions(result: ImpactResult) -> list[str]:
-    """Return sentences on an estimate that contradicts what is declared, and on coarse answers."""
+    """Return cautions about a false declared error and about coarse answers."""
     estimate, declared = _errors(result)
     with np.errstate(all="ignore"):
-        wrong = estimate > CONTRADICTS * declared
+        contradicted = estimate > CONTRADICTS * declared
         unit, width, _ = range_of(result.scene)
         share = np.fmax(estimate, declared) * np.divide(unit, width)
         share = np.where(result.plan.marched, share, 0.0)
-    found = []
-    if wrong.any():
-        place = int(np.argmax(np.where(wrong, estimate, 0.0)))
-        found.append(
-            f"the declared numerical error of psi2 is false{for_share(wrong)}: at most "
-            f"{declared.flat[place]:.1g} is declared, about {estimate.flat[place]:.1g} is estimated"
+    cautions = []
+    if contradicted.any():
+        worst = int(np.argmax(np.where(contradicted, estimate, 0.0)))
+        cautions.append(
+            f"the declared numerical error of psi2 is false{for_share(contradicted)}: at most "
+            f"{declared.flat[worst]:.1g} is declared, about {estimate.flat[worst]:.1g} is estimated"
         )
     coarse = np.asarray(share > COARSE)
     if coarse.any():
-        found.append(
+        cautions.append(
             f"coarse{for_share(coarse)}: the numerical error is {np.nanmax(share):.2g} of the "
             "range of psi2, so that no digit is sure; finer resolutions would help"
         )
-    return found
+    return cautions
 
 
 def _errors(result: ImpactResult) -> tuple[Any, Any]:
-    """Return the estimated and the declared error, NaN where there is none, of the batch shape."""
+    """Return estimated and declared error in the batch shape, NaN where there is none."""
     shape = result.scene.shape
     estimate: Any = np.nan if result.psi2_error_estimate is None else result.psi2_error_estimate
     declared = np.broadcast_to(np.asarray(result.plan.psi2_error, dtype=np.float64), shape)
@@ -67,10 +67,11 @@ def _errors(result: ImpactResult) -> tuple[Any, Any]:
 
 
 def _largest(error: Any, word: str) -> str:
+    """Return the largest error of a batch with ``word`` before it."""
     return f"{word} {np.nanmax(error):.1g}"
 
 
 def _missing(error: Any) -> str:
-    """Return for how many impacts of a batch an error is known, if not for all."""
-    known = np.isfinite(error)
-    return "" if known.all() else for_share(known)
+    """Return the share of impacts with an error in words, empty if all have one."""
+    finite = np.isfinite(error)
+    return "" if finite.all() else for_share(finite)

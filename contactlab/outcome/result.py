@@ -1,4 +1,4 @@
-"""The answer: velocities after the impact, its status, its energy books and its cost."""
+"""The result of an impact: velocities after it, status, energy books and cost."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 
 class ImpactError(RuntimeError):
-    """Raised by ``ImpactResult.check()`` for a run that did not succeed.
+    """Raised by ``ImpactResult.check()`` if an impact failed.
 
-    ``status`` is that of the impact it tells of.
+    ``status`` is the status of the impact in the message.
     """
 
     def __init__(self, sentence: str, status: Status) -> None:
@@ -38,16 +38,16 @@ class ImpactError(RuntimeError):
         self.status = status
 
     def __str__(self) -> str:
-        """Return the sentence alone."""
+        """Return the sentence without the status."""
         return str(self.args[0])
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class ImpactResult:
-    """Outcome of one impact, or of a batch: every entry has the scene's shape.
+    """Result of one impact, or of a batch: every quantity has the scene's shape.
 
-    A batch can be indexed, sliced and iterated; each item is the result of one impact. What is
-    said of the whole batch stays: run time, counters, and the plan's sentences.
+    A batch can be indexed, sliced and iterated; each item is the result of one impact. Items keep
+    the run time, the counters and the plan's sentences of the whole batch.
 
     Attributes
     ----------
@@ -56,14 +56,14 @@ class ImpactResult:
     motion : Motion
         Normal and tangential motion, as the laws and the integrator returned them.
     run_time : float
-        Wall-clock time of the whole run in s (of the whole batch).
+        Wall-clock time of the run, in s; of a batch, for all its impacts.
     laws : mapping of str to str
         Names of the three laws with their versions.
     history : History or None
-        Only if asked for.
+        Only on request.
     psi2_error_estimate : float, array or None
-        Estimate of the numerical error of psi2, only if asked for; the model's errors are in the
-        plan's cautions.
+        Estimate of the numerical error of psi2, only on request. The plan's cautions state
+        model errors.
     """
 
     scene: Scene
@@ -75,37 +75,39 @@ class ImpactResult:
     psi2_error_estimate: Real | None = attrs.field(default=None, repr=False)
 
     def __repr__(self) -> str:
-        """Return psi2, how it went and by what laws, on one line."""
+        """Return psi2, statuses and laws on one line."""
         shape, psi2 = self.scene.shape, np.asarray(self.psi2)
         statuses = Counter(status.name for status in np.ravel(np.array(self.status, dtype=object)))
         laws = ", ".join(name.partition(" ")[0] for name in self.laws.values())
         if not shape:
-            found = f"psi1={self.psi1:.6g}, chi={self.scene.chi:.6g}, psi2={psi2:.6g}"
+            answer = f"psi1={self.psi1:.6g}, chi={self.scene.chi:.6g}, psi2={psi2:.6g}"
         else:
-            known = psi2[np.isfinite(psi2)]
-            ends = f" from {known.min():.6g} to {known.max():.6g}" if known.size else " unknown"
-            found = f"{psi2.size} impacts, psi2{ends}"
-        told = ", ".join(f"{count} {name}" if shape else name for name, count in statuses.items())
-        return f"ImpactResult({found}; {told}; {laws})"
+            finite = psi2[np.isfinite(psi2)]
+            ends = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size else " unknown"
+            answer = f"{psi2.size} impacts, psi2{ends}"
+        outcome = ", ".join(
+            f"{count} {name}" if shape else name for name, count in statuses.items()
+        )
+        return f"ImpactResult({answer}; {outcome}; {laws})"
 
     def __str__(self) -> str:
-        """Return the line of ``repr``, the numerical error and every caution, a line each."""
+        """Return ``repr``, the numerical error and every caution, one line each."""
         cautions = [*error_cautions(self), *map(str, self.plan.cautions)]
         lines = [repr(self), f"numerical error of psi2: {error_words(self)}"]
         return "\n".join([*lines, *(f"caution: {text}" for text in cautions)])
 
     def _repr_html_(self) -> str:
-        """Return what a notebook shows: the words of ``str``."""
+        """Return ``str(self)`` as HTML for a notebook."""
         return f"<pre>{html.escape(str(self))}</pre>"
 
     @property
     def status(self) -> Any:
-        """A ``Status``, or an array of them."""
+        """Status of the impact, or an array of statuses of the scene's shape."""
         return self.motion.status
 
     @property
     def failures(self) -> dict[int, str]:
-        """What went wrong: a sentence for each impact that failed, by its index in C order."""
+        """A sentence for each impact that failed, by its index in C order."""
         statuses, details = (
             np.ravel(np.asarray(entry, dtype=object))
             for entry in (self.motion.status, self.motion.detail)
@@ -118,7 +120,7 @@ class ImpactResult:
 
     @property
     def counters(self) -> Mapping[str, int]:
-        """Work done: steps, evaluations, solves, rejected steps."""
+        """Counts of steps, evaluations, solves and rejected steps, by name."""
         return self.motion.counters
 
     def check(self) -> ImpactResult:
@@ -142,7 +144,7 @@ class ImpactResult:
 
     @property
     def psi_change(self) -> Real:
-        """psi2 - psi1, free of the rounding that a huge psi1 brings."""
+        """psi2 - psi1, without the rounding error of a huge psi1."""
         return self.scene.psi(self.motion.slip_velocity_change)
 
     @property
@@ -189,9 +191,9 @@ class ImpactResult:
 
     @property
     def target_rebound_normal_velocity(self) -> Real | None:
-        """Velocity of the target along the normal, in m/s; positive: away from where it was hit.
+        """Velocity of the target along the normal, in m/s; positive: away from the sphere.
 
-        0 for a half-space, None for a non-dimensional scene; so are the next two.
+        Velocities and spin of the target are 0 for a half-space, None without bodies.
         """
         motion, pair = self.motion, self.scene.pair
         return self._of_target(
@@ -213,7 +215,7 @@ class ImpactResult:
         return self._of_target(turn)
 
     def _of_target(self, momentum: Real) -> Real | None:
-        """Return ``momentum`` (N s) over the mass of the target, without bound for a half-space."""
+        """Return ``momentum`` (N s) over the target's mass: 0 for a half-space."""
         target = self.scene.target
         if isinstance(target, Sphere):
             return momentum / target.mass
@@ -226,13 +228,13 @@ class ImpactResult:
 
     @property
     def tangential_restitution(self) -> Real | None:
-        """e_t = centre's tangential velocity after over before; NaN where that was zero."""
+        """e_t = centre's tangential velocity after over before; NaN where zero before."""
         after = self.rebound_tangential_velocity
         return None if after is None else _ratio(after, self.scene.tangential_velocity)
 
     @property
     def slip_restitution(self) -> Real:
-        """Local tangential velocity after over before (psi2/psi1); NaN where that was zero."""
+        """Slip velocity after over before (psi2/psi1); NaN where zero before."""
         return _ratio(self.rebound_slip_velocity, self.scene.slip_velocity)
 
     @property
@@ -248,12 +250,12 @@ class ImpactResult:
 
     @property
     def local_rebound_angle(self) -> Real:
-        """Angle of reflexion of the contact point, in rad: of psi2 as (39) is of psi1."""
+        """Angle of reflexion of the contact point, in rad: (39) with psi2 in place of psi1."""
         return _angle(self.rebound_slip_velocity, -self.motion.normal_velocity)
 
     @property
     def energy(self) -> EnergyLedger:
-        """Energy before and after, friction work, and what does not add up."""
+        """Energy books in J: energy before and after, losses, imbalance."""
         return ledger(self.scene, self.motion)
 
     def plot(
@@ -264,30 +266,30 @@ class ImpactResult:
         axes: Axes | None = None,
         width: Width | None = None,
     ) -> Axes:
-        """Draw a batch as ``y`` over ``x``, a single impact as its forces over the contact.
+        """Return axes with ``y`` over ``x`` for a batch, forces over time for a single impact.
 
         Parameters
         ----------
         x, y : str, optional
-            Columns of the exports, angles also in degrees: ``"psi1"``, ``"rebound_angle_deg"``.
+            Columns of a written file, angles also in degrees: ``"psi1"``, ``"rebound_angle_deg"``.
         axes : Axes, optional
-            Where to draw; a new figure of ``matplotlib.pyplot`` by default.
+            Axes to draw on; a new figure of ``matplotlib.pyplot`` by default.
         width : {"one", "two"}, optional
             Columns of a page that a new figure fills.
 
         Raises
         ------
         ValueError
-            If a quantity is not known, or a single impact has no history.
+            If a quantity is unknown, or a single impact has no history.
         """
         from contactlab.figures.results import draw_result  # matplotlib only when drawing
 
         return draw_result(axes, self, x, y, width=width)
 
     def to_dataframe(self) -> Any:
-        """Return a ``pandas.DataFrame``: a row an impact, units in ``.attrs["units"]``.
+        """Return a ``pandas.DataFrame``, one row for each impact, units in ``.attrs["units"]``.
 
-        The index has the axes of a ``Scene.grid``, or of a file's product; ``impact`` otherwise.
+        The index is the axes of a ``Scene.grid`` or of a file's product, else ``impact``.
         """
         from contactlab.outcome.frames import to_dataframe
 
@@ -306,14 +308,14 @@ class ImpactResult:
         return self.scene.shape[0]
 
     def __getitem__(self, index: int | slice) -> ImpactResult:
-        """Return the result of one impact of a batch, or of those in a slice."""
+        """Return the result of one impact of a batch, or of a slice."""
         shape = self.scene.shape
         if not shape:
             raise TypeError("the result of a single impact cannot be indexed")
         if isinstance(index, bool) or not isinstance(index, int | np.integer | slice):
             raise TypeError(f"a result is indexed by a number or a slice, not {index!r}")
         if not np.size(np.arange(shape[0])[_slice(index)]):
-            raise IndexError(f"{index}: there is no such impact, of {shape[0]}")
+            raise IndexError(f"{index}: is out of range for a batch of {shape[0]} impacts")
 
         history = self.history
         if history is not None:
@@ -336,18 +338,20 @@ class ImpactResult:
 
 
 def _slice(index: int | slice) -> slice:
-    """Return a slice of what ``index`` stands for: empty where there is no such item."""
+    """Return the slice of the items at ``index``, empty if out of range."""
     if isinstance(index, slice):
         return index
     return slice(index, index + 1 or None)
 
 
 def _ratio(after: Real, before: Real) -> Real:
+    """Return ``after / before``, NaN where ``before`` is zero."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         ratio = np.where(np.asarray(before) == 0.0, np.nan, np.divide(after, before))
     return float(ratio) if ratio.ndim == 0 else ratio
 
 
 def _angle(tangential: Real, normal: Real) -> Real:
+    """Return the angle from the normal in rad, a float for a single impact."""
     angle = np.arctan2(tangential, normal)
     return float(angle) if np.ndim(angle) == 0 else angle

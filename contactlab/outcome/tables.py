@@ -1,4 +1,4 @@
-"""A result as titled tables, for reading: on a terminal, in a notebook, on a page."""
+"""A result as tables, for a terminal, a notebook or a page."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from contactlab.outcome.columns import QUANTITIES, SWEEP_TABLE
 from contactlab.outcome.numerical_error import error_words
 from contactlab.outcome.result import ImpactResult
 
-#: Different sentences about failed impacts that are shown.
+#: Most sentences on failed impacts that are shown.
 SENTENCES = 3
 
 Row = list[Any]
@@ -29,7 +29,7 @@ class Section(NamedTuple):
 
 
 def number(value: Any, *, digits: int = 6) -> str:
-    """Return a number for reading: ``digits`` significant, a dash where undefined."""
+    """Return a number as text with ``digits`` significant digits, a dash if undefined."""
     if value is None or (isinstance(value, float | np.floating) and np.isnan(value)):
         return "-"
     if isinstance(value, float | np.floating):
@@ -39,7 +39,7 @@ def number(value: Any, *, digits: int = 6) -> str:
 
 
 def time(seconds: float) -> str:
-    """Return a time with a unit that suits it."""
+    """Return a time as text in s, ms, µs or ns."""
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"
@@ -47,7 +47,7 @@ def time(seconds: float) -> str:
 
 
 def answer(result: ImpactResult) -> list[tuple[str, str]]:
-    """Return the answer of one impact, its numerical error and its run time: names and words."""
+    """Return psi2 of one impact, its numerical error and the run time, as (name, words)."""
     return [
         ("psi2", number(result.psi2, digits=10)),
         ("numerical error of psi2", error_words(result)),
@@ -56,26 +56,29 @@ def answer(result: ImpactResult) -> list[tuple[str, str]]:
 
 
 def scene_section(scene: Scene) -> Section:
-    """Return bodies, friction and velocities of a scene; of a batch from least to greatest."""
+    """Return bodies, friction and velocities of a scene, as ranges for a batch."""
     rows: list[Row] = []
+    has_bodies = scene.sphere is not None
     if scene.sphere is not None:
         assert scene.target is not None
-        struck = isinstance(scene.target, Sphere)
+        sphere_target = isinstance(scene.target, Sphere)
         rows += _body("sphere", scene.sphere)
-        rows += _body("struck sphere" if struck else "half-space", scene.target)
-    si = scene.sphere is not None
+        rows += _body("struck sphere" if sphere_target else "half-space", scene.target)
     for name, unit in (
         ("friction_coefficient", "1"),
         ("normal_speed", "m/s"),
         ("tangential_velocity", "m/s"),
         ("spin", "rad/s"),
     ):
-        rows.append([name.replace("_", " "), _range(getattr(scene, name)), unit if si else "1"])
+        rows.append(
+            [name.replace("_", " "), _range(getattr(scene, name)), unit if has_bodies else "1"]
+        )
     rows += [["psi1", _range(scene.psi1), "1"], ["chi", _range(scene.chi), "1"]]
     return Section(["", "value", "unit"], rows)
 
 
 def _body(name: str, body: Sphere | HalfSpace) -> list[Row]:
+    """Return radius, mass and elastic constants of a body."""
     rows: list[Row] = []
     if isinstance(body, Sphere):
         rows += [[f"{name}: radius", _range(body.radius), "m"]]
@@ -89,12 +92,13 @@ def _body(name: str, body: Sphere | HalfSpace) -> list[Row]:
 
 
 def _range(value: Any) -> str:
+    """Return the least and the greatest value, or the single value of all impacts."""
     low, high = float(np.min(value)), float(np.max(value))
     return number(low) if low == high else f"{number(low)} to {number(high)}"
 
 
 def sections(result: ImpactResult) -> list[Section]:
-    """Return velocities, contact and energy of one impact, without what is undefined."""
+    """Return velocities, contact and energy of one impact, without undefined rows."""
     return [
         _defined(result, ["", "before", "after", "unit"], _velocities(result)),
         _defined(result, ["contact", "value", "unit"], _contact(result)),
@@ -105,9 +109,9 @@ def sections(result: ImpactResult) -> list[Section]:
 def sweep_section(
     result: ImpactResult, varied: Mapping[str, tuple[str, Any]], *, most: int | None = None
 ) -> Section:
-    """Return a row an impact: what varies, by name with its unit, and what came of it.
+    """Return one row for each impact: entries that vary, by name and unit, quantities, status.
 
-    With ``most`` there are at most so many rows, evenly spread, both ends among them.
+    If ``most`` is not None, at most this number of rows, evenly spread with both ends.
     """
     columns = {heading(name, unit): values for name, (unit, values) in varied.items()}
     for name in SWEEP_TABLE:
@@ -123,19 +127,19 @@ def sweep_section(
 
 
 def evenly(count: int, most: int | None) -> list[int]:
-    """Return indices of ``count`` rows, or of ``most`` evenly spread, both ends among them."""
+    """Return the indices of at most ``most`` of ``count`` rows, evenly spread with both ends."""
     shown = count if most is None else min(count, most)
     return [int(index) for index in np.round(np.linspace(0, count - 1, shown))]
 
 
 def largest_imbalance(result: ImpactResult) -> str:
-    """Return the largest imbalance of the energy books of a batch, in words."""
+    """Return the largest relative imbalance of the energy books of a batch, as a line."""
     imbalance = float(np.max(np.abs(result.energy.relative_imbalance)))
     return f"largest energy imbalance / start: {number(imbalance, digits=3)}"
 
 
 def closing(result: ImpactResult) -> list[tuple[str, str]]:
-    """Return laws, counters and statuses: names and words."""
+    """Return laws, counters, run time and statuses, as (name, words)."""
     laws = [f"{name} [{kind}]" for kind, name in result.laws.items()]
     counters = ", ".join(f"{count} {key}" for key, count in result.counters.items()) or "none"
     lines = [("laws", ", ".join(laws)), ("counters", counters)]
@@ -152,12 +156,12 @@ def closing(result: ImpactResult) -> list[tuple[str, str]]:
 
 
 def heading(name: str, unit: str) -> str:
-    """Return a heading with its unit, if it has one."""
+    """Return a heading with its unit, unless that is 1."""
     return name if unit == "1" else f"{name} ({unit})"
 
 
 def _defined(result: ImpactResult, headings: list[str], rows: list[Row]) -> Section:
-    """Return a section without the rows that are undefined; the paper's scenes have no units."""
+    """Return a section without undefined rows; the unit is 1 if the scene has no bodies."""
     shown = []
     for *cells, unit in rows:
         if None not in cells:
@@ -167,20 +171,17 @@ def _defined(result: ImpactResult, headings: list[str], rows: list[Row]) -> Sect
 
 
 def _velocities(result: ImpactResult) -> list[Row]:
+    """Return velocities before and after the impact."""
     scene, bodies = result.scene, result.scene.sphere is not None
-    after = QUANTITIES["rebound_angle_deg"].read(result)
+    after_tangential = result.rebound_tangential_velocity
+    after_angle = QUANTITIES["rebound_angle_deg"].read(result)
     rows: list[Row] = [
         ["local angle psi", scene.psi1, result.psi2, "1"],
         ["local tangential velocity", scene.slip_velocity, result.rebound_slip_velocity, "m/s"],
         ["normal velocity", scene.normal_speed, result.rebound_normal_velocity, "m/s"],
-        [
-            "tangential velocity",
-            scene.tangential_velocity,
-            result.rebound_tangential_velocity,
-            "m/s",
-        ],
+        ["tangential velocity", scene.tangential_velocity, after_tangential, "m/s"],
         ["spin", scene.spin, result.rebound_spin, "rad/s"],
-        ["angle of the path", np.degrees(result.incidence_angle), after, "deg"],
+        ["angle of the path", np.degrees(result.incidence_angle), after_angle, "deg"],
     ]
     if isinstance(scene.target, Sphere):
         rows += [
@@ -192,6 +193,7 @@ def _velocities(result: ImpactResult) -> list[Row]:
 
 
 def _contact(result: ImpactResult) -> list[Row]:
+    """Return restitutions, duration and maxima of the contact."""
     scene, motion = result.scene, result.motion
     rows: list[Row] = [
         ["chi", scene.chi, "1"],
@@ -206,6 +208,7 @@ def _contact(result: ImpactResult) -> list[Row]:
 
 
 def _energy(result: ImpactResult) -> list[Row]:
+    """Return the energy books."""
     energy = result.energy
     return [
         ["start", energy.start, "J"],

@@ -1,4 +1,4 @@
-"""A drawing of a scene: the sphere, how it comes and how it leaves, as SVG."""
+"""A drawing of a scene as SVG: the sphere with its velocities before and after the impact."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from contactlab.impact.bodies import Sphere
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import number
 
-#: Half the width, the height above the surface and below it, in radii of the sphere.
+#: Half width, height above and depth below the surface, in radii of the sphere.
 WIDTH, HEIGHT, DEPTH = 4.2, 4.4, 0.9
-#: Units of the drawing in one radius, and length of the longer arrow in radii.
+#: Units of the drawing for one radius; length of the longer arrow in radii.
 SCALE, ARROW = 60.0, 1.9
 INCOMING, OUTGOING = "#0072B2", "#D55E00"
 
 
 def scene_drawing(result: ImpactResult) -> str:
-    """Return the drawing of one impact whose bodies are known, else nothing.
+    """Return the drawing of one impact as SVG; empty for batches and scenes without bodies.
 
-    Tangential velocities are positive to the right, and the sphere comes from above; positive
-    spin turns anticlockwise, which adds to the tangential velocity at the contact.
+    The sphere comes from above. Tangential velocity is positive to the right, spin anticlockwise:
+    both add to the slip velocity.
     """
     scene = result.scene
     if scene.sphere is None or scene.shape:
@@ -45,10 +45,12 @@ def scene_drawing(result: ImpactResult) -> str:
 
 
 def _speed(velocity: tuple[float, float]) -> str:
+    """Return the magnitude of a velocity as text."""
     return number(math.hypot(*velocity), digits=3)
 
 
 def _surface(curved: bool) -> str:
+    """Return the surface of a half-space or a sphere."""
     w, d = WIDTH * SCALE, DEPTH * SCALE
     if curved:
         r = 2.5 * SCALE
@@ -59,23 +61,14 @@ def _surface(curved: bool) -> str:
 
 
 def _circle() -> str:
+    """Return the sphere."""
     return f"<circle cx='0' cy='{-SCALE:g}' r='{SCALE:g}' fill='#cfe3f1' stroke='black'/>"
 
 
 def _arrow(
     velocity: tuple[float, float], unit: float, colour: str, words: str, *, incoming: bool
 ) -> str:
-    """Return an arrow that ends at the sphere's centre, or begins there.
-
-    Parameters
-    ----------
-    velocity : tuple of float
-        To the right and downwards, in m/s.
-    unit : float
-        Radii for 1 m/s.
-    colour, words : str
-    incoming : bool
-    """
+    """Return the arrow of a velocity (to the right, down) in m/s, ``unit`` radii for 1 m/s."""
     x, y = velocity[0] * unit, velocity[1] * unit
     length = math.hypot(x, y)
     if length == 0.0:
@@ -107,13 +100,13 @@ def _arrow(
 
 
 def _spins(before: float, after: float) -> list[str]:
-    """Return the spins in words, at the sides of the sphere."""
-    found = []
+    """Return the spins as text at the sides of the sphere."""
+    texts = []
     for side, spin, colour in ((-1.0, before, INCOMING), (1.0, after, OUTGOING)):
         turn = "" if spin == 0.0 else " ↺" if spin > 0.0 else " ↻"
         anchor = "end" if side < 0.0 else "start"
-        found.append(
+        texts.append(
             f"<text x='{1.2 * SCALE * side:g}' y='{-0.35 * SCALE:g}' fill='{colour}' "
             f"text-anchor='{anchor}'>{number(spin, digits=3)} rad/s{turn}</text>"
         )
-    return found
+    return texts

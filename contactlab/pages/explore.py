@@ -1,4 +1,4 @@
-"""A page with sliders for psi1 and chi: the rebound, the forces, where the contact sticks."""
+"""A page with sliders for psi1 and chi: rebound, forces, regions of stick and slip."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 import contactlab
 from contactlab.numeric.checks import refuse
 
-#: Digits of psi2 after the point, as they are shown.
+#: Decimals of psi2 on the page.
 DIGITS = 4
-#: Springs and steps of the page's own computation: the map has so many rows, and psi2 of such a
-#: bundle is within 2e-3 of the exact one, which cannot be seen.
+#: Springs and steps of the computation in the page. The map has one row for each spring. The
+#: error of psi2 of this bundle is below 2e-3: too small to see.
 SPRINGS, STEPS = 120, 600
 
 
@@ -29,7 +29,7 @@ class Axis:
     start, step : float
     count : int
     first : float
-        Where the slider stands when the page opens.
+        Value of the slider when the page opens.
     """
 
     start: float
@@ -43,32 +43,27 @@ class Axis:
         return self.start + self.step * np.arange(self.count, dtype=np.float64)
 
     def nearest(self, value: float, name: str) -> int:
-        """Return the number of the stop nearest to ``value``; ``name`` is for who is refused."""
+        """Return the index of the stop nearest to ``value``; messages name ``name``."""
         last = self.start + self.step * (self.count - 1)
         if not self.start <= value <= last:
             raise refuse(
-                name, value, f"must lie in [{self.start:g}, {last:g}], where the slider is"
+                name, value, f"must lie in [{self.start:g}, {last:g}], the range of the slider"
             )
         return round((value - self.start) / self.step)
 
     def to_dict(self) -> dict[str, float]:
-        """Return what the page needs."""
+        """Return start, step and count under the names that the page uses."""
         return {"from": self.start, "step": self.step, "count": self.count}
 
 
-#: To beyond gross slip of a solid sphere; from light shells to cores denser than any real sphere.
+#: psi1 reaches beyond gross slip of a solid sphere; chi goes from thin shells to spheres with a
+#: denser core than any real sphere.
 PSI1 = Axis(0.0, 0.05, 181, 2.0)
 CHI = Axis(0.4, 0.02, 106, 1.44)
 
 
 def explore_page(*, psi1: float = PSI1.first, chi: float = CHI.first) -> str:
-    """Return the page; it opens at the stops that are nearest to ``psi1`` and ``chi``.
-
-    Raises
-    ------
-    ValueError
-        If a slider does not reach as far.
-    """
+    """Return the page as HTML; the sliders open at the stops nearest to ``psi1`` and ``chi``."""
     first = [PSI1.nearest(psi1, "psi1"), CHI.nearest(chi, "chi")]
     psi2 = contactlab.rebound(PSI1.stops, CHI.stops[:, np.newaxis])
     grid: dict[str, Any] = {

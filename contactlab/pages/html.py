@@ -1,4 +1,4 @@
-"""Parts of a page: headings, tables, lists. Text is escaped here and nowhere else."""
+"""Parts of a page as HTML: headings, tables, lists. Only this module escapes text."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from contactlab.outcome.tables import answer, closing, number, sections
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[Any]], *, digits: int = 6) -> str:
-    """Return a table: columns of text to the left, numbers to the right."""
+    """Return a table with text aligned left and numbers aligned right."""
     head = "".join(f"<th>{escape(str(name))}</th>" for name in headings)
     body = "".join(f"<tr>{''.join(_cell(item, digits) for item in row)}</tr>" for row in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def pairs(entries: Iterable[tuple[str, str]]) -> str:
-    """Return names and words, a line each."""
+    """Return a list of names and their words."""
     lines = "".join(f"<dt>{escape(name)}</dt><dd>{escape(words)}</dd>" for name, words in entries)
     return f"<dl>{lines}</dl>"
 
@@ -35,19 +35,19 @@ def titled(title: str, *parts: str) -> str:
 
 
 def figure(svg: str, caption: str) -> str:
-    """Return a picture, already SVG, with a caption."""
+    """Return an SVG picture with a caption."""
     return f"<figure>{svg}<figcaption>{escape(caption)}</figcaption></figure>"
 
 
 def plan(of: Plan) -> str:
-    """Return a plan as three lists: what is computed, left out, and doubtful."""
+    """Return a plan as three lists: computed, left out, cautions."""
     kinds = (("computed", of.computed), ("left out", of.left_out), ("cautions", of.cautions))
-    found = []
+    lists = []
     for name, sentences in kinds:
         if sentences:
             items = "".join(f"<li>{escape(str(sentence))}</li>" for sentence in sentences)
-            found.append(f"<h3>{name}</h3><ul>{items}</ul>")
-    return "".join(found)
+            lists.append(f"<h3>{name}</h3><ul>{items}</ul>")
+    return "".join(lists)
 
 
 def one_impact(result: ImpactResult) -> str:
@@ -58,6 +58,7 @@ def one_impact(result: ImpactResult) -> str:
 
 
 def _cell(item: Any, digits: int) -> str:
+    """Return a cell of a table."""
     if isinstance(item, str):
         return f"<td>{escape(item)}</td>"
     return f'<td class="number">{escape(number(item, digits=digits))}</td>'

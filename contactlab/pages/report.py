@@ -1,4 +1,4 @@
-"""One file to send: a scene, its plan, its results, the laws compared, figures and sources."""
+"""A report in one file: a scene, its plan and results, laws compared, figures and sources."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from contactlab.pages.drawing import scene_drawing
 from contactlab.scene_file import SceneFile
 from contactlab.study.compare import Agreement, Comparison
 
-#: Rows of a sweep that are printed; the rest is in the file of ``contactlab sweep --out``.
+#: Rows of a sweep on the page; ``contactlab sweep --out`` writes all of them.
 ROWS = 25
 
 
@@ -34,15 +34,10 @@ def report_page(
     simulations: Mapping[str, Simulation],
     comparison: Comparison,
 ) -> str:
-    """Return the page of a scene file.
+    """Return the report of a scene file as HTML.
 
-    Parameters
-    ----------
-    file : SceneFile
-    simulations : mapping of str to Simulation
-        Name to laws: the first is that of the report, the others are compared with it.
-    comparison : Comparison
-        Of these laws on the scene of the file, with the history of a single impact.
+    The first simulation is reported, the others are compared with it. ``comparison`` holds all of
+    them on the scene of the file, with the history of a single impact.
     """
     result = comparison.runs[0].result
     first = next(iter(simulations.values()))
@@ -50,7 +45,7 @@ def report_page(
         result = first.run(result.scene, history=True, estimate_error=True)
     title = file.title or file.path.name
     parts = [
-        _about(file),
+        html.paragraph(" ".join(file.notes.split())) if file.notes else "",
         html.titled("The scene", scene_drawing(result), *_scene(file, result.scene)),
         html.titled("The answer", *_answer(result, file.varied)),
         html.titled("The laws compared", *_comparison(comparison)),
@@ -62,58 +57,56 @@ def report_page(
     return Template(page).substitute(title=escape(title), body="\n".join(parts))
 
 
-def _about(file: SceneFile) -> str:
-    return "".join(html.paragraph(" ".join(text.split())) for text in (file.notes,) if text)
-
-
 def _scene(file: SceneFile, scene: Scene) -> list[str]:
-    """Return the scene in numbers, and what a sweep varies."""
-    found = [html.table(*scene_section(scene))]
+    """Return a table of the scene, and the entries that a sweep varies."""
+    parts = [html.table(*scene_section(scene))]
     if file.varied:
         count = np.size(next(iter(file.varied.values())))
-        found.append(html.paragraph(f"A sweep of {count} impacts over {', '.join(file.varied)}."))
-    return found
+        parts.append(html.paragraph(f"A sweep of {count} impacts over {', '.join(file.varied)}."))
+    return parts
 
 
 def _answer(result: ImpactResult, varied: Mapping[str, Any]) -> list[str]:
+    """Return one impact in full, or the table of a sweep."""
     if not result.scene.shape:
         return [html.one_impact(result)]
     shown = {name: (entry_unit(name), values) for name, values in varied.items()}
     headings, rows = sweep_section(result, shown, most=ROWS)
-    found = [f"<div class='wide'>{html.table(headings, rows)}</div>"]
+    parts = [f"<div class='wide'>{html.table(headings, rows)}</div>"]
     if len(rows) < len(result):
-        found.append(html.paragraph(f"{len(rows)} of {len(result)} impacts are shown."))
-    found.append(html.paragraph(largest_imbalance(result)))
-    return [*found, html.pairs(closing(result))]
+        parts.append(html.paragraph(f"{len(rows)} of {len(result)} impacts are shown."))
+    parts.append(html.paragraph(largest_imbalance(result)))
+    return [*parts, html.pairs(closing(result))]
 
 
 def _comparison(comparison: Comparison) -> list[str]:
-    """Return pictures and table of the laws, and their distance from what was measured."""
-    found = []
+    """Return pictures and tables of the laws, and their distance from measured values."""
+    parts = []
     if not comparison.scene.shape:
         if any(run.result.history is not None for run in comparison.runs):
             picture = as_svg(lambda axes: forces_over_contact(axes, comparison))
             words = "Tangential force over the contact, inside friction's limit."
-            found.append(html.figure(picture, words))
+            parts.append(html.figure(picture, words))
     elif comparison.agreements:
-        found += [_measured(comparison, agreement) for agreement in comparison.agreements]
+        parts += [_measured(comparison, agreement) for agreement in comparison.agreements]
     else:
         picture = as_svg(lambda axes: laws_over_sweep(axes, comparison, "psi2"))
-        found.append(html.figure(picture, "psi2 over the sweep."))
+        parts.append(html.figure(picture, "psi2 over the sweep."))
     first = comparison.names[0]
     rows = []
     for run in comparison.runs:
-        apart = np.abs(comparison.difference("psi2", run.name))
-        rows.append([run.name, float(np.max(apart)), time(run.run_time_per_impact)])
+        difference = np.abs(comparison.difference("psi2", run.name))
+        rows.append([run.name, float(np.max(difference)), time(run.run_time_per_impact)])
     headings = ["law", f"largest difference of psi2 from {first}", "run time an impact"]
-    found.append(html.table(headings, rows, digits=3))
-    found += [html.paragraph(f"failed: {sentence}") for sentence in comparison.failures()]
+    parts.append(html.table(headings, rows, digits=3))
+    parts += [html.paragraph(f"failed: {sentence}") for sentence in comparison.failures()]
     if comparison.interrupted:
-        found.append(html.paragraph("Interrupted before all laws were compared."))
-    return found
+        parts.append(html.paragraph("Interrupted before all laws were compared."))
+    return parts
 
 
 def _measured(comparison: Comparison, agreement: Agreement) -> str:
+    """Return picture and table of the laws beside one series of measured values."""
     name = agreement.measured.quantity
 
     def draw(axes: Any) -> None:
@@ -129,16 +122,18 @@ def _measured(comparison: Comparison, agreement: Agreement) -> str:
 
 
 def _sources(file: SceneFile, simulations: Mapping[str, Simulation]) -> list[str]:
+    """Return the citations of the file and of the laws, each once."""
     laws = [
         law
         for simulation in simulations.values()
         for law in (simulation.normal, simulation.tangential, simulation.integrator)
     ]
-    found = [" ".join(file.citation.split())] if file.citation else []
-    return list(dict.fromkeys([*found, *(text for law in laws for text in references(law))]))
+    data = [" ".join(file.citation.split())] if file.citation else []
+    return list(dict.fromkeys([*data, *(text for law in laws for text in references(law))]))
 
 
 def _provenance(file: SceneFile, result: ImpactResult) -> list[tuple[str, str]]:
+    """Return scene file, laws and versions, as (name, words)."""
     versions = [f"{name} {metadata.version(name)}" for name in ("numpy", "scipy")]
     return [
         ("scene file", file.path.name),

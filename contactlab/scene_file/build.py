@@ -1,4 +1,4 @@
-"""From the tables of a file to a scene; arrays in the place of numbers make it a batch."""
+"""Make a scene from the tables of a file; arrays in place of numbers make a batch."""
 
 from __future__ import annotations
 
@@ -23,20 +23,17 @@ from contactlab.scene_file.table import Table
 
 
 def build_scene(document: Mapping[str, Any]) -> tuple[Scene, Encounter | None]:
-    """Return the scene of a file's tables, and the encounter in space if it gives vectors.
-
-    Arrays in the place of numbers make it a batch.
-    """
-    given = [section for section in BODY_SECTIONS if section in document]
+    """Return the scene of a file's tables, and the encounter in space if vectors are sections."""
+    sections = [name for name in BODY_SECTIONS if name in document]
     if "nondimensional" in document:
-        if given:
+        if sections:
             raise ValueError(
-                f"nondimensional: cannot stand beside [{given[0]}]; psi1 and chi say it all, "
-                "leave out one or the other"
+                f"nondimensional: cannot stand beside [{sections[0]}]; psi1 and chi define "
+                "the scene, leave out one or the other"
             )
         table = Table(document["nondimensional"], "nondimensional", known=NONDIMENSIONAL_KEYS)
         return table.make(Scene.nondimensional, **_numbers(table, NONDIMENSIONAL_KEYS)), None
-    root = Table({section: document[section] for section in given}, "", known=BODY_SECTIONS)
+    root = Table({name: document[name] for name in sections}, "", known=BODY_SECTIONS)
     sphere = _sphere(root.table("sphere", known=SPHERE_KEYS))
     target = _target(root)
     impact = root.table("impact", known=dict.fromkeys((*IMPACT_KEYS, *VECTOR_KEYS)))
@@ -47,15 +44,18 @@ def build_scene(document: Mapping[str, Any]) -> tuple[Scene, Encounter | None]:
 
 
 def _numbers(table: Table, keys: tuple[str, ...]) -> dict[str, Any]:
+    """Return the numbers of ``keys``, all of them required."""
     remedies = {key: unit_remedy(UNITS[key]) for key in keys}
     return {key: table.number(key, remedy=remedies[key]) for key in keys}
 
 
-def _given(table: Table, keys: tuple[str, ...]) -> dict[str, Any]:
+def _present(table: Table, keys: tuple[str, ...]) -> dict[str, Any]:
+    """Return the numbers of those ``keys`` that the table has."""
     return _numbers(table, tuple(key for key in keys if table.has(key)))
 
 
 def _material(table: Table) -> Material:
+    """Return the material of a body."""
     material = table.table("material", known=MATERIAL_KEYS)
     material.require("poisson_ratio", "for example 0.3")
     if material.has("shear_modulus") == material.has("young_modulus"):
@@ -63,21 +63,23 @@ def _material(table: Table) -> Material:
             f"{material.path}: exactly one of shear_modulus and young_modulus must be given, "
             "in Pa; the other follows from E = 2 G (1 + nu)"
         )
-    return material.make(Material, **_given(material, MATERIAL_KEYS))
+    return material.make(Material, **_present(material, MATERIAL_KEYS))
 
 
 def _sphere(table: Table) -> Sphere:
-    numbers = _numbers(table, ("radius",)) | _given(table, ("mass", "gyration_ratio"))
+    """Return a sphere; its mass needs a value of its own or a density."""
+    numbers = _numbers(table, ("radius",)) | _present(table, ("mass", "gyration_ratio"))
     material = _material(table)
     if material.density is None and not table.has("mass"):
         raise ValueError(
-            f"{table.path}: mass is not known; give {table.at('mass')} in kg, "
+            f"{table.path}: mass is unknown; give {table.at('mass')} in kg, "
             f"or {table.at('material.density')} in kg/m³"
         )
     return table.make(Sphere, material=material, **numbers)
 
 
 def _target(root: Table) -> Sphere | HalfSpace:
+    """Return the target, a half-space or a sphere."""
     raw = root.require("target", 'add [target] with kind = "half-space" or "sphere"')
     kinds = {"half-space": ("kind", "material"), "sphere": ("kind", *SPHERE_KEYS)}
     kind = raw.get("kind") if isinstance(raw, Mapping) else None
@@ -90,12 +92,13 @@ def _target(root: Table) -> Sphere | HalfSpace:
 
 
 def _encounter(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Encounter:
-    """Return the encounter of an impact that is given by vectors."""
+    """Return the encounter of an impact with velocity and normal as vectors."""
     plane = [key for key in IMPACT_KEYS if key not in ("friction_coefficient", "spin")]
-    if (both := [key for key in plane if table.has(key)]) != []:
+    rivals = [key for key in plane if table.has(key)]
+    if rivals:
         raise ValueError(
-            f"{table.path}: has vectors, and {both[0]} too; velocity and normal say it all, "
-            "leave out one or the other"
+            f"{table.path}: has vectors, and {rivals[0]} too; velocity and normal define "
+            "the impact, leave out one or the other"
         )
     for key in ("velocity", "normal"):
         table.require(key, f"an impact in space needs {key} = [x, y, z]")
@@ -109,7 +112,8 @@ def _encounter(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Enco
 
 
 def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:
-    numbers = _numbers(table, ("friction_coefficient",)) | _given(table, ("spin",))
+    """Return the scene of an impact with polar or normal and tangential velocity."""
+    numbers = _numbers(table, ("friction_coefficient",)) | _present(table, ("spin",))
     polar, cartesian = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
     if table.has(*polar) and table.has(*cartesian):
         raise ValueError(
@@ -121,5 +125,5 @@ def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:
         numbers |= {key: table.number(key, remedy=unit) for key in polar}
         return table.make(Scene.at_angle, sphere=sphere, target=target, **numbers)
     table.require("normal_speed", "give it in m/s, or give speed and angle_deg")
-    numbers |= _given(table, cartesian)
+    numbers |= _present(table, cartesian)
     return table.make(Scene, sphere=sphere, target=target, **numbers)

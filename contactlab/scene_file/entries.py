@@ -1,4 +1,4 @@
-"""The entries of a scene file: their keys, their units, and how one is replaced."""
+"""The entries of a scene file: keys, units, replacement of values."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ SPHERE_KEYS = ("radius", "mass", "gyration_ratio", "material")
 IMPACT_KEYS = (
     "friction_coefficient", "speed", "angle_deg", "normal_speed", "tangential_velocity", "spin",
 )  # fmt: skip
-#: Vectors, which make an encounter in space of an impact; a spin is one beside a velocity.
+#: Keys of an encounter in space; ``spin`` is a vector if ``velocity`` is given.
 VECTOR_KEYS = ("velocity", "normal", "spin", "target_velocity", "target_spin")
 NONDIMENSIONAL_KEYS = ("psi1", "chi")
 BODY_SECTIONS = ("sphere", "target", "impact")
 
-#: Units for the remedies; the rules themselves are those of the classes that are made.
+#: Units for the remedies in messages; the classes of bodies and scenes check the values.
 UNITS = SCENE_UNITS | {
     "velocity": "m/s", "normal": "1", "target_velocity": "m/s", "target_spin": "rad/s",
 }  # fmt: skip
 
 
 def _entries() -> dict[str, str]:
-    """Return every entry that may vary: its short or dotted name, and its dotted path."""
+    """Return the dotted path of every entry that may vary, by short and by dotted name."""
     names = {key: f"impact.{key}" for key in IMPACT_KEYS}
     names |= {key: f"nondimensional.{key}" for key in NONDIMENSIONAL_KEYS}
     dotted = list(names.values())
@@ -40,12 +40,12 @@ ENTRIES = _entries()
 
 
 def entry_path(name: str, *, where: str = "") -> str:
-    """Return the dotted path of an entry that may vary.
+    """Return the dotted path of an entry that may vary, from its short or dotted name.
 
     Raises
     ------
     ValueError
-        If there is no such entry; ``where`` is the dotted path of the table that named it.
+        If the entry is unknown; ``where`` is the dotted path of the table with its name.
     """
     if name not in ENTRIES:
         hint = nearest(name, ENTRIES)
@@ -65,33 +65,27 @@ def replaced(document: Mapping[str, Any], path: str, value: object) -> dict[str,
 
 
 def with_materials(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the tables with the numbers of each material that is given by its name.
-
-    Raises
-    ------
-    ValueError
-        If there is no such material, with the nearest name.
-    """
-    found = dict(tables)
+    """Return the tables with the numbers of materials in place of their names."""
+    completed = dict(tables)
     for body in ("sphere", "target"):
-        table = found.get(body)
+        table = completed.get(body)
         name = table.get("material") if isinstance(table, Mapping) else None
         if isinstance(name, str):
             path = f"{body}.material"
             try:
-                found = replaced(found, path, materials.entry(name).numbers())
+                completed = replaced(completed, path, materials.entry(name).numbers())
             except ValueError as error:
                 raise ValueError(f"{path}: {error}") from None
-    return found
+    return completed
 
 
 def without_rivals(tables: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
-    """Return the tables without velocities that are given otherwise: polar, or by components."""
+    """Return the tables without the velocities, polar or by components, that ``names`` replace."""
     forms = (("speed", "angle_deg"), ("normal_speed", "tangential_velocity"))
-    found = dict(tables)
-    impact = found.get("impact")
+    kept = dict(tables)
+    impact = kept.get("impact")
     if isinstance(impact, Mapping):
         for form, rival in (forms, forms[::-1]):
             if set(form) & set(names):
-                found["impact"] = {k: v for k, v in impact.items() if k not in rival}
-    return found
+                kept["impact"] = {k: v for k, v in impact.items() if k not in rival}
+    return kept

@@ -1,4 +1,4 @@
-"""Which laws a scene is run with, by name, and their options."""
+"""The laws of a scene, by name, and their options."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class LawChoice:
     Attributes
     ----------
     normal, tangential, integrator : str or None
-        Names without their kind, such as ``"springs"`` or ``"my-laws:springs"``; None for the best
-        that fits the others, the exact solution if nothing else is asked for.
+        Names without their kind, such as ``"springs"`` or ``"my-laws:springs"``. None chooses the
+        best law that fits the others: the exact solution if all three are None.
     options : mapping of str to mapping
-        Options by kind, for the law chosen here (``{"tangential": {"annuli": 50}}``), or by
-        full name, for that law whenever it is chosen (``{"tangential.annulus": ...}``).
+        Options by kind, for the law of that kind (``{"tangential": {"annuli": 50}}``), or by
+        full name, used only if that law is chosen (``{"tangential.annulus": ...}``).
     """
 
     normal: str | None = None
@@ -38,7 +38,7 @@ class LawChoice:
     def choose(self, **names: str | None) -> LawChoice:
         """Return the choice with other laws; None keeps a name.
 
-        Options given for a kind are the old law's: they go where its law goes.
+        A kind whose law changes loses the options of that kind.
         """
         chosen = {
             kind: short_name(full_name(kind, name))
@@ -50,7 +50,7 @@ class LawChoice:
         return attrs.evolve(self, **chosen, options=kept)
 
     def set(self, settings: Mapping[str, Any]) -> LawChoice:
-        """Return the choice with more options, keyed by dotted path."""
+        """Return the choice with more options, by dotted path: ``"tangential.annuli"``."""
         options = {key: dict(value) for key, value in self.options.items()}
         for path, value in settings.items():
             owner, _, option = path.rpartition(".")
@@ -61,17 +61,17 @@ class LawChoice:
         return attrs.evolve(self, options=options)
 
     def simulation(self) -> Simulation:
-        """Make the three laws with their options and compose them.
+        """Return the simulation of the three laws with their options.
 
         Raises
         ------
         ValueError
-            If a law is not installed, an option is unknown or out of range, of a law that is
-            not chosen too, or the laws do not fit.
+            If a law is not installed, the laws do not fit, or an option is unknown or out of
+            range; options of laws that are not chosen are checked too.
         """
         choice = self.resolved()
         for name, options in self.options.items():
-            if name not in KINDS:  # of a law that may not be chosen: misspelt, it would go unseen
+            if name not in KINDS:  # check options of laws that are not chosen too
                 REGISTRY.create(name, **options)
         return Simulation(**{kind: choice.made(kind) for kind in KINDS})
 
@@ -88,37 +88,37 @@ class LawChoice:
         return choice
 
     def suited(self) -> LawChoice:
-        """Return the choice without its integrator, if that does not run the tangential law."""
+        """Return the choice, without its integrator if that does not run the tangential law."""
         if self.integrator is None:
             return self
-        free = attrs.evolve(
+        default = attrs.evolve(
             self,
             integrator=None,
             options={key: value for key, value in self.options.items() if key != "integrator"},
         ).resolved()
-        kept = attrs.evolve(free, integrator=self.integrator, options=self.options)
-        laws = (kept.made("normal"), kept.made("tangential"), kept.made("integrator"))
-        return free if composition.misfit(*laws) else kept
+        own = attrs.evolve(default, integrator=self.integrator, options=self.options)
+        laws = (own.made("normal"), own.made("tangential"), own.made("integrator"))
+        return default if composition.misfit(*laws) else own
 
     def made(self, kind: str) -> Any:
-        """Return the law of one kind with its options."""
+        """Return a new law of one kind with its options."""
         name = full_name(kind, getattr(self, kind))
         options = dict(self.options.get(kind, {}))
-        for other, values in self.options.items():
-            if other not in KINDS and same_law(other, name):
+        for owner, values in self.options.items():
+            if owner not in KINDS and same_law(owner, name):
                 options |= values
         return REGISTRY.create(name, **options)
 
 
 def same_law(one: str, other: str) -> bool:
-    """Return whether two full names mean one installed law: with and without its distribution."""
+    """Return whether two full names, with or without a distribution, mean the same law."""
     if one == other or parted(one)[1] != parted(other)[1]:
         return one == other
     return REGISTRY.info(one) == REGISTRY.info(other)
 
 
 def read_laws(content: object) -> LawChoice:
-    """Return the laws of a file's ``[simulation]``."""
+    """Return the laws of a file's ``[simulation]`` table."""
     table = Table(content, "simulation", known=(*KINDS, "options"))
     names = {kind: table.text(kind) for kind in KINDS if table.has(kind)}
     choice = LawChoice().choose(**names)

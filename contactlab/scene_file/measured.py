@@ -1,4 +1,4 @@
-"""Measured values that a scene file carries, and what they are to be compared with."""
+"""Measured values in a scene file."""
 
 from __future__ import annotations
 
@@ -25,15 +25,14 @@ class Measured:
     Attributes
     ----------
     quantity : str
-        Name of the quantity of a result, such as ``"tangential_restitution"``.
+        Quantity of a result, such as ``"tangential_restitution"``.
     against : str
-        Name of the entry of the scene that was varied, such as ``"angle_deg"``.
+        Entry of the scene that was varied, such as ``"angle_deg"``.
     x, values : array, shape (n,)
-        Where it was measured, and what was found, in the units of entry and quantity.
+        Values of the entry and of the quantity, in the units of both.
     x_error, error : array, shape (n,)
-        Half-widths; zero where the file gives none. Where the file has several readings
-        of the same points, values are their means and errors half their range, NaN where
-        there is only one reading.
+        Half-widths; zero if the file has none. If the file has several readings of the same
+        points, values are their means and errors half their range; NaN for a single reading.
     label, source : str
     """
 
@@ -48,20 +47,21 @@ class Measured:
 
 
 def read_measured(content: object) -> tuple[Measured, ...]:
-    """Return the series of a file's ``[[measured]]`` tables."""
+    """Return the series of a file's ``[[measured]]`` tables, in order."""
     if not isinstance(content, list):
         raise refuse("measured", content, "must be a list of tables", "write [[measured]]")
     return tuple(_series(item, f"measured[{number}]") for number, item in enumerate(content))
 
 
 def _series(content: object, path: str) -> Measured:
+    """Return one series; messages name ``path``."""
     table = Table(content, path, known=KEYS)
     quantity = table.text("quantity", remedy="name a quantity of the result")
     quantity_named(quantity, where=table.at("quantity"))
     against = table.text("against", remedy="name the entry that was varied, such as angle_deg")
     entry_path(against, where=f"{table.at('against')} = ")
     if table.has("readings") == table.has("x", "values"):
-        raise ValueError(f"{path}: give either x and values, or several readings of them")
+        raise ValueError(f"{path}: give either x and values, or readings, each with x and values")
     columns = _means(table) if table.has("readings") else _plain(table)
     return Measured(
         quantity=quantity,
@@ -73,8 +73,9 @@ def _series(content: object, path: str) -> Measured:
 
 
 def _plain(table: Table) -> dict[str, Any]:
+    """Return x, values and half-widths of a series with one list of each."""
     x = table.numbers("x", remedy="list where it was measured")
-    values = table.numbers("values", remedy="list what was measured")
+    values = table.numbers("values", remedy="list the measured values")
     error = table.numbers("error", default=np.zeros(np.size(values)), remedy="list half-widths")
     _equal_lengths(table, x=x, values=values, error=error)
     if np.any(np.asarray(error) < 0.0):
@@ -83,7 +84,7 @@ def _plain(table: Table) -> dict[str, Any]:
 
 
 def _means(table: Table) -> dict[str, Any]:
-    """Average readings of the same points; their spread is the error of reading."""
+    """Return means and half ranges of several readings of the same points."""
     rows: dict[float, list[tuple[float, float]]] = {}
     readings = table.content["readings"]
     if not isinstance(readings, list) or not readings:
@@ -105,11 +106,12 @@ def _means(table: Table) -> dict[str, Any]:
 
 
 def _half_range(group: Array) -> Array:
-    """Return half the range of each column; NaN of a single reading, which has no spread."""
+    """Return half the range of each column, NaN for a single reading."""
     return 0.5 * np.ptp(group, axis=0) if len(group) > 1 else np.full(2, np.nan)
 
 
 def _equal_lengths(table: Table, **columns: Any) -> None:
+    """Refuse columns of different lengths."""
     lengths = {key: np.size(column) for key, column in columns.items()}
     if len(set(lengths.values())) > 1:
         listed = ", ".join(f"{key} {length}" for key, length in lengths.items())

@@ -1,4 +1,4 @@
-"""Reads a scene file, and refuses a bad one with file, key, value, rule and remedy."""
+"""Read a scene file; a refusal names file, key, value, rule and remedy."""
 
 from __future__ import annotations
 
@@ -37,21 +37,21 @@ ABOUT_KEYS = ("title", "citation", "notes")
 
 @attrs.frozen(kw_only=True, eq=False)
 class SceneFile:
-    """What a scene file says.
+    """The content of a scene file.
 
     Attributes
     ----------
     path : Path
     title, citation, notes : str
-        From ``[about]``; empty where not given.
+        From ``[about]``; empty by default.
     scene : Scene
-        One impact, or the batch of a ``[sweep]``: with ``axes`` if that is a product.
+        One impact, or the batch of a ``[sweep]``; a product of entries has ``axes``.
     varied : mapping of str to array
-        The entries that the sweep varies and their values, shape (n,); empty for one impact.
+        Values of each entry that the sweep varies, shape (n,); empty for one impact.
     laws : LawChoice
         From ``[simulation]``.
     encounter : Encounter or None
-        Of an impact that is given by vectors; ``scene`` is then that in its plane of friction.
+        Encounter in space if the file gives vectors; ``scene`` lies in its plane of friction.
     measured : tuple of Measured
     """
 
@@ -67,10 +67,10 @@ class SceneFile:
     tables: Mapping[str, Any] = attrs.field(repr=False)
 
     def scene_at(self, **entries: Any) -> Scene:
-        """Return the file's scene without its sweep, some entries replaced.
+        """Return the file's scene without its sweep, with some entries replaced.
 
-        ``scene_at(angle_deg=[5, 10])`` is a batch of two; entries of equal length go
-        together. A dotted entry is given as ``**{"sphere.radius": [...]}``.
+        ``scene_at(angle_deg=[5, 10])`` is a batch of two; entries of equal length vary
+        together. A dotted entry is written ``**{"sphere.radius": [...]}``.
         """
         return _scene_with(self.tables, entries)[0]
 
@@ -81,21 +81,21 @@ def read_scene(
     entries: Mapping[str, Any] | None = None,
     defaults: Mapping[str, Any] | None = None,
 ) -> SceneFile:
-    """Read a scene, its sweep, its laws and its measured values from a TOML file.
+    """Return scene, sweep, laws and measured values of a TOML file.
 
     Parameters
     ----------
     path : path
     entries : mapping of str to float or array, optional
-        Entries that stand in place of the file's own, and of its sweep: ``{"angle_deg": [5, 10]}``.
+        Values that replace the file's own, and its sweep: ``{"angle_deg": [5, 10]}``.
     defaults : mapping of str to float, optional
-        Entries for those that the file does not have.
+        Values of entries that the file leaves out.
 
     Raises
     ------
     ValueError
         If the file cannot be read, is not TOML (with the line), has an unknown key (with the
-        nearest known one), or holds a value that is of the wrong type or not physical.
+        nearest known key), or holds a value of the wrong type or not physical.
     """
     if not isinstance(path, str | os.PathLike) or not isinstance(os.fspath(path), str):
         raise refuse("path", path, "must be the path of a scene file", "such as 'scene.toml'")
@@ -131,6 +131,7 @@ def read_scene(
 def _scene_with(
     tables: Mapping[str, Any], entries: Mapping[str, Any]
 ) -> tuple[Scene, Encounter | None]:
+    """Return scene and encounter of the tables with some entries replaced."""
     for name, values in entries.items():
         path = entry_path(name)
         tables = replaced(tables, path, real(path, values))
@@ -138,41 +139,42 @@ def _scene_with(
 
 
 def _with_defaults(tables: Mapping[str, Any], defaults: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the tables with entries that they did not have; psi1 and chi need none."""
-    found = dict(tables)
-    if "nondimensional" in found:
-        return found
+    """Return the tables with defaults for missing entries; ``[nondimensional]`` takes none."""
+    completed = dict(tables)
+    if "nondimensional" in completed:
+        return completed
     for name, value in defaults.items():
         path = entry_path(name)
         section, _, key = path.partition(".")
-        table = found.get(section, {})
+        table = completed.get(section, {})
         if isinstance(table, Mapping) and key not in table:
-            found = replaced(found, path, value)
-    return found
+            completed = replaced(completed, path, value)
+    return completed
 
 
 def _document(file: Path) -> dict[str, Any]:
+    """Return the tables of a TOML file."""
     text = _text(file)
     try:
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"{file}, {_place(str(error), text)}") from None
-    except ValueError as error:  # a number of thousands of digits
+    except ValueError as error:  # an integer with thousands of digits
         raise ValueError(f"{file}: {error}") from None
     except RecursionError:
         document = None
     if document is None or _deep(document):
-        raise ValueError(f"{file}: is nested more than {DEEPEST} deep; no scene file is")
+        raise ValueError(f"{file}: is nested more than {DEEPEST} deep; a scene file needs less")
     return document
 
 
 def _text(file: Path) -> str:
-    """Return the text of a scene file."""
+    """Return the text of a scene file with line ends as newlines."""
     remedy = "give the path of a scene in TOML"
     if file.suffix in (".csv", ".json", ".npz", ".png"):
-        remedy += "; where to write is said by --out or --figure"
+        remedy += "; --out or --figure name files to write"
     try:
-        # some editors begin a file with a mark
+        # "sig": some editors begin a file with a byte-order mark
         text = content(file, kind="a scene", remedy=remedy).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise ValueError(
@@ -191,9 +193,9 @@ def _deep(document: Mapping[str, Any]) -> bool:
 
 
 def _place(message: str, text: str) -> str:
-    """Return tomllib's message with the line first; "end of document" is the last line."""
-    found = re.search(r" \(at line (\d+), column (\d+)\)", message)
-    if found:
-        return f"line {found[1]}, column {found[2]}: not TOML: {message[: found.start()]}"
+    """Return tomllib's message with the line first, the last line for "end of document"."""
+    position = re.search(r" \(at line (\d+), column (\d+)\)", message)
+    if position:
+        return f"line {position[1]}, column {position[2]}: not TOML: {message[: position.start()]}"
     lines = max(len(text.splitlines()), 1)
     return f"line {lines}: not TOML: {message.replace(' (at end of document)', '')}"

@@ -1,7 +1,7 @@
-"""The ``[sweep]`` of a scene file: which entries vary, and through which values.
+"""The ``[sweep]`` of a scene file: the entries that vary and their values.
 
-Lists of equal length go together; with ``product = true`` every value of one meets every value
-of the others, the last entry varying fastest.
+Lists of equal length vary together; ``product = true`` combines every value with every value of
+the other entries, the last entry varying fastest.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table, flattened, number_list
 
 RANGE_KEYS = ("start", "stop", "count")
-#: The entry that asks for every combination.
+#: Key that requests every combination.
 PRODUCT = "product"
 REMEDY = "give a list of numbers, or {start = ..., stop = ..., count = ...}"
 
@@ -28,10 +28,9 @@ class Sweep(NamedTuple):
     Attributes
     ----------
     varied : dict of str to array
-        Name of the entry to its values, one for each impact, shape (n,); empty where nothing
-        varies.
+        Values of each entry, one for each impact, shape (n,); empty if nothing varies.
     axes : dict of str to array
-        The values of each entry, shape (n_i,), if all are combined with all; else empty.
+        Values of each entry of a product, shape (n_i,); empty for lists of equal length.
     """
 
     varied: dict[str, Real]
@@ -39,14 +38,7 @@ class Sweep(NamedTuple):
 
 
 def read_sweep(content: object) -> Sweep:
-    """Return the entries that vary.
-
-    Raises
-    ------
-    ValueError
-        If an entry is unknown or given twice, a value is not a list, or lengths differ and no
-        product is asked for.
-    """
+    """Return the entries that vary and their values."""
     if not isinstance(content, Mapping):
         raise refuse("sweep", content, "must be a table", "write it under [sweep]")
     combined = content.get(PRODUCT, False)
@@ -76,11 +68,12 @@ def read_sweep(content: object) -> Sweep:
 
 
 def _is_range(value: Mapping[str, Any]) -> bool:
-    """Return whether a table is a range, not a part of a dotted name."""
+    """Return whether a table is a range of values, not part of a dotted name."""
     return bool(set(value) & set(RANGE_KEYS))
 
 
 def _values(path: str, value: object) -> Real:
+    """Return a list or a range as an array, shape (n,)."""
     if not isinstance(value, Mapping):
         return number_list(path, value, remedy=REMEDY)
     table = Table(value, path, known=RANGE_KEYS)

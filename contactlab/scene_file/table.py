@@ -1,4 +1,4 @@
-"""A table of a TOML file that refuses what it does not know, by its dotted path."""
+"""A table of a TOML file that refuses unknown keys and wrong types, by dotted path."""
 
 from __future__ import annotations
 
@@ -13,17 +13,10 @@ Made = TypeVar("Made")
 
 
 class Table:
-    """One table, with its dotted path and the keys it may have.
+    """A table, its dotted ``path`` for messages, and the keys it may have.
 
-    Parameters
-    ----------
-    content : object
-        What the file holds at ``path``; anything but a table is refused.
-    path : str
-        Dotted path for messages, such as ``"sphere.material"``; empty for the whole file.
-    known : iterable of str
-        The keys that may stand here. Unknown ones are refused at once, with the nearest
-        known key, so that a misspelt key is never reported as a missing one.
+    Unknown keys are refused at once, so that no misspelt key is reported as missing. The path of
+    the whole file is empty.
     """
 
     def __init__(self, content: object, path: str, *, known: Iterable[str]) -> None:
@@ -41,24 +34,24 @@ class Table:
         return f"{self.path}.{key}" if self.path else key
 
     def has(self, *keys: str) -> bool:
-        """Return True if any of the keys is given."""
+        """Return whether the table has any of the keys."""
         return any(key in self.content for key in keys)
 
     def require(self, key: str, remedy: str) -> Any:
-        """Return the raw value of ``key``, or say that it is missing."""
+        """Return the raw value of ``key``, or refuse a table without this key."""
         if key not in self.content:
             raise ValueError(f"{self.at(key)}: is missing; {remedy}")
         return self.content[key]
 
     def table(self, key: str, *, known: Iterable[str]) -> Table:
-        """Return a table inside this one; it must be there."""
+        """Return the required table ``key`` inside this table."""
         remedy = f"add a table [{self.at(key)}] with {', '.join(known)}"
         return Table(self.require(key, remedy), self.at(key), known=known)
 
     def number(self, key: str, *, rule: Rule = FINITE, remedy: str) -> Any:
-        """Return a number, or the array that a sweep has put in its place.
+        """Return a number, or the array of a sweep in its place.
 
-        A list written in the file is refused: what varies belongs in ``[sweep]``.
+        A list in the file is refused: entries that vary belong in ``[sweep]``.
         """
         value = self.require(key, remedy)
         if isinstance(value, list):
@@ -66,7 +59,7 @@ class Table:
         return real(self.at(key), value, rule=rule, remedy=remedy)
 
     def text(self, key: str, *, default: str | None = None, remedy: str = "") -> str:
-        """Return a text."""
+        """Return the text at ``key``."""
         if key not in self.content and default is not None:
             return default
         value = self.require(key, remedy)
@@ -75,14 +68,13 @@ class Table:
         return value
 
     def numbers(self, key: str, *, default: object = None, remedy: str) -> Real:
-        """Return a list of numbers as an array of shape (n,)."""
-        value = default if key not in self.content and default is not None else None
-        if value is None:
-            value = self.require(key, remedy)
+        """Return the list of numbers at ``key`` as an array, shape (n,)."""
+        missing = key not in self.content and default is not None
+        value = default if missing else self.require(key, remedy)
         return number_list(self.at(key), value, remedy=remedy)
 
     def make(self, maker: Callable[..., Made], **arguments: Any) -> Made:
-        """Return ``maker(**arguments)``; its refusals carry this table's path."""
+        """Return ``maker(**arguments)``, with this table's path before its error messages."""
         try:
             return maker(**arguments)
         except ValueError as error:
@@ -92,6 +84,7 @@ class Table:
             raise ValueError(f"{self.path}: {rule}; check their units") from error
 
     def _unknown(self, key: str) -> ValueError:
+        """Return the error of an unknown key."""
         return ValueError(f"{self.at(key)}: is not a known key; {nearest_of(key, self.known)}")
 
 
@@ -118,14 +111,14 @@ def flattened(
     *,
     leaf: Callable[[Mapping[str, Any]], bool] = lambda _: False,
 ) -> dict[str, Any]:
-    """Return ``sphere.radius = ...`` under its dotted name, however the file nests it.
+    """Return all values by dotted name, such as ``sphere.radius``, however they are nested.
 
-    ``leaf`` tells which tables are values, and no part of a name.
+    ``leaf`` returns True for a table that is a value itself.
     """
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for key, value in content.items():
         if isinstance(value, Mapping) and not leaf(value):
-            found |= flattened(value, f"{prefix}{key}.", leaf=leaf)
+            values |= flattened(value, f"{prefix}{key}.", leaf=leaf)
         else:
-            found[prefix + key] = value
-    return found
+            values[prefix + key] = value
+    return values
