@@ -15,10 +15,9 @@ from contactlab.compose.names import full_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.impact.scene import Scene
 from contactlab.study.bench_methods import Method
-from contactlab.study.stability_cases import Case
+from contactlab.study.stability_cases import Case, Extreme
 from contactlab.study.stability_outcome import ANSWERED, RAISED, WRONG, Outcome, judge
 from contactlab.study.stability_references import converges
-from contactlab.study.stability_scenes import Extreme
 
 Array = NDArray[np.float64]
 
