@@ -1,4 +1,4 @@
-"""The cases of one method: scenes at its own resolution, and resolutions on a few scenes."""
+"""The cases of one method: extreme scenes at its own resolution, and ladders of resolutions."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ QUICK_STEPS = (1, 2, 3, 4, 5, 10, 50)
 PARTS = (1, 2, 3, 5, 10, 100, 1000)
 QUICK_PARTS = (1, 2)
 TOLERANCES = (1.0, 0.1, 1e-2, 1e-3, 1e-5, 1e-8, 1e-12)
-#: Scenes for the ladders of resolution: (psi1, chi).
+#: (psi1, chi) of the scenes on which resolutions are varied.
 LADDER = ((0.3, 0.3), (0.5, CHI), (1.2, CHI), (3.0, CHI), (1.2, 30.0), (0.3, 1e3))
 QUICK_LADDER = ((1.2, CHI), (1.2, 30.0))
-#: Steps over sqrt(chi) at the stability limit, and how many times that follow a large chi.
+#: Steps over sqrt(chi) at the stability limit, and the multiple of them that large chi is run at.
 LIMIT, ABOVE_LIMIT = 2.85, 8
 
 Options = dict[str, dict[str, Any]]
@@ -42,9 +42,9 @@ class Case:
     Attributes
     ----------
     planned : bool
-        False: the plan's short cuts are not taken, the march does the whole impact.
+        False: whole-impact answers are not used, the integrator marches the impact.
     normal : str
-        The normal law.
+        Name of the normal law, without the kind.
     """
 
     family: str
@@ -59,7 +59,7 @@ class Case:
 def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
     """Iterate over the cases of a method, under its normal law and then under the others.
 
-    Of a method whose normal law is not the default, only what is tried under every normal law.
+    A method whose normal law is not the default has only the cases of every normal law.
     """
     if method.normal != DEFAULT_NORMAL:
         yield from _under(method, method.normal, quick=quick)
@@ -91,7 +91,7 @@ def _under(method: Method, normal: str, *, quick: bool) -> Iterator[Case]:
 
 
 def other_normal_laws(method: Method) -> Iterator[str]:
-    """Iterate over the installed normal laws, but the default, that fit a method."""
+    """Iterate over the names of the normal laws that fit a method, without the default."""
     tangential = REGISTRY.create(full_name("tangential", method.tangential))
     integrator = REGISTRY.create(full_name("integrator", method.integrator))
     for name in REGISTRY.names("normal"):
@@ -101,7 +101,7 @@ def other_normal_laws(method: Method) -> Iterator[str]:
         try:
             normal = REGISTRY.create(name)
         except (PluginError, ValueError):
-            continue  # broken, or it cannot be made without options
+            continue  # broken, or an option has no default
         if misfit(normal, tangential, integrator) is None:
             yield short
 
@@ -109,17 +109,7 @@ def other_normal_laws(method: Method) -> Iterator[str]:
 def _ladder(
     method: Method, part: str | None, step: str | None, psi1: float, chi: float, *, quick: bool
 ) -> Iterator[Case]:
-    """Yield the cases of one impact at several resolutions.
-
-    Parameters
-    ----------
-    method : Method
-    part, step : str or None
-        Names of the resolutions of tangential law and integrator.
-    psi1, chi : float
-    quick : bool
-        Whether fewer values will do.
-    """
+    """Yield the cases of one impact at several resolutions."""
 
     def scene(family: str) -> Extreme:
         label = f"psi1={psi1:g} chi={chi:.4g}"
@@ -149,23 +139,11 @@ def _class(method: Method) -> Any:
 
 
 def _case(method: Method, scene: Extreme, options: Options, *, planned: bool = True) -> Case:
-    """Return the case of a scene at one resolution.
-
-    Parameters
-    ----------
-    method : Method
-    scene : Extreme
-    options : mapping of str to mapping
-        Of tangential law and integrator, by kind.
-    planned : bool
-        Whether whole-impact answers are taken; everything is marched otherwise.
-    """
-    words = [f"{name}={value:g}" for part in options.values() for name, value in part.items()] + (
-        [] if planned else ["marched"]
-    )
+    """Return the case of a scene at one resolution."""
+    words = [f"{name}={value:g}" for part in options.values() for name, value in part.items()]
     return Case(
         family=scene.family,
-        label=", ".join([scene.label, *words]),
+        label=", ".join([scene.label, *words, *([] if planned else ["marched"])]),
         method=method,
         options={"tangential": {}, "integrator": {}, **options},
         scene=scene,
@@ -174,7 +152,7 @@ def _case(method: Method, scene: Extreme, options: Options, *, planned: bool = T
 
 
 class Extreme(NamedTuple):
-    """A scene by family and label; ``make`` may refuse it, which is an outcome too."""
+    """A scene with its family and label; a ``ValueError`` of ``make`` is an outcome too."""
 
     family: str
     label: str
@@ -182,46 +160,39 @@ class Extreme(NamedTuple):
 
 
 def extreme_scenes(*, quick: bool = False) -> list[Extreme]:
-    """Return the scenes, or about a third of them."""
-    found = [*_incidence(quick), *_inertia(quick), *_friction(), *_materials()]
-    found += [*_sizes(quick), *_masses(quick), *_types()]
-    return found
+    """Return the scenes tried under the default normal law; ``quick`` takes about a third."""
+    scenes = [*_incidence(quick), *_inertia(quick), *_friction(), *_materials()]
+    scenes += [*_sizes(quick), *_masses(quick), *_types()]
+    return scenes
 
 
 def normal_scenes(*, quick: bool = False) -> list[Extreme]:
-    """Return the scenes that are tried under every normal law."""
-    found = [
+    """Return the scenes tried under every normal law."""
+    scenes = [
         _plain("normal", "psi1=3", 3.0, CHI),
         _plain("normal", "psi1=1.2 chi=3", 1.2, 3.0),
         Extreme("normal", "steel ball", _ball),
     ]
     if quick:
-        return found
+        return scenes
     incidences = (0.0, 1e-12, 0.5, 1.2, 20.0, 1e15)
-    found += [_plain("normal", f"psi1={psi1:g}", psi1, CHI) for psi1 in incidences]
-    found += [_plain("normal", f"chi={chi:g}", 0.3, chi) for chi in (0.05, 0.5, 30.0, 1e3)]
-    found += [
-        each._replace(family="normal")
-        for each in (*_friction(), *_sizes(quick=True), *_masses(quick=True), *_types())
+    scenes += [_plain("normal", f"psi1={psi1:g}", psi1, CHI) for psi1 in incidences]
+    scenes += [_plain("normal", f"chi={chi:g}", 0.3, chi) for chi in (0.05, 0.5, 30.0, 1e3)]
+    scenes += [
+        extreme._replace(family="normal")
+        for extreme in (*_friction(), *_sizes(quick=True), *_masses(quick=True), *_types())
     ]
-    return found
+    return scenes
 
 
 def _plain(family: str, label: str, psi1: Any, chi: Any) -> Extreme:
-    """Return an impact of given psi1 and chi.
-
-    Parameters
-    ----------
-    family, label : str
-        For the report.
-    psi1, chi : float or array
-    """
+    """Return a scene defined by psi1 and chi."""
     return Extreme(family, label, lambda: Scene.nondimensional(psi1=psi1, chi=chi))
 
 
 def _incidence(quick: bool) -> Iterator[Extreme]:
-    tiny = (0.0, 1e-300, 1e-12, 1e-3, 0.5, -1.2, 1e6, 1e15, 1e16)
-    for psi1 in tiny[:: 2 if quick else 1]:
+    incidences = (0.0, 1e-300, 1e-12, 1e-3, 0.5, -1.2, 1e6, 1e15, 1e16)
+    for psi1 in incidences[:: 2 if quick else 1]:
         yield _plain("psi1", f"psi1={psi1:g}", psi1, CHI)
     for chi in (0.5, CHI) if quick else REGIME_CHI:
         for name, edge in (("1", 1.0), ("4chi-1", 4.0 * chi - 1.0)):
@@ -244,30 +215,14 @@ def _ball(
     friction: Any = 0.2,
     slip: Any = 0.3,
     poisson: Any = 0.3,
-    other: float | None = None,
+    mass_ratio: float | None = None,
 ) -> Scene:
-    """Return the scene of a steel sphere, changed in some of its numbers.
-
-    Parameters
-    ----------
-    radius : float
-        In m.
-    speed : float
-        Normal speed, in m/s.
-    friction : float or array
-        mu.
-    slip : float or array
-        Tangential velocity over normal speed.
-    poisson : float or array
-        nu of both bodies.
-    other : float, optional
-        Mass of a second sphere over that of the first; a half-space is hit without it.
-    """
+    """Return a steel sphere on a half-space, or on a sphere of another mass; slip over speed."""
     material = Material(shear_modulus=80e9, poisson_ratio=poisson, density=7850.0)
     sphere = Sphere(radius, material)
     target: Sphere | HalfSpace = HalfSpace(material)
-    if other is not None:
-        target = Sphere(radius, material, mass=float(sphere.mass) * other)
+    if mass_ratio is not None:
+        target = Sphere(radius, material, mass=float(sphere.mass) * mass_ratio)
     return Scene(sphere, target, friction, speed, slip * speed, 0.0)
 
 
@@ -295,7 +250,7 @@ def _sizes(quick: bool) -> Iterator[Extreme]:
 
 def _masses(quick: bool) -> Iterator[Extreme]:
     for ratio in (1e-12, 1e12) if quick else (1e-12, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e12):
-        yield Extreme("mass", f"m2/m1={ratio:g}", lambda m=ratio: _ball(other=m))  # type: ignore[misc]
+        yield Extreme("mass", f"m2/m1={ratio:g}", lambda m=ratio: _ball(mass_ratio=m))  # type: ignore[misc]
 
 
 def _types() -> Iterator[Extreme]:

@@ -1,4 +1,4 @@
-"""Does this installation give the right answers? Laws against what is known beforehand."""
+"""Checks of an installation: laws against reference values, each with a bound."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from contactlab.study.evidence import Evidence
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.scores import DEFAULT_SCENE
 
-#: psi2 of the continuum limit for seven psi1 and three chi, to ten digits, by two independent
-#: methods that agree: front tracking, and springs with Richardson extrapolation.
+#: psi2 of the continuum limit for seven psi1 and three chi, to ten digits. Two independent methods
+#: agree on them: front tracking, and springs with Richardson extrapolation.
 REFERENCE_PSI1 = (0.1, 0.5, 1.0, 1.2, 2.0, 3.0, 4.0)
 REFERENCE_PSI2 = {
     49 / 34: (
@@ -37,10 +37,11 @@ REFERENCE_PSI2 = {
         0.8494911084, 1.1585220552, 0.6554364732,
     ),
 }  # fmt: skip
-#: Shares to which force, and approach or duration, were read off figures: two readers of one
-#: approach differ by 0.0054, and a contact's end is read off a curve that meets its axis flat.
+#: Relative bounds of force, and of approach or duration, as read off figures. Two readers of one
+#: approach differ by 0.0054; the end of contact is read off a curve that meets its axis at a
+#: small angle.
 FORCE_READING, OTHER_READING = 0.003, 0.01
-#: What each composition must reach over the reference values: laws, their options, bound.
+#: Compositions and the bound of psi2 over the reference values: laws, each with options, bound.
 COMPOSITIONS: tuple[tuple[str, dict[str, Any], str, dict[str, Any], float], ...] = (
     ("fronts", {}, "events", {}, 1e-9),
     ("springs", {"springs": 50}, "symplectic", {"steps": 200}, 2e-3),
@@ -58,7 +59,7 @@ RIGID = 1e25
 
 @attrs.frozen(kw_only=True)
 class Finding:
-    """One comparison: what, against what, the worst difference, and the bound it must meet."""
+    """One comparison: what is compared, against what, the largest difference, and its bound."""
 
     what: str
     against: str
@@ -72,7 +73,7 @@ class Finding:
 
 
 def validate(progress: Callable[[int, int], object] | None = None) -> Iterator[Finding]:
-    """Iterate over all comparisons as they are done, in a few seconds."""
+    """Iterate over all comparisons as they are done; ``progress(done, total)`` follows each."""
     checks = list(_checks())
     for done, check in enumerate(checks, start=1):
         yield check()
@@ -127,17 +128,7 @@ def _reference(
     settings: dict[str, Any],
     bound: float,
 ) -> Finding:
-    """Return how far psi2 is from ``REFERENCE_PSI2``.
-
-    Parameters
-    ----------
-    tangential, integrator : str
-        Names, without their kind.
-    options, settings : dict
-        Parameters of the one and of the other.
-    bound : float
-        On the difference in psi2.
-    """
+    """Return the finding of one composition against ``REFERENCE_PSI2``."""
     sim = Simulation(
         tangential=REGISTRY.create(f"tangential.{tangential}", **options),
         integrator=REGISTRY.create(f"integrator.{integrator}", **settings),
@@ -172,25 +163,27 @@ def _codes(number: int, form: str) -> Finding:
 
 
 def _scalars(case: Scalars, names: tuple[str, ...], bound: float) -> Finding:
-    """Return the largest relative difference of some of a normal impact's scalars."""
+    """Return the finding of Hertz's law against the named scalars of a normal impact."""
     sim = Simulation(tangential="frictionless", integrator="symplectic")
     motion: Any = sim.run(case.scene).check().motion
-    found = {
+    computed = {
         "force": motion.maximum_force,
         "approach": motion.maximum_approach,
         "duration": motion.duration,
     }
-    known = {name: getattr(case, name) for name in names if getattr(case, name) is not None}
+    published = {name: getattr(case, name) for name in names if getattr(case, name) is not None}
     return Finding(
-        what=f"hertz: {case.name}, {' and '.join(known)}",
+        what=f"hertz: {case.name}, {' and '.join(published)}",
         against="Chung & Ooi (2011), relative",
-        difference=max(abs(float(found[name]) / value - 1.0) for name, value in known.items()),
+        difference=max(
+            abs(float(computed[name]) / value - 1.0) for name, value in published.items()
+        ),
         bound=bound,
     )
 
 
 def judged(evidence: Evidence) -> Iterator[Finding]:
-    """Return the bounds of a source that laws must meet, for those that are installed."""
+    """Iterate over the findings of a source: the bounds of the laws that are installed."""
     for agreement in evidence.comparison.agreements:
         quantity = agreement.measured.quantity
         for law in agreement.results:
