@@ -74,17 +74,17 @@ def _declared(way: Way, impact: Scene) -> float:
     return own + way.integrator.accuracy * float(np.asarray(psi_magnitude(impact)))
 
 
-def _better(way: Way, given: Scene) -> tuple[float | None, str]:
+def _better(way: Way, impact: Scene) -> tuple[float | None, str]:
     """Return a change of psi that is closer to the truth, and by what; None if nothing is."""
     if "partial_slip" in way.law.offers:
-        motion = Simulation(normal=way.normal).run(given).motion
-        return float(given.psi(motion.slip_velocity_change)), "the exact solution"
+        motion = Simulation(normal=way.normal).run(impact).motion
+        return float(impact.psi(motion.slip_velocity_change)), "the exact solution"
     law, integrator = _finer(way.law), way.integrator
     if integrator is not None:
         integrator = _finer(integrator)
     if law == way.law and integrator == way.integrator:
         return None, ""
-    change = way._replace(law=law, integrator=integrator).run(given).change
+    change = way._replace(law=law, integrator=integrator).run(impact).change
     return float(np.asarray(change)), f"the same with {FINER} times the resolution"
 
 

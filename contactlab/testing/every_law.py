@@ -128,7 +128,7 @@ def parameters(law: Law) -> None:
             except ValueError as error:
                 hold(name in str(error), f"{name} = {wrong!r}: refused without its name: {error}")
             else:
-                hold(False, f"{name} = {wrong!r}: taken without a word.")
+                hold(False, f"{name} = {wrong!r}: accepted without a ValueError.")
 
 
 @check(Law)

@@ -71,7 +71,7 @@ def bounded(integrator: Any) -> None:
             continue
         hold(TooManyCallsError.__name__ not in motion.detail, f"{name} is asked without end.")
         if isinstance(simulation.tangential, Endless):
-            hold(not motion.status, "Events without end are said to have come to one.")
+            hold(not motion.status, "A run with endless events is reported as a success.")
 
 
 def _reported(simulations: list[Simulation], *, least: int) -> None:

@@ -55,8 +55,8 @@ def factor(unit: str, units: Units) -> float:
     for part, sense in zip(unit.split("/"), (1.0, -1.0), strict=False):
         for token in part.split():
             match = _TOKEN.fullmatch(token)
-            known = match is not None and match[1] in POWERS and unit.count("/") <= 1
-            hold(known, f"The unit {unit!r} is not understood: write SI, as in 'N s/m'.")
+            understood = match is not None and match[1] in POWERS and unit.count("/") <= 1
+            hold(understood, f"The unit {unit!r} is not understood: write SI, as in 'N s/m'.")
             assert match is not None
             for size, power in zip(units, POWERS[match[1]], strict=True):
                 product *= size ** (sense * power * float(match[2] or 1.0))

@@ -30,7 +30,7 @@ GRAZING = 300.0
 POINTS, QUADRATURE = 20_001, 3e-4
 
 
-class Known(NamedTuple):
+class AnsweredImpact(NamedTuple):
     """One impact with a law's whole-impact answer."""
 
     psi1: float
@@ -44,14 +44,16 @@ class Known(NamedTuple):
         return f"psi1 = {self.psi1}, chi = {self.chi:.3g}, {self.answer.reason!r}"
 
 
-def known(law: TangentialLaw, normal_law: NormalLaw | None = None) -> Iterator[Known]:
+def answered_impacts(
+    law: TangentialLaw, normal_law: NormalLaw | None = None
+) -> Iterator[AnsweredImpact]:
     """Iterate over the impacts that have whole-impact answers."""
     normal_law = normal_law or REGISTRY.create("normal.hertz")
     for chi, psi1 in itertools.product(CHI, ANGLES):
         impact = scene(psi1, chi)
         normal = normal_motion(normal_law, impact)
         for _, answer in answers(impact, normal, law, history=False):
-            yield Known(psi1, chi, impact, normal, answer)
+            yield AnsweredImpact(psi1, chi, impact, normal, answer)
 
 
 @check(TangentialLaw)
@@ -62,7 +64,7 @@ def whole_impacts(law: Any) -> None:
     """
     marches = [way for way in ways(law) if way.integrator is not None]
     apply_if(marches, "No integrator can march it.")
-    answered = [each for each in known(law) if each.psi1 != 0.0]
+    answered = [each for each in answered_impacts(law) if each.psi1 != 0.0]
     apply_if(answered, "It has no whole-impact answer for an impact with slip.")
     for way, each in itertools.product(marches, answered):
         psi1, chi, impact, _, answer = each
@@ -87,7 +89,7 @@ def whole_impacts(law: Any) -> None:
             _courses_agree(way, each, room)
 
 
-def _courses_agree(way: Way, each: Known, room: float) -> None:
+def _courses_agree(way: Way, each: AnsweredImpact, room: float) -> None:
     """Hold that the course of a whole-impact answer agrees with the march."""
     marched, _ = course(way, each.psi1, each.chi)
     phases = np.linspace(0.0, np.pi, POINTS)
@@ -119,7 +121,7 @@ def whole_impact_form(law: Any) -> None:
     The impulse of the force along the course is the change of slip velocity times the mass, and
     the work of the force is the friction work.
     """
-    answered = list(known(law))
+    answered = list(answered_impacts(law))
     apply_if(answered, "It has no whole-impact answer.")
     for each in answered:
         impact, answer = each.scene, each.answer
