@@ -1,1 +1,1 @@
-"""Studies made of many runs: data only, nothing is drawn here."""
+"""Studies of many runs, as data; figures and commands draw and print them."""

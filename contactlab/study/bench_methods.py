@@ -1,4 +1,4 @@
-"""What the benchmark runs: methods with their ladders of resolutions, and a set of scenes."""
+"""Methods of the benchmark with their ladders of resolutions, and its set of scenes."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.testing.bench import scene as ball
 
-#: psi1 and chi of the scenes: every regime of theory §2 short of slip throughout, which the
-#: plan answers in closed form whatever the law.
+#: psi1 and chi of the scenes: every regime of theory §2 but slip throughout, which every law
+#: answers in closed form.
 NONDIMENSIONAL = (
     (0.1, 1.0), (0.5, 1.0), (1.0, 1.0), (1.2, 1.0), (2.0, 1.0),
     (0.1, 49 / 34), (0.5, 49 / 34), (1.0, 49 / 34), (1.2, 49 / 34), (2.0, 49 / 34),
     (3.0, 49 / 34), (4.0, 49 / 34),
     (0.1, 3.0), (0.5, 3.0), (1.0, 3.0), (1.2, 3.0), (2.0, 3.0), (3.0, 3.0), (4.0, 3.0),
 )  # fmt: skip
-#: Those that a quick benchmark takes.
+#: psi1 and chi of a quick benchmark.
 QUICK = ((0.5, 49 / 34), (1.2, 49 / 34), (3.0, 49 / 34), (1.2, 3.0))
 
-#: Ladders. A law's own resolution is the number of steps over ``STEPS_PER_PART``, or over the
-#: proportion of the two defaults: ten for the paper's steps and annuli.
+#: Ladders of resolution. A tangential law's resolution is the number of steps over the ratio of the
+#: two defaults (ten for the paper's steps and annuli), or over ``STEPS_PER_PART``.
 STEPS = (25, 50, 100, 200, 400)
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
 QUICK_RESOLUTIONS = 3
 STEPS_PER_PART = 4
-#: Parts under a tolerance, however coarse.
+#: Least number of parts under a tolerance.
 LEAST_PARTS = 10
 
 
@@ -55,17 +55,17 @@ class Method:
 
     @property
     def whole(self) -> bool:
-        """Whether the law answers every impact as a whole, and asks no integrator."""
+        """Whether the law answers every impact as a whole, without an integrator."""
         return issubclass(_law("tangential", self.tangential), WholeImpactTangentialLaw)
 
     @property
     def name(self) -> str:
-        """``law / integrator``, or the law alone if it needs none; and a normal law if named."""
+        """``law / integrator``, or ``law`` without one; a normal law other than the default too."""
         name = self.tangential if self.whole else f"{self.tangential} / {self.integrator}"
         return name if self.normal == DEFAULT_NORMAL else f"{name}, {self.normal}"
 
     def resolutions(self, *, quick: bool = False) -> list[dict[str, dict[str, Any]]]:
-        """Return options of the two laws, coarse to fine."""
+        """Return options of tangential law and integrator by kind, coarse to fine."""
         law = _law("tangential", self.tangential).resolution
         steps = None if self.whole else _law("integrator", self.integrator).resolution
         values: Sequence[Any] = (None,)
@@ -74,7 +74,7 @@ class Method:
         elif law or steps:
             values = STEPS
         per_part = self._steps_per_part(law, steps)
-        found: list[dict[str, dict[str, Any]]] = []
+        ladder: list[dict[str, dict[str, Any]]] = []
         for value in values:
             options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {}}
             if steps is not None:
@@ -84,26 +84,26 @@ class Method:
                 least = 2 if isinstance(value, int) else LEAST_PARTS
                 options["tangential"][law] = max(count // per_part, least)
             if _accepted(full_name("integrator", self.integrator), options["integrator"]):
-                found.append(options)
+                ladder.append(options)
         if not quick:
-            return found
-        # Of steps every other one; a tolerance of 1e-6 would take minutes with rings to match.
-        return found[:: 1 if values is TOLERANCES else 2][:QUICK_RESOLUTIONS]
+            return ladder
+        # A tolerance of 1e-6 would take minutes, because the annuli grow with it.
+        return ladder[:: 1 if values is TOLERANCES else 2][:QUICK_RESOLUTIONS]
 
     def _steps_per_part(self, part: str | None, steps: str | None) -> int:
-        """Return the default steps over the default parts; ``STEPS_PER_PART`` if not known."""
+        """Return default steps over default parts; ``STEPS_PER_PART`` unless both are integers."""
         if part is None or steps is None:
             return STEPS_PER_PART
-        many = inspect.signature(_law("integrator", self.integrator)).parameters[steps].default
-        few = inspect.signature(_law("tangential", self.tangential)).parameters[part].default
-        if isinstance(many, int) and isinstance(few, int):
-            return max(1, round(many / few))
+        step_default = _default("integrator", self.integrator, steps)
+        part_default = _default("tangential", self.tangential, part)
+        if isinstance(step_default, int) and isinstance(part_default, int):
+            return max(1, round(step_default / part_default))
         return STEPS_PER_PART
 
     def simulation(
         self, options: dict[str, dict[str, Any]], *, normal: str | None = None
     ) -> Simulation:
-        """Return the composition at one resolution, under another normal law if one is given."""
+        """Return the composition at one resolution; ``normal`` replaces the method's normal law."""
         return Simulation(
             normal=normal or self.normal,
             tangential=REGISTRY.create(
@@ -116,34 +116,35 @@ class Method:
 
 
 def scenes(*, quick: bool = False, sized: bool = False) -> list[Scene]:
-    """Return the fixed scenes: the paper's two parameters, and one in SI with spin.
+    """Return the scenes: dimensionless ones by psi1 and chi, and a steel ball with spin.
 
     Parameters
     ----------
     quick : bool
-        Fewer of them.
+        Fewer scenes.
     sized : bool
-        All in SI, of a ball like one of steel: for normal laws with options in SI.
+        Scenes of a ball in SI instead of dimensionless ones, for normal laws with options in SI.
     """
     pairs = QUICK if quick else NONDIMENSIONAL
     if sized:
-        found = [ball(psi1, chi) for psi1, chi in pairs]
+        fixed = [ball(psi1, chi) for psi1, chi in pairs]
     else:
-        found = [Scene.nondimensional(psi1=psi1, chi=chi) for psi1, chi in pairs]
+        fixed = [Scene.nondimensional(psi1=psi1, chi=chi) for psi1, chi in pairs]
     steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
-    return [*found, Scene(Sphere(6.35e-3, steel), HalfSpace(steel), 0.15, 1.93, 0.9, -40.0)]
+    return [*fixed, Scene(Sphere(6.35e-3, steel), HalfSpace(steel), 0.15, 1.93, 0.9, -40.0)]
 
 
 def methods(laws: Iterable[str] | None = None) -> list[Method]:
-    """Return every installed composition that fits, or those of the laws named.
+    """Return every installed composition that fits, or the compositions of the laws named.
 
-    Laws that make no force are left out, broken plug-ins too unless asked for by name.
+    Laws without friction are left out unless named; so are broken plug-ins.
 
     Parameters
     ----------
     laws : iterable of str, optional
-        Names of any kind, ``"integrator.mine"``; without a kind, tangential laws. Of the kinds
-        that are not named all are taken, and the default normal law.
+        Names of any kind, as ``"integrator.mine"``; a name without a kind is a tangential law.
+        If no tangential law is named, all are taken, and likewise integrators; if no normal law
+        is named, the default.
 
     Raises
     ------
@@ -154,44 +155,39 @@ def methods(laws: Iterable[str] | None = None) -> list[Method]:
     for law in laws or ():
         kind = kind_of(law) if kind_of(law) in KINDS else "tangential"
         named[kind].append(short_name(full_name(kind, law)))
-        _law(kind, named[kind][-1])  # refused here if it is not installed
-    found: list[Method] = []
+        _law(kind, named[kind][-1])  # raises if the law is not installed
+    fitting: list[Method] = []
     for normal in named["normal"] or [DEFAULT_NORMAL]:
         for tangential in named["tangential"] or _installed("tangential"):
-            fitting = _fitting(normal, tangential, named)
-            if not fitting and named["tangential"]:
-                asked = ", ".join(named["integrator"])
-                beside = f"does not fit {asked}" if asked else "fits no installed integrator"
+            of_law = _fitting(normal, tangential, named)
+            if not of_law and named["tangential"]:
+                integrators = ", ".join(named["integrator"])
+                misfit = (
+                    f"does not fit {integrators}" if integrators else "fits no installed integrator"
+                )
                 under = full_name("normal", normal)
-                raise ValueError(f"--law {tangential}: {beside} under {under}")
-            found += fitting
-    if laws is not None and not found:
-        told = ", ".join(name for names in named.values() for name in names)
-        raise ValueError(f"--law {told}: no installed tangential law fits")
-    return found
+                raise ValueError(f"--law {tangential}: {misfit} under {under}")
+            fitting += of_law
+    if laws is not None and not fitting:
+        listed = ", ".join(name for names in named.values() for name in names)
+        raise ValueError(f"--law {listed}: no installed tangential law fits")
+    return fitting
 
 
 def _fitting(normal: str, tangential: str, named: dict[str, list[str]]) -> list[Method]:
-    """Return the methods of one normal and one tangential law.
-
-    Parameters
-    ----------
-    normal, tangential : str
-    named : mapping of str to list of str
-        The laws asked for, by kind. A plug-in that is broken is left out unless it is one.
-    """
+    """Return the methods of one normal and one tangential law; ``named`` are the laws asked for."""
     try:
         whole = issubclass(_law("tangential", tangential), WholeImpactTangentialLaw)
         if not named["tangential"] and (
             _makes_no_force(tangential) or (whole and named["integrator"])
         ):
             return []
-        found = [
+        fitting = [
             Method(tangential=tangential, integrator=integrator, normal=normal)
             for integrator in named["integrator"] or _installed("integrator")
             if _fits(normal, tangential, integrator)
         ]
-        return found[:1] if whole else found  # no integrator is asked
+        return fitting[:1] if whole else fitting  # all integrators give the same answer
     except PluginError:
         if any(named.values()):
             raise
@@ -211,7 +207,7 @@ def _fits(normal: str, tangential: str, integrator: str) -> bool:
 
 
 def _makes_no_force(tangential: str) -> bool:
-    """Return whether a law that answers whole impacts changes no velocity."""
+    """Return whether a whole-impact law changes no velocity."""
     if not issubclass(_law("tangential", tangential), WholeImpactTangentialLaw):
         return False
     try:
@@ -222,12 +218,17 @@ def _makes_no_force(tangential: str) -> bool:
 
 
 def _accepted(name: str, options: dict[str, Any]) -> bool:
-    """Return False for a value beyond what the integrator allows, such as a coarse tolerance."""
+    """Return whether the integrator accepts the options; a tolerance may be too coarse."""
     try:
         REGISTRY.create(name, **options)
     except ValueError:
         return False
     return True
+
+
+def _default(kind: str, name: str, option: str) -> Any:
+    """Return the default of a law's option."""
+    return inspect.signature(_law(kind, name)).parameters[option].default
 
 
 def _law(kind: str, name: str) -> Any:

@@ -22,10 +22,9 @@ from contactlab.study.interrupts import uninterrupted
 
 Array = NDArray[np.float64]
 
-#: The time of a run is the least of so many, as long as they are short: the least is what
-#: the work takes, the rest is what else the machine was doing.
+#: Repeats of a short run. The least time counts, which other load of the machine disturbs least.
 REPEATS = 3
-#: A run longer than this, in s, is not repeated: little of its time is warming up.
+#: A run longer than this, in s, is not repeated: warming up takes little of its time.
 LONG_RUN = 2.0
 
 
@@ -38,7 +37,7 @@ class LawRun:
     name : str
     result : ImpactResult
     run_time_per_impact : float
-        Least wall-clock time of a few repeats, over the number of impacts, in s.
+        Least wall-clock time of the repeats, over the number of impacts, in s.
     """
 
     name: str
@@ -48,13 +47,13 @@ class LawRun:
 
 @attrs.frozen(kw_only=True, eq=False)
 class Agreement:
-    """One measured series, and what each law says at the very same points.
+    """One measured series, and the results of each law at the measured points.
 
     Attributes
     ----------
     measured : Measured
     results : mapping of str to ImpactResult
-        Law to its batch of n impacts at the measured points.
+        By law, batches of n impacts.
     """
 
     measured: Measured
@@ -62,12 +61,12 @@ class Agreement:
 
     @property
     def predicted(self) -> dict[str, Array]:
-        """Law to values, shape (n,), in the quantity's unit; NaN where an impact failed."""
+        """Values by law, shape (n,), in the quantity's unit; NaN where an impact failed."""
         quantity = self.measured.quantity
         return {law: _values(quantity, result) for law, result in self.results.items()}
 
     def difference(self, law: str) -> Array:
-        """Return predicted - measured, shape (n,)."""
+        """Return predicted less measured values, shape (n,)."""
         return self.predicted[law] - self.measured.values
 
     def rms(self, law: str) -> float:
@@ -79,7 +78,7 @@ class Agreement:
         return float(np.max(np.abs(self.difference(law))))
 
     def where_largest(self, law: str) -> float:
-        """Return the x of the largest difference; NaN where a law gave no value."""
+        """Return the x of the largest absolute difference; NaN if a value is missing."""
         difference = np.abs(self.difference(law))
         if np.isnan(difference).any():
             return float("nan")
@@ -88,9 +87,9 @@ class Agreement:
 
 @attrs.frozen(kw_only=True, eq=False)
 class Comparison:
-    """Laws side by side; the first is the one that the others are compared with.
+    """Laws side by side; the first law is the reference of the others.
 
-    ``interrupted`` is True where Ctrl-C has left the laws out that were not done.
+    ``interrupted`` is True if Ctrl-C left laws out.
     """
 
     scene: Scene
@@ -105,48 +104,51 @@ class Comparison:
         return [run.name for run in self.runs]
 
     def only(self, laws: Iterable[str]) -> Comparison:
-        """Return the comparison of some of its laws, those of the names that it has."""
+        """Return the comparison of the laws named; names that it does not have are ignored."""
         names = set(laws)
         agreements = tuple(
-            attrs.evolve(one, results={law: r for law, r in one.results.items() if law in names})
-            for one in self.agreements
+            attrs.evolve(
+                agreement,
+                results={law: run for law, run in agreement.results.items() if law in names},
+            )
+            for agreement in self.agreements
         )
         runs = tuple(run for run in self.runs if run.name in names)
         return attrs.evolve(self, runs=runs, agreements=agreements)
 
     def values(self, quantity: str, law: str) -> Array:
-        """Return a quantity over the scene or sweep as one law has it; NaN where it failed."""
+        """Return a quantity of one law over the scene or sweep; NaN where an impact failed."""
         return _values(quantity, next(run.result for run in self.runs if run.name == law))
 
     def difference(self, quantity: str, law: str) -> Array:
-        """Return a law's value less that of the first law."""
+        """Return a quantity of one law less that of the first law."""
         return self.values(quantity, law) - self.values(quantity, self.names[0])
 
     def numerical_error(self, law: str) -> Array:
-        """Return the numerical error of psi2 as estimated, or else declared; NaN if neither is."""
+        """Return the estimated numerical error of psi2, else the declared one; NaN if neither."""
         result = next(run.result for run in self.runs if run.name == law)
         estimate = np.nan if result.psi2_error_estimate is None else result.psi2_error_estimate
         error = np.where(np.isfinite(estimate), estimate, result.plan.psi2_error)
         return np.array(np.broadcast_to(error, result.scene.shape))
 
     def band(self, quantity: str, law: str) -> Array:
-        """Return how far a quantity may be off by the numerical error of psi2; NaN if unknown."""
+        """Return the error of a quantity that follows from the numerical error of psi2, or NaN."""
         result = next(run.result for run in self.runs if run.name == law)
         with np.errstate(all="ignore"):
-            off = self.numerical_error(law) / result.scene.psi_scale
+            error = self.numerical_error(law) / result.scene.psi_scale
             change = np.asarray(result.motion.slip_velocity_change)
-        ends = [_values(quantity, _shifted(result, change + sign * off)) for sign in (1.0, -1.0)]
+        ends = [_values(quantity, _shifted(result, change + sign * error)) for sign in (1.0, -1.0)]
         return np.array(0.5 * np.abs(ends[0] - ends[1]))
 
     def failures(self) -> list[str]:
-        """Return one sentence for each law that did not follow every impact, measured or not."""
-        found = [_failure(run.name, run.result) for run in self.runs]
+        """Return one sentence for each run with failed impacts, at measured points too."""
+        sentences = [_failure(run.name, run.result) for run in self.runs]
         for agreement in self.agreements:
             where = f"at the measured values of {agreement.measured.quantity}"
-            found += [
+            sentences += [
                 _failure(f"{law}, {where}", result) for law, result in agreement.results.items()
             ]
-        return [sentence for sentence in found if sentence]
+        return [sentence for sentence in sentences if sentence]
 
 
 def compare(
@@ -157,16 +159,16 @@ def compare(
     estimate_error: bool = False,
     progress: Callable[[int, int], object] | None = None,
 ) -> Comparison:
-    """Run each simulation on ``scene``, and at the measured points where a file has them.
+    """Return the results of each simulation on ``scene``, and at the measured points of a file.
 
     Parameters
     ----------
     scene : Scene or SceneFile
         One impact or a one-dimensional batch.
     simulations : mapping of str to Simulation
-        By the names under which they are to appear.
+        Simulations by the names shown in the comparison.
     history : bool
-        Keep the course of a single impact; a sweep has none.
+        Keep the history of a single impact; a sweep has none.
     estimate_error : bool
         Estimate the numerical error of psi2 of each law, from runs at finer resolutions.
     progress : callable, optional
@@ -175,8 +177,8 @@ def compare(
     Returns
     -------
     Comparison
-        Failed impacts are NaN in its numbers; ``failures()`` says why. Interrupting (Ctrl-C)
-        keeps the laws that are done, if there is one.
+        Failed impacts are NaN; ``failures()`` says why. Ctrl-C keeps the laws that are done, if
+        there is one.
 
     Raises
     ------
@@ -201,8 +203,7 @@ def compare(
                     run = _estimated(run, simulation) if estimate_error else run
                 else:
                     assert file is not None
-                    there = file.scene_at(**{job.against: job.x})
-                    answers.append(_run(simulation, there))
+                    answers.append(_run(simulation, file.scene_at(**{job.against: job.x})))
                 done += 1
                 if progress is not None:
                     progress(done, total)
@@ -227,23 +228,20 @@ def compare(
 
 
 def _varied(scene: Scene) -> dict[str, Array]:
-    """Return what varies over a batch, by the names of a scene file: one entry, or a grid's axes.
-
-    Of several that vary together it is the angle, or else the first in the order below; of a
-    single impact nothing.
-    """
+    """Return the entries of a scene file that vary over a batch: one entry, or a grid's axes."""
     if not scene.shape:
         return {}
     if scene.axes:
         return product(scene.axes)
-    found: dict[str, Any] = {"psi1": scene.psi1, "chi": scene.chi}
+    # Of several entries that vary together the first counts.
+    entries: dict[str, Any] = {"psi1": scene.psi1, "chi": scene.chi}
     if scene.sphere is not None:
         angle = np.degrees(np.arctan2(scene.tangential_velocity, scene.normal_speed))
-        found = {
+        entries = {
             "angle_deg": angle, "normal_speed": scene.normal_speed, "spin": scene.spin,
-            "friction_coefficient": scene.friction_coefficient, **found,
+            "friction_coefficient": scene.friction_coefficient, **entries,
         }  # fmt: skip
-    for name, values in found.items():
+    for name, values in entries.items():
         if np.unique(values).size > 1:
             return {name: np.array(values)}
     return {"psi1": np.array(np.broadcast_to(scene.psi1, scene.shape))}
@@ -266,7 +264,7 @@ def _estimated(run: LawRun, simulation: Simulation) -> LawRun:
 
 
 def _failure(name: str, result: ImpactResult) -> str:
-    """Return a sentence on the impacts of a result that failed, or none."""
+    """Return a sentence on the failed impacts of a result; empty if none failed."""
     bad, shape = result.failures, result.scene.shape
     if not bad:
         return ""
@@ -275,27 +273,16 @@ def _failure(name: str, result: ImpactResult) -> str:
 
 
 def _run(simulation: Simulation, scene: Scene) -> ImpactResult:
-    # Half a sweep cannot be compared.
     return uninterrupted(simulation.sweep(scene)) if scene.shape else simulation.run(scene)
 
 
 def _timed(name: str, simulation: Simulation, scene: Scene, *, history: bool) -> LawRun:
-    """Return the result of one simulation, and its least run time an impact.
-
-    Parameters
-    ----------
-    name : str
-        Of the laws, for tables.
-    simulation : Simulation
-    scene : Scene
-    history : bool
-        Whether the course of the impact is kept too.
-    """
+    """Return the result of one simulation, and its least run time per impact."""
     result = _run(simulation, scene)  # the first run also imports, compiles and fills caches
     times = [result.run_time]
     if result.run_time < LONG_RUN:
         times = [_run(simulation, scene).run_time for _ in range(REPEATS)]
-    if history:  # after the timing: keeping the course costs time too
+    if history:  # after the timing, because keeping the history takes time
         result = simulation.run(scene, history=True)
     impacts = scene.shape[0] if scene.shape else 1
     return LawRun(name=name, result=result, run_time_per_impact=min(times) / impacts)

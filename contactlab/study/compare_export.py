@@ -20,7 +20,7 @@ CSV_HEADINGS = (
 
 
 def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]:
-    """Return the comparison as plain numbers, lists and text."""
+    """Return the comparison as numbers, lists and text, ready for JSON."""
     return {
         "laws": {
             run.name: {
@@ -63,14 +63,14 @@ def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]
 
 
 def plain_score(score: Score) -> dict[str, Any]:
-    """Return a score as plain numbers and text, None where a number is not known."""
+    """Return a score as numbers and text, ready for JSON; None for NaN."""
     return {name: json_value(value) for name, value in attrs.asdict(score).items()}
 
 
 def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO) -> None:
-    """Write one row a value; the reference is the first law, or the measured value.
+    """Write one row per value to ``stream``; the reference is the first law, or the measured value.
 
-    What varies besides the first entry has columns of its own at the end.
+    The second and further varied entries have columns of their own at the end.
     """
     writer = csv.writer(stream, lineterminator="\n")
     others = dict(list(comparison.varied.items())[1:])
@@ -80,8 +80,8 @@ def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO)
         unit = QUANTITIES[name].unit_in(comparison.scene)
         against, x = next(iter(comparison.varied.items()), ("", np.nan))
         for law in comparison.names:
-            values, apart = comparison.values(name, law), comparison.difference(name, law)
-            for row in _rows(x, values, values - apart, apart, *others.values()):
+            values, difference = comparison.values(name, law), comparison.difference(name, law)
+            for row in _rows(x, values, values - difference, difference, *others.values()):
                 writer.writerow(["scene", name, unit, against, row[0], law, *row[1:]])
     for agreement in comparison.agreements:
         measured = agreement.measured

@@ -20,18 +20,18 @@ from contactlab.study.interrupts import uninterrupted
 
 @attrs.frozen(kw_only=True)
 class Source:
-    """A file of measured or computed rebounds, and what laws are to be held against it.
+    """A file of measured or computed rebounds, the normal laws to run, and bounds.
 
     Attributes
     ----------
     name : str
-        Of the file in ``contactlab/study/measured``, without its end.
+        Name of the file in ``contactlab/study/measured``, without its suffix.
     kind : str
-        What the numbers are: "experiment", "finite elements" or "other codes".
+        Where the numbers are from: "experiment", "finite elements" or "other codes".
     normals : mapping of str to mapping
-        Normal laws by name, and their options.
+        Options of the normal laws, by name.
     bounds : mapping
-        Bound of the rms of a quantity for a law: ``{("psi2", "fronts"): 0.06}``.
+        Bound of the rms difference by quantity and law: ``{("psi2", "fronts"): 0.06}``.
     """
 
     name: str
@@ -40,13 +40,13 @@ class Source:
     bounds: Mapping[tuple[str, str], float] = attrs.field(factory=dict)
 
     def read(self) -> SceneFile:
-        """Return the file."""
+        """Return the contents of the file."""
         place = resources.files("contactlab").joinpath("study", "measured", f"{self.name}.toml")
         with resources.as_file(place) as path:
             return read_scene(path)
 
 
-#: Loss of the impacts of Kharaz et al., carried by a damped law.
+#: Normal laws for the impacts of Kharaz et al.: elastic, and damped to the loss that they measured.
 DAMPED = {DEFAULT_NORMAL: {}, "tsuji": {"restitution": 0.98}}
 E_T = "tangential_restitution"
 SOURCES = (
@@ -69,16 +69,16 @@ SOURCES = (
 
 @attrs.frozen(kw_only=True, eq=False)
 class Evidence:
-    """A source and what every law that fits says of it.
+    """A source, and the results of every law that fits.
 
     Attributes
     ----------
     source : Source
     file : SceneFile
     comparison : Comparison
-        Agreements with all series, and the laws over the file's sweep if it was asked for.
+        Agreements with all series; with ``curves``, the laws over the file's sweep too.
     left_out : mapping of str to str
-        Laws that could not be composed, and why.
+        Reasons by law, for laws that could not be composed.
     """
 
     source: Source
@@ -88,30 +88,30 @@ class Evidence:
 
     @property
     def laws(self) -> list[str]:
-        """Names of the laws, the nearest to the first series first; those that failed last."""
+        """Names of the laws by rms difference from the first series; failed laws come last."""
         first = self.comparison.agreements[0]
         rms = {name: first.rms(name) for name in first.results}
         return sorted(rms, key=lambda name: (np.isnan(rms[name]), rms[name]))
 
     def scatter(self, agreement: Agreement) -> float:
-        """Return the rms error of reading of a series; NaN where none is known."""
-        known = agreement.measured.error[agreement.measured.error > 0.0]
-        return float(np.sqrt(np.mean(known**2))) if known.size else float("nan")
+        """Return the rms measurement error of a series, in its unit; NaN if none is stated."""
+        errors = agreement.measured.error[agreement.measured.error > 0.0]
+        return float(np.sqrt(np.mean(errors**2))) if errors.size else float("nan")
 
     def bound(self, quantity: str, law: str) -> float | None:
-        """Return what the rms must not exceed, if anything."""
+        """Return the bound of the rms difference; None if there is none."""
         return self.source.bounds.get((quantity, law))
 
 
 def gather(
     *, curves: bool = False, progress: Callable[[int, int], object] | None = None
 ) -> Iterator[Evidence]:
-    """Iterate over the sources with every law that fits, each under the integrator that suits it.
+    """Iterate over the sources, each with every law that fits under its preferred integrator.
 
     Parameters
     ----------
     curves : bool
-        Run each law over the sweep of each file too, for pictures.
+        Run each law over the sweep of each file too, for figures.
     progress : callable, optional
         Called as ``progress(done, total)`` after each source.
     """
@@ -126,9 +126,9 @@ def _evidence(source: Source, *, curves: bool) -> Evidence:
     simulations, left_out = simulations_over(source.normals)
     agreements = []
     for measured in file.measured:
-        there = file.scene_at(**{measured.against: measured.x})
+        scene = file.scene_at(**{measured.against: measured.x})
         results = {
-            name: uninterrupted(simulation.sweep(there)) for name, simulation in simulations.items()
+            name: uninterrupted(simulation.sweep(scene)) for name, simulation in simulations.items()
         }
         agreements.append(Agreement(measured=measured, results=results))
     runs = [
@@ -149,22 +149,22 @@ def _evidence(source: Source, *, curves: bool) -> Evidence:
 def simulations_over(
     normals: Mapping[str, Mapping[str, Any]],
 ) -> tuple[dict[str, Simulation], dict[str, str]]:
-    """Return every installed tangential law over some normal laws, and why others are left out.
+    """Return simulations of every tangential law under the normal laws, and reasons for misfits.
 
-    The name of a simulation is that of its tangential law, with normal law and options where
-    these are not the default.
+    Both are keyed by the tangential law's name, followed by normal law and options if the normal
+    law is not the default.
     """
-    found: dict[str, Simulation] = {}
+    simulations: dict[str, Simulation] = {}
     left_out: dict[str, str] = {}
     for normal, options in normals.items():
         for full in REGISTRY.names("tangential"):
             name = short_name(full)
             if normal != DEFAULT_NORMAL:
-                told = ", ".join(f"{key}={value}" for key, value in options.items())
-                name += f", {normal} {told}".rstrip()
+                words = ", ".join(f"{key}={value}" for key, value in options.items())
+                name += f", {normal} {words}".rstrip()
             try:
-                pressing = REGISTRY.create(full_name("normal", normal), **options)
-                found[name] = Simulation(normal=pressing, tangential=full)
+                normal_law = REGISTRY.create(full_name("normal", normal), **options)
+                simulations[name] = Simulation(normal=normal_law, tangential=full)
             except (ValueError, PluginError) as error:
                 left_out[name] = str(error)
-    return found, left_out
+    return simulations, left_out

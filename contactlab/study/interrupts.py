@@ -1,4 +1,4 @@
-"""An interruption within a study: a sweep keeps it to itself, and a study must not."""
+"""Interrupted sweeps within a study."""
 
 from __future__ import annotations
 
@@ -9,13 +9,15 @@ from contactlab.outcome.result import ImpactResult
 
 
 def uninterrupted(result: ImpactResult) -> ImpactResult:
-    """Return the result of a sweep that was followed to its end, well or not.
+    """Return ``result`` unchanged, unless Ctrl-C interrupted the sweep.
+
+    An interrupted sweep returns the impacts that are done. A study would count the others as
+    failures, and take the run time for that of the whole sweep.
 
     Raises
     ------
     KeyboardInterrupt
-        If it was interrupted: a sweep then returns what is done, and a study would take the
-        rest for failures, or its run time for that of the whole.
+        If any impact has the status ``INTERRUPTED``.
     """
     if Status.INTERRUPTED in np.ravel(np.array(result.status, dtype=object)):
         raise KeyboardInterrupt

@@ -1,7 +1,7 @@
-"""What a law leaves out: how far its own exact answer is from that of the elastic continuum.
+"""Model error: distance of a law's own exact answer from that of the elastic continuum.
 
-This is no numerical error. No resolution makes it smaller, and the stability report, which judges
-each law by its own exact answer, does not show it.
+No resolution reduces the model error. The stability report judges each law by its own exact
+answer, so its numerical errors do not contain the model error.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ class ModelError:
         Name without the kind.
     chis : tuple of float
     error : array, shape (chis,)
-        Worst difference of psi2 over the incidences, over its possible range, of those where the
-        law's own exact answer is known; NaN where it is known for none.
+        Largest difference of psi2 over the incidences, over the range of psi2. Incidences where
+        the law has no exact answer do not count; NaN where no incidence has one.
     """
 
     law: str
@@ -50,17 +50,17 @@ def model_error(law: str, chis: Sequence[float], incidences: Sequence[float]) ->
     law : str
         Name without the kind, of a law with a default for every option.
     chis, incidences : sequence of float
-        chi, and the psi1 of which the worst is taken at each.
+        Values of chi; values of psi1, over which the largest error is taken.
     """
     tangential = REGISTRY.create(full_name("tangential", law))
     if converges(tangential):
         return None
-    off = [[_off(tangential, psi1, chi) for psi1 in incidences] for chi in chis]
-    return ModelError(law=law, chis=tuple(chis), error=np.fmax.reduce(off, axis=1))
+    errors = [[_error(tangential, psi1, chi) for psi1 in incidences] for chi in chis]
+    return ModelError(law=law, chis=tuple(chis), error=np.fmax.reduce(errors, axis=1))
 
 
-def _off(law: TangentialLaw, psi1: float, chi: float) -> float:
-    """Return the model error of one impact, over the range of psi2; NaN if it is not known."""
+def _error(law: TangentialLaw, psi1: float, chi: float) -> float:
+    """Return the model error of one impact, over the range of psi2; NaN without exact answer."""
     scene = Scene.nondimensional(psi1=psi1, chi=chi)
     normal = Simulation(tangential=law).normal
     exact, own = continuum(scene, law), reference_for(law, normal)(scene, law)

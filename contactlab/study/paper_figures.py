@@ -1,8 +1,8 @@
 """The numbers behind Figs 1-4 of the paper.
 
-To add a figure is a function ``figure_5`` here, which returns the numbers: the command finds it by
-its name, writes its table and draws its curves. One that wants more than curves and a legend has a
-function of the same name in ``contactlab.figures.paper``.
+A new figure needs one function here, ``figure_5``, which returns the numbers. The command finds
+the function by its name, writes the table and draws the curves. A figure that needs more than
+curves and a legend also has a function of that name in ``contactlab.figures.paper``.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ FIGURE_1_PSI1 = (0.4, 0.8, 1.2, 2.0, 3.0, 4.0)
 FIGURE_3_GYRATION = (1.0, 0.4**0.5, 0.4, 0.25)
 #: psi1 of Figs 3 and 4.
 FIXED_PSI1 = 1.2
-#: Ranges of Figs 2 and 4, wide enough for the change of regime and every sign of psi2. Between
-#: points a straight line is within the width of a drawn one. psi2 oscillates in the root of chi,
-#: and chi is drawn by its logarithm: points are evenly spaced in a power of chi between the two,
-#: closer where psi2 turns sharply, with one where the rigid-body theory has its corner.
+#: Ranges of Figs 2 and 4, which show the change of regime and every sign of psi2. Points are so
+#: close that straight lines between them show no kinks. psi2 oscillates in the root of chi, and
+#: Fig. 4 has a logarithmic axis: points are evenly spaced in a power of chi between the two, with
+#: more where psi2 turns sharply, and one at the corner of the rigid-body theory.
 FIGURE_2_PSI1 = np.linspace(0.0, 7.0, 141)
 FIGURE_4_POWER = 0.35
 FIGURE_4_TURNS = (0.565, 4.33, 11.17)
@@ -50,7 +50,7 @@ FIGURE_4_CHI = np.unique(
 
 
 class Curve(NamedTuple):
-    """A named curve: ``parameter`` is what tells it from the others, NaN if nothing does."""
+    """A named curve; ``parameter`` distinguishes curves of one name, NaN if there is only one."""
 
     name: str
     parameter: float
@@ -60,14 +60,14 @@ class Curve(NamedTuple):
 
 @attrs.frozen(kw_only=True, eq=False)
 class FigureData:
-    """What one figure shows.
+    """The curves of one figure.
 
     Attributes
     ----------
     number : int
-        Of the paper's figure.
+        Number of the figure in the paper.
     x, y, parameter : str
-        Headings of the quantities, for tables.
+        Column headings for tables.
     curves : tuple of Curve
     """
 
@@ -112,36 +112,25 @@ def figure_4(simulation: Simulation) -> FigureData:
 
 
 def figures() -> dict[int, Callable[[Simulation], FigureData]]:
-    """Return the functions of this module that make the numbers of a figure, by its number."""
+    """Return the functions ``figure_1``, ``figure_2``, ... of this module by figure number."""
     prefix = "figure_"
-    found = {
+    by_number = {
         int(name.removeprefix(prefix)): function
         for name, function in globals().items()
         if name.startswith(prefix)
     }
-    return dict(sorted(found.items()))
+    return dict(sorted(by_number.items()))
 
 
 def chi_of_gyration(gyration_ratio: float) -> float:
-    """Return chi (38) for Poisson's ratio 0.3."""
+    """Return chi, eq. (38), for Poisson's ratio 0.3."""
     return 0.7 / 1.7 * (1.0 + gyration_ratio**-2)
 
 
 def _forces(
     number: int, simulation: Simulation, scenes: Mapping[float, Scene], parameter: str
 ) -> FigureData:
-    """Return the forces over the contact in several impacts, and the normal force of one.
-
-    Parameters
-    ----------
-    number : int
-        Of the figure.
-    simulation : Simulation
-    scenes : mapping of float to Scene
-        By the parameter that tells their curves apart.
-    parameter : str
-        Its name.
-    """
+    """Return the tangential force of each impact over time, and the normal force of the first."""
     curves: list[Curve] = []
     for value, scene in scenes.items():
         result = simulation.run(scene, history=True).check()
@@ -155,15 +144,7 @@ def _forces(
 
 
 def _reflexion(number: int, simulation: Simulation, *, psi1: Real, chi: Real) -> FigureData:
-    """Return psi2 of a law, of rigid bodies, and exact, over psi1 or chi, whichever is an array.
-
-    Parameters
-    ----------
-    number : int
-        Of the figure.
-    simulation : Simulation
-    psi1, chi : float or array
-    """
+    """Return psi2 of a law, of rigid bodies, and exact, over psi1 or chi: the one in an array."""
     varied = {"psi1": psi1, "chi": chi}
     name = next(name for name, value in varied.items() if np.ndim(value))
     x = np.asarray(varied[name])

@@ -1,4 +1,4 @@
-"""Every law that fits a scene, each under the integrator that suits it, and how it does."""
+"""Every law that fits a scene under its preferred integrator, and its scores."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from contactlab.contracts import SteppedTangentialLaw, TangentialLaw, WholeImpac
 from contactlab.scene_file import LawChoice
 from contactlab.study.compare import Comparison
 
-#: The scene where none is given: psi2 over psi1 of a solid sphere, with what codes give.
+#: Default scene: psi2 over psi1 of a solid sphere, with the values of other codes.
 DEFAULT_SCENE = Path(__file__).with_name("compiled_codes.toml")
 
 
 class Candidates(NamedTuple):
-    """Simulations by name, the reference first, and why other laws are left out."""
+    """Simulations by name, the reference first; reasons by name for laws left out."""
 
     simulations: dict[str, Simulation]
     left_out: dict[str, str]
@@ -29,25 +29,25 @@ class Candidates(NamedTuple):
 
 @attrs.frozen(kw_only=True)
 class Score:
-    """How one law does over a sweep, against the first law of the comparison.
+    """Scores of one law over a sweep, against the first law of the comparison.
 
     Attributes
     ----------
     law, integrator : str
-        The integrator is empty for a law that needs none.
+        Names; the integrator is empty for a law that needs none.
     rms, worst : float
-        Of psi2, less that of the first law.
+        Rms and largest absolute difference of psi2 from the first law.
     where : float
-        psi1 of the worst.
+        psi1 at the largest difference.
     numerical_error : float
-        Largest that is estimated, or declared, of psi2; NaN if unknown.
+        Largest estimated or declared numerical error of psi2; NaN if neither is known.
     energy_made : float
-        Largest share of the energy at the start that the books find made from nothing.
+        Largest energy from nothing, over the energy at the start.
     pressed_force : float
-        What pressing alone adds to the force of a sheared Hertz contact, over mu P_max; NaN of
-        a law that answers to no step.
+        Force that a growing load adds to a sheared Hertz contact, over mu P_max; NaN for a law
+        that is not stepped.
     run_time_per_impact : float
-        In s, in the sweep.
+        Run time per impact in the sweep, in s.
     """
 
     law: str
@@ -62,17 +62,17 @@ class Score:
 
 
 def candidates(laws: LawChoice) -> Candidates:
-    """Return every installed tangential law that fits the normal law, in each of its forms.
+    """Return simulations of every tangential law that fits the normal law, in each of its forms.
 
-    The first is the best that fits: the exact solution over elastic Hertz contact. The
-    integrator is the one chosen where that runs the law, else the best that does.
+    The first is the preferred law: the exact solution under elastic Hertz contact. A simulation
+    has the integrator chosen if that runs the law, else the preferred one.
     """
     normal = laws.resolved().made("normal")
     first = composition.preferred("tangential", normal)
     names = [short_name(name) for name in REGISTRY.names("tangential")]
     simulations: dict[str, Simulation] = {}
     left_out: dict[str, str] = {}
-    for name in [first, *(other for other in names if other != first)]:
+    for name in [first, *(name for name in names if name != first)]:
         try:
             law = REGISTRY.create(full_name("tangential", name))
         except (PluginError, ValueError) as error:
@@ -90,32 +90,32 @@ def candidates(laws: LawChoice) -> Candidates:
 
 
 def _forms(law: TangentialLaw) -> list[dict[str, str]]:
-    """Return the choices of words that a law has: none, for its defaults, and each other one."""
-    found: list[dict[str, str]] = [{}]
-    for field in getattr(type(law), "__attrs_attrs__", ()):  # a law of a stranger may be no attrs
-        others = field.metadata.get("words", ())
-        found += [{field.name: word} for word in others if word != getattr(law, field.name)]
-    return found
+    """Return options that select each form of a law, by words: first none, for the default."""
+    forms: list[dict[str, str]] = [{}]
+    for field in getattr(type(law), "__attrs_attrs__", ()):  # a plug-in need not use attrs
+        words = field.metadata.get("words", ())
+        forms += [{field.name: word} for word in words if word != getattr(law, field.name)]
+    return forms
 
 
 def scores(comparison: Comparison, simulations: dict[str, Simulation]) -> list[Score]:
     """Return the score of each law of a comparison, the reference first."""
     psi1 = np.ravel(comparison.scene.psi1 * np.ones(comparison.scene.shape))
-    found = []
+    listed = []
     for run in comparison.runs:
         law = simulations[run.name].tangential
-        off = np.ravel(np.abs(comparison.difference("psi2", run.name)))
+        difference = np.ravel(np.abs(comparison.difference("psi2", run.name)))
         made = -np.ravel(run.result.energy.relative_imbalance)
-        known = np.isfinite(off)
-        place = int(np.argmax(np.where(known, off, -1.0)))
+        finite = np.isfinite(difference)
+        place = int(np.argmax(np.where(finite, difference, -1.0)))
         whole = isinstance(law, WholeImpactTangentialLaw)
         integrator = run.result.laws["integrator"].partition(" ")[0]
-        found.append(
+        listed.append(
             Score(
                 law=run.name,
                 integrator="" if whole else integrator,
-                rms=float(np.sqrt(np.mean(off[known] ** 2))) if known.any() else np.nan,
-                worst=float(off[place]) if known.any() else np.nan,
+                rms=float(np.sqrt(np.mean(difference[finite] ** 2))) if finite.any() else np.nan,
+                worst=float(difference[place]) if finite.any() else np.nan,
                 where=float(psi1[place]),
                 numerical_error=_largest(comparison.numerical_error(run.name)),
                 energy_made=max(_largest(made), 0.0) + 0.0,
@@ -123,18 +123,18 @@ def scores(comparison: Comparison, simulations: dict[str, Simulation]) -> list[S
                 run_time_per_impact=run.run_time_per_impact,
             )
         )
-    return found
+    return listed
 
 
 def pressed_force(law: TangentialLaw) -> float:
-    """Return what a growing load alone adds to the force of a sheared contact, over mu P_max."""
+    """Return the force that a growing load adds to a sheared contact, over mu P_max."""
     if not isinstance(law, SteppedTangentialLaw):
         return np.nan
     from contactlab.testing.bench import Bench, drive, straight
 
     path = straight((0.0, 0.4), (0.3, 0.4), (0.3, 1.0))
     force = drive(law, Bench.of(), path).force
-    sheared = 2 * len(force) // 3  # the last of the three legs only presses
+    sheared = 2 * len(force) // 3  # the third leg only presses
     return float(np.max(np.abs(force[sheared:])) - abs(force[sheared - 1]))
 
 

@@ -26,10 +26,10 @@ from contactlab.study.stability_outcome import (
     judge,
 )
 
-#: A case of more work than this, in steps of one part, is skipped: what is tried does not depend
-#: on the machine.
+#: A case of more work than this, in steps of one part, is skipped. Work is not time: which cases
+#: are tried does not depend on the machine.
 LARGEST, QUICK_LARGEST = 300_000.0, 12_000.0
-#: What a method takes where a case does not say, for the estimate of its work.
+#: Steps and tolerance assumed in ``work`` where the case sets none.
 DEFAULT_STEPS, DEFAULT_TOLERANCE = 200, 1e-4
 
 
@@ -37,8 +37,8 @@ DEFAULT_STEPS, DEFAULT_TOLERANCE = 200, 1e-4
 class Stability:
     """Every outcome, the usable region of each method, and the model error of each law.
 
-    Outcomes and regions tell of numerical error, from the law's own exact answer. ``models`` lists
-    the laws whose exact answer is not that of the elastic continuum.
+    Outcomes and regions hold numerical errors, against the law's own exact answer. ``models``
+    holds the model errors of laws whose exact answer is not that of the elastic continuum.
     """
 
     outcomes: tuple[Outcome, ...]
@@ -47,32 +47,32 @@ class Stability:
     models: tuple[ModelError, ...] = ()
 
     def failures(self) -> list[Outcome]:
-        """Return the cases that are silently wrong, or raised, those of the map included."""
+        """Return the cases that are silently wrong or raised, the cells of the map included."""
         listed = [item for item in self.outcomes if item.outcome in (WRONG, RAISED)]
         return listed + [item for region in self.regions for item in region.failures]
 
     def silently_wrong(self) -> int:
-        """Return how many answers are wrong without a word, those of the map included."""
+        """Return the number of silently wrong answers, the cells of the map included."""
         return sum(item.outcome == WRONG for item in self.failures())
 
     def tried(self) -> int:
-        """Return the number of runs judged, those of the map included."""
+        """Return the number of runs judged, the cells of the map included."""
         done = sum(1 for item in self.outcomes if item.outcome != SKIPPED)
         return done + sum(item.tried for item in self.regions)
 
     def skipped(self) -> int:
-        """Return the number of cases left out because they are too much work."""
+        """Return the number of cases skipped because they are too much work."""
         return sum(item.outcome == SKIPPED for item in self.outcomes)
 
     def counts(self, method: str) -> Counter[str]:
-        """Return how often each outcome came about; ``coarse`` answers are also answered."""
+        """Return the number of cases with each outcome; ``coarse`` is a part of ``ANSWERED``."""
         mine = [item for item in self.outcomes if item.method == method]
         counts = Counter(item.outcome for item in mine)
         counts["coarse"] = sum(item.outcome == ANSWERED and item.bound > COARSE for item in mine)
         return counts
 
     def worst(self, method: str, family: str) -> float:
-        """Return the largest error of the answers that claim better than ``COARSE``."""
+        """Return the largest error over the range, of answers that are not coarse; NaN if none."""
         errors = [
             item.error
             for item in self.outcomes
@@ -91,19 +91,19 @@ def stability(
     progress: Callable[[int, int], object] | None = None,
     judged: Callable[[Case], Outcome] = judge,
 ) -> Stability:
-    """Run the report.
+    """Run every case of every method, and return outcomes, regions and model errors.
 
     Parameters
     ----------
     methods : sequence of Method
     quick : bool
-        Fewer scenes and resolutions, none of them long.
+        Fewer scenes and resolutions, without the long ones.
     budget : float
-        Seconds after which nothing further is begun; ``complete`` then is False.
+        Seconds after which no further case is begun; ``complete`` then is False.
     progress : callable, optional
         Called as ``progress(done, total)``.
     judged : callable
-        What runs a case, of the map too.
+        Runs one case and returns its outcome, for the map too.
     """
     started = time.perf_counter()
     listed = [list(cases(method, quick=quick)) for method in methods]
@@ -116,8 +116,7 @@ def stability(
     models: list[ModelError] = []
     largest = QUICK_LARGEST if quick else LARGEST
     done = 0
-    # One family after another over all methods, so that a budget cuts all of them alike, and
-    # what is quick before what is long.
+    # A budget cuts all methods alike: family by family, and within a family by work.
     ordered = sorted((case for mine in listed for case in mine), key=lambda c: (c.family, work(c)))
     for case in ordered:
         if time.perf_counter() - started > budget:
@@ -133,11 +132,11 @@ def stability(
         done += len(mine) if regions[-1].complete else 0
         if progress is not None:
             progress(done, total)
-    for law in laws:  # after the map, which has made the costly ones of their references
+    for law in laws:  # after the map, which has cached the costly exact answers
         if time.perf_counter() - started > budget:
             break
-        found = model_error(law, map_chis(quick=quick), INCIDENCES)
-        models += [] if found is None else [found]
+        model = model_error(law, map_chis(quick=quick), INCIDENCES)
+        models += [] if model is None else [model]
         done += 1
         if progress is not None:
             progress(done, total)
@@ -150,15 +149,16 @@ def stability(
 
 
 def work(case: Case) -> float:
-    """Return about how much work a case is: steps, times what a part costs beside a step.
+    """Return an estimate of the work of a case, in steps of one part.
 
-    Where steps are chosen on the way they grow with chi, and as the root of the tolerance.
+    Under a tolerance the number of steps grows with the root of chi, and falls with the root of
+    the tolerance.
     """
     options = case.options["integrator"]
     steps = float(options.get("steps", DEFAULT_STEPS))
     if "steps" not in options:
         tolerance = float(options.get("tolerance", DEFAULT_TOLERANCE))
-        with contextlib.suppress(ValueError):  # bad input is an outcome, not an end
+        with contextlib.suppress(ValueError):  # a refused scene is an outcome
             steps *= math.sqrt(1.0 + min(float(np.max(case.scene.make().chi)), 1e12))
         steps *= math.sqrt(DEFAULT_TOLERANCE / tolerance)
     parts = [

@@ -1,28 +1,35 @@
-"""The cases of one method: scenes at its own resolution, and resolutions on a few scenes."""
+"""The cases of one method: extreme scenes at its own resolution, and ladders of resolutions."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
 
 import attrs
+import numpy as np
 
 from contactlab.compose.composition import DEFAULT_NORMAL, misfit
 from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
+from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.study.bench_methods import Method
-from contactlab.study.stability_scenes import CHI, Extreme, extreme_scenes, normal_scenes
 
+#: A solid sphere of Poisson's ratio 0.3: the paper's own case.
+CHI = 49 / 34
+REGIME_CHI = (0.3, 0.5, 0.51, CHI, 3.0)
+CHIS = (0.05, 0.1, 0.25, 0.499, 0.5, 0.501, 0.75, 1.0, 3.0, 8.0, 30.0, 100.0, 1e3, 1e4)
+QUICK_CHIS = (0.05, 0.5, 3.0, 100.0)
 STEPS = (1, 2, 3, 4, 5, 7, 10, 20, 50, 100, 1000, 10_000, 100_000, 1_000_000)
 QUICK_STEPS = (1, 2, 3, 4, 5, 10, 50)
 PARTS = (1, 2, 3, 5, 10, 100, 1000)
 QUICK_PARTS = (1, 2)
 TOLERANCES = (1.0, 0.1, 1e-2, 1e-3, 1e-5, 1e-8, 1e-12)
-#: Scenes for the ladders of resolution: (psi1, chi).
+#: (psi1, chi) of the scenes on which resolutions are varied.
 LADDER = ((0.3, 0.3), (0.5, CHI), (1.2, CHI), (3.0, CHI), (1.2, 30.0), (0.3, 1e3))
 QUICK_LADDER = ((1.2, CHI), (1.2, 30.0))
-#: Steps over sqrt(chi) at the stability limit, and how many times that follow a large chi.
+#: Steps over sqrt(chi) at the stability limit, and the multiple of them that large chi is run at.
 LIMIT, ABOVE_LIMIT = 2.85, 8
 
 Options = dict[str, dict[str, Any]]
@@ -35,9 +42,9 @@ class Case:
     Attributes
     ----------
     planned : bool
-        False: the plan's short cuts are not taken, the march does the whole impact.
+        False: whole-impact answers are not used, the integrator marches the impact.
     normal : str
-        The normal law.
+        Name of the normal law, without the kind.
     """
 
     family: str
@@ -52,7 +59,7 @@ class Case:
 def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
     """Iterate over the cases of a method, under its normal law and then under the others.
 
-    Of a method whose normal law is not the default, only what is tried under every normal law.
+    A method whose normal law is not the default has only the cases of every normal law.
     """
     if method.normal != DEFAULT_NORMAL:
         yield from _under(method, method.normal, quick=quick)
@@ -84,7 +91,7 @@ def _under(method: Method, normal: str, *, quick: bool) -> Iterator[Case]:
 
 
 def other_normal_laws(method: Method) -> Iterator[str]:
-    """Iterate over the installed normal laws, but the default, that fit a method."""
+    """Iterate over the names of the normal laws that fit a method, without the default."""
     tangential = REGISTRY.create(full_name("tangential", method.tangential))
     integrator = REGISTRY.create(full_name("integrator", method.integrator))
     for name in REGISTRY.names("normal"):
@@ -94,7 +101,7 @@ def other_normal_laws(method: Method) -> Iterator[str]:
         try:
             normal = REGISTRY.create(name)
         except (PluginError, ValueError):
-            continue  # broken, or it cannot be made without options
+            continue  # broken, or an option has no default
         if misfit(normal, tangential, integrator) is None:
             yield short
 
@@ -102,17 +109,7 @@ def other_normal_laws(method: Method) -> Iterator[str]:
 def _ladder(
     method: Method, part: str | None, step: str | None, psi1: float, chi: float, *, quick: bool
 ) -> Iterator[Case]:
-    """Yield the cases of one impact at several resolutions.
-
-    Parameters
-    ----------
-    method : Method
-    part, step : str or None
-        Names of the resolutions of tangential law and integrator.
-    psi1, chi : float
-    quick : bool
-        Whether fewer values will do.
-    """
+    """Yield the cases of one impact at several resolutions."""
 
     def scene(family: str) -> Extreme:
         label = f"psi1={psi1:g} chi={chi:.4g}"
@@ -142,25 +139,128 @@ def _class(method: Method) -> Any:
 
 
 def _case(method: Method, scene: Extreme, options: Options, *, planned: bool = True) -> Case:
-    """Return the case of a scene at one resolution.
-
-    Parameters
-    ----------
-    method : Method
-    scene : Extreme
-    options : mapping of str to mapping
-        Of tangential law and integrator, by kind.
-    planned : bool
-        Whether whole-impact answers are taken; everything is marched otherwise.
-    """
-    words = [f"{name}={value:g}" for part in options.values() for name, value in part.items()] + (
-        [] if planned else ["marched"]
-    )
+    """Return the case of a scene at one resolution."""
+    words = [f"{name}={value:g}" for part in options.values() for name, value in part.items()]
     return Case(
         family=scene.family,
-        label=", ".join([scene.label, *words]),
+        label=", ".join([scene.label, *words, *([] if planned else ["marched"])]),
         method=method,
         options={"tangential": {}, "integrator": {}, **options},
         scene=scene,
         planned=planned,
     )
+
+
+class Extreme(NamedTuple):
+    """A scene with its family and label; a ``ValueError`` of ``make`` is an outcome too."""
+
+    family: str
+    label: str
+    make: Callable[[], Scene]
+
+
+def extreme_scenes(*, quick: bool = False) -> list[Extreme]:
+    """Return the scenes tried under the default normal law; ``quick`` takes about a third."""
+    scenes = [*_incidence(quick), *_inertia(quick), *_friction(), *_materials()]
+    scenes += [*_sizes(quick), *_masses(quick), *_types()]
+    return scenes
+
+
+def normal_scenes(*, quick: bool = False) -> list[Extreme]:
+    """Return the scenes tried under every normal law."""
+    scenes = [
+        _plain("normal", "psi1=3", 3.0, CHI),
+        _plain("normal", "psi1=1.2 chi=3", 1.2, 3.0),
+        Extreme("normal", "steel ball", _ball),
+    ]
+    if quick:
+        return scenes
+    incidences = (0.0, 1e-12, 0.5, 1.2, 20.0, 1e15)
+    scenes += [_plain("normal", f"psi1={psi1:g}", psi1, CHI) for psi1 in incidences]
+    scenes += [_plain("normal", f"chi={chi:g}", 0.3, chi) for chi in (0.05, 0.5, 30.0, 1e3)]
+    scenes += [
+        extreme._replace(family="normal")
+        for extreme in (*_friction(), *_sizes(quick=True), *_masses(quick=True), *_types())
+    ]
+    return scenes
+
+
+def _plain(family: str, label: str, psi1: Any, chi: Any) -> Extreme:
+    """Return a scene defined by psi1 and chi."""
+    return Extreme(family, label, lambda: Scene.nondimensional(psi1=psi1, chi=chi))
+
+
+def _incidence(quick: bool) -> Iterator[Extreme]:
+    incidences = (0.0, 1e-300, 1e-12, 1e-3, 0.5, -1.2, 1e6, 1e15, 1e16)
+    for psi1 in incidences[:: 2 if quick else 1]:
+        yield _plain("psi1", f"psi1={psi1:g}", psi1, CHI)
+    for chi in (0.5, CHI) if quick else REGIME_CHI:
+        for name, edge in (("1", 1.0), ("4chi-1", 4.0 * chi - 1.0)):
+            for side in (-1e-3, -1e-9, 0.0, 1e-9, 1e-3):
+                if edge > 0.0 and not (quick and abs(side) == 1e-3):
+                    label = f"psi1={name}{side:+g} chi={chi:.4g}"
+                    yield _plain("regimes", label, edge + side, chi)
+
+
+def _inertia(quick: bool) -> Iterator[Extreme]:
+    for chi in QUICK_CHIS if quick else CHIS:
+        for psi1 in (0.3, 1.2) if quick else (0.3, 0.98, 1.2, 2.5):
+            yield _plain("chi", f"chi={chi:g} psi1={psi1:g}", psi1, chi)
+
+
+def _ball(
+    *,
+    radius: float = 0.01,
+    speed: float = 1.0,
+    friction: Any = 0.2,
+    slip: Any = 0.3,
+    poisson: Any = 0.3,
+    mass_ratio: float | None = None,
+) -> Scene:
+    """Return a steel sphere on a half-space, or on a sphere of another mass; slip over speed."""
+    material = Material(shear_modulus=80e9, poisson_ratio=poisson, density=7850.0)
+    sphere = Sphere(radius, material)
+    target: Sphere | HalfSpace = HalfSpace(material)
+    if mass_ratio is not None:
+        target = Sphere(radius, material, mass=float(sphere.mass) * mass_ratio)
+    return Scene(sphere, target, friction, speed, slip * speed, 0.0)
+
+
+def _friction() -> Iterator[Extreme]:
+    for friction in (0.0, 1e-300, 1e-12, 1e3, 1e12, 1e300):
+        yield Extreme("friction", f"mu={friction:g}", lambda mu=friction: _ball(friction=mu))  # type: ignore[misc]
+
+
+def _materials() -> Iterator[Extreme]:
+    for ratio in (-1.0, 0.0, 0.5):
+        yield Extreme("poisson", f"nu={ratio:g}", lambda nu=ratio: _ball(poisson=nu))  # type: ignore[misc]
+
+
+def _sizes(quick: bool) -> Iterator[Extreme]:
+    speeds = (1e-12, 1e4) if quick else (1e-165, 1e-12, 1e-6, 1e-2, 1e2, 1e4)
+    radii = (1e-9, 1e9) if quick else (1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e9)
+    for v1 in speeds:
+        yield Extreme("speed", f"v1={v1:g} m/s", lambda v=v1: _ball(speed=v))  # type: ignore[misc]
+    for size in radii:
+        yield Extreme("radius", f"R={size:g} m", lambda r=size: _ball(radius=r))  # type: ignore[misc]
+        for v1 in speeds[:: len(speeds) - 1]:
+            label = f"R={size:g} m, v1={v1:g} m/s"
+            yield Extreme("radius", label, lambda r=size, v=v1: _ball(radius=r, speed=v))  # type: ignore[misc]
+
+
+def _masses(quick: bool) -> Iterator[Extreme]:
+    for ratio in (1e-12, 1e12) if quick else (1e-12, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e12):
+        yield Extreme("mass", f"m2/m1={ratio:g}", lambda m=ratio: _ball(mass_ratio=m))  # type: ignore[misc]
+
+
+def _types() -> Iterator[Extreme]:
+    single = np.float32
+    yield _plain("types", "float32", single(1.2), single(CHI))
+    yield _plain("types", "int", 1, 3)
+    yield _plain("types", "int64", np.int64(2), np.int64(3))
+    yield Extreme(
+        "types",
+        "float32, SI",
+        lambda: _ball(friction=single(0.2), slip=single(0.3), poisson=single(0.3)),
+    )
+    yield Extreme("types", "int, SI", lambda: _ball(friction=1, slip=1, poisson=0))

@@ -1,4 +1,4 @@
-"""Where a method's usable region ends: its resolution against chi."""
+"""The usable region of a method: numerical error over resolution and chi."""
 
 from __future__ import annotations
 
@@ -15,20 +15,18 @@ from contactlab.compose.names import full_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.impact.scene import Scene
 from contactlab.study.bench_methods import Method
-from contactlab.study.stability_cases import Case
+from contactlab.study.stability_cases import Case, Extreme
 from contactlab.study.stability_outcome import ANSWERED, RAISED, WRONG, Outcome, judge
 from contactlab.study.stability_references import converges
-from contactlab.study.stability_scenes import Extreme
 
 Array = NDArray[np.float64]
 
-#: States of a cell. Of its impacts the worst counts.
+#: States of a cell: the state of its worst impact.
 ALL_ANSWERED, ONE_REFUSED, ONE_RAISED, ONE_WRONG, NOT_TRIED = range(5)
 STATES = {ANSWERED: ALL_ANSWERED, RAISED: ONE_RAISED, WRONG: ONE_WRONG}
-#: Under a tolerance steps grow with chi, and as its inverse root: cells beyond this product of
-#: the two are not tried.
+#: Estimated steps under a tolerance, sqrt((1 + chi)/tolerance), beyond which a cell is not tried.
 MOST_STEPS = 3e4
-#: psi1 of the impacts in each cell; the worst is shown.
+#: psi1 of the impacts in each cell.
 INCIDENCES = (0.3, 0.95, 1.2)
 CHIS = tuple(np.geomspace(0.05, 1e4, 17).tolist())
 STEPS = (1, 2, 3, 4, 6, 9, 14, 21, 32, 48, 72, 108, 162, 243, 365, 547, 820, 1230, 1845, 2768, 4152)
@@ -40,25 +38,25 @@ QUICK_TOLERANCES = (0.1, 1e-3)
 
 @attrs.frozen(kw_only=True, eq=False)
 class Region:
-    """Worst numerical error over the range at each resolution (rows) and chi (columns).
+    """Largest numerical error over the range at each resolution (rows) and chi (columns).
 
     Attributes
     ----------
     converges : bool
-        Whether the law converges to the elastic continuum. The errors of one that does not are
-        from its own exact answer, which is off by the law's model error.
+        Whether the law converges to the elastic continuum. If not, errors are against the law's
+        own exact answer, and do not contain its model error.
     word : str
         ``steps`` or ``tolerance``.
     error : array, shape (rows, columns)
         NaN where every impact was refused.
     state : array of int
         ``ALL_ANSWERED``; ``ONE_REFUSED``, ``ONE_RAISED`` or ``ONE_WRONG`` where at least one
-        impact was refused, raised or is silently wrong; ``NOT_TRIED``: more work than
-        ``MOST_STEPS``, or the time was up.
+        impact was refused, raised or is silently wrong; ``NOT_TRIED`` for more steps than
+        ``MOST_STEPS``, or after the time limit.
     failures : tuple of Outcome
-        The impacts that are silently wrong, or raised.
+        The impacts that are silently wrong or raised.
     complete : bool
-        False if the time was up.
+        False if the time limit left cells out.
     """
 
     method: str
@@ -73,12 +71,12 @@ class Region:
     complete: bool = True
 
     def count(self, outcome: str) -> int:
-        """Return how many impacts were ``WRONG``, or ``RAISED``."""
+        """Return the number of impacts with an outcome, ``WRONG`` or ``RAISED``."""
         return sum(item.outcome == outcome for item in self.failures)
 
 
 def region_cells(method: Method, *, quick: bool = False) -> list[tuple[float, float]]:
-    """Return (resolution, chi) of every cell; none for a method without steps or tolerance."""
+    """Return (resolution, chi) of every cell; empty for a method without steps or tolerance."""
     word = _word(method)
     if word is None or method.normal != DEFAULT_NORMAL:  # the map is judged by exact answers
         return []
@@ -101,7 +99,7 @@ def region(
     until: float = np.inf,
     judged: Callable[[Case], Outcome] = judge,
 ) -> Region:
-    """Return how a method does in its cells, those of one resolution run in order of chi.
+    """Return errors and states of a method over its cells, run in the order of ``cells``.
 
     Parameters
     ----------
@@ -110,7 +108,7 @@ def region(
     until : float
         Time (``time.perf_counter``) after which no cell is begun.
     judged : callable
-        What runs a case.
+        Runs one case and returns its outcome.
     """
     word = _word(method)
     assert word is not None
@@ -152,25 +150,15 @@ def region(
 def _word(method: Method) -> str | None:
     if method.whole:
         return None
-    found: str | None = REGISTRY.law_class(full_name("integrator", method.integrator)).resolution
-    return found
+    word: str | None = REGISTRY.law_class(full_name("integrator", method.integrator)).resolution
+    return word
 
 
 def _case(method: Method, word: str, fine: float, psi1: float, chi: float) -> Case:
-    """Return the case of one impact in a cell.
-
-    Parameters
-    ----------
-    method : Method
-    word : str
-        Name of the integrator's resolution.
-    fine : float
-        Its value.
-    psi1, chi : float
-    """
+    """Return the case of one impact in a cell."""
     options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {word: fine}}
     if hasattr(REGISTRY.law_class(full_name("integrator", method.integrator)), "refine"):
-        options["integrator"]["refine"] = False  # what the steps asked for are worth
+        options["integrator"]["refine"] = False  # the map shows the steps asked for
     scene = Extreme("map", "", lambda: Scene.nondimensional(psi1=psi1, chi=chi))
     return Case(
         family="map",

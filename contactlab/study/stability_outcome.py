@@ -1,4 +1,4 @@
-"""What came of one case: an error, a refusal, or an answer that is silently wrong."""
+"""Outcome of one case: answered, refused, raised or silently wrong."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.result import ImpactResult
-from contactlab.study.stability_bounds import LARGEST_NORMAL, broken_invariants
 from contactlab.study.stability_cases import Case
 from contactlab.study.stability_references import (
     SETTLED,
@@ -33,11 +32,18 @@ ANSWERED, REFUSED, SKIPPED = "answered", "refused", "skipped"
 WRONG, RAISED = "silently wrong", "raised"
 #: Rounding, over the range of psi2.
 ROUNDING = 1e-9
-#: What a law that declares no error may be off by, and break the invariants by, over the range.
+#: Bound, over the range, for a law that declares no error: its error, and broken invariants.
 UNDECLARED = 0.01
-#: It may be off by this many times the estimated error, if that is more: estimates are mostly
-#: within a factor of three.
+#: Bound over the estimated error, where that exceeds ``UNDECLARED``: estimates are mostly within
+#: a factor of three of the error.
 ESTIMATED = 3.0
+#: Bound of the imbalance of the energy books, over the energy at the start: an integrator that
+#: controls its error adds up friction work less accurately than velocities.
+BOOKS = 1e-5
+#: Bound of energy from nothing, over the energy at the start, however coarse the method.
+LARGEST_GAIN = 0.1
+#: Bound of e - 1 under a law with a closed-form motion, and of 1 - e if elastic, however few steps.
+LARGEST_NORMAL = 1e-9
 
 
 @attrs.frozen(kw_only=True)
@@ -47,11 +53,11 @@ class Outcome:
     Attributes
     ----------
     error, bound : float
-        Of the change of slip velocity, over its possible range; NaN without an answer.
+        Error of the change of slip velocity and its bound, over the range; NaN without an answer.
         The bound of a law that declares no error is ``UNDECLARED``, or ``ESTIMATED`` times the
-        estimate if that is more.
+        estimated error where that is larger.
     note : str
-        The status, or what is wrong.
+        The status, or the sentences on what is wrong.
     """
 
     method: str
@@ -65,7 +71,7 @@ class Outcome:
 
 
 def judge(case: Case) -> Outcome:
-    """Run one case and say what came of it."""
+    """Return the outcome of one case."""
     try:
         scene = case.scene.make()
         simulation = case.method.simulation(case.options, normal=case.normal)
@@ -76,44 +82,44 @@ def judge(case: Case) -> Outcome:
 
 
 def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Reference) -> Outcome:
-    """Return what came of one scene, its answer judged against ``reference``.
+    """Return the outcome of one scene, its answer judged against ``reference``.
 
     Parameters
     ----------
     case : Case
-        What is reported; ``planned`` says whether whole-impact answers are taken.
+        Names the outcome; without ``planned`` the integrator marches the impact.
     simulation : Simulation
     scene : Scene
     reference : callable
-        Gives the exact change of slip velocity, or None where none is known.
+        Returns the exact change of slip velocity in m/s, or None if there is none.
     """
     before = time.perf_counter()
     try:
         with np.errstate(all="ignore"):
             result = simulation.run(scene) if case.planned else marched(simulation, scene)
     except Exception as error:
-        # Whatever a law or the core lets out is a finding, not an end of the report. A run
-        # makes a status of what an integrator raises.
+        # Any exception is an outcome, and the report goes on. A planned run turns an exception of
+        # the integrator into a status; a march does not.
         note = f"{type(error).__name__}: {error}"
         outcome = RAISED if case.planned else REFUSED
         return _outcome(case, outcome, note=note if case.planned else f"LAW_RAISED {note}")
-    taken = time.perf_counter() - before
+    run_time = time.perf_counter() - before
     if result.status is not Status.SUCCESS:
         return _outcome(
-            case, REFUSED, note=f"{result.status.name} {result.motion.detail}", time=taken
+            case, REFUSED, note=f"{result.status.name} {result.motion.detail}", time=run_time
         )
     try:
         with np.errstate(all="ignore"):
             expected = reference(scene, simulation.tangential)
-            known_to = SETTLED if reference is itself else 0.0
-            return _judged(case, simulation, result, (expected, known_to), taken)
+            uncertainty = SETTLED if reference is itself else 0.0
+            return _judged(case, simulation, result, (expected, uncertainty), run_time)
     except Exception as error:
         note = f"its reference: {type(error).__name__}: {error}"
-        return _outcome(case, RAISED, note=note, time=taken)
+        return _outcome(case, RAISED, note=note, time=run_time)
 
 
 def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
-    """Run without the plan's short cuts: the integrator does the whole impact."""
+    """Return the result of an impact marched by the integrator, without whole-impact answers."""
     law, integrator = simulation.tangential, simulation.integrator
     normal = simulation.normal_motion(scene)
     tangential = integrator.integrate(normal, law, scene, None)
@@ -130,63 +136,39 @@ def _judged(
     case: Case,
     simulation: Simulation,
     result: ImpactResult,
-    known: tuple[float | None, float],
-    taken: float,
+    reference: tuple[float | None, float],
+    run_time: float,
 ) -> Outcome:
-    """Return the outcome of a run that ended well: right, or silently wrong.
-
-    Parameters
-    ----------
-    case : Case
-    simulation : Simulation
-    result : ImpactResult
-        A success.
-    known : tuple of float
-        Exact change of slip velocity, in m/s, None if it is not known; and how closely it is
-        known, over the range: no answer can be judged more closely.
-    taken : float
-        Run time, in s.
-    """
-    scene, (expected, known_to) = result.scene, known
+    """Return the outcome of a success, judged against (exact change in m/s, its uncertainty)."""
+    scene, (expected, uncertainty) = result.scene, reference
     unit, width, _ = range_of(scene)
     declared = float(result.plan.psi2_error) * unit
     bound = min(declared / width + ROUNDING, LARGEST_SHARE) if width > 0.0 else ROUNDING
     error = np.nan
     if expected is not None:
-        away = abs(float(result.motion.slip_velocity_change) - expected)
-        error = away / width if width > 0.0 else (0.0 if away == 0.0 else np.inf)
+        difference = abs(float(result.motion.slip_velocity_change) - expected)
+        error = difference / width if width > 0.0 else (0.0 if difference == 0.0 else np.inf)
     if not np.isnan(bound):
-        wrong = _wrong(simulation, result, (error, known_to), bound)
-    elif wrong := _wrong(simulation, result, (error, known_to), bound := UNDECLARED):
-        told = float(np.asarray(estimated(simulation, result))) * unit / width
-        bound = min(max(bound, ESTIMATED * told), LARGEST_SHARE)
-        wrong = _wrong(simulation, result, (error, known_to), bound)
+        wrong = _wrong(simulation, result, (error, uncertainty), bound)
+    elif wrong := _wrong(simulation, result, (error, uncertainty), bound := UNDECLARED):
+        estimate = float(np.asarray(estimated(simulation, result))) * unit / width
+        bound = min(max(bound, ESTIMATED * estimate), LARGEST_SHARE)
+        wrong = _wrong(simulation, result, (error, uncertainty), bound)
     return _outcome(
         case,
         WRONG if wrong else ANSWERED,
         error=float(error),
         bound=bound,
         note="; ".join(wrong) if wrong else "" if expected is not None else "no reference",
-        time=taken,
+        time=run_time,
     )
 
 
 def _wrong(
     simulation: Simulation, result: ImpactResult, error: tuple[float, float], bound: float
 ) -> list[str]:
-    """Return what is wrong with an answer by more than ``bound`` of the range.
-
-    Parameters
-    ----------
-    simulation : Simulation
-    result : ImpactResult
-    error : tuple of float
-        Of the change of slip velocity, and how closely that is known, over the range; NaN for
-        an error without reference.
-    bound : float
-        Declared, or from an estimate.
-    """
-    scene, (away, known_to) = result.scene, error
+    """Return sentences on what exceeds ``bound``; ``error`` holds error and uncertainty."""
+    scene, (difference, uncertainty) = result.scene, error
     elastic = "elastic_hertz" in simulation.normal.offers
     wrong = broken_invariants(
         result,
@@ -195,12 +177,14 @@ def _wrong(
         books_bound=simulation.tangential.books_bound,
         load_impulse=None if elastic else load_impulse(scene, simulation.normal),
     )
-    if away > bound + known_to:
-        wrong.append(f"error {away:.2g} of the range, at most {bound:.2g} is declared or estimated")
-    off = float(np.asarray(result.normal_restitution)) - 1.0
+    if difference > bound + uncertainty:
+        wrong.append(
+            f"error {difference:.2g} of the range, at most {bound:.2g} is declared or estimated"
+        )
+    excess = float(np.asarray(result.normal_restitution)) - 1.0
     allowed = LARGEST_NORMAL if isinstance(simulation.normal, ClosedFormNormalLaw) else ACCURACY
-    if not off <= allowed or (elastic and not off >= -allowed):
-        wrong.append(f"e is off by {off:.2g}")
+    if not excess <= allowed or (elastic and not excess >= -allowed):
+        wrong.append(f"e is off by {excess:.2g}")
     return wrong
 
 
@@ -213,3 +197,59 @@ def _outcome(case: Case, outcome: str, *, time: float = 0.0, **entries: Any) -> 
         run_time_s=time,
         **entries,
     )
+
+
+def broken_invariants(
+    result: ImpactResult,
+    bound: float,
+    *,
+    passive: bool = True,
+    books_bound: float = 0.0,
+    load_impulse: float | None = None,
+) -> list[str]:
+    """Return sentences on the invariants of theory §7 that a result breaks.
+
+    Parameters
+    ----------
+    result : ImpactResult
+    bound : float
+        Declared or estimated error of psi2, over its range.
+    passive : bool
+        False for a law that expects its energy books not to close, because its model makes energy.
+    books_bound : float
+        Declared imbalance of the books, over the energy at the start.
+    load_impulse : float, optional
+        Impulse of the friction load, in N s; by default that of an elastic impact.
+    """
+    scene, motion = result.scene, result.motion
+    _, width, speed = range_of(scene)
+    if load_impulse is not None:
+        sliding = scene.friction_coefficient * load_impulse / scene.pair.tangential_mass
+        width = min(float(sliding), 2.0 * speed)
+    change, rate = float(motion.slip_velocity_change), float(motion.normal_velocity)
+    numbers = (change, rate, float(motion.duration), float(motion.friction_work))
+    if not np.all(np.isfinite(numbers)):
+        return ["a number that is not finite"]
+    if width == 0.0:
+        return [] if change == 0.0 else ["a change of velocity where nothing can act"]
+    broken = []
+    allowed = min(bound, LARGEST_GAIN)
+    slowed = -change * np.sign(float(scene.slip_velocity))
+    if slowed < -allowed * width and passive:
+        broken.append("friction speeds the slip up")
+    slides = width < 2.0 * speed  # the range is the change by slip throughout, 4 chi
+    if slowed > (1.0 + allowed) * width and (passive or slides):
+        broken.append(
+            "|psi2 - psi1| beyond what mu times the load can do" if slides else "|psi2| > |psi1|"
+        )
+    if not passive:
+        return broken
+    books = result.energy
+    scale = 0.5 * float(scene.pair.normal_mass * scene.normal_speed**2)
+    scale += float(scene.pair.tangential_mass) * width * speed
+    allowed_books = max(bound, BOOKS, min(books_bound, LARGEST_GAIN))
+    if not abs(float(books.imbalance)) <= allowed_books * scale:
+        broken.append("energy books do not close")
+    if float(books.friction_work) < -allowed * scale:
+        broken.append("friction does work on the bodies")
+    return broken

@@ -1,8 +1,8 @@
-"""What the answers are judged against: each law's own exact answer.
+"""References of the stability study: each law's own exact answer.
 
-A law that leaves something out (a rigid body has no partial slip) is not unstable for that. So
-the laws that converge to the continuum are judged by the exact solution, a rigid body by its
-closed form, and any other law by itself at high resolution.
+A law that converges to the continuum is judged by the exact solution, a rigid body by its closed
+form, and any other law by itself at high resolution. What a law's model leaves out (a rigid body
+has no partial slip) is therefore not counted as numerical error.
 """
 
 from __future__ import annotations
@@ -25,34 +25,35 @@ from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
 
 KIND = "tangential"
-#: Closer than the default, so that the default can be judged.
+#: Tolerances of the exact solution, the finer first; both finer than the default, which they judge.
 REFERENCE_TOLERANCES = (1e-11, 1e-9)
-#: Steps that a law's own reference begins with: this many times the stability limit, and no
-#: fewer. They are doubled until the answer, extrapolated, stands still to ``SETTLED`` of the
-#: range. At chi = 1e3 a fixed 4000 were wrong by 5e-3, more than the adaptive scheme claims.
+#: First number of steps of a law's own reference, over the stability limit; the least and the
+#: largest number. Steps are doubled until the extrapolated answer changes by less than ``SETTLED``
+#: of the range. At chi = 1e3 a fixed 4000 steps were wrong by 5e-3 of the range, more than the
+#: adaptive scheme claims.
 FINE, FEWEST, MOST = 4, 1000, 200_000
 SETTLED = 3e-5
-#: Springs or annuli that the reference under normal laws that are not Hertz's begins with, steps
-#: for each, and how often both are doubled until the answer stands still to ``AGREED`` of the
-#: range: a heavy inertia needs many more than a ball.
+#: First number of springs or annuli of the reference under normal laws other than Hertz's, steps
+#: for each, and the largest number of doublings of both. The answer has settled when a doubling
+#: changes it by less than ``AGREED`` of the range; heavy inertia needs more doublings than a ball.
 FINE_PARTS, STEPS_A_PART, DOUBLINGS = 50, 8, 5
 AGREED = 3e-3
 
-#: Change of slip velocity in m/s, or None where there is nothing to judge by.
+#: Returns the exact change of slip velocity in m/s, or None if there is no reference.
 Reference = Callable[[Scene, TangentialLaw], float | None]
 
 
 def converges(law: Law | type[Law]) -> bool:
-    """Return whether a law converges to the axisymmetric continuum, by what it claims."""
+    """Return whether a law claims to converge to the axisymmetric continuum."""
     return "partial_slip" in law.offers
 
 
 def reference_for(law: TangentialLaw, normal: NormalLaw) -> Reference:
-    """Return how answers of a tangential law under a normal law are judged.
+    """Return the reference of a tangential law under a normal law.
 
-    Under a normal law that is not elastic Hertz contact there is no exact solution: laws that
-    converge to the continuum are judged by another of them, a rigid body by the impulse of the
-    load.
+    Under a normal law other than elastic Hertz contact there is no exact solution. A law that
+    converges to the continuum is then judged by another such law, a rigid body by the impulse of
+    the friction load.
     """
     elastic = "elastic_hertz" in normal.offers
     if "no_friction" in law.offers:
@@ -65,12 +66,12 @@ def reference_for(law: TangentialLaw, normal: NormalLaw) -> Reference:
 
 
 def none(scene: Scene, law: TangentialLaw) -> float:  # noqa: ARG001
-    """Return no change."""
+    """Return 0, the change without friction."""
     return 0.0
 
 
 def nothing(scene: Scene, law: TangentialLaw) -> None:
-    """Return that there is nothing to judge by."""
+    """Return None: there is no reference."""
 
 
 def _another(normal: NormalLaw, judged: type[TangentialLaw]) -> Reference:
@@ -79,28 +80,27 @@ def _another(normal: NormalLaw, judged: type[TangentialLaw]) -> Reference:
 
 
 def another_of_the_continuum(normal: NormalLaw, judged: type[TangentialLaw]) -> str | None:
-    """Return a stepped law of the continuum that fits ``normal`` and is another than ``judged``.
+    """Return the name of a stepped law of the continuum other than ``judged``; None if none fits.
 
-    It needs nothing of the normal contact but its radius. The defaults of elastic bodies come
-    first, which are of second order, then the other laws of contactlab by name; None if there is
-    none.
+    The law fits ``normal``, and needs only the contact radius. The default laws of elastic bodies
+    are tried first, because they are of second order; then contactlab's other laws by name.
     """
     ours = [info.name for info in REGISTRY.installed() if info.distribution == PROJECT]
     for name in (*PREFERRED["elastic"], *(name for name in ours if kind_of(name) == KIND)):
         try:
-            found = REGISTRY.create(full_name(KIND, name))
-        except (ValueError, PluginError):  # blocked, broken, or it needs options
+            law = REGISTRY.create(full_name(KIND, name))
+        except (ValueError, PluginError):  # blocked, broken, or an option has no default
             continue
-        refines = isinstance(found, SteppedTangentialLaw) and found.resolution is not None
-        suits = converges(found) and found.needs <= {"radius"} and misfit(normal, found) is None
-        if refines and suits and type(found) is not judged:
+        refines = isinstance(law, SteppedTangentialLaw) and law.resolution is not None
+        suits = converges(law) and law.needs <= {"radius"} and misfit(normal, law) is None
+        if refines and suits and type(law) is not judged:
             return name
     return None
 
 
 @lru_cache(maxsize=4096)
 def fine_under(scene: Scene, normal: NormalLaw, name: str) -> float | None:
-    """Return the change under ``normal`` by a fine law of the continuum; None if none settles."""
+    """Return the change in m/s by a fine law of the continuum; None if it does not settle."""
     law: Any = REGISTRY.law_class(full_name("tangential", name))
     width = range_of(scene).width
     before = np.inf
@@ -126,17 +126,17 @@ def load_impulse(scene: Scene, normal: NormalLaw) -> float:
 def _rigid_under(normal: NormalLaw) -> Reference:
     def change(scene: Scene, _: TangentialLaw) -> float:
         load = load_impulse(scene, normal)
-        most = float(scene.friction_coefficient * load / scene.pair.tangential_mass)
+        sliding = float(scene.friction_coefficient * load / scene.pair.tangential_mass)
         slip = float(scene.slip_velocity)
-        return -float(np.copysign(min(most, abs(slip)), slip))
+        return -float(np.copysign(min(sliding, abs(slip)), slip))
 
     return change
 
 
 def rigid(scene: Scene, law: TangentialLaw) -> float:  # noqa: ARG001
-    """Return the change of the rigid-body theory, |change| = min(|psi1|, 4 chi)."""
+    """Return the change by the rigid-body theory, min(|psi1|, 4 chi) in psi, as m/s."""
     unit, width, speed = range_of(scene)
-    if speed * 1e-6 > width:  # far inside gross slip, where psi2 would swallow the change
+    if speed * 1e-6 > width:  # psi1 >> 4 chi: psi2 - psi1 would cancel
         return -float(np.copysign(width, scene.slip_velocity))
     scale: float = speed if unit * float(scene.chi) == 0.0 else unit
     if scale == 0.0:
@@ -147,7 +147,7 @@ def rigid(scene: Scene, law: TangentialLaw) -> float:  # noqa: ARG001
 
 
 def continuum(scene: Scene, law: TangentialLaw) -> float | None:  # noqa: ARG001
-    """Return the change of the exact solution."""
+    """Return the change by the exact solution, in m/s; None if it fails."""
     return _exact(scene)
 
 
@@ -161,13 +161,13 @@ def _exact(scene: Scene) -> float | None:
 
 
 def itself(scene: Scene, law: TangentialLaw) -> float | None:
-    """Return the change of the same law at many more steps."""
+    """Return the change by the law itself at many more steps, in m/s; None if not settled."""
     return _fine(scene, law) if isinstance(law, SteppedTangentialLaw) else None
 
 
 @lru_cache(maxsize=4096)
 def _fine(scene: Scene, law: SteppedTangentialLaw) -> float | None:
-    """Return the extrapolated limit of second order, or None if it is not reached."""
+    """Return the change extrapolated at second order, in m/s; None if it does not settle."""
     coarse = Simulation(tangential=law, integrator=fixed_steps(FEWEST))
     normal = coarse.normal_motion(scene)
     frequency = np.sqrt(law.stiffness(scene, normal) / scene.pair.tangential_mass)
@@ -184,5 +184,5 @@ def _fine(scene: Scene, law: SteppedTangentialLaw) -> float | None:
             limits.append(answers[-1] + (answers[-1] - answers[-2]) / 3.0)
         if len(limits) > 1 and abs(limits[-1] - limits[-2]) <= SETTLED * width:
             return limits[-1]
-        steps = 2 * int(fine.counters.get("steps", steps))  # it may have refined those asked for
+        steps = 2 * int(fine.counters.get("steps", steps))  # the integrator may have refined them
     return None

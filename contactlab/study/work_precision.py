@@ -1,8 +1,8 @@
 """Error against run time: every method at every resolution, against the exact solution.
 
-Errors are measured apart from timing. A time is the least of repeated runs after a warm-up: the
-least is what the work takes, the rest is what else the machine did. Failed runs are gaps with
-their status, never dropped.
+Errors and times come from separate runs. A time is the least of repeated runs after a warm-up,
+which other load of the machine disturbs least. A failed run is a gap with its status, and is never
+dropped.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ from contactlab.study.stability_references import another_of_the_continuum, fine
 
 Array = NDArray[np.float64]
 
-#: Of the exact answers: so that their laws at the default tolerance are measured too.
+#: Tolerance of the exact answers: finer than the default, which is measured too.
 EXACT_TOLERANCE = 1e-12
-#: Repeats of a timed run; fewer once ``LONG`` seconds have gone into a method's resolution.
+#: Repeats of a timed run; fewer after ``LONG`` seconds at one resolution of a method.
 REPEATS, LONG = 5, 1.0
-#: Impacts in the sweep whose cost per impact is timed, where a sweep is expected to take
-#: less than ``SWEEP_BUDGET`` seconds.
+#: Impacts in the sweep whose time per impact is measured, if the sweep should take less than
+#: ``SWEEP_BUDGET`` seconds.
 SWEEP, SWEEP_BUDGET = 500, 2.0
-#: A method slower than this an impact, in s, is not refined further.
+#: A method with a longer run time per impact, in s, is not refined further.
 SLOW, SLOW_QUICK = 0.1, 0.05
-#: Errors below this are rounding: an order is fitted above it.
+#: Errors below this are rounding; orders are fitted to errors above it.
 ROUNDING = 1e-11
-#: A row is good enough for a short table from this error, or from so many times its law's least;
-#: the best row is told too where it is better by a factor of ``FINER``.
+#: The short table takes rows with an error up to ``GOOD``, or ``ALIKE`` times the least error of
+#: their law; the most accurate row too, if its error is smaller by a factor of ``FINER``.
 GOOD, ALIKE, FINER = 1e-3, 2.0, 10.0
-#: A method whose log error falls by less than this over its resolutions does not converge.
+#: A method whose log error falls by less than this over its resolutions has no order.
 LEAST_GAIN = 0.5
 
 
@@ -51,17 +51,18 @@ class Row:
     Attributes
     ----------
     method, options : str
-        Law and integrator, and their options in words.
+        Law and integrator; their options in words.
     error_rms, error_worst : float
-        Of psi2 over the scenes; NaN where a run failed, as are the next two.
+        Rms and largest error of psi2 over the scenes; NaN if a run failed.
     force_error_rms : float
-        Of F over mu P_max along the impact, against the exact history.
+        Rms error of F over mu P_max along the impact, against the exact history; NaN if a run
+        failed.
     books_worst : float
-        Largest imbalance over the energy at the start.
+        Largest imbalance over the energy at the start; NaN if a run failed.
     time_s, sweep_time_s : float
-        Run time of one impact, by itself and in a sweep, in s.
+        Run time per impact, by itself and in a sweep, in s.
     failed : int
-        Scenes without an answer.
+        Number of scenes without an answer.
     status : str
         ``SUCCESS``, the first failure's name, or ``NOT_RUN``.
     """
@@ -79,15 +80,15 @@ class Row:
 
     @property
     def ok(self) -> bool:
-        """Return True if every scene gave an answer."""
+        """Whether every scene has an answer."""
         return self.failed == 0
 
 
 @attrs.frozen(kw_only=True)
 class Benchmark:
-    """Rows, and for each method the order observed in its rms error.
+    """Rows, and for each method the order of convergence observed in its rms error.
 
-    ``complete`` is False where the budget ran out or, then ``interrupted``, on Ctrl-C.
+    ``complete`` is False if the budget or Ctrl-C left rows out; ``interrupted`` is True on Ctrl-C.
     """
 
     rows: tuple[Row, ...]
@@ -96,34 +97,34 @@ class Benchmark:
     interrupted: bool = False
 
     def front(self) -> list[Row]:
-        """Return the Pareto front: rows that no other beats in both error and time."""
+        """Return the Pareto front: rows that no other row beats in both error and time."""
         best: list[Row] = []
         least = np.inf
         for row in sorted((row for row in self.rows if row.ok), key=lambda row: row.time_s):
             if row.error_rms < least:
                 best.append(row)
-                # Below rounding nothing is better than anything else.
+                # Errors below rounding are equally good.
                 least = row.error_rms if row.error_rms > ROUNDING else 0.0
         return best
 
     def short(self) -> list[Row]:
-        """Return a row or two of each law, the most accurate law first.
+        """Return one or two rows of each law, the most accurate law first.
 
-        The first is the quickest that is good to a per mille, or as good as its law becomes; the
-        second the most accurate, if that is another matter.
+        One is the quickest row with an error up to ``GOOD``, or ``ALIKE`` times the least of its
+        law. Before it stands the most accurate row, if its error is smaller by ``FINER``.
         """
-        of: dict[str, list[Row]] = {}
+        by_law: dict[str, list[Row]] = {}
         for row in self.rows:
             if row.ok:
-                of.setdefault(row.method.partition(" / ")[0], []).append(row)
-        found = []
-        for rows in of.values():
+                by_law.setdefault(row.method.partition(" / ")[0], []).append(row)
+        chosen = []
+        for rows in by_law.values():
             best = min(rows, key=lambda row: (row.error_rms, row.time_s))
             limit = max(GOOD, ALIKE * best.error_rms)
             quick = min((row for row in rows if row.error_rms <= limit), key=lambda row: row.time_s)
             finer = best.error_rms * FINER <= quick.error_rms
-            found.append([best, quick] if finer and best.time_s > quick.time_s else [quick])
-        return [row for rows in sorted(found, key=lambda rows: rows[0].error_rms) for row in rows]
+            chosen.append([best, quick] if finer and best.time_s > quick.time_s else [quick])
+        return [row for rows in sorted(chosen, key=lambda rows: rows[0].error_rms) for row in rows]
 
 
 def bench(
@@ -133,7 +134,7 @@ def bench(
     budget: float = np.inf,
     progress: Callable[[int, int], object] | None = None,
 ) -> Benchmark:
-    """Run the benchmark.
+    """Return errors and run times of every method at every resolution.
 
     Parameters
     ----------
@@ -148,9 +149,11 @@ def bench(
     Returns
     -------
     Benchmark
-        Interrupting (Ctrl-C) keeps the resolutions that are done.
+        Ctrl-C keeps the resolutions that are done.
     """
-    truths = {normal: _truths(normal, quick=quick) for normal in {each.normal for each in methods}}
+    truths = {
+        normal: _truths(normal, quick=quick) for normal in {method.normal for method in methods}
+    }
     resolutions = [
         (method, resolution) for method in methods for resolution in method.resolutions(quick=quick)
     ]
@@ -185,7 +188,7 @@ def bench(
 
 
 class Truth(NamedTuple):
-    """A scene, its true change of psi (NaN if unknown), and the result with history if exact."""
+    """A scene, its true change of psi or NaN, and the exact result with history or None."""
 
     scene: Scene
     psi_change: float
@@ -193,36 +196,28 @@ class Truth(NamedTuple):
 
 
 def _truths(normal: str, *, quick: bool) -> list[Truth]:
-    """Return scenes and true answers: exact, or by a fine law of the continuum under ``normal``."""
+    """Return scenes with true answers: exact, or by a fine law of the continuum."""
     law = composition.law("normal", normal)
-    found = []
+    truths = []
     elastic = "elastic_hertz" in law.offers
     name = None if elastic else another_of_the_continuum(law, TangentialLaw)
     for scene in scenes(quick=quick, sized=normal != composition.DEFAULT_NORMAL):
         if elastic:
             exact = Simulation(normal=law, **composition.exact(EXACT_TOLERANCE))
             result = exact.run(scene, history=True).check()
-            found.append(Truth(scene, float(np.asarray(result.psi_change)), result))
+            truths.append(Truth(scene, float(np.asarray(result.psi_change)), result))
             continue
         change = None if name is None else fine_under(scene, law, name)
-        known = np.nan if change is None else float(np.asarray(scene.psi(change)))
-        found.append(Truth(scene, known, None))
-    return found
+        psi_change = np.nan if change is None else float(np.asarray(scene.psi(change)))
+        truths.append(Truth(scene, psi_change, None))
+    return truths
 
 
 def _row(method: Method, resolution: dict[str, dict[str, Any]], truths: list[Truth]) -> Row:
-    """Return error and cost of a method at one resolution.
-
-    Parameters
-    ----------
-    method : Method
-    resolution : mapping of str to mapping
-        Options of tangential law and integrator, by kind: one resolution.
-    truths : list of Truth
-    """
+    """Return error and run time of a method at one resolution."""
     simulation = method.simulation(resolution)
-    given = [truth.scene for truth in truths]
-    results = [simulation.run(scene, history=True) for scene in given]
+    impacts = [truth.scene for truth in truths]
+    results = [simulation.run(scene, history=True) for scene in impacts]
     failed = [result for result in results if not result.status]
     good = not failed
     errors: Any = np.array(
@@ -234,7 +229,7 @@ def _row(method: Method, resolution: dict[str, dict[str, Any]], truths: list[Tru
         else [np.nan]
     )
     books: list[Any] = [abs(result.energy.relative_imbalance) for result in results]
-    least = _least_time(simulation, given) if good else np.nan
+    least = _least_time(simulation, impacts) if good else np.nan
     return Row(
         method=method.name,
         options=_words(resolution),
@@ -250,12 +245,12 @@ def _row(method: Method, resolution: dict[str, dict[str, Any]], truths: list[Tru
 
 
 def _left_out(method: Method, resolution: dict[str, dict[str, Any]]) -> Row:
-    """Return the gap that a resolution leaves which would take too long."""
-    nothing = dict.fromkeys(("error_rms", "error_worst", "force_error_rms", "books_worst"), np.nan)
+    """Return the row of a resolution that is not run because it would take too long."""
+    errors = dict.fromkeys(("error_rms", "error_worst", "force_error_rms", "books_worst"), np.nan)
     return Row(
         method=method.name,
         options=_words(resolution),
-        **nothing,
+        **errors,
         time_s=np.nan,
         sweep_time_s=np.nan,
         failed=1,
@@ -269,7 +264,7 @@ def _words(resolution: dict[str, dict[str, Any]]) -> str:
 
 
 def _force_error(result: ImpactResult, exact: ImpactResult | None) -> float:
-    """Return the rms over the contact of the force's error, over mu P_max; NaN if not known."""
+    """Return the rms error of the force over time, over mu P_max; NaN without exact result."""
     if exact is None:
         return np.nan
     history, true = result.history, exact.history
@@ -278,18 +273,18 @@ def _force_error(result: ImpactResult, exact: ImpactResult | None) -> float:
     scene = exact.scene
     from scipy.interpolate import PchipInterpolator  # a few 1e-7 of the peak at 200 instants
 
-    instants, first = np.unique(true.time, return_index=True)  # an event may stand twice
+    instants, first = np.unique(true.time, return_index=True)  # an event may occur twice
     inside = np.clip(history.time, instants[0], instants[-1])
     expected = PchipInterpolator(instants, true.tangential_force[first])(inside)
     scale = float(np.asarray(scene.friction_coefficient * exact.motion.maximum_force))
     return float(np.sqrt(np.mean((history.tangential_force - expected) ** 2))) / scale
 
 
-def _least_time(simulation: Simulation, given: list[Scene]) -> float:
+def _least_time(simulation: Simulation, impacts: list[Scene]) -> float:
     """Return the mean over the scenes of the least time of one run, in s."""
     total = 0.0
     started = time.perf_counter()
-    for scene in given:
+    for scene in impacts:
         simulation.run(scene)  # warm-up
         least = np.inf
         for _ in range(REPEATS):
@@ -299,11 +294,11 @@ def _least_time(simulation: Simulation, given: list[Scene]) -> float:
             if time.perf_counter() - started > LONG:
                 break
         total += least
-    return total / len(given)
+    return total / len(impacts)
 
 
 def _sweep_time(simulation: Simulation) -> float:
-    """Return the least time per impact of a sweep over psi1, none of it slip throughout, in s."""
+    """Return the least time per impact of a sweep over psi1 without slip throughout, in s."""
     chi = 49 / 34
     batch = Scene.nondimensional(psi1=np.linspace(0.01, 4 * chi - 1.01, SWEEP), chi=chi)
     least = np.inf
@@ -315,10 +310,7 @@ def _sweep_time(simulation: Simulation) -> float:
 
 
 def _order(rows: list[Row]) -> float:
-    """Return the slope of rms error against the number of steps or parts, NaN if it has none.
-
-    Only resolutions above rounding count; a tolerance has no order.
-    """
+    """Return the order of the rms error in steps or parts; NaN under a tolerance or without one."""
     points = []
     for row in rows:
         sizes = [float(word.partition("=")[2]) for word in row.options.split(", ") if "=" in word]

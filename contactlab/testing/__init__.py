@@ -1,4 +1,4 @@
-"""Put any law through its contract: small named checks, for anybody's plug-in.
+"""Small named checks of a law against its contract, for the tests of any plug-in.
 
 In a plug-in's own tests::
 
@@ -10,7 +10,7 @@ In a plug-in's own tests::
 
 On the command line: ``contactlab plugins check tangential.mine``.
 
-A law that does not do something by its nature says so, with the reason::
+A law that cannot pass a check by its nature names the check, with the reason::
 
     expected_failures: ClassVar[Mapping[str, str]] = {
         "cattaneo_mindlin": "one spring for the whole contact: it sticks or slips as one",
@@ -31,7 +31,7 @@ from contactlab.testing.outcomes import (
 )
 from contactlab.testing.parametrize import parametrize_with_checks
 
-#: Modules with checks: each enters its own, in the order in which they are run.
+#: Modules with checks, in the order in which the checks run. Importing a module enters its checks.
 ORDER = (
     "every_law", "normal", "normal_contact", "normal_motions", "motion", "stepping", "friction",
     "stiffness", "energy", "memory", "point", "impacts", "whole_impacts", "coulomb", "unlike",

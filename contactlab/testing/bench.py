@@ -1,7 +1,7 @@
-"""A contact that is loaded at will, as on a testing machine, and the scaled answers of a law.
+"""A contact that is moved as on a testing machine, and the scaled answers of a law.
 
-Slip is in units of mu C²R/kappa and normal load in terms of zeta, so that gross slip
-begins at slip = zeta and the forces, in units of mu P_max, are those of theory §§1 and 4.
+The unit of slip is mu C²R/kappa, the normal load is given by zeta: gross slip begins at
+slip = zeta. The unit of force is mu P_max, as in theory §§1 and 4.
 """
 
 from __future__ import annotations
@@ -27,26 +27,26 @@ from contactlab.testing.units import Units
 
 Array = NDArray[np.float64]
 
-#: chi of a body so heavy that the machine, not friction, decides how it moves.
+#: chi of a body so heavy that friction does not change its motion.
 HEAVY = 1e-4
-#: Friction coefficient, where nothing else is said.
+#: Default friction coefficient.
 FRICTION = 0.3
-#: Of a straight path.
+#: Steps from one knot of a straight path to the next.
 STEPS_TO_KNOT = 40
 
 
 def scene(
     psi1: Any, chi: Any, *, friction: Any = FRICTION, units: Units | None = None, bodies: Any = 1.0
 ) -> Scene:
-    """Return a scene like a steel ball's, of given psi1 and chi, in some system of units.
+    """Return the scene of a ball like one of steel, by psi1 and chi, in a system of units.
 
     Parameters
     ----------
     psi1, chi, friction : float or array
     units : Units, optional
-        In which the numbers are given; SI by default.
+        System of units of the scene; SI by default.
     bodies : float or array
-        1 for the ball; other numbers give bodies of other radius, moduli, mass and speed.
+        1 for the ball; another number changes radius, moduli, mass and speed.
     """
     length, time, mass = units or Units()
     pressure = mass / (length * time**2)
@@ -63,11 +63,11 @@ def scene(
 
 
 def bodies(*shape: int) -> Any:
-    """Return what makes each body of a batch another one."""
+    """Return values of ``bodies`` of ``scene`` for a batch of unlike bodies."""
     return np.linspace(0.6, 1.6, math.prod(shape)).reshape(shape)
 
 
-#: What the contacts of a batch may differ in.
+#: Quantities in which the contacts of a batch may differ.
 QUANTITIES = (
     "friction_coefficient", "normal_speed", "radius", "effective_modulus",
     "effective_shear_modulus", "normal_mass", "tangential_mass",
@@ -75,24 +75,24 @@ QUANTITIES = (
 
 
 def varied(quantity: str, *, count: int = 3) -> Scene:
-    """Return a batch of central impacts of heavy bodies that differ in one quantity only."""
-    one = scene(0.0, HEAVY)
+    """Return a batch of central impacts of heavy bodies that differ in one quantity."""
+    base = scene(0.0, HEAVY)
     factors = np.linspace(0.6, 1.6, count)
     if quantity in ("friction_coefficient", "normal_speed"):
-        return attrs.evolve(one, **{quantity: getattr(one, quantity) * factors})
-    pair = attrs.evolve(one.pair, **{quantity: getattr(one.pair, quantity) * factors})
-    return attrs.evolve(one, pair=pair)
+        return attrs.evolve(base, **{quantity: getattr(base, quantity) * factors})
+    pair = attrs.evolve(base.pair, **{quantity: getattr(base.pair, quantity) * factors})
+    return attrs.evolve(base, pair=pair)
 
 
 class Path(NamedTuple):
-    """Slip and zeta at the ends of the steps, shape (K,) or (K, *batch); it starts at 0, 0."""
+    """Slip and zeta at the ends of the steps, shape (K,) or (K, *batch); the start is 0, 0."""
 
     slip: Array
     level: Array
 
 
 class Answers(NamedTuple):
-    """Scaled forces and friction works of the steps, shape (K, *batch), and the last state."""
+    """Scaled force and friction work of each step, shape (K, *batch), and the last state."""
 
     force: Array
     work: Array
@@ -101,7 +101,7 @@ class Answers(NamedTuple):
 
 @attrs.frozen
 class Bench:
-    """One contact (or a batch) with its scales: P_max, a, C²R, the unit of slip, a duration."""
+    """One contact or a batch, with its scales P_max, a, C²R, unit of slip, and duration."""
 
     scene: Scene
     normal: NormalMotion
@@ -114,22 +114,22 @@ class Bench:
     @classmethod
     def of(cls, shape: tuple[int, ...] = (), units: Units | None = None) -> Bench:
         """Return a bench; the contacts of a batch differ in friction and in the bodies."""
-        friction, other = (
-            (np.linspace(0.1, 0.7, math.prod(shape)).reshape(shape), bodies(*shape))
-            if shape
-            else (FRICTION, 1.0)
-        )
-        given = scene(0.0, HEAVY, friction=friction, units=units, bodies=other)
-        return cls.along(normal_motion(REGISTRY.create("normal.hertz"), given))
+        friction: Any = FRICTION
+        sizes: Any = 1.0
+        if shape:
+            friction = np.linspace(0.1, 0.7, math.prod(shape)).reshape(shape)
+            sizes = bodies(*shape)
+        impacts = scene(0.0, HEAVY, friction=friction, units=units, bodies=sizes)
+        return cls.along(normal_motion(REGISTRY.create("normal.hertz"), impacts))
 
     @classmethod
     def along(cls, normal: NormalMotion) -> Bench:
-        """Return the bench of contacts that are at most as large as those of ``normal``."""
-        given, radius = normal.scene, normal.maximum_radius
-        approach = radius * radius / given.pair.radius
-        force = (4.0 / 3.0) * given.pair.effective_modulus * radius * approach
-        slip = given.friction_coefficient * approach / given.pair.stiffness_ratio
-        return cls(given, normal, force, radius, approach, slip, normal.duration)
+        """Return the bench of contacts up to the largest contact radius of ``normal``."""
+        impacts, radius = normal.scene, normal.maximum_radius
+        approach = radius * radius / impacts.pair.radius
+        force = (4.0 / 3.0) * impacts.pair.effective_modulus * radius * approach
+        slip = impacts.friction_coefficient * approach / impacts.pair.stiffness_ratio
+        return cls(impacts, normal, force, radius, approach, slip, normal.duration)
 
     def alone(self, place: int | tuple[int, ...]) -> Bench:
         """Return the bench of one contact of a batch."""
@@ -140,14 +140,14 @@ class Bench:
         return law.start(self.scene, self.normal)
 
     def contact(self, level: Any) -> NormalContact:
-        """Return the Hertz contact at zeta = ``level``; out of contact where it is negative."""
+        """Return the Hertz contact at zeta = ``level``; negative levels are out of contact."""
         inside = level * (level > 0.0)
         force = locked(self.force * inside**1.5)
         radius, overlap = locked(self.radius * inside**0.5), locked(self.approach * level)
         return NormalContact(force, radius, overlap, force)
 
     def increment(self, slip: Any, after: NormalContact, duration: Any) -> Increment:
-        """Return the step in which the machine moves the body by ``slip`` (scaled)."""
+        """Return the increment of a step by ``slip``, scaled."""
         displacement = locked(self.slip * slip)
         return Increment(
             displacement, locked(displacement / duration), after.friction_load, duration
@@ -155,12 +155,12 @@ class Bench:
 
     @property
     def friction_force(self) -> Any:
-        """The unit of tangential force, mu P_max, in N."""
+        """Unit of tangential force, mu P_max, in N."""
         return self.scene.friction_coefficient * self.force
 
 
 def drive(law: SteppedTangentialLaw, bench: Bench, path: Path) -> Answers:
-    """Take ``law`` along ``path`` from first touch."""
+    """Return the answers of ``law`` along ``path``, from first touch."""
     return continue_from(law, bench, bench.start(law), path)
 
 
@@ -174,44 +174,44 @@ def continue_from(
     level: Any = 0.0,
     count: int | None = None,
 ) -> Answers:
-    """Return the answers of ``law`` along ``path``, from ``state`` on.
+    """Return the answers of ``law`` along ``path``, beginning at ``state``.
 
     Parameters
     ----------
     law : SteppedTangentialLaw
     bench : Bench
     state : object
-        The law's, reached at ``slip`` and ``level``.
+        State of the law at ``slip`` and ``level``.
     path : Path
     slip, level : float or array
-        Where the path begins.
+        Scaled slip and zeta at which the path begins.
     count : int, optional
-        Steps of the whole path, if ``path`` is a part of it.
+        Number of steps of the whole path, if ``path`` is a part of it.
     """
     duration = locked(bench.time / (count or len(path.slip)))
     before = bench.contact(level)
     forces, works = [], []
     limits.begin(f"a path of {len(path.slip)} steps")
-    for now, depth in zip(_rows(path.slip), _rows(path.level), strict=True):
-        after = bench.contact(depth)
+    for next_slip, next_level in zip(_rows(path.slip), _rows(path.level), strict=True):
+        after = bench.contact(next_level)
         limits.DOING.steps += 1
         response, state = law.advance(
-            state, bench.increment(now - slip, after, duration), before, after
+            state, bench.increment(next_slip - slip, after, duration), before, after
         )
         hold(np.all(response.settled), "The law found no answer on a straight load path.")
         forces.append(response.force / bench.friction_force)
         works.append(response.friction_work / (bench.friction_force * bench.slip))
-        before, slip = after, now
+        before, slip = after, next_slip
     return Answers(np.array(forces), np.array(works), state)
 
 
 def _rows(column: Array) -> Any:
-    """Floats for one contact, as an integrator gives; arrays for a batch."""
+    """Return the rows of a column: floats for one contact, arrays for a batch."""
     return column.tolist() if column.ndim == 1 else column
 
 
 def straight(*knots: tuple[float, float], steps: int = STEPS_TO_KNOT) -> Path:
-    """Return the path from 0, 0 through ``knots`` (slip, zeta), ``steps`` to each."""
+    """Return the path from 0, 0 through ``knots`` (slip, zeta), with ``steps`` to each knot."""
     points = np.array([(0.0, 0.0), *knots])
     parts = np.linspace(0.0, 1.0, steps + 1)[1:, None]
     legs = [start + parts * (stop - start) for start, stop in itertools.pairwise(points)]
@@ -220,16 +220,18 @@ def straight(*knots: tuple[float, float], steps: int = STEPS_TO_KNOT) -> Path:
 
 
 def wandering(seed: int, *, knots: int = 12, steps: int = 16, fixed: bool = False) -> Path:
-    """Return a path through random knots, in stick, partial and gross slip; the first only presses.
+    """Return a path through random knots, with stick, partial and gross slip.
+
+    The leg to the first knot only presses.
 
     Parameters
     ----------
     seed : int
     knots : int
     steps : int
-        From one knot to the next.
+        Steps from one knot to the next.
     fixed : bool
-        Whether the normal load stays after the first knot.
+        Keep the normal load constant after the first knot.
     """
     draw = np.random.default_rng(seed)
     slips = draw.normal(0.0, 0.8, knots)
@@ -238,10 +240,10 @@ def wandering(seed: int, *, knots: int = 12, steps: int = 16, fixed: bool = Fals
     return straight(*zip(slips.tolist(), levels.tolist(), strict=True), steps=steps)
 
 
-#: What a law with a discretisation of its own may be off, over the largest force or energy.
+#: Bound of the error of a law that has a resolution, over the largest force or energy.
 DISCRETE = 0.02
 
 
 def slack(law: TangentialLaw, exact: float = 1e-9) -> float:
-    """Return ``exact`` for a law without a discretisation of its own, else ``DISCRETE``."""
+    """Return the bound of a law's error: ``exact`` without a resolution, else ``DISCRETE``."""
     return exact if law.resolution is None else DISCRETE

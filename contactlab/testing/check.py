@@ -1,4 +1,4 @@
-"""What a check is: a named function that a law passes, or fails with a sentence."""
+"""A check: a named function that a law passes, or fails with a sentence."""
 
 from __future__ import annotations
 
@@ -16,32 +16,32 @@ Function: TypeAlias = Callable[[Any], None]
 
 
 class CheckFailedError(AssertionError):
-    """A law does not do what its contract says; the message is one sentence."""
+    """A law breaks its contract; the message is one sentence."""
 
 
 class CheckStoppedError(CheckFailedError):
-    """A check ran out of time: the law hangs, or crawls."""
+    """A check ran out of time, because the law hangs or is very slow."""
 
 
 class NotApplicableError(unittest.SkipTest):
-    """A check has nothing to say of this law; the message says why. Pytest skips the test."""
+    """A check does not apply to a law; the message says why. Pytest skips the test."""
 
 
 @attrs.frozen
 class Check:
-    """One thing that a law's contract says.
+    """One requirement of a contract.
 
     Attributes
     ----------
     name : str
-        Under which a law may expect to fail it.
+        Name of the check, used as key in ``Law.expected_failures``.
     function : callable
-        Takes the law; raises ``CheckFailedError`` (or anything else) if the law fails.
+        Takes the law; raises ``CheckFailedError`` or another exception if the law fails.
     contract : type
-        Laws of this class are put through it.
+        The check applies to laws of this class.
     claim : str or None
-        A word of ``Law.offers``: only laws that offer it are put through the check, and
-        those that expect to fail it.
+        A word of ``Law.offers``. If not None, the check applies only to laws that offer the word,
+        or that expect to fail the check.
     """
 
     name: str
@@ -51,24 +51,26 @@ class Check:
 
     @property
     def holds(self) -> str:
-        """What it holds, in one line: the first of the function's docstring."""
+        """The requirement in one line: the first line of the function's docstring."""
         return str(self.function.__doc__).strip().splitlines()[0]
 
     def __call__(self, law: Law, *, seconds: float = SECONDS) -> None:
-        """Put ``law`` through it; NaN and infinity are given on purpose.
+        """Check ``law``; warnings on NaN and infinity are off, because checks pass them on purpose.
 
         Parameters
         ----------
         law : Law
         seconds : float
-            Time that the check may take; see ``contactlab.testing.limits.limited``.
+            Time limit of the check; see ``contactlab.testing.limits.limited``.
 
         Raises
         ------
+        CheckFailedError
+            If the law fails; an exception of the law itself passes through unchanged.
         NotApplicableError
-            If it does not apply: nothing was tried, so nothing was passed.
+            If the check does not apply to the law, and nothing was tried.
         CheckStoppedError
-            If the law hangs or crawls.
+            If the check runs out of time.
         """
         try:
             with np.errstate(all="ignore"), limited(self.name, law, seconds):
@@ -77,12 +79,12 @@ class Check:
             raise CheckStoppedError(str(stopped)) from None
 
 
-#: Every check, in the order in which they are run.
+#: Every check, in the order in which the checks run.
 CHECKS: list[Check] = []
 
 
 def check(contract: type[Law], *, claim: str | None = None) -> Callable[[Function], Function]:
-    """Return a decorator that enters a function among the checks, under its own name."""
+    """Return a decorator that enters a function in ``CHECKS``, under the function's name."""
 
     def enter(function: Function) -> Function:
         CHECKS.append(Check(function.__name__, function, contract, claim))

@@ -1,4 +1,4 @@
-"""Whether two values are the same, whatever a law chose to make its state of."""
+"""Equality of values of any type, because the state of a law may be any object."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-#: A state nested deeper than this is not looked into.
+#: Values nested deeper than this count as equal.
 DEEPEST = 12
 
 
 def same(left: Any, right: Any, *, depth: int = 0) -> bool:
-    """Return whether two values are equal to the last bit, NaN being equal to NaN."""
+    """Return whether two values are equal to the last bit; NaN equals NaN."""
     if left is right or depth > DEEPEST:
         return True
     if type(left) is not type(right):
@@ -27,7 +27,8 @@ def same(left: Any, right: Any, *, depth: int = 0) -> bool:
         )
     if isinstance(left, list | tuple):
         return len(left) == len(right) and all(
-            same(one, other, depth=depth + 1) for one, other in zip(left, right, strict=True)
+            same(left_item, right_item, depth=depth + 1)
+            for left_item, right_item in zip(left, right, strict=True)
         )
     names = set(_attributes(left)) | set(_attributes(right))
     if names:
@@ -44,12 +45,12 @@ def _same_arrays(left: Any, right: Any, depth: int) -> bool:
         return False
     if left.dtype == object:
         pairs = zip(left.ravel(), right.ravel(), strict=True)
-        return all(same(one, other, depth=depth + 1) for one, other in pairs)
+        return all(same(left_item, right_item, depth=depth + 1) for left_item, right_item in pairs)
     return bool(np.array_equal(left, right, equal_nan=left.dtype.kind in "fc"))
 
 
 def _attributes(value: object) -> Iterator[str]:
-    """Iterate over the names of an object's own attributes, in a dictionary or in slots."""
+    """Iterate over the names of an object's attributes, in its dictionary and its slots."""
     yield from getattr(value, "__dict__", {})
     for owner in type(value).__mro__:
         slots = owner.__dict__.get("__slots__", ())

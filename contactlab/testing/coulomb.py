@@ -1,4 +1,4 @@
-"""Checks of what Coulomb's limit is taken of: mu, the friction load, the load's impulse."""
+"""Checks of Coulomb's limit: friction coefficient, friction load and load impulse."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from contactlab.testing.laws import PullingHertz
 from contactlab.testing.ways import INTEGRATION, ways
 from contactlab.testing.whole_impacts import GRAZING
 
-#: dF/dD at rest over 2 G* b: Mindlin's no-slip stiffness, and Di Renzo & Di Maio's.
+#: dF/dD at rest over 2 G* b, Mindlin's and Di Renzo & Di Maio's; bound of the difference.
 MINDLIN, NEAR = (1.0, 2.0 / 3.0), 0.03
 
-#: Friction coefficients of grazing impacts, and what their power may be off 1.
+#: Friction coefficients of grazing impacts, and the bound of the power's difference from 1.
 FRICTION, POWER = (0.02, 0.1, 0.3, 0.9), 1e-3
-#: Friction load over normal force, of contacts whose surfaces pull and of others.
+#: Friction load over normal force; below 1 for a contact whose surfaces attract each other.
 SHARES = (0.6, 1.0, 1.5)
 #: Normal load of the contact, zeta.
 LEVEL = 0.7
@@ -30,13 +30,13 @@ LEVEL = 0.7
 
 @check(TangentialLaw)
 def friction_coefficient(law: Any) -> None:
-    """The impulse of slip throughout goes with mu to the power 1 (TangentialLaw, 1)."""
+    """The impulse of slip throughout is proportional to mu (TangentialLaw, 1)."""
     for way in ways(law):
         impulses = []
         for friction in FRICTION:
-            given = scene(GRAZING * 4.0 * CHI[1], CHI[1], friction=friction)
-            change = float(np.asarray(way.run(given).motion.slip_velocity_change))
-            impulses.append(abs(change) * float(np.asarray(given.pair.tangential_mass)))
+            impact = scene(GRAZING * 4.0 * CHI[1], CHI[1], friction=friction)
+            change = float(np.asarray(way.run(impact).motion.slip_velocity_change))
+            impulses.append(abs(change) * float(np.asarray(impact.pair.tangential_mass)))
         apply_if(all(impulses), "It makes no force in slip throughout.")
         power = float(np.polyfit(np.log(FRICTION), np.log(impulses), 1)[0])
         hold(
@@ -50,15 +50,15 @@ def friction_coefficient(law: Any) -> None:
 
 @check(SteppedTangentialLaw)
 def friction_load(law: Any) -> None:
-    """In gross slip F is mu times the friction load, which may differ from P (stepped, 3)."""
+    """In gross slip F is mu times the friction load, even if that differs from P (stepped, 3)."""
     bench = Bench.of()
     pressed = bench.contact(LEVEL)
     for share in SHARES:
         contact = pressed._replace(friction_load=share * pressed.force)
         state, before, force = bench.start(law), bench.contact(0.0), 0.0
         for moved in (0.0, *[0.5] * 12):
-            given = bench.increment(moved, contact, bench.time / 40.0)
-            response, state = law.advance(state, given, before, contact)
+            increment = bench.increment(moved, contact, bench.time / 40.0)
+            response, state = law.advance(state, increment, before, contact)
             before, force = contact, float(response.force) / bench.friction_force
         full = LEVEL**1.5
         hold(
@@ -72,32 +72,32 @@ def friction_load(law: Any) -> None:
 
 @check(TangentialLaw)
 def load_impulse(law: Any) -> None:
-    """Where the surfaces pull too, slip throughout takes mu times the friction load's impulse."""
+    """Slip throughout takes mu times the load impulse, also under a normal law that pulls."""
     pulling, tried = PullingHertz(), 0
     try:
         marches = ways(law, pulling)
     except NotApplicableError:
         marches = []
     for chi in CHI:
-        given = scene(GRAZING * 4.0 * chi, chi)
-        normal = normal_motion(pulling, given)
-        mass = float(np.asarray(given.pair.tangential_mass))
-        taken = float(np.asarray(given.friction_coefficient)) * float(normal.total_load_impulse)
-        found = [(way.run(given).motion.slip_velocity_change, str(way)) for way in marches]
-        if marches:  # as under other normal laws: a law is asked where it can be run
-            found += [
+        impact = scene(GRAZING * 4.0 * chi, chi)
+        normal = normal_motion(pulling, impact)
+        mass = float(np.asarray(impact.pair.tangential_mass))
+        expected = float(np.asarray(impact.friction_coefficient)) * float(normal.total_load_impulse)
+        changes = [(way.run(impact).motion.slip_velocity_change, str(way)) for way in marches]
+        if marches:  # a law that cannot run under this normal law is not asked either
+            changes += [
                 (spread(answer.slip_velocity_change, ()), answer.reason)
-                for _, answer in answers(given, normal, law, history=False)
+                for _, answer in answers(impact, normal, law, history=False)
             ]
-        for change, how in found:
+        for change, origin in changes:
             apply_if(change != 0.0, "It makes no force in slip throughout.")
             tried += 1
-            off = abs(abs(float(np.asarray(change))) * mass / taken - 1.0)
+            error = abs(abs(float(np.asarray(change))) * mass / expected - 1.0)
             hold(
-                off <= slack(law, 0.0) + INTEGRATION,
+                error <= slack(law, 0.0) + INTEGRATION,
                 f"Under a normal law that pulls, chi = {chi:.3g}: the impulse of a grazing impact "
-                f"is {off:.2g} off mu times the impulse of the friction load ({how}). It is not "
-                "mu (1 + e) M_n v1 there."
+                f"is {error:.2g} off mu times the impulse of the friction load ({origin}), which is"
+                " not mu (1 + e) M_n v1 there."
                 f" Bound: {slack(law, 0.0) + INTEGRATION:.2g}.",
             )
     apply_if(tried, "There is no way to run it under a normal law that pulls.")
@@ -105,17 +105,17 @@ def load_impulse(law: Any) -> None:
 
 @check(SteppedTangentialLaw)
 def at_rest_stiffness(law: Any) -> None:
-    """A stiffness that grows with the contact radius is 2 G* b, Mindlin's, or 2/3 of it.
+    """A stiffness that grows with the contact radius is Mindlin's 2 G* b, or 2/3 of that.
 
     2 G* b is the slope dF/dD of a contact that sticks all over; Di Renzo & Di Maio (2005) take
-    2/3 of it. G* is that of the pair, 1/G* = sum (2 - nu)/(4 G), four times that of
-    discrete-element codes.
+    2/3 of this slope. G* is the effective shear modulus of the pair, 1/G* = sum (2 - nu)/(4 G),
+    four times the G* of discrete-element codes.
     """
     bench, ratios = Bench.of(), []
     for level in (0.3, 0.6, 1.0):
         pressed = drive(law, bench, straight((0.0, level), steps=40)).state
         small = 1e-4 * level
-        # The second step does not move: the force of a dashpot has gone by then.
+        # The second step has no displacement, and so no force of a dashpot.
         path = straight((small, level), (small, level), steps=1)
         path = path._replace(level=np.full_like(path.slip, level))
         force = continue_from(law, bench, pressed, path, level=level).force[-1]
@@ -123,9 +123,9 @@ def at_rest_stiffness(law: Any) -> None:
     mean = float(np.mean(ratios))
     grows = mean > 0.0 and float(np.ptp(ratios)) <= 0.02 * mean
     apply_if(grows, "Its stiffness does not grow in proportion to the contact radius.")
-    near = min(MINDLIN, key=lambda factor: abs(mean - factor))
+    nearest = min(MINDLIN, key=lambda factor: abs(mean - factor))
     hold(
-        abs(mean - near) <= NEAR,
+        abs(mean - nearest) <= NEAR,
         f"dF/dD of a contact at rest is {mean:.4g} times 2 G* b, at every normal load: Mindlin's "
         "stiffness is 1 times it, and 2/3 in some codes. Is it 8 G* b with the G* of the pair?"
         f" Bound: {NEAR:.2g}.",

@@ -24,16 +24,16 @@ from contactlab.contracts import (
 from contactlab.testing.check import CHECKS, check, hold
 from contactlab.testing.compare import same
 
-#: How alike two names have to be, of 1, for one to be taken for the other misspelt.
+#: Similarity of two names, from 0 to 1, above which one counts as the other misspelt.
 ALIKE = 0.85
-#: What no numerical parameter may be.
+#: Values that a numerical parameter must refuse.
 BAD_NUMBERS = (float("nan"), float("inf"), float("-inf"), "seven", 1j)
-#: What no parameter that is a word may be, and none that is True or False.
+#: Values that a parameter must refuse if it is a word, or True or False.
 BAD_WORDS, BAD_FLAGS = ("no such word", 3.5), (float("nan"), "yes", 2)
 
 
 def claims(contract: type[Law]) -> frozenset[str]:
-    """Return the words that laws of ``contract`` may offer: those that a check holds them to."""
+    """Return the words that laws of ``contract`` may offer: the claims that checks test."""
     return frozenset(
         entry.claim for entry in CHECKS if entry.claim and issubclass(entry.contract, contract)
     )
@@ -41,7 +41,7 @@ def claims(contract: type[Law]) -> frozenset[str]:
 
 @check(Law)
 def contract(law: Law) -> None:
-    """Kind, needs, offers and resolution say what the law is (contract of Law, 2 to 4)."""
+    """Kind, needs, offers and resolution are valid (contract of Law, 2 to 4)."""
     bases = {"normal": NormalLaw, "tangential": TangentialLaw, "integrator": Integrator}
     hold(law.kind in KINDS, f"kind = {law.kind!r}: must be one of {', '.join(KINDS)}.")
     hold(
@@ -61,29 +61,29 @@ def contract(law: Law) -> None:
         hold(isinstance(law, WAYS), f"It must be derived from one of {ways}: nobody can run it.")
     if isinstance(law, Integrator):
         for name, base in (("tangential_contract", TangentialLaw), ("normal_contract", NormalLaw)):
-            found = getattr(law, name, None)
-            good = isinstance(found, type) and issubclass(found, base)
-            hold(good, f"{name} = {found!r}: must be a class derived from {base.__name__}.")
+            stated = getattr(law, name, None)
+            good = isinstance(stated, type) and issubclass(stated, base)
+            hold(good, f"{name} = {stated!r}: must be a class derived from {base.__name__}.")
     if "elastic_hertz" in law.offers:
         hold(
             isinstance(law, ClosedFormNormalLaw),
             "It offers 'elastic_hertz', and is no ClosedFormNormalLaw.",
         )
-    known = inspect.signature(type(law)).parameters
+    parameter_names = inspect.signature(type(law)).parameters
     hold(
-        law.resolution is None or law.resolution in known,
+        law.resolution is None or law.resolution in parameter_names,
         f"resolution = {law.resolution!r}: must name a parameter.",
     )
 
 
 @check(Law)
 def spelling(law: Law) -> None:
-    """No public name is nearly that of an optional member of its contracts, and passed over."""
+    """No public name is a misspelling of an optional member of the contracts."""
     own: set[str] = set()
     optional: set[str] = set()
     for owner in type(law).__mro__:
-        theirs = owner.__module__.startswith("contactlab.contracts")
-        (optional if theirs else own).update(name for name in vars(owner) if name[0] != "_")
+        in_contracts = owner.__module__.startswith("contactlab.contracts")
+        (optional if in_contracts else own).update(name for name in vars(owner) if name[0] != "_")
     for name in sorted(own - optional):
         meant = difflib.get_close_matches(name, optional - own, n=1, cutoff=ALIKE)
         hold(not meant, f"{name} is no member of its contracts: {''.join(meant)} misspelt?")
@@ -91,7 +91,7 @@ def spelling(law: Law) -> None:
 
 @check(Law)
 def api_version(law: Law) -> None:
-    """The class states the version of the contracts it was written for (Law, 2)."""
+    """The class states the version of the contracts that it was written for (Law, 2)."""
     version = next(
         (
             owner.__dict__["api_version"]
@@ -108,19 +108,19 @@ def api_version(law: Law) -> None:
 
 @check(Law)
 def expected_failures(law: Law) -> None:
-    """What the law expects to fail are checks, each with a reason, and not what it claims."""
-    known = {entry.name: entry for entry in CHECKS}
+    """Expected failures name checks of such a law, with reasons, and no check of a claim."""
+    by_name = {entry.name: entry for entry in CHECKS}
     for name, reason in dict(law.expected_failures).items():
-        hold(name in known, f"expected_failures names {name!r}, which is not a check.")
+        hold(name in by_name, f"expected_failures names {name!r}, which is not a check.")
         hold(isinstance(reason, str) and len(reason.split()) > 2, f"{name!r} needs a reason.")
-        claim = known[name].claim
+        claim = by_name[name].claim
         hold(claim not in law.offers, f"It offers {claim!r} and expects to fail {name!r}.")
-        hold(isinstance(law, known[name].contract), f"{name!r} is not a check of such a law.")
+        hold(isinstance(law, by_name[name].contract), f"{name!r} is not a check of such a law.")
 
 
 @check(Law)
 def parameters(law: Law) -> None:
-    """Each parameter refuses what is not finite or of another kind, by its name (Law, 5)."""
+    """Each parameter refuses non-finite values and other types, with its name (Law, 5)."""
     for name, value in _parameters(law):
         for wrong in _wrong(value):
             try:
@@ -128,12 +128,12 @@ def parameters(law: Law) -> None:
             except ValueError as error:
                 hold(name in str(error), f"{name} = {wrong!r}: refused without its name: {error}")
             else:
-                hold(False, f"{name} = {wrong!r}: taken without a word.")
+                hold(False, f"{name} = {wrong!r}: accepted without a ValueError.")
 
 
 @check(Law)
 def immutable(law: Law) -> None:
-    """No attribute can be set, changed or added (Law, 1)."""
+    """No attribute can be set or added (Law, 1)."""
     for name in (*(name for name, _ in _parameters(law)), "something_new"):
         before = getattr(law, name, None)
         try:
@@ -146,7 +146,7 @@ def immutable(law: Law) -> None:
 
 @check(Law)
 def copies(law: Law) -> None:
-    """The law can be copied and pickled, and comes back as it was (Law, 1)."""
+    """Copies and unpickled copies equal the law (Law, 1)."""
     for made in (copy.copy(law), copy.deepcopy(law), pickle.loads(pickle.dumps(law))):
         hold(same(made, law), f"A copy differs: {made!r}.")
         hold(made == law, "A copy is not equal to the law: attrs.frozen defines equality.")
@@ -161,7 +161,7 @@ def _parameters(law: Law) -> Iterator[tuple[str, Any]]:
 
 
 def _wrong(value: float | str) -> tuple[object, ...]:
-    """Return what a parameter must not be that now is ``value``."""
+    """Return values that a parameter must refuse, by the type of its present ``value``."""
     if isinstance(value, bool):
         return BAD_FLAGS
     return BAD_WORDS if isinstance(value, str) else BAD_NUMBERS

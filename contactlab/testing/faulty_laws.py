@@ -1,4 +1,4 @@
-"""Laws that fail on purpose: what an integrator does with them is what is tried."""
+"""Laws that fail on purpose, on which integrators are checked."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ from contactlab.contracts import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 
-#: What a law may be asked for in one impact before it calls a halt.
+#: Calls of a law after which it raises ``TooManyCallsError``.
 MOST_CALLS = 3_000_000
-#: Phase of the normal motion from which a spoiled one is NaN.
+#: Phase of the normal motion from which a spoiled motion is NaN.
 SPOILED_FROM = 1.0
 
 
 class TooManyCallsError(RuntimeError):
-    """An integrator asked without end."""
+    """An integrator called a law without end."""
 
 
 def _count(calls: Counter[str]) -> None:
@@ -47,9 +47,9 @@ def _count(calls: Counter[str]) -> None:
 
 @attrs.frozen(kw_only=True)
 class FailingSpring(SteppedTangentialLaw):
-    """A spring that answers NaN, or raises, at one step; the state counts the steps.
+    """A law without force that answers NaN, or raises, from step ``at`` on.
 
-    At the step 0, which is the start, it can only raise.
+    The state counts the steps. With ``at=0`` and ``raises`` the start raises.
     """
 
     api_version: ClassVar[int] = 2
@@ -57,7 +57,7 @@ class FailingSpring(SteppedTangentialLaw):
     raises: bool = False
 
     def start(self, scene: Scene, normal: NormalMotion) -> int:
-        """Return that no step was taken."""
+        """Return 0, the number of steps so far."""
         if self.raises and self.at == 0:
             raise ArithmeticError("as it was asked to")
         return 0
@@ -69,7 +69,7 @@ class FailingSpring(SteppedTangentialLaw):
         before: NormalContact,
         after: NormalContact,
     ) -> tuple[TangentialResponse, int]:
-        """Answer with no force, until it fails."""
+        """Return no force; NaN or an exception from step ``at`` on."""
         nothing = 0.0 * increment.displacement
         if state + 1 >= self.at:
             if self.raises:
@@ -80,7 +80,7 @@ class FailingSpring(SteppedTangentialLaw):
 
 @attrs.frozen(kw_only=True)
 class UnsettledSpring(FailingSpring):
-    """A law without force that finds no answer from the seventh step on."""
+    """A law without force that does not settle from step ``at`` on."""
 
     def advance(
         self,
@@ -89,24 +89,24 @@ class UnsettledSpring(FailingSpring):
         before: NormalContact,
         after: NormalContact,
     ) -> tuple[TangentialResponse, int]:
-        """Answer with no force, and say that it is none."""
+        """Return no force; not settled from step ``at`` on."""
         nothing = 0.0 * increment.displacement
         return TangentialResponse(nothing, nothing, state + 1 < self.at), state + 1
 
 
 @attrs.frozen(kw_only=True)
 class Unyielding(SteppedTangentialLaw):
-    """A law without force that says it is stiffer than any number of steps resolves."""
+    """A law without force that states a stiffness beyond what any number of steps resolves."""
 
     api_version: ClassVar[int] = 2
     calls: Counter[str] = attrs.field(factory=Counter, eq=False, repr=False)
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return next to infinity."""
+        """Return 1e300 N/m."""
         return 1e300
 
     def start(self, scene: Scene, normal: NormalMotion) -> None:
-        """Return nothing."""
+        """Return None; the law has no state."""
 
     def advance(
         self,
@@ -115,7 +115,7 @@ class Unyielding(SteppedTangentialLaw):
         before: NormalContact,
         after: NormalContact,
     ) -> tuple[TangentialResponse, None]:
-        """Answer with no force, so many times."""
+        """Return no force, and count the call."""
         _count(self.calls)
         nothing = 0.0 * increment.displacement
         return TangentialResponse(nothing, nothing), state
@@ -123,7 +123,7 @@ class Unyielding(SteppedTangentialLaw):
 
 @attrs.frozen(kw_only=True)
 class Recurring(Phase):
-    """A phase that ends as it begins, and is followed by itself."""
+    """A phase that ends where it begins, and is followed by itself."""
 
     calls: Counter[str] = attrs.field(factory=Counter, eq=False, repr=False)
     begun: float = 0.0
@@ -135,28 +135,28 @@ class Recurring(Phase):
         return PhaseResponse(0.0 * contact.force, None, None, ())
 
     def margin(self, event: int, sample: PhaseSample) -> Any:
-        """Return zero where the phase began, and less from there on."""
+        """Return zero where the phase began, and negative values after."""
         return self.begun - sample.contact.phase + 0.0 * sample.slip
 
     def after_event(self, event: int, state: Any, contact: Any, output: Any) -> Phase:
-        """Return the same phase, from here on."""
+        """Return the same phase, begun at the event."""
         _count(self.calls)
         return attrs.evolve(self, begun=state.x)
 
 
 @attrs.frozen(kw_only=True)
 class Endless(PhasedTangentialLaw):
-    """Events without end, at first touch."""
+    """A phased law with endless events at first touch."""
 
     api_version: ClassVar[int] = 2
 
     def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
-        """Begin."""
+        """Return the first phase."""
         return Recurring()
 
 
 class SpoiledMotion(ClosedFormMotion):
-    """Another motion in closed form, NaN from ``SPOILED_FROM`` on."""
+    """A motion in closed form that is NaN from the phase ``SPOILED_FROM`` on."""
 
     def __init__(self, motion: ClosedFormMotion, law: ClosedFormNormalLaw) -> None:
         self.motion, self.law, self.scene = motion, law, motion.scene
@@ -166,18 +166,18 @@ class SpoiledMotion(ClosedFormMotion):
         self.total_load_impulse = motion.total_load_impulse
 
     def at(self, phase: Real) -> NormalSample:
-        """Return the motion, or NaN."""
+        """Return the sample of the motion, or NaN."""
         factor: Any = np.where(np.asarray(phase) < SPOILED_FROM, 1.0, math.nan)
         time, approach, rate, contact, impulse = self.motion.at(phase)
         contact = NormalContact(*(factor * entry for entry in contact))
         return NormalSample(time, factor * approach, factor * rate, contact, factor * impulse)
 
     def phase(self, fraction: Real) -> Real:
-        """Return that of the other motion."""
+        """Return the phase of the sound motion."""
         return self.motion.phase(fraction)
 
     def take(self, part: Any) -> NormalMotion:
-        """Return the same of some impacts."""
+        """Return the spoiled motion of a part of the impacts."""
         taken = self.motion.take(part)
         assert isinstance(taken, ClosedFormMotion)
         assert isinstance(self.law, ClosedFormNormalLaw)
@@ -185,29 +185,29 @@ class SpoiledMotion(ClosedFormMotion):
 
     @property
     def scaled_mass(self) -> float:
-        """That of the other motion."""
+        """Scaled mass of the sound motion."""
         return self.motion.scaled_mass
 
     def scaled(self, phase: NDArray[np.float64]) -> ScaledContact:
-        """Return the scaled motion, or NaN."""
+        """Return the scaled contact, or NaN."""
         factor = np.where(phase < SPOILED_FROM, 1.0, math.nan)
         phases, *others = self.motion.scaled(phase)
         return ScaledContact(phases, *(factor * other for other in others))
 
     def scaled_at(self, phase: float) -> ScaledContact:
-        """Return the same in plain floats."""
+        """Return the scaled contact in floats, or NaN."""
         factor = 1.0 if phase < SPOILED_FROM else math.nan
         at, *others = self.motion.scaled_at(phase)
         return ScaledContact(at, *(factor * other for other in others))
 
     def phase_at_rate(self, rate: Real) -> Real:
-        """Return that of the other motion."""
+        """Return the phase of the sound motion at a rate."""
         return self.motion.phase_at_rate(rate)
 
 
 @attrs.frozen(kw_only=True)
 class SpoiledHertz(ClosedFormNormalLaw):
-    """Hertz's law with a motion that is NaN from ``SPOILED_FROM`` on."""
+    """Hertz's law with a motion that is NaN from the phase ``SPOILED_FROM`` on."""
 
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure", "elastic_hertz"})
@@ -219,7 +219,7 @@ class SpoiledHertz(ClosedFormNormalLaw):
         return self.law.start(scene)
 
     def respond(self, state: Any, approach: Real, rate: Real) -> tuple[NormalContact, Any]:
-        """Return the contact."""
+        """Return the contact of Hertz's law."""
         contact, new = self.law.respond(state, approach, rate)
         return contact, new
 

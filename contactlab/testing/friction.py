@@ -13,12 +13,12 @@ from contactlab.testing.bench import STEPS_TO_KNOT, Bench, Path, drive, slack, s
 from contactlab.testing.check import check, hold
 from contactlab.testing.units import ODD_UNITS, in_units
 
-#: Forces that should agree to rounding, over mu P_max.
+#: Rounding of forces, over mu P_max.
 ROUNDING = 1e-9
 SEEDS = (11, 12, 13)
-#: A long slip, in units of the slip at which gross slip begins.
+#: A long slip, over the slip at which gross slip begins.
 FAR = 1e4
-#: Work of gross slip may be off force times slip by this, over it.
+#: Bound of the relative difference of the work of gross slip from force times slip.
 PAID = 1e-6
 
 
@@ -28,15 +28,15 @@ def odd_in_slip(law: Any) -> None:
     bench = Bench.of()
     for seed in SEEDS:
         path = wandering(seed)
-        there = drive(law, bench, path)
-        back = drive(law, bench, Path(-path.slip, path.level))
-        gap = _worst(there.force + back.force)
+        forward = drive(law, bench, path)
+        reversed_answers = drive(law, bench, Path(-path.slip, path.level))
+        gap = _worst(forward.force + reversed_answers.force)
         hold(
             gap <= ROUNDING,
             f"Reversed slip gives a force that differs by {gap:.1e} mu P_max."
             f" Bound: {ROUNDING:.2g}.",
         )
-        gap = _worst(there.work - back.work)
+        gap = _worst(forward.work - reversed_answers.work)
         hold(
             gap <= ROUNDING,
             f"Reversed slip gives a friction work that differs by {gap:.1e}."
@@ -55,20 +55,20 @@ def odd_in_slip(law: Any) -> None:
 
 @check(SteppedTangentialLaw)
 def opposes_slip(law: Any) -> None:
-    """A first slip is opposed: the force is positive with it, or zero (TangentialResponse)."""
+    """The force of a first, positive slip is positive or zero (TangentialResponse)."""
     force = drive(law, Bench.of(), straight((0.0, 0.7), (1.0, 0.7))).force
     hold(force.min() >= -ROUNDING, f"A first, positive slip meets a force of {force.min():.2g}.")
 
 
 @check(SteppedTangentialLaw)
 def units(law: Any) -> None:
-    """Metres, seconds and kilograms may be called anything (theory §7)."""
-    other = in_units(law, ODD_UNITS)
+    """Answers do not depend on the units of length, time and mass (theory §7)."""
+    converted = in_units(law, ODD_UNITS)
     for seed in SEEDS:
         path = wandering(seed)
-        here = drive(law, Bench.of(), path)
-        there = drive(other, Bench.of(units=ODD_UNITS), path)
-        gap = max(_worst(here.force - there.force), _worst(here.work - there.work))
+        in_si = drive(law, Bench.of(), path)
+        in_odd_units = drive(converted, Bench.of(units=ODD_UNITS), path)
+        gap = max(_worst(in_si.force - in_odd_units.force), _worst(in_si.work - in_odd_units.work))
         hold(
             gap <= ROUNDING,
             f"In other units the answer differs by {gap:.1e} of mu P_max. Bound: {ROUNDING:.2g}.",
@@ -77,7 +77,7 @@ def units(law: Any) -> None:
 
 @check(SteppedTangentialLaw)
 def coulomb_limit(law: Any) -> None:
-    """The force is within mu P, always (TangentialLaw, 1)."""
+    """The force never exceeds mu P (TangentialLaw, 1)."""
     for seed in SEEDS:
         path = wandering(seed)
         force, limit = np.abs(drive(law, Bench.of(), path).force), path.level**1.5
@@ -102,13 +102,13 @@ def separation(law: Any) -> None:
 
 @check(SteppedTangentialLaw)
 def normal_load_alone(law: Any) -> None:
-    """Normal load that grows or falls makes no tangential force (stepped contract, 4)."""
+    """A change of normal load alone makes no tangential force (stepped contract, 4)."""
     bench = Bench.of()
     force = drive(law, bench, straight((0.0, 1.0), (0.0, 0.2), (0.0, 0.6))).force
     hold(np.all(force == 0.0), f"Pressing alone makes F = {_worst(force):.2g} mu P_max.")
     path = straight((0.0, 0.4), (0.3, 0.4), (0.3, 1.0))
     held = drive(law, bench, path).force
-    sheared = 2 * STEPS_TO_KNOT  # what comes from here on is pressed only
+    sheared = 2 * STEPS_TO_KNOT  # the third leg only presses
     rise = _worst(held[sheared:]) - abs(held[sheared - 1])
     hold(
         rise <= slack(law),
@@ -119,40 +119,40 @@ def normal_load_alone(law: Any) -> None:
 
 @check(SteppedTangentialLaw)
 def gross_slip(law: Any) -> None:
-    """A large displacement one way ends at F = mu P, and the work is F times slip."""
+    """A large displacement leads to F = mu P, and its friction work is F times slip."""
     path = straight((0.0, 0.7), (4.0, 0.7), (8.0, 0.7))
-    found = drive(law, Bench.of(), path)
-    gap = abs(float(found.force[-1]) - 0.7**1.5)
+    answers = drive(law, Bench.of(), path)
+    gap = abs(float(answers.force[-1]) - 0.7**1.5)
     hold(
         gap <= slack(law),
-        f"F = {found.force[-1]:.4g} mu P_max where mu P is {0.7**1.5:.4g}."
+        f"F = {answers.force[-1]:.4g} mu P_max where mu P is {0.7**1.5:.4g}."
         f" Bound: {slack(law):.2g}.",
     )
-    work = float(np.sum(found.work[2 * STEPS_TO_KNOT :]))
-    paid = 4.0 * float(found.force[-1])
+    work = float(np.sum(answers.work[2 * STEPS_TO_KNOT :]))
+    paid = 4.0 * float(answers.force[-1])
     hold(
         abs(work - paid) <= PAID * paid,
         f"Friction work of gross slip by 4.0 is {work / paid:.7g} times force times slip: "
-        f"{work:.4g} at a force of {found.force[-1]:.4g}."
+        f"{work:.4g} at a force of {answers.force[-1]:.4g}."
         f" Bound: {PAID * paid:.2g}.",
     )
 
 
 @check(SteppedTangentialLaw)
 def non_finite(law: Any) -> None:
-    """NaN in, as slip or as contact, is refused or comes out; never a clean number."""
+    """NaN as slip or contact is refused, or gives NaN; never a finite force."""
     bench = Bench.of()
     state = drive(law, bench, straight((0.0, 0.7), (0.3, 0.7), steps=8)).state
     before, nan = bench.contact(0.7), math.nan
     sound = bench.increment(0.1, before, bench.time / 16.0)
-    ill = sound._replace(displacement=nan, velocity=nan)
-    pressed = sound._replace(friction_load=nan)
-    for what, given, after in (
-        ("slip", ill, before),
-        ("normal contact", pressed, NormalContact(nan, nan, nan, nan)),
+    nan_slip = sound._replace(displacement=nan, velocity=nan)
+    nan_load = sound._replace(friction_load=nan)
+    for what, increment, after in (
+        ("slip", nan_slip, before),
+        ("normal contact", nan_load, NormalContact(nan, nan, nan, nan)),
     ):
         try:
-            response, _ = law.advance(state, given, before, after)
+            response, _ = law.advance(state, increment, before, after)
         except (ValueError, ArithmeticError):
             continue
         clean = bool(response.settled) and math.isfinite(response.force)
@@ -161,16 +161,16 @@ def non_finite(law: Any) -> None:
 
 
 def _non_finite_in_a_batch(law: Any) -> None:
-    """Hold that NaN as the slip of one contact of a batch is refused, or comes out there alone."""
+    """Hold that NaN as the slip of one contact of a batch is refused, or gives NaN only there."""
     bench = Bench.of((3,))
     before = bench.contact(locked(np.full(3, 0.7)))
     slip = np.array([0.1, 0.2, 0.3])
-    state, given = bench.start(law), bench.increment(locked(slip), before, bench.time / 16.0)
+    state, increment = bench.start(law), bench.increment(locked(slip), before, bench.time / 16.0)
     spoiled = np.where([False, True, False], math.nan, slip)
-    ill = bench.increment(locked(spoiled), before, bench.time / 16.0)
-    sound, _ = law.advance(state, given, before, before)
+    nan_increment = bench.increment(locked(spoiled), before, bench.time / 16.0)
+    sound, _ = law.advance(state, increment, before, before)
     try:
-        response, _ = law.advance(state, ill, before, before)
+        response, _ = law.advance(state, nan_increment, before, before)
     except (ValueError, ArithmeticError):
         return
     force = np.asarray(response.force)
@@ -189,33 +189,33 @@ def _non_finite_in_a_batch(law: Any) -> None:
 
 @check(SteppedTangentialLaw)
 def last_step(law: Any) -> None:
-    """A step that ends with hardly any load left keeps force and work within what there was.
+    """Force and work of a step that ends with almost no load are bounded by the load before.
 
-    An integrator may sample the contact at the ends of steps: the load after the last step is
-    then nothing, or rounding, and the mean load of the step is not.
+    An integrator may sample the contact at the ends of steps. The load after the last step is then
+    zero or rounding, while the mean load of the step is not.
     """
     bench, moved, level = Bench.of(), 0.1, 0.7
     before = bench.contact(level)
     for slip in (0.2, 2.0):
         state = drive(law, bench, straight((0.0, level), (slip, level), steps=16)).state
-        for left in (1e-6, 1e-12, 1e-32, 0.0):
-            after = bench.contact(left)
-            given = bench.increment(moved, after, bench.time / 64.0)
-            given = given._replace(friction_load=0.4 * before.friction_load)
-            response, _ = law.advance(state, given, before, after)
+        for remaining in (1e-6, 1e-12, 1e-32, 0.0):
+            after = bench.contact(remaining)
+            increment = bench.increment(moved, after, bench.time / 64.0)
+            increment = increment._replace(friction_load=0.4 * before.friction_load)
+            response, _ = law.advance(state, increment, before, after)
             force = abs(float(response.force)) / bench.friction_force
             work = float(response.friction_work) / (bench.friction_force * bench.slip)
-            most = (1.0 + slack(law)) * level**1.5
+            largest = (1.0 + slack(law)) * level**1.5
             hold(
-                force <= most,
-                f"F = {force:.2g} mu P_max as the load falls to zeta = {left:.1g}."
-                f" Bound: {most:.2g}.",
+                force <= largest,
+                f"F = {force:.2g} mu P_max as the load falls to zeta = {remaining:.1g}."
+                f" Bound: {largest:.2g}.",
             )
-            # No more slips than the step, and the stretch that the load held.
+            # At most the step slips, and the deflection that the load had held.
             hold(
-                -ROUNDING <= work <= most * (moved + level),
+                -ROUNDING <= work <= largest * (moved + level),
                 f"Friction work of {work:.2g} in a step of {moved} as the load falls to zeta = "
-                f"{left:.1g}.",
+                f"{remaining:.1g}.",
             )
 
 

@@ -1,4 +1,4 @@
-"""Checks of any tangential law in whole impacts, in each of the ways in which it can be run."""
+"""Checks of impacts with any tangential law, in each way in which the law can be run."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from contactlab.testing.compare import same
 from contactlab.testing.units import ODD_UNITS, in_units
 from contactlab.testing.ways import allowed, course, meet, ways
 
-#: The angles of incidence from near the normal to grazing, and light to heavy bodies.
+#: Angles of incidence from nearly central to grazing, and inertia ratios.
 PSI1 = (0.01, 0.3, 0.9, 1.2, 2.0, 3.5, 6.0, 40.0)
 CHI = (0.4, 1.4411764706, 3.0)
-#: What steps may leave out of the books, where a force ends or begins within one.
+#: Bound of the imbalance of the energy books, if a force begins or ends within a step.
 BOOKS = 0.03
 #: psi2 of partial slip, theory §5.
 REFERENCE = {
@@ -40,9 +40,9 @@ def impact_odd(law: Any) -> None:
     """An impact from the other side is the mirror image (theory §7)."""
     for way in ways(law):
         for chi, psi1 in itertools.product(CHI, PSI1):
-            there, _, work = meet(way, psi1, chi)
-            back, _, work_back = meet(way, -psi1, chi)
-            gap = max(abs(there + back), abs(work - work_back)) / max(1.0, psi1)
+            change, _, work = meet(way, psi1, chi)
+            mirrored, _, work_back = meet(way, -psi1, chi)
+            gap = max(abs(change + mirrored), abs(work - work_back)) / max(1.0, psi1)
             hold(
                 gap <= 1e-9,
                 f"psi1 = -{psi1}, chi = {chi}: differs by {gap:.1e} from the mirror image ({way})."
@@ -52,12 +52,12 @@ def impact_odd(law: Any) -> None:
 
 @check(TangentialLaw)
 def impact_units(law: Any) -> None:
-    """An impact is the same in any units (theory §7)."""
+    """An impact does not depend on the units of length, time and mass (theory §7)."""
     for way, converted in zip(ways(law), ways(in_units(law, ODD_UNITS)), strict=True):
         for chi, psi1 in itertools.product(CHI, PSI1):
-            here, _, work = meet(way, psi1, chi)
-            there, _, other = meet(converted, psi1, chi, units=ODD_UNITS)
-            gap = max(abs(here - there), abs(work - other)) / max(1.0, psi1)
+            change, _, work = meet(way, psi1, chi)
+            converted_change, _, converted_work = meet(converted, psi1, chi, units=ODD_UNITS)
+            gap = max(abs(change - converted_change), abs(work - converted_work)) / max(1.0, psi1)
             hold(
                 gap <= 1e-8,
                 f"psi1 = {psi1}, chi = {chi}: in other units psi2 differs by {gap:.1e} ({way})."
@@ -67,7 +67,7 @@ def impact_units(law: Any) -> None:
 
 @check(TangentialLaw)
 def impact_bounds(law: Any) -> None:
-    """|psi2| <= |psi1|, and friction cannot change psi by more than 4 chi (theory §7)."""
+    """|psi2| is at most |psi1|, and psi changes by at most 4 chi (theory §7)."""
     for way in ways(law):
         room = allowed(way)
         for chi, psi1 in itertools.product(CHI, PSI1):
@@ -87,30 +87,30 @@ def impact_bounds(law: Any) -> None:
 
 @check(TangentialLaw)
 def impact_books(law: Any) -> None:
-    """Energy lost in an impact is the friction work, at any angle (theory §7)."""
+    """The energy lost in an impact is the friction work, at any angle (theory §7)."""
     for way in ways(law):
         for chi, psi1 in itertools.product(CHI, PSI1):
             change, _, work = meet(way, psi1, chi)
             loss = -change * (psi1 + 0.5 * change)
-            # Where hardly anything slips no grid resolves the loss: not less than psi = 1 counts.
-            off = abs(loss - work) / (0.5 * max(psi1, 1.0) ** 2)
+            # The loss is over the energy of psi = 1 at least: no grid resolves a very small slip.
+            missing = abs(loss - work) / (0.5 * max(psi1, 1.0) ** 2)
             hold(
-                off <= (1e-6 if way.exact else BOOKS),
-                f"psi1 = {psi1}, chi = {chi}: {off:.1%} of the energy is in no book ({way})."
+                missing <= (1e-6 if way.exact else BOOKS),
+                f"psi1 = {psi1}, chi = {chi}: {missing:.1%} of the energy is in no book ({way})."
                 f" Bound: {1e-6 if way.exact else BOOKS:.2g}.",
             )
 
 
 @check(TangentialLaw)
 def impact_coulomb_limit(law: Any) -> None:
-    """All along an impact the force is within mu P, and zero when it ends (TangentialLaw, 1)."""
-    known = 0
+    """The force never exceeds mu P along an impact (TangentialLaw, 1)."""
+    followed = 0
     for way in ways(law):
         for chi, psi1 in itertools.product(CHI, (0.3, 1.2, 3.5)):
             history = course(way, psi1, chi)[0]
             if np.isnan(history.tangential_force).all():
-                continue  # an answer as a whole without a course
-            known += 1
+                continue  # a whole-impact answer without a course
+            followed += 1
             limit = FRICTION * history.normal_force
             largest = float(limit.max())
             over = float(np.max(np.abs(history.tangential_force) - limit)) / largest
@@ -119,7 +119,7 @@ def impact_coulomb_limit(law: Any) -> None:
                 f"psi1 = {psi1}, chi = {chi}: abs(F) exceeds mu P by {over:.2g} of mu P_max."
                 f" Bound: {allowed(way):.2g}.",
             )
-    apply_if(known, "It answers impacts as wholes, and gives no force along them.")
+    apply_if(followed, "Its whole-impact answers have no course, and so no force to check.")
 
 
 @check(TangentialLaw)
@@ -133,7 +133,7 @@ def impact_central(law: Any) -> None:
 
 @check(TangentialLaw)
 def impact_repeatable(law: Any) -> None:
-    """A run leaves the law as it was, and the next run alike; watching it changes nothing."""
+    """A run does not change the law, is repeatable, and does not depend on an observer."""
     for way in ways(law):
         kept = copy.deepcopy(law)
         first: Any = meet(way, 1.2, 1.44)[1]
@@ -155,14 +155,14 @@ def impact_repeatable(law: Any) -> None:
 
 @check(TangentialLaw)
 def impact_batch(law: Any) -> None:
-    """A batch of impacts of unlike bodies ends as they do one by one (Integrator, 5)."""
+    """A batch of impacts of unlike bodies ends as each impact does alone (Integrator, 5)."""
     psi1, chi = (np.ravel(grid) for grid in np.meshgrid((-2.0, 0.3, 1.2, 40.0), CHI))
-    given = scene(psi1, chi, bodies=bodies(len(psi1)), friction=np.linspace(0.1, 0.7, len(psi1)))
+    impacts = scene(psi1, chi, bodies=bodies(len(psi1)), friction=np.linspace(0.1, 0.7, len(psi1)))
     for way in ways(law):
-        change, _, work = way.run(given)
+        change, _, work = way.run(impacts)
         for place in range(len(psi1)):
-            alone, _, lost = way.run(given.take(place))
-            gap = max(abs(float(change[place]) - alone), abs(float(work[place]) - lost))
+            alone, _, alone_work = way.run(impacts.take(place))
+            gap = max(abs(float(change[place]) - alone), abs(float(work[place]) - alone_work))
             gap /= max(1.0, abs(float(psi1[place])))
             hold(
                 gap <= 1e-8,
@@ -172,15 +172,15 @@ def impact_batch(law: Any) -> None:
 
 @check(TangentialLaw)
 def impact_after_another(law: Any) -> None:
-    """An impact does not depend on the scenes that were run before it (Law, 1)."""
-    one = scene(1.2, CHI[1])
-    other = scene(2.0, CHI[2], bodies=1.6, friction=0.6)
+    """An impact does not depend on scenes that were run before (Law, 1)."""
+    first = scene(1.2, CHI[1])
+    second = scene(2.0, CHI[2], bodies=1.6, friction=0.6)
     stacked = scene(
         *(np.full((1, 1, 1), number) for number in (2.0, CHI[2])), bodies=1.6, friction=0.6
     )
     for way in ways(law):
-        way.run(one)
-        alone, _, _ = way.run(other)
+        way.run(first)
+        alone, _, _ = way.run(second)
         gap = abs(float(np.ravel(way.run(stacked).change)[0]) - float(alone))
         hold(
             gap <= 1e-8,
@@ -196,28 +196,30 @@ def impact_reference(law: Any) -> None:
     """Impacts with partial slip end as the exact solution does (theory §5)."""
     for way in ways(law):
         for (chi, psi1), psi2 in REFERENCE.items():
-            off = abs(psi1 + meet(way, psi1, chi)[0] - psi2)
+            error = abs(psi1 + meet(way, psi1, chi)[0] - psi2)
             hold(
-                off <= (1e-8 if way.exact else allowed(way)),
-                f"psi1 = {psi1}, chi = {chi}: psi2 is {off:.2g} off ({way})."
+                error <= (1e-8 if way.exact else allowed(way)),
+                f"psi1 = {psi1}, chi = {chi}: psi2 is {error:.2g} off ({way})."
                 f" Bound: {1e-8 if way.exact else allowed(way):.2g}.",
             )
 
 
 @check(AllStepsTangentialLaw)
 def all_steps(law: Any) -> None:
-    """All steps at once give the forces of step by step, of a batch too (AllStepsTangentialLaw)."""
+    """All steps at once give the same as step by step, for a batch too (AllStepsTangentialLaw)."""
     way = next(iter(ways(law)))
     for chi, psi1 in itertools.product(CHI, PSI1):
         _, motion, _ = meet(way, psi1, chi)
         _, watched = course(way, psi1, chi)
-        # An integrator that is watched goes step by step.
+        # With an observer an integrator goes step by step.
         gap = abs(float(watched.slip_velocity_change / motion.slip_velocity_change) - 1.0)
         hold(gap <= 1e-8, f"psi1 = {psi1}, chi = {chi}: differs by {gap:.1e}. Bound: 1e-8.")
-    for various in (CHI[1], np.linspace(CHI[0], CHI[-1], len(PSI1))):
-        given = scene(np.array(PSI1), various)
-        at_once = way.run(given)
-        stepped = way.run(given, Recorder(given.shape, with_fields=False))
-        for one, other in ((at_once.change, stepped.change), (at_once.work, stepped.work)):
-            gap = float(np.max(np.abs(one - other) / np.maximum(1.0, PSI1)))
-            hold(gap <= 1e-8, f"A batch of shape {given.shape}: differs by {gap:.1e}. Bound: 1e-8.")
+    for chis in (CHI[1], np.linspace(CHI[0], CHI[-1], len(PSI1))):
+        impacts = scene(np.array(PSI1), chis)
+        at_once = way.run(impacts)
+        stepped = way.run(impacts, Recorder(impacts.shape, with_fields=False))
+        for together, single in ((at_once.change, stepped.change), (at_once.work, stepped.work)):
+            gap = float(np.max(np.abs(together - single) / np.maximum(1.0, PSI1)))
+            hold(
+                gap <= 1e-8, f"A batch of shape {impacts.shape}: differs by {gap:.1e}. Bound: 1e-8."
+            )

@@ -1,4 +1,4 @@
-"""Checks of an integrator under laws that fail, and laws that it could follow without end."""
+"""Checks of an integrator under laws that fail, and under laws without end."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NONE_FIT = "None of the faulty laws of the kit fits it."
 
 @check(Integrator)
 def faults_reported(integrator: Any) -> None:
-    """A law that answers NaN, finds no answer or raises gives a status and the history so far."""
+    """A law that answers NaN, does not settle or raises gives a status and the partial history."""
     faulty = (
         FailingSpring(),
         FailingSpring(raises=True),
@@ -36,7 +36,7 @@ def faults_reported(integrator: Any) -> None:
 
 @check(Integrator)
 def faults_named(integrator: Any) -> None:
-    """A law that raises, at the start or later, is named in the detail (Integrator, 1)."""
+    """The detail names a law that raises, at the start or later (Integrator, 1)."""
     faulty = (
         FailingSpring(raises=True),
         FailingSpring(raises=True, at=0),
@@ -45,23 +45,21 @@ def faults_named(integrator: Any) -> None:
     simulations = [*fitting(integrator, faulty, "normal.hertz")]
     apply_if(simulations, NONE_FIT)
     for simulation in simulations:
-        detail, name = (
-            simulation.run(scene(2.0, CHI)).motion.detail,
-            type(simulation.tangential).__name__,
-        )
+        detail = simulation.run(scene(2.0, CHI)).motion.detail
+        name = type(simulation.tangential).__name__
         hold(name in detail, f"{name} raised, and is not named: {detail!r}.")
 
 
 @check(Integrator)
 def normal_faults_reported(integrator: Any) -> None:
-    """A normal motion that is NaN from some time on gives a status, never an answer."""
+    """A normal motion that becomes NaN gives a status, never an answer."""
     laws = (PressedSpring(), Slider(), SlidingForEver())
     _reported([*fitting(integrator, laws, SpoiledHertz())], least=0)
 
 
 @check(Integrator)
 def bounded(integrator: Any) -> None:
-    """A law of any stiffness, or of events without end, is followed so far (Integrator, 2)."""
+    """A run ends, under a law of any stiffness and under endless events (Integrator, 2)."""
     simulations = list(fitting(integrator, (Unyielding(), Endless()), "normal.hertz"))
     apply_if(simulations, NONE_FIT)
     for simulation in simulations:
@@ -73,11 +71,11 @@ def bounded(integrator: Any) -> None:
             continue
         hold(TooManyCallsError.__name__ not in motion.detail, f"{name} is asked without end.")
         if isinstance(simulation.tangential, Endless):
-            hold(not motion.status, "Events without end are said to have come to one.")
+            hold(not motion.status, "A run with endless events is reported as a success.")
 
 
 def _reported(simulations: list[Simulation], *, least: int) -> None:
-    """Hold that each of these runs ends with a status, what and where, and its history so far."""
+    """Hold that each run ends with a status, a detail, and ``least`` instants of history."""
     apply_if(simulations, NONE_FIT)
     for simulation in simulations:
         result = simulation.run(scene(2.0, CHI), history=True)

@@ -27,7 +27,7 @@ CHI = 1.4411764706
 
 
 def fitting(integrator: Any, tangential: tuple[Any, ...], normal: Any) -> Iterator[Simulation]:
-    """Iterate over simulations with those of the tangential laws that it can run."""
+    """Iterate over simulations with the tangential laws that the integrator can run."""
     normal_law = REGISTRY.create(normal) if isinstance(normal, str) else normal
     for law in tangential:
         if composition.misfit(normal_law, law, integrator) is None:
@@ -35,38 +35,38 @@ def fitting(integrator: Any, tangential: tuple[Any, ...], normal: Any) -> Iterat
 
 
 def sound(integrator: Any) -> list[Simulation]:
-    """Return simulations with laws that do not fail; at least one."""
+    """Return at least one simulation with laws of the kit that do not fail."""
     laws = (PressedSpring(), Yielding(), Slider(), SlidingForEver())
-    found = list(fitting(integrator, laws, "normal.hertz"))
-    hold(found, "It fits none of the laws of the kit: see the contracts that it states.")
-    return found
+    simulations = list(fitting(integrator, laws, "normal.hertz"))
+    hold(simulations, "It fits none of the laws of the kit: see the contracts that it states.")
+    return simulations
 
 
 def marched_impact(
     simulation: Simulation, psi1: Any, chi: Any = CHI, recorder: Any = None
 ) -> TangentialMotion:
-    """Return the motion of an impact by the integrator alone: a plan might take a short cut.
+    """Return the motion of an impact by the integrator alone, without whole-impact answers.
 
     Parameters
     ----------
     simulation : Simulation
     psi1, chi : float or array
     recorder : callable, optional
-        An observer.
+        Observer of the run.
     """
     return marched(simulation, scene(psi1, chi), recorder)
 
 
-def marched(simulation: Simulation, given: Any, recorder: Any = None) -> TangentialMotion:
-    """Return the motion of a scene by the integrator alone."""
+def marched(simulation: Simulation, impact: Any, recorder: Any = None) -> TangentialMotion:
+    """Return the motion of a scene by the integrator alone, without whole-impact answers."""
     limits.begin(f"an impact under {type(simulation.tangential).__name__}")
-    normal = normal_motion(simulation.normal, given)
-    return simulation.integrator.integrate(normal, simulation.tangential, given, recorder)
+    normal = normal_motion(simulation.normal, impact)
+    return simulation.integrator.integrate(normal, simulation.tangential, impact, recorder)
 
 
 @check(Integrator)
 def ends_well(integrator: Any) -> None:
-    """Sound laws are followed from first touch to separation, to plain numbers (Integrator, 1)."""
+    """An impact under a sound law ends with success and finite numbers (Integrator, 1)."""
     for simulation in sound(integrator):
         motion = marched_impact(simulation, 2.0)
         hold(
@@ -93,13 +93,11 @@ def slip_velocity(psi1: float) -> float:
 
 @check(Integrator)
 def observer_changes_nothing(integrator: Any) -> None:
-    """An observer sees increasing times, and having one changes no result (Integrator, 3)."""
+    """An observer is called at increasing times, and changes no result (Integrator, 3)."""
     for simulation in sound(integrator):
         recorder = Recorder((), with_fields=True)
-        alone, watched = (
-            marched_impact(simulation, 2.0),
-            marched_impact(simulation, 2.0, recorder=recorder),
-        )
+        alone = marched_impact(simulation, 2.0)
+        watched = marched_impact(simulation, 2.0, recorder=recorder)
         for name in ENTRIES:
             hold(
                 same(getattr(alone, name), getattr(watched, name)),
@@ -117,7 +115,7 @@ def observer_changes_nothing(integrator: Any) -> None:
 
 @check(Integrator)
 def integrator_pure(integrator: Any) -> None:
-    """Two runs are alike, whatever was run between them, and leave the integrator as it was."""
+    """A run is repeatable after other runs, and does not change the integrator."""
     for simulation in sound(integrator):
         kept = copy.deepcopy(integrator)
         first = marched_impact(simulation, 2.0)
@@ -131,13 +129,18 @@ def integrator_pure(integrator: Any) -> None:
 
 @check(Integrator)
 def mirror_images(integrator: Any) -> None:
-    """An impact from the other side is followed as the mirror image (TangentialLaw, 2)."""
+    """An impact from the other side is the mirror image (TangentialLaw, 2)."""
     for simulation in sound(integrator):
         for psi1 in (0.3, 2.0, 12.0):
-            there, back = (marched_impact(simulation, sense * psi1) for sense in (1.0, -1.0))
-            change, other = (float(np.asarray(one.slip_velocity_change)) for one in (there, back))
-            lost = float(np.asarray(back.friction_work)) - float(np.asarray(there.friction_work))
-            gap = max(abs(other / change + 1.0), abs(lost) / _energy(psi1))
+            motion, mirrored = (marched_impact(simulation, sense * psi1) for sense in (1.0, -1.0))
+            change, mirrored_change = (
+                float(np.asarray(each_motion.slip_velocity_change))
+                for each_motion in (motion, mirrored)
+            )
+            work_gap = float(np.asarray(mirrored.friction_work)) - float(
+                np.asarray(motion.friction_work)
+            )
+            gap = max(abs(mirrored_change / change + 1.0), abs(work_gap) / _energy(psi1))
             name = type(simulation.tangential).__name__
             hold(
                 gap <= 1e-9,
@@ -149,35 +152,35 @@ def mirror_images(integrator: Any) -> None:
 
 def _energy(psi1: float) -> float:
     """Return the kinetic energy of slip of a scene of the kit, in J."""
-    given: Any = scene(psi1, CHI)
-    return float(0.5 * given.pair.tangential_mass * given.slip_velocity**2)
+    impact: Any = scene(psi1, CHI)
+    return float(0.5 * impact.pair.tangential_mass * impact.slip_velocity**2)
 
 
 @check(Integrator)
 def impacts_batch(integrator: Any) -> None:
-    """A batch of unlike bodies gives what its impacts give one by one (Integrator, 5)."""
+    """A batch of unlike bodies gives the same as each impact alone (Integrator, 5)."""
     psi1 = np.array([[-2.0, 0.0, 0.3], [1.2, 5.0, 40.0]])
     chi = np.array([[0.4, 1.0, 1.5], [1.5, 3.0, 3.0]])
-    given = scene(psi1, chi, bodies=bodies(*psi1.shape))
+    impacts = scene(psi1, chi, bodies=bodies(*psi1.shape))
     for simulation in sound(integrator):
-        together = marched(simulation, given)
+        together = marched(simulation, impacts)
         for name in ENTRIES:
             hold(
                 np.shape(getattr(together, name)) == psi1.shape,
                 f"{name} has not the batch's shape.",
             )
         for place in np.ndindex(psi1.shape):
-            one = given.take(place)
-            alone = marched(simulation, one)
+            impact = impacts.take(place)
+            alone = marched(simulation, impact)
             hold(together.status[place] is alone.status, "An impact of a batch ends otherwise.")
-            speed = float(np.asarray(one.normal_speed))
-            mass = float(np.asarray(one.pair.tangential_mass))
+            speed = float(np.asarray(impact.normal_speed))
+            mass = float(np.asarray(impact.pair.tangential_mass))
             for name, least in (
                 ("slip_velocity_change", 1e-6 * speed),
                 ("friction_work", 1e-6 * mass * speed**2),
             ):
-                here, there = getattr(alone, name), float(getattr(together, name)[place])
-                gap = abs(here - there) / max(abs(here), least)
+                expected, value = getattr(alone, name), float(getattr(together, name)[place])
+                gap = abs(expected - value) / max(abs(expected), least)
                 hold(
                     gap <= 1e-9,
                     f"The {name} of an impact of a batch is off by {gap:.1e}. Bound: 1e-9.",

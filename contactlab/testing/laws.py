@@ -1,4 +1,4 @@
-"""Laws with answers known beforehand, on which integrators and other laws are tried."""
+"""Laws with known exact answers, on which integrators and other laws are checked."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ class Stretch(NamedTuple):
 
 @attrs.frozen(kw_only=True)
 class PressedSpring(SteppedTangentialLaw):
-    """F = c P D: smooth from first touch to separation, where it vanishes.
+    """F = c P D, smooth from first touch to separation, where the force vanishes.
 
-    It heeds no limit: a yardstick for order, not a friction law.
+    The force has no Coulomb limit: the law is for orders of convergence only.
     """
 
     api_version: ClassVar[int] = 2
@@ -46,12 +46,12 @@ class PressedSpring(SteppedTangentialLaw):
     strength: ClassVar[float] = 1.3
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return c P_max."""
+        """Return c P_max, in N/m."""
         unit = normal.maximum_approach / scene.normal_speed
         return self.strength * scene.pair.tangential_mass / np.square(unit)
 
     def start(self, scene: Scene, normal: NormalMotion) -> Stretch:
-        """Return the spring at rest."""
+        """Return the spring without displacement."""
         nothing: Real = np.zeros(scene.shape) if scene.shape else 0.0
         return Stretch(self.stiffness(scene, normal) / normal.maximum_force, nothing)
 
@@ -62,23 +62,23 @@ class PressedSpring(SteppedTangentialLaw):
         before: NormalContact,
         after: NormalContact,
     ) -> tuple[TangentialResponse, Stretch]:
-        """Stretch the spring."""
+        """Return the force of the stretched spring."""
         displacement = state.displacement + increment.displacement
         force = state.stiffness * after.force * displacement
         return TangentialResponse(force, 0.0 * force), Stretch(state.stiffness, displacement)
 
     @classmethod
     def rebound(cls, motion: ClosedFormMotion) -> float:
-        """Return the slip velocity after an impact over that before it.
+        """Return the slip velocity after an impact over the slip velocity before.
 
-        In scaled variables v' = -strength P D, D' = v, along the phase of the normal motion.
+        The scaled equations v' = -strength P D, D' = v are solved along the phase.
         """
         from scipy.integrate import solve_ivp
 
         def slope(phase: float, state: Any) -> list[float]:
-            here = motion.scaled_at(phase)
-            rate = here.time_rate
-            return [-rate * cls.strength * here.force * state[1], rate * state[0]]
+            contact = motion.scaled_at(phase)
+            rate = contact.time_rate
+            return [-rate * cls.strength * contact.force * state[1], rate * state[0]]
 
         solution = solve_ivp(
             slope, (0.0, math.pi), [1.0, 0.0], method="DOP853", rtol=1e-12, atol=1e-14
@@ -97,13 +97,13 @@ class Slip(NamedTuple):
 class Slider(SteppedTangentialLaw):
     """F = mu times the friction load of the step, against the slip velocity at first touch.
 
-    For impacts that slip throughout: the impulse is then mu times that of the load.
+    In slip throughout the impulse of the force is mu times the load impulse.
     """
 
     api_version: ClassVar[int] = 2
 
     def start(self, scene: Scene, normal: NormalMotion) -> Slip:
-        """Return the direction of slip."""
+        """Return friction coefficient with the sign of slip, and no force."""
         friction = scene.friction_coefficient * np.sign(scene.slip_velocity)
         return Slip(friction if scene.shape else float(friction), 0.0 * friction)
 
@@ -114,7 +114,7 @@ class Slider(SteppedTangentialLaw):
         before: NormalContact,
         after: NormalContact,
     ) -> tuple[TangentialResponse, Slip]:
-        """Return the force of slip; its work is that of the mean force."""
+        """Return the force of slip, and the work of the mean force."""
         force = state.friction * increment.friction_load
         work = 0.5 * (force + state.force) * increment.displacement
         return TangentialResponse(force, work), Slip(state.friction, force)
@@ -130,17 +130,17 @@ class Yield(NamedTuple):
 
 @attrs.frozen(kw_only=True)
 class Yielding(SteppedTangentialLaw):
-    """A spring of the stiffness of the largest contact, and a slider: its books close."""
+    """A spring of the stiffness of the largest contact, and a slider; its energy books close."""
 
     api_version: ClassVar[int] = 2
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return 2 G* a."""
+        """Return 2 G* a, in N/m."""
         return scene.pair.tangential_stiffness(normal.maximum_radius)
 
     def start(self, scene: Scene, normal: NormalMotion) -> Yield:
-        """Return the spring at rest."""
+        """Return the spring without force."""
         nothing: Real = np.zeros(scene.shape) if scene.shape else 0.0
         return Yield(self.stiffness(scene, normal), scene.friction_coefficient, nothing)
 
@@ -151,7 +151,7 @@ class Yielding(SteppedTangentialLaw):
         before: NormalContact,
         after: NormalContact,
     ) -> tuple[TangentialResponse, Yield]:
-        """Return the force of the spring, cut to the limit, and the work of the slip."""
+        """Return the force of the spring up to Coulomb's limit, and the work of the slip."""
         trial = state.force + state.stiffness * increment.displacement
         limit = state.friction * after.friction_load
         force = np.minimum(np.maximum(trial, -limit), limit)
@@ -164,12 +164,12 @@ class Yielding(SteppedTangentialLaw):
 
 @attrs.frozen(kw_only=True)
 class Sliding(Phase):
-    """F = P, or NaN from some phase on."""
+    """F = P, or NaN from the phase ``fails_at`` on."""
 
     fails_at: float = math.inf
 
     def respond(self, contact: ScaledContact, slip: Any, memo: Any) -> PhaseResponse:
-        """Return P."""
+        """Return the force P, scaled."""
         force = np.where(contact.phase < self.fails_at, contact.force, math.nan)
         return PhaseResponse(force, None, None, ())
 
@@ -180,9 +180,9 @@ class Sliding(Phase):
 
 @attrs.frozen(kw_only=True)
 class SlidingForEver(PhasedTangentialLaw):
-    """Slip in one direction from start to end.
+    """Slip in one direction from first touch to separation.
 
-    With ``fails`` it answers NaN from x = 1 on; with ``at_once`` it raises as it begins.
+    With ``fails`` the force is NaN from x = 1 on; with ``at_once`` the law raises at first touch.
     """
 
     api_version: ClassVar[int] = 2
@@ -190,7 +190,7 @@ class SlidingForEver(PhasedTangentialLaw):
     at_once: bool = False
 
     def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
-        """Slide."""
+        """Return the only phase."""
         if self.at_once:
             raise ArithmeticError("as it was asked to")
         return Sliding(fails_at=1.0 if self.fails else math.inf)
@@ -205,11 +205,11 @@ class DampedHertz(NormalLaw):
     damping: ClassVar[float] = 0.2
 
     def start(self, scene: Scene) -> Scene:
-        """Return the scene; there is nothing to remember."""
+        """Return the scene, the only state."""
         return scene
 
     def respond(self, state: Scene, approach: Real, rate: Real) -> tuple[NormalContact, Scene]:
-        """Return the contact; up to 1/damping times v1 it never pulls."""
+        """Return the contact; the force is negative for rates below -v1/damping only."""
         inside: Any = approach * (approach > 0.0)
         radius = (state.pair.radius * inside) ** 0.5
         hertz = (4.0 / 3.0) * state.pair.effective_modulus * radius * inside
@@ -219,7 +219,7 @@ class DampedHertz(NormalLaw):
 
 @attrs.frozen(kw_only=True)
 class SoftHertz(DampedHertz):
-    """A tenth of Hertz's force: contacts 2.5 times as deep and 1.6 times as wide as his."""
+    """A tenth of Hertz's force: contacts 2.5 times as deep and 1.6 times as wide."""
 
     def respond(self, state: Scene, approach: Real, rate: Real) -> tuple[NormalContact, Scene]:
         """Return the contact."""
@@ -229,17 +229,17 @@ class SoftHertz(DampedHertz):
 
 @attrs.frozen(kw_only=True)
 class StronglyDampedHertz(DampedHertz):
-    """The same with a restitution of about a half."""
+    """``DampedHertz`` with a normal restitution of about a half."""
 
     damping: ClassVar[float] = 0.9
 
 
 @attrs.frozen(kw_only=True)
 class PullingHertz(NormalLaw):
-    """Hertz's force less a twentieth of its maximum; the friction load is Hertz's.
+    """Hertz's force less a twentieth of its maximum; the friction load is Hertz's force.
 
-    It pulls near first touch and near separation, so that the impulse of the friction load is
-    not mu (1 + e) M_n v1.
+    The surfaces pull near first touch and near separation, so that the load impulse is not
+    (1 + e) M_n v1.
     """
 
     api_version: ClassVar[int] = 2
@@ -247,7 +247,7 @@ class PullingHertz(NormalLaw):
     pull: ClassVar[float] = 0.05
 
     def start(self, scene: Scene) -> tuple[Any, Any, Any]:
-        """Return stiffness, radius and pull."""
+        """Return stiffness in N/m^1.5, radius in m and pull in N."""
         pair = scene.pair
         stiffness = (4.0 / 3.0) * pair.effective_modulus * pair.radius**0.5
         return stiffness, pair.radius, self.pull * hertz_scales(scene).force

@@ -1,4 +1,4 @@
-"""A limit of time for a check: a law that hangs or crawls is told so, and nothing hangs."""
+"""Time limit of a check, which stops a law that hangs or is very slow."""
 
 from __future__ import annotations
 
@@ -10,51 +10,50 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-#: Seconds of computing that a check may take; the longest of ours takes a few on a slow machine.
+#: Processor time of a check, in s; contactlab's own laws take a few seconds on a slow machine.
 SECONDS = 60.0
-#: A law that waits is stopped after so many times that: a busy machine is no reason.
+#: Wall-clock limit over the limit of processor time, for a law that waits: the factor allows for a
+#: busy machine.
 WAITING = 10.0
-#: Seconds after which the clock is looked at again, and a law that swallowed the first
-#: interruption is interrupted again.
+#: Interval in s at which the limits are tested again, for a law that swallows the first exception.
 AGAIN = 1.0
-#: Checks that may run out of time before the others are not tried any more.
+#: Number of checks out of time after which the remaining checks are not tried.
 MOST_TIMEOUTS = 3
 
 
 class OutOfTimeError(KeyboardInterrupt):
-    """A check ran out of time; it passes through ``except Exception``, as Ctrl-C does."""
+    """A check ran out of time; like Ctrl-C it passes through ``except Exception``."""
 
 
 class Doing:
-    """What the kit is at: words, and the steps of a path that were taken so far."""
+    """The present activity of the kit in words, and the number of steps taken."""
 
     what: str = ""
     steps: int = 0
 
 
-#: What the check that runs is at.
+#: Activity of the running check.
 DOING = Doing()
 
 
 def begin(what: str) -> None:
-    """Note what is begun; steps are counted from here."""
+    """Set the activity, and reset the number of steps to 0."""
     DOING.what, DOING.steps = what, 0
 
 
 @contextmanager
 def limited(name: str, law: Any, seconds: float = SECONDS) -> Iterator[None]:
-    """Raise ``OutOfTimeError`` in the body after ``seconds`` of computing, with a sentence.
+    """Raise ``OutOfTimeError`` in the body after ``seconds`` of processor time.
 
-    Only the main thread of a process can be interrupted, where the system has SIGALRM; elsewhere
-    there is no limit.
+    Only the main thread of a system with SIGALRM can be interrupted; elsewhere there is no limit.
 
     Parameters
     ----------
     name : str
-        Of the check.
+        Name of the check, for the message.
     law : Law
     seconds : float
-        Of processor time; ten times that of waiting.
+        Limit of processor time, in s; the limit of wall-clock time is ``WAITING`` times as long.
     """
     possible = hasattr(signal, "SIGALRM") and (
         threading.current_thread() is threading.main_thread()
@@ -90,18 +89,7 @@ def limited(name: str, law: Any, seconds: float = SECONDS) -> Iterator[None]:
 
 
 def _sentence(name: str, law: Any, after: str, frame: FrameType | None) -> str:
-    """Return which check was stopped, after how long, and where the law was.
-
-    Parameters
-    ----------
-    name : str
-        Of the check.
-    law : Law
-    after : str
-        How long it took.
-    frame : frame or None
-        What ran when the time was over.
-    """
+    """Return a sentence on the check stopped, its time, and the line that the law was at."""
     what = f", in {DOING.what}" if DOING.what else ""
     steps = f" at step {DOING.steps}" if DOING.steps else ""
     where = ""

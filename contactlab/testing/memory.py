@@ -14,13 +14,13 @@ LEVEL = 0.8
 STEPS = 40
 #: Steps out of contact before the bodies meet again.
 APART = (1, 2, 5)
-#: Steps of a contact that is held still.
+#: Steps of a contact without displacement.
 STILL = 400
 
 
 @check(SteppedTangentialLaw)
 def turning_points(law: Any) -> None:
-    """Masing: unloading is loading doubled, and a closed loop is forgotten (theory §7)."""
+    """Masing: unloading is loading doubled, and a closed loop leaves no memory (theory §7)."""
     bench, press = Bench.of(), (0.0, LEVEL)
     for turn in (0.3, 0.6, 1.5):
         loading = drive(law, bench, straight(press, (turn, LEVEL), steps=STEPS)).force[STEPS:]
@@ -48,9 +48,9 @@ def turning_points(law: Any) -> None:
 def cattaneo_mindlin(law: Any) -> None:
     """At fixed P, F/(mu P) = 1 - (1 - xi)^1.5: slip from the edge inwards (theory §7)."""
     path = straight((0.0, LEVEL), (1.3 * LEVEL, LEVEL), steps=65)
-    found = drive(law, Bench.of(), path).force[65:] / LEVEL**1.5
+    force = drive(law, Bench.of(), path).force[65:] / LEVEL**1.5
     xi = np.minimum(path.slip[65:] / LEVEL, 1.0)
-    gap = np.abs(found - (1.0 - (1.0 - xi) ** 1.5))
+    gap = np.abs(force - (1.0 - (1.0 - xi) ** 1.5))
     hold(
         gap.max() <= slack(law, 1e-3),
         f"F/(mu P) is {gap.max():.2g} off Cattaneo and Mindlin's, at xi = {xi[gap.argmax()]:.2g}."
@@ -60,19 +60,19 @@ def cattaneo_mindlin(law: Any) -> None:
 
 @check(SteppedTangentialLaw)
 def contact_again(law: Any) -> None:
-    """After separation, of one step or of more, a contact begins without memory (stepped, 1)."""
+    """After separation, for one step or more, a contact begins without memory (stepped, 1)."""
     bench = Bench.of()
     touched = straight((0.0, LEVEL), (0.5, LEVEL), steps=16)
     sheared = drive(law, bench, touched)
-    again = straight((0.0, LEVEL), (0.3, LEVEL), steps=16)
-    fresh = drive(law, bench, again).force
+    second_path = straight((0.0, LEVEL), (0.3, LEVEL), steps=16)
+    fresh = drive(law, bench, second_path).force
     for apart in APART:
         away = Path(np.full(apart, 0.5), np.full(apart, -0.1))
-        gone = continue_from(
-            law, bench, sheared.state, away, slip=0.5, level=LEVEL, count=len(again.slip)
+        apart_answers = continue_from(
+            law, bench, sheared.state, away, slip=0.5, level=LEVEL, count=len(second_path.slip)
         )
-        back = continue_from(law, bench, gone.state, again, level=-0.1).force
-        pressed, gap = (float(np.max(np.abs(part))) for part in (back[:16], back - fresh))
+        force = continue_from(law, bench, apart_answers.state, second_path, level=-0.1).force
+        pressed, gap = (float(np.max(np.abs(part))) for part in (force[:16], force - fresh))
         hold(
             gap <= slack(law, 1e-9),
             f"After {apart} step(s) out of contact, contact is made again: pressing alone gives "
@@ -84,9 +84,9 @@ def contact_again(law: Any) -> None:
 
 @check(SteppedTangentialLaw)
 def held_still(law: Any) -> None:
-    """A contact that is held still keeps its force, however many steps are taken.
+    """Without displacement a contact keeps its force over any number of steps.
 
-    From the second step on: the force of a dashpot goes in the first.
+    The first step does not count, because a dashpot loses its force there.
     """
     bench = Bench.of()
     sheared = drive(law, bench, straight((0.0, LEVEL), (0.3, LEVEL), steps=16)).state

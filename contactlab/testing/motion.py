@@ -12,26 +12,26 @@ from contactlab.testing.bench import scene
 from contactlab.testing.check import check, hold
 from contactlab.testing.normal import STEPS, respond
 
-#: Phases to which the derivatives of a motion are added up, by the trapezium rule.
+#: Number of phases over which derivatives are integrated by the trapezium rule.
 PHASES = 2001
 
 
 @check(ClosedFormNormalLaw)
 def motion_agrees(law: Any) -> None:
-    """The motion in closed form has the forces of ``respond``, and starts as asked."""
-    given: Any = scene(0.0, 1.0)
-    speed, motion = given.normal_speed, law.motion(given)
+    """The motion in closed form has the contacts of ``respond``, and starts at touch with v1."""
+    impact: Any = scene(0.0, 1.0)
+    speed, motion = impact.normal_speed, law.motion(impact)
     phases = np.linspace(0.0, math.pi, STEPS)
     _, approach, rate, contact, _ = motion.at(phases)
-    force, radius, _, load = respond(law, given, np.asarray(approach), np.asarray(rate))
-    for name, one, other, scale in (
+    force, radius, _, load = respond(law, impact, np.asarray(approach), np.asarray(rate))
+    for name, value, expected, scale in (
         ("force", contact.force, force, motion.maximum_force),
         ("radius", contact.radius, radius, motion.maximum_radius),
         ("friction load", contact.friction_load, load, motion.maximum_force),
     ):
-        # At separation the radius is its limit or none, as rounding has it.
-        apart = np.abs(one - other)[: -1 if name == "radius" else None]
-        gap = float(np.max(apart)) / scale
+        # At separation rounding decides between the limit of the radius and zero.
+        difference = np.abs(value - expected)[: -1 if name == "radius" else None]
+        gap = float(np.max(difference)) / scale
         hold(
             gap <= 1e-8, f"The {name} of the motion is {gap:.1e} off that of respond. Bound: 1e-8."
         )
@@ -48,22 +48,22 @@ def motion_agrees(law: Any) -> None:
 @check(ClosedFormNormalLaw)
 def motion_obeys_newton(law: Any) -> None:
     """Mass times change of rate is the force, and approach the integral of rate."""
-    given: Any = scene(0.0, 1.0)
-    motion = law.motion(given)
+    impact: Any = scene(0.0, 1.0)
+    motion = law.motion(impact)
     phases = np.linspace(0.0, math.pi, PHASES)
     time, approach, rate, contact, impulse = motion.at(phases)
-    per_time = motion.maximum_approach / given.normal_speed
+    per_time = motion.maximum_approach / impact.normal_speed
     time_rate, width = np.asarray(motion.scaled(phases).time_rate) * per_time, np.diff(phases)
 
     def gathered(slope: Any) -> Any:
         return np.concatenate(([0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]) * width)))
 
-    unit = 2.0 * given.normal_speed
+    unit = 2.0 * impact.normal_speed
     for name, change, slope, scale in (
         (
             "rate",
             np.asarray(rate) - rate[0],
-            -contact.force * time_rate / given.pair.normal_mass,
+            -contact.force * time_rate / impact.pair.normal_mass,
             unit,
         ),
         ("approach", np.asarray(approach), rate * time_rate, motion.maximum_approach),
@@ -80,28 +80,28 @@ def motion_obeys_newton(law: Any) -> None:
         ("total load impulse", impulse[-1], motion.total_load_impulse),
     ):
         hold(abs(float(last) / total - 1.0) <= 1e-9, f"It does not end at its {name}. Bound: 1e-9.")
-    mass = motion.maximum_force * per_time / (given.pair.normal_mass * given.normal_speed)
+    mass = motion.maximum_force * per_time / (impact.pair.normal_mass * impact.normal_speed)
     gap = abs(motion.scaled_mass * mass - 1.0)
     hold(gap <= 1e-9, f"The scaled mass is {gap:.1e} off that of Newton's law. Bound: 1e-9.")
 
 
 @check(ClosedFormNormalLaw)
 def motion_scaled(law: Any) -> None:
-    """``scaled``, ``scaled_at``, ``phase`` and ``phase_at_rate`` say what ``at`` says."""
-    given: Any = scene(0.0, 1.0)
-    motion = law.motion(given)
+    """``scaled``, ``scaled_at``, ``phase`` and ``phase_at_rate`` agree with ``at``."""
+    impact: Any = scene(0.0, 1.0)
+    motion = law.motion(impact)
     phases = np.linspace(0.05, math.pi - 0.05, 41)
     sample = motion.at(phases)
     time, approach, rate = (np.asarray(part) for part in sample[:3])
     contact, scaled = sample.contact, motion.scaled(phases)
-    for name, one, other in (
+    for name, value, expected in (
         ("phase", scaled.phase, phases),
         ("approach", scaled.approach, approach / motion.maximum_approach),
-        ("rate", scaled.rate, rate / given.normal_speed),
+        ("rate", scaled.rate, rate / impact.normal_speed),
         ("force", scaled.force, contact.force / motion.maximum_force),
         ("radius", scaled.radius, contact.radius / motion.maximum_radius),
     ):
-        gap = float(np.max(np.abs(one - other)))
+        gap = float(np.max(np.abs(value - expected)))
         hold(gap <= 1e-9, f"The scaled {name} is {gap:.1e} off. Bound: 1e-9.")
     for place, phase in enumerate(phases.tolist()):
         single = np.array(motion.scaled_at(phase))

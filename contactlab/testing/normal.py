@@ -1,4 +1,4 @@
-"""Checks of a normal law's answers: their form, batches, units, that history is a value."""
+"""Checks of a normal law's answers: form, batches, units, and a state that is a value."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from contactlab.testing.check import check, hold
 from contactlab.testing.compare import same, well_formed
 from contactlab.testing.units import ODD_UNITS, Units, in_units
 
-#: Steps to the deepest approach of these checks, that of a Hertz impact.
+#: Steps to the largest approach, which is that of a Hertz impact.
 STEPS = 60
 ROUNDING = 1e-9
 ENTRIES = NormalContact._fields
-#: What contacts of a batch may differ in, and which of the depths are tried then.
+#: Quantities in which the contacts of a batch differ, and the stride over approaches there.
 DIFFERENT, SPARSE = ("normal_speed", "radius", "effective_modulus", "normal_mass"), 4
 
 
 def strokes(
     units: Units | None = None, *, bodies: Any = 1.0, given: Scene | None = None
 ) -> tuple[Scene, Any, Any]:
-    """Return a scene, and approach and rate along a press and a release.
+    """Return a scene, and approach (m) and rate (m/s) of a press and release, shape (K, ...).
 
-    From first touch to out of contact, as in an impact: before first touch nobody asks.
+    As in an impact, the course leads from first touch to out of contact.
     """
     given = given or scene(0.0, 1.0, units=units, bodies=bodies)
     x = np.linspace(0.0, 1.05 * math.pi, 2 * STEPS + 1)
@@ -39,27 +39,27 @@ def strokes(
     return given, approach, np.multiply.outer(np.cos(x), given.normal_speed)
 
 
-def respond(law: Any, given: Scene, approach: Any, rate: Any) -> Any:
-    """Return force, radius, overlap and friction load along a course, rows of an array.
+def respond(law: Any, impact: Scene, approach: Any, rate: Any) -> Any:
+    """Return force, radius, overlap and friction load along a course, shape (4, K, ...).
 
     Parameters
     ----------
     law : NormalLaw
-    given : Scene
+    impact : Scene
     approach, rate : array, shape (K, ...)
-        In m and m/s, one after the other.
+        In m and m/s, in the order of the course.
     """
-    state, rows = law.start(given), []
+    state, rows = law.start(impact), []
     limits.begin(f"a course of {len(approach)} depths")
     for depth, speed in zip(_rows(approach), _rows(rate), strict=True):
         limits.DOING.steps += 1
         contact, state = law.respond(state, depth, speed)
-        rows.append([np.broadcast_to(part, given.shape) for part in _complete(contact)])
+        rows.append([np.broadcast_to(part, impact.shape) for part in _complete(contact)])
     return np.moveaxis(np.array(rows, dtype=np.float64), 1, 0)
 
 
 def _rows(column: Any) -> Any:
-    """Floats for one impact; arrays that cannot be written into for a batch."""
+    """Return the rows of a column: floats for one impact, read-only arrays for a batch."""
     return column.tolist() if column.ndim == 1 else [locked(row.copy()) for row in column]
 
 
@@ -73,8 +73,8 @@ def _complete(contact: Any) -> NormalContact:
 def contacts(law: Any) -> None:
     """Every answer holds real, finite numbers of the batch's shape (NormalContact)."""
     for shape in ((), (3,), (2, 3)):
-        given, approach, rate = strokes(bodies=bodies(*shape) if shape else 1.0)
-        state = law.start(given)
+        impact, approach, rate = strokes(bodies=bodies(*shape) if shape else 1.0)
+        state = law.start(impact)
         for depth, speed in zip(_rows(approach), _rows(rate), strict=True):
             contact, state = law.respond(state, depth, speed)
             for name, value in zip(ENTRIES, contact, strict=True):
@@ -86,36 +86,25 @@ def contacts(law: Any) -> None:
 
 @check(NormalLaw)
 def contacts_batch(law: Any) -> None:
-    """A batch of unlike bodies answers as its contacts do one by one (NormalLaw, 3)."""
+    """A batch of unlike bodies gives the same as each contact alone (NormalLaw, 3)."""
     for quantity in DIFFERENT:
-        given, approach, rate = strokes(given=varied(quantity))
+        impact, approach, rate = strokes(given=varied(quantity))
         words = f"of a batch that differs in {quantity} only"
-        _alike(law, given, approach[::SPARSE], rate[::SPARSE], words)
-    given, approach, rate = strokes(bodies=bodies(3))
+        _alike(law, impact, approach[::SPARSE], rate[::SPARSE], words)
+    impact, approach, rate = strokes(bodies=bodies(3))
     factors = np.array([0.3, 0.7, 1.0])
-    _alike(law, given, approach * factors, rate * factors, "of a batch")
+    _alike(law, impact, approach * factors, rate * factors, "of a batch")
     _alike(law, *strokes(bodies=bodies(2, 3)), "of a batch of shape (2, 3)")
 
 
-def _alike(law: Any, given: Scene, approach: Any, rate: Any, words: str) -> None:
-    """Hold that the contacts of a batch answer as each does alone.
-
-    Parameters
-    ----------
-    law : NormalLaw
-    given : Scene
-        A batch.
-    approach, rate : array, shape (K, ...)
-        In m and m/s; broadcast to the batch shape.
-    words : str
-        Which batch, for the sentence.
-    """
-    shape = (len(approach), *given.shape)
+def _alike(law: Any, impacts: Scene, approach: Any, rate: Any, words: str) -> None:
+    """Hold that the contacts of a batch answer as each contact does alone."""
+    shape = (len(approach), *impacts.shape)
     approach, rate = (np.broadcast_to(column.T, shape[::-1]).T for column in (approach, rate))
-    together = respond(law, given, approach, rate)
-    for place in np.ndindex(given.shape):
+    together = respond(law, impacts, approach, rate)
+    for place in np.ndindex(impacts.shape):
         at = (slice(None), *place)
-        alone = respond(law, given.take(place), approach[at], rate[at])
+        alone = respond(law, impacts.take(place), approach[at], rate[at])
         scale = np.maximum(np.abs(alone).max(axis=1, keepdims=True), 1e-300)
         gap = float(np.max(np.abs(together[(slice(None), *at)] - alone) / scale))
         name = place[0] if len(place) == 1 else place
@@ -124,9 +113,9 @@ def _alike(law: Any, given: Scene, approach: Any, rate: Any, words: str) -> None
 
 @check(NormalLaw)
 def contacts_pure(law: Any) -> None:
-    """``respond`` changes neither the state that goes in nor the law (NormalLaw, 2)."""
-    given, approach, rate = strokes()
-    kept_law, state = copy.deepcopy(law), law.start(given)
+    """``respond`` changes neither the state passed to it nor the law (NormalLaw, 2)."""
+    impact, approach, rate = strokes()
+    kept_law, state = copy.deepcopy(law), law.start(impact)
     for depth, speed in zip(approach.tolist(), rate.tolist(), strict=True):
         kept = copy.deepcopy(state)
         first, new = law.respond(state, depth, speed)
@@ -140,28 +129,30 @@ def contacts_pure(law: Any) -> None:
 
 @check(NormalLaw)
 def contacts_read_only(law: Any) -> None:
-    """Nothing that the law is given is written into (Law, 7)."""
-    given, approach, rate = strokes(bodies=bodies(3))
-    kept = copy.deepcopy(given)
+    """The law does not write into its arguments (Law, 7)."""
+    impacts, approach, rate = strokes(bodies=bodies(3))
+    kept = copy.deepcopy(impacts)
     try:
-        respond(law, given, approach, rate)
+        respond(law, impacts, approach, rate)
     except ValueError as error:
         hold("read-only" not in str(error), f"The law writes into what it was given: {error}.")
         raise
-    hold(same(given, kept), "The law changed the scene.")
+    hold(same(impacts, kept), "The law changed the scene.")
 
 
 @check(NormalLaw)
 def contacts_units(law: Any) -> None:
-    """Metres, seconds and kilograms may be called anything (theory §7)."""
+    """Answers do not depend on the units of length, time and mass (theory §7)."""
     length, time, mass = ODD_UNITS
-    here = respond(law, *strokes())
-    there = respond(in_units(law, ODD_UNITS), *strokes(ODD_UNITS))
+    in_si = respond(law, *strokes())
+    in_odd_units = respond(in_units(law, ODD_UNITS), *strokes(ODD_UNITS))
     newton = mass * length / time**2
-    for name, one, other, unit in zip(
-        ENTRIES, here, there, (newton, length, length, newton), strict=True
+    for name, expected, value, unit in zip(
+        ENTRIES, in_si, in_odd_units, (newton, length, length, newton), strict=True
     ):
-        gap = float(np.max(np.abs(other / unit - one))) / max(float(np.max(np.abs(one))), 1e-300)
+        gap = float(np.max(np.abs(value / unit - expected))) / max(
+            float(np.max(np.abs(expected))), 1e-300
+        )
         hold(
             gap <= ROUNDING,
             f"In other units the {name} differs by {gap:.1e}. Bound: {ROUNDING:.2g}.",
@@ -170,16 +161,16 @@ def contacts_units(law: Any) -> None:
 
 @check(NormalLaw)
 def contacts_non_finite(law: Any) -> None:
-    """NaN in gives NaN out, never "no contact" (NormalLaw, 4)."""
-    given, approach, rate = strokes()
+    """NaN as approach or rate gives NaN, never "no contact" (NormalLaw, 4)."""
+    impact, approach, rate = strokes()
     batch = strokes(bodies=bodies(2))[0]
     depth, speed = float(approach[STEPS]), float(rate[0])
-    for one, *motion in (
-        (given, math.nan, speed),
+    for scene_of_nan, *motion in (
+        (impact, math.nan, speed),
         (batch, np.array([math.nan, depth]), np.array([speed, speed])),
     ):
         try:
-            contact, _ = law.respond(law.start(one), *motion)
+            contact, _ = law.respond(law.start(scene_of_nan), *motion)
         except (ValueError, ArithmeticError):
             continue
         force, _, overlap, load = (float(np.ravel(part)[0]) for part in contact.complete)
@@ -187,10 +178,10 @@ def contacts_non_finite(law: Any) -> None:
         hold(not overlap <= 0.0, "An approach of NaN is taken for no contact.")
         hold(math.isnan(load), f"An approach of NaN gives a friction load of {load!r}.")
     try:
-        force, *_ = law.respond(law.start(given), depth, math.nan)[0].complete
-        at_rest, *_ = law.respond(law.start(given), depth, 0.0)[0].complete
-        moving, *_ = law.respond(law.start(given), depth, speed)[0].complete
+        force, *_ = law.respond(law.start(impact), depth, math.nan)[0].complete
+        at_rest, *_ = law.respond(law.start(impact), depth, 0.0)[0].complete
+        moving, *_ = law.respond(law.start(impact), depth, speed)[0].complete
     except (ValueError, ArithmeticError):
         return
-    if at_rest != moving:  # a force that does not depend on the rate need not look at it
+    if at_rest != moving:  # a force that does not depend on the rate may ignore a rate of NaN
         hold(math.isnan(force), f"A rate of NaN gives a force of {float(force)!r}, as if at rest.")

@@ -1,4 +1,4 @@
-"""Checks of the motion that a normal law gives, from first touch to separation."""
+"""Checks of the normal motion under a law, from first touch to separation."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from contactlab.testing.bench import bodies, scene
 from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.normal import respond, strokes
 
-#: Impacts are tried at these times the speed of the others.
+#: Normal speeds of the impacts, over the speed of the kit's other impacts.
 SPEEDS = (0.1, 1.0, 3.0)
-#: Force at the end of contact over the greatest: a polynomial's overshoot, and no more.
+#: Bound of the force at the end of contact, over the maximum: the overshoot of a polynomial.
 END = 1e-3
-#: Steps of a leg of a closed cycle, and what the trapezium rule makes of it, over what went in.
+#: Steps of a leg of a closed cycle, and the error of the trapezium rule, over the work moved.
 LEG, QUADRATURE = 400, 3e-3
-#: Rates over v1 of the legs of a cycle: in, out, in again, out.
+#: Rates over v1 of the legs of a cycle: press, release, press again, release.
 RATES = (
     (0.05, 1.0),
     (1.0, 0.05),
@@ -31,7 +31,7 @@ RATES = (
     (0.05, 0.05, 1.0, 1.0),
     (0.3, 1.0, 0.05, 0.6),
 )
-#: Relative accuracy of a solved motion, and between one solved alone and in a batch.
+#: Relative bound for solved motions, and for the difference between a motion alone and in a batch.
 SOLVED = 1e-6
 
 
@@ -51,7 +51,7 @@ class _Stepwise(NormalLaw):
 
 
 def _pulls(motion: NormalMotion) -> bool:
-    """Return whether there is a pull somewhere along a motion."""
+    """Return whether the force is negative somewhere along a motion."""
     return bool(np.min(motion.at(np.linspace(0.0, np.pi, 101)).contact.force) < 0.0)
 
 
@@ -66,14 +66,14 @@ def impacts(law: Any) -> Iterator[NormalMotion]:
     parted = 0
     for factor in SPEEDS:
         ball = scene(0.0, 1.0)
-        given = type(ball)(
+        impact = type(ball)(
             None, None, ball.friction_coefficient, factor * ball.normal_speed, 0.0, pair=ball.pair
         )
         for each in (_Stepwise(law), law):
             limits.begin(f"a normal motion at {factor} times the speed")
-            motion = normal_motion(each, given)
+            motion = normal_motion(each, impact)
             if motion.status is Status.NOT_SEPARATED and _pulls(motion):
-                continue  # adhesion holds what comes so slowly
+                continue  # adhesion holds slow bodies together
             hold(motion.status is Status.SUCCESS, f"An impact does not end: {motion.detail}")
             parted += 1
             yield motion
@@ -84,24 +84,24 @@ def impacts(law: Any) -> Iterator[NormalMotion]:
 def normal_passive(law: Any) -> None:
     """A closed cycle that begins and ends out of contact gives no energy, at any rates.
 
-    Pressed slowly and released fast, and the other way round; partly released and pressed again.
+    Cycles press slowly and release fast, or the reverse; some release in part and press again.
     """
-    given, stroke, _ = strokes()
-    depth, speed = float(stroke.max()), float(given.normal_speed)
+    impact, stroke, _ = strokes()
+    depth, speed = float(stroke.max()), float(impact.normal_speed)
     closed = 0
     for rates in RATES:
         knots = [0.0, depth, -0.2 * depth]
         if len(rates) > 2:
             knots = [0.0, depth, 0.6 * depth, 0.9 * depth, -0.2 * depth]
         legs = list(zip(knots, knots[1:], rates, strict=False))
-        # Each turning point is passed with the rate of the leg before, then of the one after.
+        # At a turning point the rate is that of the leg before, then that of the leg after.
         approach = np.concatenate([np.linspace(start, stop, LEG + 1) for start, stop, _ in legs])
         rate = np.concatenate(
             [np.full(LEG + 1, share * speed * np.sign(stop - start)) for start, stop, share in legs]
         )
-        force, _, overlap, _ = respond(law, given, approach, rate)
+        force, _, overlap, _ = respond(law, impact, approach, rate)
         if overlap[-1] > 0.0:
-            continue  # adhesion holds on: no closed cycle
+            continue  # adhesion keeps contact: the cycle is not closed
         closed += 1
         mean = 0.5 * (force[1:] + force[:-1])
         work = mean * np.diff(approach)
@@ -118,12 +118,12 @@ def normal_passive(law: Any) -> None:
 
 @check(NormalLaw)
 def rebounds(law: Any) -> None:
-    """The bodies part, no faster than they met, and the force is their change of momentum."""
+    """The bodies part no faster than v1, and the impulse of the force is the change of momentum."""
     for motion in impacts(law):
-        given: Any = motion.scene
-        rebound = -float(motion.final_rate) / float(given.normal_speed)
+        impact: Any = motion.scene
+        rebound = -float(motion.final_rate) / float(impact.normal_speed)
         hold(0.0 <= rebound <= 1.0 + SOLVED, f"The bodies part {rebound:.6g} times as fast.")
-        momentum = given.pair.normal_mass * (given.normal_speed - float(motion.final_rate))
+        momentum = impact.pair.normal_mass * (impact.normal_speed - float(motion.final_rate))
         sample = motion.at(np.linspace(0.0, np.pi, 2001))
         load = np.asarray(sample.contact.friction_load)
         impulse = trapezoid(np.asarray(sample.contact.force), np.asarray(sample.time))
@@ -142,7 +142,7 @@ def rebounds(law: Any) -> None:
 
 @check(NormalLaw)
 def ends_unloaded(law: Any) -> None:
-    """Contact does not end while it presses: the force has come to nothing by then, or pulls."""
+    """The force is zero or negative when contact ends."""
     for motion in impacts(law):
         last = motion.at(np.asarray(np.pi)).contact
         left = float(last.force) / float(motion.maximum_force)
@@ -155,20 +155,20 @@ def ends_unloaded(law: Any) -> None:
 
 @check(NormalLaw)
 def motion_batch(law: Any) -> None:
-    """A batch of unlike bodies moves as each impact does alone (Integrator, 5)."""
-    given = scene(0.0, 1.0, bodies=bodies(4))
+    """A batch of unlike bodies moves as each pair does alone (Integrator, 5)."""
+    impact = scene(0.0, 1.0, bodies=bodies(4))
     limits.begin("the normal motion of a batch")
-    together = normal_motion(law, given)
+    together = normal_motion(law, impact)
     for place in range(4):
         limits.begin(f"the normal motion of impact {place} of a batch, alone")
-        alone = normal_motion(law, given.take(place))
+        alone = normal_motion(law, impact.take(place))
         for name in (
             "duration", "maximum_radius", "maximum_approach", "maximum_force", "final_rate",
             "total_load_impulse",
         ):  # fmt: skip
-            one = float(getattr(alone, name))
-            other = float(np.broadcast_to(getattr(together, name), given.shape)[place])
-            gap = abs(other - one) / max(abs(one), 1e-300)
+            expected = float(getattr(alone, name))
+            value = float(np.broadcast_to(getattr(together, name), impact.shape)[place])
+            gap = abs(value - expected) / max(abs(expected), 1e-300)
             hold(
                 gap <= SOLVED,
                 f"The {name} of impact {place} of a batch is off by {gap:.1e}."

@@ -1,4 +1,4 @@
-"""Putting a law through the checks, and saying what came out."""
+"""Running the checks on a law, and their outcomes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from contactlab.testing.limits import MOST_TIMEOUTS, SECONDS
 
 
 class Verdict(Enum):
-    """How a check ended; the last two are not as they should be."""
+    """How a check ended; ``FAILED`` and ``UNEXPECTED_PASS`` are faults of the law."""
 
     PASSED = "passed"
     EXPECTED_FAILURE = "expected failure"
@@ -32,7 +32,7 @@ class Verdict(Enum):
 
     @property
     def good(self) -> bool:
-        """Whether the law is as it says it is."""
+        """Whether the law does what it states."""
         return self not in (Verdict.FAILED, Verdict.UNEXPECTED_PASS)
 
 
@@ -47,34 +47,34 @@ class Outcome:
 
 
 class ConformanceError(AssertionError):
-    """A law fails checks that it does not expect to fail, or passes one that it does."""
+    """A law fails checks unexpectedly, or passes checks that it expects to fail."""
 
 
 def checks_for(law: Law | str) -> list[Check]:
-    """Return the checks that apply to ``law``, an object or a name, in order."""
+    """Return the checks of the contracts of ``law``, an object or a name, in order."""
     made = made_law(law)
     return [check for check in CHECKS if isinstance(made, check.contract)]
 
 
 def claimed(law: Law, check: Check) -> bool:
-    """Return whether ``law`` is put through ``check``: see ``Check.claim``."""
+    """Return whether ``check`` applies to ``law`` by its claim; see ``Check.claim``."""
     return check.claim is None or check.claim in law.offers or check.name in expected(law)
 
 
 def expected(law: Law) -> dict[str, str]:
-    """Return the checks that ``law`` says it fails, with its reasons."""
+    """Return the checks that ``law`` expects to fail, with its reasons."""
     return dict(getattr(law, "expected_failures", {}))
 
 
 def outcome(law: Law, check: Check, *, seconds: float = SECONDS) -> Outcome:
-    """Put ``law`` through one check.
+    """Return the outcome of one check of ``law``.
 
     Parameters
     ----------
     law : Law
     check : Check
     seconds : float
-        Time that the check may take.
+        Time limit of the check, in s.
     """
     if not claimed(law, check):
         return Outcome(check.name, Verdict.NOT_CLAIMED, f"The law does not offer {check.claim!r}.")
@@ -83,8 +83,8 @@ def outcome(law: Law, check: Check, *, seconds: float = SECONDS) -> Outcome:
         check(law, seconds=seconds)
     except CheckStoppedError as stopped:
         return Outcome(check.name, Verdict.FAILED, str(stopped), out_of_time=True)
-    except NotApplicableError as reason_why:
-        return Outcome(check.name, Verdict.NOT_APPLICABLE, str(reason_why))
+    except NotApplicableError as inapplicable:
+        return Outcome(check.name, Verdict.NOT_APPLICABLE, str(inapplicable))
     except CheckFailedError as failure:
         sentence = str(failure)
     except Exception as error:
@@ -105,24 +105,24 @@ def examine(
     progress: Callable[[int, int], object] | None = None,
     seconds: float = SECONDS,
 ) -> list[Outcome]:
-    """Put a law through every check that applies to it, and return what came out.
+    """Return the outcomes of every check of the contracts of a law.
 
     Parameters
     ----------
     law : Law or str
-        An object, or the name of an installed law, which is made with its defaults.
+        A law, or the name of an installed law, which is made with its defaults.
     progress : callable, optional
         Called as ``progress(done, total)`` after each check.
     seconds : float
-        Time that each check may take. After three that ran out of it the others are not tried.
+        Time limit of each check, in s. After three checks out of time the others are not tried.
     """
     made = made_law(law)
     checks = checks_for(made)
     outcomes: list[Outcome] = []
     for done, check in enumerate(checks, 1):
-        if sum(one.out_of_time for one in outcomes) >= MOST_TIMEOUTS:
-            left = f"Not tried: {MOST_TIMEOUTS} checks before it ran out of time."
-            outcomes.append(Outcome(check.name, Verdict.FAILED, left))
+        if sum(entry.out_of_time for entry in outcomes) >= MOST_TIMEOUTS:
+            not_tried = f"Not tried: {MOST_TIMEOUTS} checks before it ran out of time."
+            outcomes.append(Outcome(check.name, Verdict.FAILED, not_tried))
         else:
             outcomes.append(outcome(made, check, seconds=seconds))
         if progress is not None:
@@ -131,19 +131,19 @@ def examine(
 
 
 def check_law(law: Law | str, *, seconds: float = SECONDS) -> list[Outcome]:
-    """Put a law through every check that applies to it, and refuse it if it is not as it says.
+    """Return the outcomes of every check of a law, and raise if one is a fault of the law.
 
     Parameters
     ----------
     law : Law or str
-        An object, or the name of an installed law, which is made with its defaults.
+        A law, or the name of an installed law, which is made with its defaults.
     seconds : float
-        Time that each check may take: a law that hangs is told so.
+        Time limit of each check, in s.
 
     Raises
     ------
     ConformanceError
-        Naming each check failed, or passed against expectation, with its sentence.
+        If a check fails, or passes unexpectedly; the message has the sentence of each.
     """
     outcomes = examine(law, seconds=seconds)
     bad = [entry for entry in outcomes if not entry.verdict.good]

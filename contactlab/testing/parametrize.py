@@ -1,4 +1,4 @@
-"""The checks as pytest's own parametrised tests."""
+"""The checks as parametrised tests of pytest."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from contactlab.testing.outcomes import checks_for, claimed, expected, made_law
 def parametrize_with_checks(laws: Sequence[Law | str]) -> Any:
     """Return a decorator that runs a test once for every check of every law.
 
-    Expected failures are marked ``xfail``, strictly: passing one fails the test.
+    Expected failures are marked as strict ``xfail``: an unexpected pass fails the test.
 
     Parameters
     ----------
     laws : sequence of Law or str
-        Objects, or names of installed laws.
+        Laws, or names of installed laws.
 
     Examples
     --------
@@ -25,12 +25,12 @@ def parametrize_with_checks(laws: Sequence[Law | str]) -> Any:
     ... def test_conformance(law, check):
     ...     check(law)
     """
-    import pytest  # the only place where the kit needs it
+    import pytest  # the kit needs pytest only here
 
     parameters = []
-    for given in laws:
-        law = made_law(given)
-        name = given if isinstance(given, str) else type(law).__name__
+    for law_or_name in laws:
+        law = made_law(law_or_name)
+        name = law_or_name if isinstance(law_or_name, str) else type(law).__name__
         for check in checks_for(law):
             if not claimed(law, check):
                 continue

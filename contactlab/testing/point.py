@@ -1,7 +1,7 @@
-"""Coulomb's law at every point of the contact, of laws whose fields have tractions.
+"""Checks of Coulomb's law at every point of the contact, for laws whose fields give tractions.
 
-A law tells its tractions by ``fields``: ``radius`` (m) with ``traction`` (Pa), or ``radius``,
-``displacement`` and ``limit`` (m) of springs, whose traction follows from Abel's integral.
+The fields are ``radius`` (m) and ``traction`` (Pa), or ``radius``, ``displacement`` and ``limit``
+(m) of springs. The traction of springs follows from Abel's integral.
 """
 
 from __future__ import annotations
@@ -21,28 +21,31 @@ from contactlab.testing.ways import meet, ways
 
 Array = NDArray[np.float64]
 
-#: chi and psi1 of impacts in which stick and slip alternate.
+#: (chi, psi1) of impacts in which stick and slip alternate.
 IMPACTS = ((1.4411764706, 0.5), (1.4411764706, 2.0), (3.0, 1.2), (3.0, 3.0))
-#: What a discretisation may add to the traction, over the mean of mu p.
+#: Bound of the excess of the traction, over the mean of mu p, for discretised laws.
 ROOM = 0.05
-#: Contacts smaller than this, over the largest, hold too few points.
+#: Contact radius over the largest, below which the contact has too few points.
 SMALL = 0.3
 
 
 @check(SteppedTangentialLaw)
 def coulomb_at_a_point(law: Any) -> None:
-    """In elastic Hertz impacts no traction exceeds mu p at its point, p the hemisphere (3)."""
+    """In elastic Hertz impacts the traction nowhere exceeds mu p, p being the hemisphere (3)."""
     _hold(law, REGISTRY.create("normal.hertz"))
 
 
 @check(SteppedTangentialLaw)
 def coulomb_at_a_point_damped(law: Any) -> None:
-    """The same under a damped normal law, where cutting each spring alone is not Coulomb's law."""
+    """Under a damped normal law the traction nowhere exceeds mu p.
+
+    Limits of single springs do not ensure this there.
+    """
     _hold(law, StronglyDampedHertz())
 
 
 def _hold(law: Any, normal_law: NormalLaw) -> None:
-    """Hold that abs(q) <= mu p along impacts under a normal law."""
+    """Hold that abs(q) <= mu p at every point along impacts under a normal law."""
     try:
         way = next(way for way in ways(law, normal_law) if way.integrator is not None)
     except (NotApplicableError, StopIteration):
@@ -65,20 +68,25 @@ def _hold(law: Any, normal_law: NormalLaw) -> None:
         for row, edge in enumerate(history.contact_radius.tolist()):
             if edge < SMALL * largest:
                 continue
-            places = np.asarray(fields["radius"][row], float)
+            positions = np.asarray(fields["radius"][row], float)
             if "traction" in fields:
-                inside = places < edge
-                radii, found = places[inside], np.asarray(fields["traction"][row], float)[inside]
+                inside = positions < edge
+                radii, tractions = (
+                    positions[inside],
+                    np.asarray(fields["traction"][row], float)[inside],
+                )
             else:
-                radii, found = springs_traction(
-                    places, np.asarray(fields["displacement"][row], float), edge, modulus
+                radii, tractions = springs_traction(
+                    positions, np.asarray(fields["displacement"][row], float), edge, modulus
                 )
             peak = 1.5 * FRICTION * float(history.normal_force[row]) / (np.pi * edge**2)
-            over = np.abs(found) - peak * np.sqrt(np.maximum(1.0 - (radii / edge) ** 2, 0.0))
-            most = float(np.max(over, initial=-np.inf)) / (2.0 / 3.0 * peak) if peak else -np.inf
-            if most > worst:
-                at = float(radii[int(over.argmax())]) / edge
-                worst, where = most, f"psi1 = {psi1}, chi = {chi:.3g}, r = {at:.2g} b"
+            excess = np.abs(tractions) - peak * np.sqrt(np.maximum(1.0 - (radii / edge) ** 2, 0.0))
+            worst_here = (
+                float(np.max(excess, initial=-np.inf)) / (2.0 / 3.0 * peak) if peak else -np.inf
+            )
+            if worst_here > worst:
+                at = float(radii[int(excess.argmax())]) / edge
+                worst, where = worst_here, f"psi1 = {psi1}, chi = {chi:.3g}, r = {at:.2g} b"
     hold(
         worst <= ROOM,
         f"The traction exceeds mu p by {worst:.2g} of the mean of mu p, at {where} under "
@@ -90,19 +98,19 @@ def _hold(law: Any, normal_law: NormalLaw) -> None:
 def springs_traction(
     places: Array, displacement: Array, edge: float, modulus: float
 ) -> tuple[Array, Array]:
-    """Return radii (m) and traction (Pa) of a bundle of springs.
+    """Return radii (m) and tractions (Pa) of a bundle of springs, shape (number inside b,).
 
-    q(r) = -(G*/pi) times the integral of w'(s)/sqrt(s² - r²) from r to b (Abel), exact for a w
-    that is linear in s² between springs and zero at b.
+    q(r) = -(G*/pi) times the integral of w'(s)/sqrt(s² - r²) from r to b (Abel). The result is
+    exact if w is linear in s² between springs, and zero at b.
 
     Parameters
     ----------
     places, displacement : array, shape (n,)
-        s and w of the springs, in m.
+        Distance s from the axis and deflection w of the springs, in m.
     edge : float
-        b, the contact radius, in m.
+        Contact radius b, in m.
     modulus : float
-        G*, in Pa.
+        Effective shear modulus G*, in Pa.
     """
     inside = places < edge
     knots = np.append(places[inside], edge) ** 2

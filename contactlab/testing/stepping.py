@@ -1,4 +1,4 @@
-"""Checks of a stepped law's answers: their form, and that history is a value."""
+"""Checks of a stepped law's answers: their form, and a state that is a value."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from contactlab.testing.bench import (
 from contactlab.testing.check import check, hold
 from contactlab.testing.compare import same, well_formed
 
-#: Rounding apart, over mu P_max: a batch may be added up in another order.
+#: Rounding of forces, over mu P_max: a batch may sum in another order.
 ROUNDING = 1e-9
 
 
@@ -37,10 +37,10 @@ def answers(law: Any) -> None:
         path = _spread(wandering(1, knots=5, steps=6), shape)
         before, slip = bench.contact(0.0 * path.level[0]), 0.0 * path.slip[0]
         for step in range(len(path.slip)):
-            now, level = _row(path.slip, step), _row(path.level, step)
+            next_slip, level = _row(path.slip, step), _row(path.level, step)
             after = bench.contact(level)
-            given = bench.increment(now - slip, after, locked(bench.time / 100.0))
-            answer = law.advance(state, given, before, after)
+            increment = bench.increment(next_slip - slip, after, locked(bench.time / 100.0))
+            answer = law.advance(state, increment, before, after)
             where = f"at step {step + 1} of a batch of shape {shape}"
             hold(
                 isinstance(answer, tuple) and len(answer) == 2,
@@ -51,12 +51,12 @@ def answers(law: Any) -> None:
                 value = getattr(response, name, None)
                 good = well_formed(value, shape) and np.all(np.isfinite(np.asarray(value)))
                 hold(good, f"{name} = {_short(value)} {where}.")
-            before, slip = after, now
+            before, slip = after, next_slip
 
 
 @check(SteppedTangentialLaw)
 def batch(law: Any) -> None:
-    """A batch of unlike bodies answers as its contacts do one by one (Integrator, 5)."""
+    """A batch of unlike bodies gives the same as each contact alone (Integrator, 5)."""
     short = wandering(2, knots=4, steps=8)
     for quantity in QUANTITIES:
         various = Bench.along(normal_motion(REGISTRY.create("normal.hertz"), varied(quantity)))
@@ -68,24 +68,13 @@ def batch(law: Any) -> None:
 
 
 def _alike(law: Any, whole: Bench, paths: list[Path], words: str) -> None:
-    """Hold that the contacts of a batch, each along its path, answer as they do alone.
-
-    Parameters
-    ----------
-    law : SteppedTangentialLaw
-    whole : Bench
-        Of the batch.
-    paths : list of Path
-        One of each contact.
-    words : str
-        Which batch, for the sentence.
-    """
+    """Hold that the contacts of a batch, each along its path, answer as each does alone."""
     shape = whole.scene.shape
     slips, levels = (np.stack(each, 1) for each in zip(*paths, strict=True))
     path = Path(slips.reshape(-1, *shape), levels.reshape(-1, *shape))
     together = drive(law, whole, path)
-    for place, own in zip(np.ndindex(shape), paths, strict=True):
-        alone = drive(law, whole.alone(place), own)
+    for place, own_path in zip(np.ndindex(shape), paths, strict=True):
+        alone = drive(law, whole.alone(place), own_path)
         gap = _gap(alone.force, together.force[(slice(None), *place)])
         name = place[0] if len(place) == 1 else place
         hold(
@@ -96,7 +85,7 @@ def _alike(law: Any, whole: Bench, paths: list[Path], words: str) -> None:
 
 @check(SteppedTangentialLaw)
 def pure(law: Any) -> None:
-    """``advance`` changes neither the state that goes in nor the law (stepped contract, 2)."""
+    """``advance`` changes neither the state passed to it nor the law (stepped contract, 2)."""
     law_before = copy.deepcopy(law)
     _pure(law, (), knots=6)
     _pure(law, (3,), knots=3)
@@ -104,31 +93,31 @@ def pure(law: Any) -> None:
 
 
 def _pure(law: Any, shape: tuple[int, ...], *, knots: int) -> None:
-    """Hold that a step may be tried and thrown away, of one contact or of a batch."""
+    """Hold that steps tried and discarded change nothing, for one contact or a batch."""
     bench, path = Bench.of(shape), _spread(wandering(6, knots=knots), shape)
     before, slip, state = bench.contact(0.0 * path.level[0]), 0.0 * path.slip[0], bench.start(law)
     duration = locked(bench.time / len(path.slip))
-    of = f" of a batch of shape {shape}" if shape else ""
+    of_batch = f" of a batch of shape {shape}" if shape else ""
     for step in range(len(path.slip)):
-        now, level = _row(path.slip, step), _row(path.level, step)
+        next_slip, level = _row(path.slip, step), _row(path.level, step)
         kept, after = copy.deepcopy(state), bench.contact(level)
-        given = bench.increment(now - slip, after, duration)
+        increment = bench.increment(next_slip - slip, after, duration)
         # A response may share its arrays with a state that is changed later.
-        first, new = copy.deepcopy(law.advance(state, given, before, after))
-        hold(same(state, kept), f"The state that went in was changed at step {step + 1}{of}.")
+        first, new = copy.deepcopy(law.advance(state, increment, before, after))
+        hold(same(state, kept), f"The state that went in was changed at step {step + 1}{of_batch}.")
         tried = bench.increment(5.0 - slip, after, duration)
         law.advance(state, tried, before, after)
-        again, _ = law.advance(state, given, before, after)
+        again, _ = law.advance(state, increment, before, after)
         hold(
             same(first, again),
-            f"A step tried and thrown away changed the next one, at step {step + 1}{of}.",
+            f"A step tried and thrown away changed the next one, at step {step + 1}{of_batch}.",
         )
-        before, slip, state = after, now, new
+        before, slip, state = after, next_slip, new
 
 
 @check(SteppedTangentialLaw)
 def read_only(law: Any) -> None:
-    """Nothing that the law is given is written into (Law, 7)."""
+    """The law does not write into its arguments (Law, 7)."""
     bench = Bench.of((3,))
     kept = copy.deepcopy(bench.scene)
     try:
@@ -141,7 +130,7 @@ def read_only(law: Any) -> None:
 
 @check(SteppedTangentialLaw)
 def repeatable(law: Any) -> None:
-    """Two runs of one law do not know of each other, interleaved or not (Law, 1)."""
+    """Interleaved runs of one law do not change each other's forces (Law, 1)."""
     bench, paths = Bench.of(), (wandering(7, knots=6), wandering(8, knots=6))
     alone = [drive(law, bench, path).force for path in paths]
     parts: list[list[Any]] = [[], []]
@@ -150,11 +139,11 @@ def repeatable(law: Any) -> None:
         for run, path in enumerate(paths):
             piece = Path(path.slip[part : part + 8], path.level[part : part + 8])
             slip, level = places[run]
-            found = continue_from(
+            answers_of_piece = continue_from(
                 law, bench, states[run], piece, slip=slip, level=level, count=len(path.slip)
             )
-            parts[run].extend(found.force)
-            states[run] = found.state
+            parts[run].extend(answers_of_piece.force)
+            states[run] = answers_of_piece.state
             places[run] = (float(piece.slip[-1]), float(piece.level[-1]))
     for run, force in enumerate(alone):
         hold(
@@ -164,7 +153,7 @@ def repeatable(law: Any) -> None:
 
 @check(SteppedTangentialLaw)
 def fields(law: Any) -> None:
-    """``fields`` names arrays and changes nothing (stepped contract, 5)."""
+    """``fields`` returns arrays by name and changes no state (stepped contract, 5)."""
     bench = Bench.of()
     state = drive(law, bench, straight((0.0, 0.7), (0.3, 0.7), steps=8)).state
     kept = copy.deepcopy(state)
@@ -176,7 +165,7 @@ def fields(law: Any) -> None:
 
 
 def _spread(path: Path, shape: tuple[int, ...]) -> Path:
-    """Give each contact of a batch a path of its own."""
+    """Return a path for a batch, with another amplitude for each contact."""
     factor = np.linspace(0.5, 1.0, int(np.prod(shape))).reshape(shape)
     return Path(np.multiply.outer(path.slip, factor), np.multiply.outer(path.level, factor))
 
@@ -186,9 +175,9 @@ def _row(column: Any, step: int) -> Any:
     return row if isinstance(row, np.ndarray) and row.ndim else float(row)
 
 
-def _gap(one: Any, other: Any) -> float:
-    """Return the greatest difference; NaN on either side is infinitely far off."""
-    return float(np.nan_to_num(np.max(np.abs(one - other)), nan=np.inf))
+def _gap(left: Any, right: Any) -> float:
+    """Return the largest difference; infinity if a value is NaN."""
+    return float(np.nan_to_num(np.max(np.abs(left - right)), nan=np.inf))
 
 
 def _short(value: object) -> str:

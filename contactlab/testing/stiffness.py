@@ -1,4 +1,4 @@
-"""Checks of a stepped law's stated stiffness, and of its friction under a normal pull."""
+"""Checks of a stepped law's stiffness, and of its friction under a negative normal force."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from contactlab.testing.bench import (
 from contactlab.testing.check import check, hold
 from contactlab.testing.laws import SoftHertz
 
-#: Normal loads at which slopes are taken; at the last the contact is the largest there is.
+#: Normal loads zeta at which dF/dD is measured, up to the largest contact.
 LEVELS = (0.05, 0.3, 0.7, 1.0)
-#: Slips up to which they are taken: of a spring at rest, and of one that gross slip has reached.
+#: Amplitudes of slip over zeta at which dF/dD is measured: small, and beyond gross slip.
 SLIPS = (1e-3, 2.0)
 
 
 @check(SteppedTangentialLaw)
 def stiffness(law: Any) -> None:
-    """``stiffness`` bounds dF/dD, so that a step can be known to be stable (stepped, 6).
+    """``stiffness`` is an upper bound of dF/dD, from which stable steps follow (stepped, 6).
 
-    In contacts as large as Hertz's, and larger: under a softer normal law.
+    The contacts are as large as Hertz's, and larger under a softer normal law.
     """
     for normal_law in (REGISTRY.create("normal.hertz"), SoftHertz()):
         if not law.needs <= normal_law.offers:
@@ -45,59 +45,49 @@ def stiffness(law: Any) -> None:
             _ignores_displacement(law, bench)
             continue
         for level in LEVELS:
-            found = max(_steepest(law, bench, level, size * level) for size in SLIPS)
+            steepest = max(_steepest(law, bench, level, size * level) for size in SLIPS)
             hold(
-                found <= bound * (1.0 + slack(law, 1e-6)),
-                f"dF/dD is {found / bound:.3g} times the stiffness it states, at zeta = {level} "
+                steepest <= bound * (1.0 + slack(law, 1e-6)),
+                f"dF/dD is {steepest / bound:.3g} times the stiffness it states, at zeta = {level} "
                 f"under {type(normal_law).__name__}.",
             )
 
 
 def _steepest(law: Any, bench: Bench, level: float, size: float) -> float:
-    """Return the largest dF/dD as a contact at fixed load is sheared to and fro.
-
-    Parameters
-    ----------
-    law : SteppedTangentialLaw
-    bench : Bench
-    level : float
-        zeta at which the load is kept.
-    size : float
-        Amplitude of the slip, scaled.
-    """
+    """Return the largest scaled dF/dD as a contact at fixed load is sheared to and fro."""
     pressed = drive(law, bench, straight((0.0, level), steps=8)).state
     slip = straight((size, 0.0), (-size, 0.0), (0.5 * size, 0.0), steps=16).slip
     path = Path(slip, np.full_like(slip, level))
-    found = continue_from(law, bench, pressed, path, level=level)
-    slopes = np.diff(found.force, prepend=0.0) / np.diff(slip, prepend=0.0)
+    answers = continue_from(law, bench, pressed, path, level=level)
+    slopes = np.diff(answers.force, prepend=0.0) / np.diff(slip, prepend=0.0)
     return float(slopes.max())
 
 
 def _ignores_displacement(law: Any, bench: Bench) -> None:
-    """Hold that a law which states no stiffness takes no notice of displacement."""
+    """Hold that the force of a law of stiffness 0 does not depend on displacement."""
     after = bench.contact(0.7)
-    given = bench.increment(0.1, after, bench.time / 16.0)
-    moved = given._replace(displacement=2.0 * given.displacement)
+    increment = bench.increment(0.1, after, bench.time / 16.0)
+    moved = increment._replace(displacement=2.0 * increment.displacement)
     state = bench.start(law)
-    forces = [law.advance(state, each, after, after)[0].force for each in (given, moved)]
+    forces = [law.advance(state, each, after, after)[0].force for each in (increment, moved)]
     hold(forces[0] == forces[1], "It states stiffness 0, and its force depends on displacement.")
 
 
 @check(SteppedTangentialLaw)
 def tension(law: Any) -> None:
-    """Where the surfaces pull abs(F) is within mu times the friction load, and odd to the bit.
+    """Under a negative normal force abs(F) is at most mu times the friction load, and F is odd.
 
-    An adhesive contact comes to a pull at the end: its force is negative, its friction load is
-    what the normal law says, or nothing.
+    The force of an adhesive contact becomes negative before separation; its friction load is what
+    the normal law returns, or zero. Reversed slip reverses F to the last bit.
     """
     bench = Bench.of()
     for share in (0.0, 0.2):
         pulled = bench.contact(0.5)
         load = share * pulled.force
         pulled = pulled._replace(force=-0.3 * pulled.force, friction_load=load)
-        there, back = (_pulled(law, bench, pulled, sense) for sense in (1.0, -1.0))
+        forward, reversed_force = (_pulled(law, bench, pulled, sense) for sense in (1.0, -1.0))
         limit = load / bench.force
-        over = float(np.nan_to_num(np.max(np.abs(there)) - limit, nan=np.inf))
+        over = float(np.nan_to_num(np.max(np.abs(forward)) - limit, nan=np.inf))
         hold(
             over <= slack(law) * max(limit, 0.1),
             f"Under tension abs(F) exceeds mu times a friction load of {limit:.2g} P_max by "
@@ -105,28 +95,18 @@ def tension(law: Any) -> None:
             f" Bound: {slack(law) * max(limit, 0.1):.2g}.",
         )
         hold(
-            np.array_equal(there, -back),
+            np.array_equal(forward, -reversed_force),
             "Under tension, reversed slip gives a force that is not the same reversed.",
         )
 
 
 def _pulled(law: Any, bench: Bench, pulled: Any, sense: float) -> Any:
-    """Return the forces as a sheared contact comes under tension and is sheared on.
-
-    Parameters
-    ----------
-    law : SteppedTangentialLaw
-    bench : Bench
-    pulled : NormalContact
-        Under tension.
-    sense : float
-        Sign of the slip.
-    """
+    """Return the scaled forces of a sheared contact that comes under tension and is moved on."""
     pressed = drive(law, bench, straight((0.0, 0.7), (0.4 * sense, 0.7), steps=8)).state
     state, before, forces = pressed, bench.contact(0.7), []
     for moved in (0.1, 0.0, 0.3, -0.2, -0.9, 0.05):
-        given = bench.increment(moved * sense, pulled, bench.time / 64.0)
-        response, state = law.advance(state, given, before, pulled)
+        increment = bench.increment(moved * sense, pulled, bench.time / 64.0)
+        response, state = law.advance(state, increment, before, pulled)
         before = pulled
         hold(
             float(response.friction_work) >= -1e-12 * bench.friction_force * bench.slip,

@@ -1,4 +1,4 @@
-"""A law in other units: its parameters that have a unit, converted with everything else."""
+"""A law in other units: parameters that have a unit are converted."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from contactlab.testing.check import hold
 
 
 class Units(NamedTuple):
-    """What one metre, one second and one kilogram are called in other units."""
+    """The values of one metre, one second and one kilogram in other units."""
 
     length: float = 1.0
     time: float = 1.0
     mass: float = 1.0
 
 
-#: No powers of two, nor of each other: rounding and forgotten dimensions both show.
+#: Not powers of two, nor of each other, so that rounding and wrong dimensions show.
 ODD_UNITS = Units(7.3, 0.0137, 41.1)
-#: Powers of length, time and mass in the units that parameters are given in.
+#: Powers of length, time and mass in the units of parameters.
 POWERS = {
     "1": (0, 0, 0), "rad": (0, 0, 0), "m": (1, 0, 0), "s": (0, 1, 0), "kg": (0, 0, 1),
     "N": (1, -2, 1), "Pa": (-1, -2, 1), "J": (2, -2, 1), "W": (2, -3, 1), "Hz": (0, -1, 0),
@@ -29,15 +29,15 @@ _TOKEN = re.compile(r"([A-Za-z]+|1)(?:\^(-?\d+(?:\.\d+)?))?")
 
 
 def in_units(law: Any, units: Units) -> Any:
-    """Return ``law`` with its numbers in ``units``.
+    """Return ``law`` with its parameters in ``units``.
 
-    Units are those of the fields' metadata, as ``contactlab.numeric.checks.quantity`` writes them:
-    products by a space, one quotient, powers by ^, as in "N s/m", "m/s" or "N/m^1.5".
+    The metadata of a field states its unit, as ``contactlab.numeric.checks.quantity`` writes it:
+    products with a space, one quotient, powers with ^, as in "N s/m", "m/s" or "N/m^1.5".
 
     Raises
     ------
     CheckFailedError
-        If a unit is not known.
+        If a unit is not understood.
     """
     if not attrs.has(type(law)):
         return law
@@ -50,14 +50,14 @@ def in_units(law: Any, units: Units) -> Any:
 
 
 def factor(unit: str, units: Units) -> float:
-    """Return the number that one ``unit`` is in ``units``."""
-    found = 1.0
+    """Return the value of one ``unit`` in ``units``."""
+    product = 1.0
     for part, sense in zip(unit.split("/"), (1.0, -1.0), strict=False):
         for token in part.split():
             match = _TOKEN.fullmatch(token)
-            known = match is not None and match[1] in POWERS and unit.count("/") <= 1
-            hold(known, f"The unit {unit!r} is not understood: write SI, as in 'N s/m'.")
+            understood = match is not None and match[1] in POWERS and unit.count("/") <= 1
+            hold(understood, f"The unit {unit!r} is not understood: write SI, as in 'N s/m'.")
             assert match is not None
             for size, power in zip(units, POWERS[match[1]], strict=True):
-                found *= size ** (sense * power * float(match[2] or 1.0))
-    return found
+                product *= size ** (sense * power * float(match[2] or 1.0))
+    return product

@@ -1,4 +1,4 @@
-"""Checks with real bodies of unlike radii, moduli and masses, exchanged, and with spin."""
+"""Checks with spheres of unlike radii, moduli and masses, exchanged, and with spin."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from contactlab.testing.integrators import marched, sound
 from contactlab.testing.normal import STEPS, respond
 from contactlab.testing.ways import Way, ways
 
-#: Bodies of a scene: radius (m), shear modulus (Pa), Poisson's ratio and mass (kg) of one ball.
+#: Radius (m), shear modulus (Pa), Poisson's ratio and mass (kg) of a ball.
 BALL = {"radius": 0.0127, "shear_modulus": 8e10, "poisson_ratio": 0.3, "mass": 0.067}
-#: The other ball, where it is unlike in that quantity.
+#: The same quantities of a ball that differs in one of them.
 OTHER = {"radius": 0.004, "shear_modulus": 2.6e10, "poisson_ratio": 0.2, "mass": 0.01}
-#: What of the pair a law should take in place of each quantity of one body.
+#: Quantities of the pair that a law should use instead of a quantity of one body.
 PAIR = {
     "radius": "pair.radius, 1/R = 1/R1 + 1/R2",
     "shear_modulus": "pair.effective_modulus E* and pair.effective_shear_modulus G*",
@@ -33,16 +33,16 @@ PAIR = {
     "mass": "pair.normal_mass M_n and pair.tangential_mass M_t",
 }
 SPEED = 0.83
-#: psi1 of the impacts: they stick, slip throughout, and slip in part.
+#: psi1 of impacts that stick, slip throughout, and slip in part.
 ANGLES = (0.5, 9.0, 2.0)
-#: Tangential velocity of the centre over v_x; the rest of v_x is spin.
+#: Tangential velocity of the centre over v_x; spin makes the rest of v_x.
 SHARES = (0.0, 0.4, 2.5, -1.0)
-#: What rounding may do to psi, over max(1, psi1).
+#: Bound of differences of psi2 by rounding.
 ROUNDING = 1e-8
 
 
 def ball(changed: str = "") -> Sphere:
-    """Return the ball of these checks, unlike in one quantity."""
+    """Return the ball of these checks; ``changed`` names a quantity in which it differs."""
     numbers = dict(BALL)
     if changed:
         numbers[changed] = OTHER[changed]
@@ -53,34 +53,34 @@ def ball(changed: str = "") -> Sphere:
 
 
 def unlike(changed: str, psi1: float) -> tuple[Scene, Scene, Scene]:
-    """Return a scene of two balls unlike in one quantity, the same exchanged, and of their pair."""
-    one, other = ball(), ball(changed)
-    still = Scene(one, other, FRICTION, SPEED, 0.0)
+    """Return scenes of two unlike balls, of the balls exchanged, and of their pair alone."""
+    first, second = ball(), ball(changed)
+    still = Scene(first, second, FRICTION, SPEED, 0.0)
     slip = psi1 / float(still.psi_scale)
     return (
-        Scene(one, other, FRICTION, SPEED, slip),
-        Scene(other, one, FRICTION, SPEED, slip),
+        Scene(first, second, FRICTION, SPEED, slip),
+        Scene(second, first, FRICTION, SPEED, slip),
         Scene(None, None, FRICTION, SPEED, slip, pair=still.pair),
     )
 
 
 def _hold_pairs(change: Callable[[Scene], Any], how: str) -> None:
-    """Hold that a change of slip velocity (m/s) is that of the pair, whichever ball is first."""
+    """Hold that the change of slip velocity (m/s) depends on the pair alone."""
     pairs: dict[str, Any] = {}
     for quantity in BALL:
         for psi1 in ANGLES:
-            here, there, alone = unlike(quantity, psi1)
-            expected = change(here)
-            pairs[quantity] = psi1, here, alone, expected
-            gap = _gap(here, expected, change(there))
+            first, exchanged, pair_only = unlike(quantity, psi1)
+            expected = change(first)
+            pairs[quantity] = psi1, first, pair_only, expected
+            gap = _gap(first, expected, change(exchanged))
             hold(
                 gap <= ROUNDING,
                 f"Balls unlike in {quantity}, psi1 = {psi1}: exchanged, psi2 differs by {gap:.2g} "
                 f"({how}). Take {PAIR[quantity]}, not the {quantity} of one body."
                 f" Bound: {ROUNDING:.2g}.",
             )
-    for quantity, (psi1, here, alone, expected) in pairs.items():
-        gap = _gap(here, expected, change(alone))
+    for quantity, (psi1, first, pair_only, expected) in pairs.items():
+        gap = _gap(first, expected, change(pair_only))
         hold(
             gap <= ROUNDING,
             f"Balls unlike in {quantity}, psi1 = {psi1}: psi2 is {gap:.2g} off that of a scene "
@@ -90,15 +90,15 @@ def _hold_pairs(change: Callable[[Scene], Any], how: str) -> None:
 
 
 def _hold_spin(change: Callable[[Scene], Any], how: str) -> None:
-    """Hold that a change of slip velocity (m/s) depends on v_x = v + omega R alone."""
-    one = ball()
+    """Hold that the change of slip velocity (m/s) depends on v_x = v + omega R alone."""
+    sphere = ball()
     for psi1 in ANGLES:
-        still = Scene(one, one, FRICTION, SPEED, 0.0)
+        still = Scene(sphere, sphere, FRICTION, SPEED, 0.0)
         slip = psi1 / float(still.psi_scale)
-        expected = change(Scene(one, one, FRICTION, SPEED, slip))
+        expected = change(Scene(sphere, sphere, FRICTION, SPEED, slip))
         for share in SHARES:
-            spin = (1.0 - share) * slip / float(one.radius)
-            spun = Scene(one, one, FRICTION, SPEED, share * slip, spin)
+            spin = (1.0 - share) * slip / float(sphere.radius)
+            spun = Scene(sphere, sphere, FRICTION, SPEED, share * slip, spin)
             gap = _gap(still, expected, change(spun))
             hold(
                 gap <= ROUNDING,
@@ -108,71 +108,75 @@ def _hold_spin(change: Callable[[Scene], Any], how: str) -> None:
             )
 
 
-def _gap(scene: Scene, one: Any, other: Any) -> float:
-    """Return the difference of two changes of slip velocity in psi; NaN is infinitely far off."""
-    gap = abs(float(np.asarray(one)) - float(np.asarray(other))) * float(scene.psi_scale)
+def _gap(scene: Scene, expected: Any, change: Any) -> float:
+    """Return the difference of two changes of slip velocity, in psi; infinity for NaN."""
+    gap = abs(float(np.asarray(expected)) - float(np.asarray(change))) * float(scene.psi_scale)
     return math.inf if math.isnan(gap) else gap
 
 
-def _run(way: Way, given: Scene) -> Any:
-    """Return the change of slip velocity in a way of running a law, in m/s."""
-    return way.run(given).motion.slip_velocity_change
+def _run(way: Way, impact: Scene) -> Any:
+    """Return the change of slip velocity by one way of running a law, in m/s."""
+    return way.run(impact).motion.slip_velocity_change
 
 
-def _march(simulation: Simulation, given: Scene) -> Any:
+def _march(simulation: Simulation, impact: Scene) -> Any:
     """Return the change of slip velocity by the integrator alone, in m/s."""
-    return marched(simulation, given).slip_velocity_change
+    return marched(simulation, impact).slip_velocity_change
 
 
 def _changes(law: Any) -> Iterator[tuple[Callable[[Scene], Any], str]]:
-    """Iterate over the ways of a tangential law: its change of slip velocity, and words."""
+    """Iterate over functions of a scene that return the change under a law, with words."""
     for way in ways(law):
         yield partial(_run, way), str(way)
 
 
 def _marches(integrator: Any) -> Iterator[tuple[Callable[[Scene], Any], str]]:
-    """Iterate over the same of an integrator under the sound laws of the kit."""
+    """Iterate over functions of a scene that return an integrator's change, with words."""
     for simulation in sound(integrator):
         yield partial(_march, simulation), type(simulation.tangential).__name__
 
 
 @check(TangentialLaw)
 def unlike_bodies(law: Any) -> None:
-    """Unlike balls rebound as their pair does, whichever is called the sphere (theory §1)."""
+    """Impacts of unlike balls depend on the pair alone, not on their order (theory §1)."""
     for change, how in _changes(law):
         _hold_pairs(change, how)
 
 
 @check(TangentialLaw)
 def spin(law: Any) -> None:
-    """Of one slip velocity it does not matter what part of it is spin, eq. (20)."""
+    """The rebound depends on the slip velocity, not on the part that is spin, eq. (20)."""
     for change, how in _changes(law):
         _hold_spin(change, how)
 
 
 @check(Integrator)
 def unlike_bodies_by(integrator: Any) -> None:
-    """Unlike balls are followed as their pair is, whichever is called the sphere (theory §1)."""
+    """Marches of unlike balls depend on the pair alone, not on their order (theory §1)."""
     for change, how in _marches(integrator):
         _hold_pairs(change, how)
 
 
 @check(Integrator)
 def spin_by(integrator: Any) -> None:
-    """Of one slip velocity it does not matter what part of it is spin, eq. (20)."""
+    """The rebound depends on the slip velocity, not on the part that is spin, eq. (20)."""
     for change, how in _marches(integrator):
         _hold_spin(change, how)
 
 
 @check(NormalLaw)
 def contacts_unlike(law: Any) -> None:
-    """Unlike balls press as their pair does, whichever is called the sphere (theory §1)."""
+    """Contacts of unlike balls depend on the pair alone, not on their order (theory §1)."""
     for which, words in ((1, "exchanged, the"), (2, "in a scene of the pair without bodies, the")):
         for quantity in BALL:
             scenes = unlike(quantity, 0.0)
-            here, there = _course(law, scenes[0]), _course(law, scenes[which])
-            for name, one, other in zip(("force", "radius"), here, there, strict=False):
-                gap = float(np.max(np.abs(one - other))) / max(float(np.max(np.abs(one))), 1e-300)
+            course, other_course = _course(law, scenes[0]), _course(law, scenes[which])
+            for name, expected, value in zip(
+                ("force", "radius"), course, other_course, strict=False
+            ):
+                gap = float(np.max(np.abs(expected - value))) / max(
+                    float(np.max(np.abs(expected))), 1e-300
+                )
                 hold(
                     gap <= ROUNDING,
                     f"Balls unlike in {quantity}: {words} {name} differs by {gap:.2g} of its "
@@ -181,8 +185,8 @@ def contacts_unlike(law: Any) -> None:
                 )
 
 
-def _course(law: Any, given: Scene) -> Any:
-    """Return force, radius and so on as two balls are pressed together and let go."""
+def _course(law: Any, impact: Scene) -> Any:
+    """Return force, radius, overlap and friction load of a press and release, shape (4, K)."""
     x = np.linspace(0.0, math.pi, STEPS)
-    depth, speed = float(hertz_scales(given).approach), float(np.asarray(given.normal_speed))
-    return respond(law, given, depth * np.sin(x), speed * np.cos(x))
+    depth, speed = float(hertz_scales(impact).approach), float(np.asarray(impact.normal_speed))
+    return respond(law, impact, depth * np.sin(x), speed * np.cos(x))

@@ -1,4 +1,4 @@
-"""The ways in which a tangential law can be run, each of which is tried."""
+"""The ways in which a tangential law can be run; checks try each."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ from contactlab.testing.bench import scene, slack
 from contactlab.testing.check import apply_if, hold
 from contactlab.testing.units import Units
 
-#: Steps of an impact; more if the law says that it needs more.
+#: Steps of an impact; the integrator takes more if the stiffness of the law needs more.
 STEPS = 200
-#: Steps of an impact beyond which a law is not followed: 200 become 700 at the most of ours.
+#: Largest number of steps of an impact in a check; contactlab's own laws need up to 700.
 MOST_STEPS = 20_000
-#: What the integration may add to an error in psi: second order at 200 steps.
+#: Bound of the error of psi by the integration: second order at 200 steps.
 INTEGRATION = 2e-3
-#: What rounding may add to an answer for a whole impact.
+#: Bound of the error of a whole-impact answer by rounding.
 ROUNDING = 1e-9
 
 
 class Answer(NamedTuple):
-    """What a way gives: the change of psi, the motion, and friction work over unit energy."""
+    """Change of psi, motion, and friction work over the unit of energy, of one way."""
 
     change: Any
     motion: TangentialMotion
@@ -54,59 +54,58 @@ class Way(NamedTuple):
     integrator: Integrator | None
 
     def __str__(self) -> str:
-        """Return what the law is run by."""
+        """Return the way in words."""
         return f"by {type(self.integrator).__name__}" if self.integrator else "as whole impacts"
 
     @property
     def exact(self) -> bool:
-        """Whether nothing is added by steps."""
+        """Whether the way adds no error of steps."""
         return self.integrator is None or bool(self.integrator.accuracy)
 
-    def run(self, given: Scene, recorder: Observer | None = None) -> Answer:
-        """Return what it gives for the impacts of a scene.
+    def run(self, impact: Scene, recorder: Observer | None = None) -> Answer:
+        """Return the answer for the impacts of a scene.
 
-        An integrator is called itself, as a simulation would take short cuts; whole impacts are
-        those of a simulation.
+        An integrator is called directly, because a simulation would use whole-impact answers.
         """
         motion: TangentialMotion
-        limits.begin(f"an impact, {_which(given)} ({self})")
+        limits.begin(f"an impact, {_which(impact)} ({self})")
         if self.integrator is None:
-            motion = Simulation(normal=self.normal, tangential=self.law).run(given).motion
+            motion = Simulation(normal=self.normal, tangential=self.law).run(impact).motion
         else:
-            normal = normal_motion(self.normal, given)
-            _followed(self, normal, given)
-            motion = self.integrator.integrate(normal, self.law, given, recorder)
+            normal = normal_motion(self.normal, impact)
+            _followed(self, normal, impact)
+            motion = self.integrator.integrate(normal, self.law, impact, recorder)
         if not np.all(np.asarray(motion.status) == Status.SUCCESS):
-            hold(False, f"{_which(given)}: {_detail(motion)} ({self})")
-        unit = given.pair.tangential_mass / np.square(given.psi_scale)
-        change = given.psi(motion.slip_velocity_change)
+            hold(False, f"{_which(impact)}: {_detail(motion)} ({self})")
+        unit = impact.pair.tangential_mass / np.square(impact.psi_scale)
+        change = impact.psi(motion.slip_velocity_change)
         return Answer(change, motion, motion.friction_work / unit)
 
 
-def _followed(way: Way, normal: NormalMotion, given: Scene) -> None:
-    """Hold that the law asks for no more steps than ``MOST_STEPS``."""
+def _followed(way: Way, normal: NormalMotion, impact: Scene) -> None:
+    """Hold that the stiffness of the law needs at most ``MOST_STEPS`` steps."""
     assert way.integrator is not None
     if not isinstance(way.law, SteppedTangentialLaw):
         return
-    asked = float(np.max(way.integrator.resolution_for(normal, way.law, given)))
-    if asked > MOST_STEPS:
-        stiffness = float(np.max(way.law.stiffness(given, normal)))
+    steps = float(np.max(way.integrator.resolution_for(normal, way.law, impact)))
+    if steps > MOST_STEPS:
+        stiffness = float(np.max(way.law.stiffness(impact, normal)))
         hold(
             False,
-            f"{_which(given)}: the stiffness that it states, {stiffness:.3g} N/m, asks for "
-            f"{asked:.3g} steps; {MOST_STEPS} are the limit of a check.",
+            f"{_which(impact)}: the stiffness that it states, {stiffness:.3g} N/m, asks for "
+            f"{steps:.3g} steps; {MOST_STEPS} are the limit of a check.",
         )
 
 
-def _which(given: Scene) -> str:
-    """Return which impact a scene is."""
-    if given.shape:
-        return f"A batch of shape {given.shape}"
-    return f"psi1 = {float(given.psi1):.6g}, chi = {float(given.chi):.4g}"
+def _which(impact: Scene) -> str:
+    """Return the impact of a scene in words."""
+    if impact.shape:
+        return f"A batch of shape {impact.shape}"
+    return f"psi1 = {float(impact.psi1):.6g}, chi = {float(impact.chi):.4g}"
 
 
 def _detail(motion: TangentialMotion) -> str:
-    """Return status and detail of the first impact that failed."""
+    """Return status and detail of the first failed impact."""
     statuses = np.ravel(np.asarray(motion.status, dtype=object))
     first = int(np.argmax(statuses != Status.SUCCESS))
     detail = np.ravel(np.asarray(motion.detail, dtype=object))
@@ -114,48 +113,48 @@ def _detail(motion: TangentialMotion) -> str:
 
 
 def ways(law: TangentialLaw, normal: NormalLaw | None = None) -> list[Way]:
-    """Return the ways in which the law can be run: by steps, by events, as whole impacts.
+    """Return the ways in which a law can be run: by steps, by events, as whole impacts.
 
     Raises
     ------
     NotApplicableError
-        If there is none under this normal law, Hertz's by default.
+        If there is no way under ``normal``, by default Hertz's law.
     """
     normal_law = REGISTRY.create("normal.hertz") if normal is None else normal
-    found = []
+    listed = []
     if isinstance(law, SteppedTangentialLaw):
-        found.append(Way(law, normal_law, REGISTRY.create("integrator.symplectic", steps=STEPS)))
+        listed.append(Way(law, normal_law, REGISTRY.create("integrator.symplectic", steps=STEPS)))
     if isinstance(law, PhasedTangentialLaw):
         events: Integrator = REGISTRY.create("integrator.events")
         if isinstance(normal_law, events.normal_contract):
-            found.append(Way(law, normal_law, events))
+            listed.append(Way(law, normal_law, events))
     if isinstance(law, WholeImpactTangentialLaw):
-        found.append(Way(law, normal_law, None))
+        listed.append(Way(law, normal_law, None))
     if not law.needs <= normal_law.offers:
-        found = []
-    apply_if(found, f"There is no way to run it under {type(normal_law).__name__}.")
-    return found
+        listed = []
+    apply_if(listed, f"There is no way to run it under {type(normal_law).__name__}.")
+    return listed
 
 
 def meet(
     way: Way, psi1: Any, chi: Any, *, units: Units | None = None, recorder: Observer | None = None
 ) -> Answer:
-    """Return what a way gives for an impact of given psi1 and chi.
+    """Return the answer of one way for an impact, by psi1 and chi.
 
     Parameters
     ----------
     way : Way
     psi1, chi : float or array
     units : Units, optional
-        In which the scene is given, for laws in the same.
+        System of units of scene and law; SI by default.
     recorder : callable, optional
-        An observer.
+        Observer of the run.
     """
     return way.run(scene(psi1, chi, units=units), recorder)
 
 
 def course(way: Way, psi1: float, chi: float) -> tuple[History, TangentialMotion]:
-    """Return the history of an impact, and the motion."""
+    """Return history and motion of an impact."""
     if way.integrator is None:
         simulation = Simulation(normal=way.normal, tangential=way.law)
         result = simulation.run(scene(psi1, chi), history=True)
@@ -167,7 +166,7 @@ def course(way: Way, psi1: float, chi: float) -> tuple[History, TangentialMotion
 
 
 def allowed(way: Way) -> float:
-    """Return the error allowed in psi: the law's, and the integrator's."""
+    """Return the bound of the error of psi, by the law and by the integrator."""
     if way.integrator is None:
         return ROUNDING
     return slack(way.law, 0.0) + (way.integrator.accuracy or INTEGRATION)

@@ -1,4 +1,4 @@
-"""Checks of what a tangential law knows of whole impacts, and of gross slip."""
+"""Checks of a tangential law's whole-impact answers, and of slip throughout."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from contactlab.testing.impacts import CHI, PSI1
 from contactlab.testing.laws import DampedHertz
 from contactlab.testing.ways import INTEGRATION, ROUNDING, Way, allowed, course, ways
 
-#: Angles of these checks: those of impacts, where gross slip begins (46), and the other side.
+#: psi1 of these checks: ``PSI1``, the onset of slip throughout (46), and negative angles.
 ANGLES = (0.0, *PSI1, *(4.0 * chi for chi in CHI), -0.3, -6.0)
-#: So much slip that no contact comes to rest, over 4 chi.
+#: psi1 over 4 chi of a grazing impact, in which every contact slips throughout.
 GRAZING = 300.0
-#: Points along a course, and what the trapezium rule makes of it there.
+#: Points along a course, and the relative error of the trapezium rule over them.
 POINTS, QUADRATURE = 20_001, 3e-4
 
 
-class Known(NamedTuple):
-    """What a law knows of one impact."""
+class AnsweredImpact(NamedTuple):
+    """One impact with a law's whole-impact answer."""
 
     psi1: float
     chi: float
@@ -40,46 +40,48 @@ class Known(NamedTuple):
     answer: WholeImpact
 
     def __str__(self) -> str:
-        """Return which impact, and why it is known."""
+        """Return the impact in words, and the reason of the answer."""
         return f"psi1 = {self.psi1}, chi = {self.chi:.3g}, {self.answer.reason!r}"
 
 
-def known(law: TangentialLaw, normal_law: NormalLaw | None = None) -> Iterator[Known]:
-    """Iterate over the impacts that the law answers as wholes."""
+def answered_impacts(
+    law: TangentialLaw, normal_law: NormalLaw | None = None
+) -> Iterator[AnsweredImpact]:
+    """Iterate over the impacts that have whole-impact answers."""
     normal_law = normal_law or REGISTRY.create("normal.hertz")
     for chi, psi1 in itertools.product(CHI, ANGLES):
-        given = scene(psi1, chi)
-        normal = normal_motion(normal_law, given)
-        for _, answer in answers(given, normal, law, history=False):
-            yield Known(psi1, chi, given, normal, answer)
+        impact = scene(psi1, chi)
+        normal = normal_motion(normal_law, impact)
+        for _, answer in answers(impact, normal, law, history=False):
+            yield AnsweredImpact(psi1, chi, impact, normal, answer)
 
 
 @check(TangentialLaw)
 def whole_impacts(law: Any) -> None:
-    """Where a law that can be marched answers a whole impact, its own march agrees (Law, 4).
+    """A whole-impact answer agrees with the march of the same law (Law, 4).
 
-    In the change of slip velocity, the energy lost and the course.
+    The change of slip velocity, the energy lost and the course are compared.
     """
     marches = [way for way in ways(law) if way.integrator is not None]
-    apply_if(marches, "It is no law that an integrator follows.")
-    found = [each for each in known(law) if each.psi1 != 0.0]
-    apply_if(found, "It knows of no impact with slip as a whole.")
-    for way, each in itertools.product(marches, found):
-        psi1, chi, given, _, answer = each
-        change = way.run(given).change
-        room, unit = allowed(way), given.pair.tangential_mass / given.psi_scale**2
-        off = abs(change - given.psi(float(np.asarray(answer.slip_velocity_change))))
+    apply_if(marches, "No integrator can march it.")
+    answered = [each for each in answered_impacts(law) if each.psi1 != 0.0]
+    apply_if(answered, "It has no whole-impact answer for an impact with slip.")
+    for way, each in itertools.product(marches, answered):
+        psi1, chi, impact, _, answer = each
+        change = way.run(impact).change
+        room, unit = allowed(way), impact.pair.tangential_mass / impact.psi_scale**2
+        error = abs(change - impact.psi(float(np.asarray(answer.slip_velocity_change))))
         hold(
-            off <= room * 4.0 * chi,
-            f"{each}: psi2 is {off:.2g} off the law's own run ({way})."
+            error <= room * 4.0 * chi,
+            f"{each}: psi2 is {error:.2g} off the law's own run ({way})."
             f" Bound: {room * 4.0 * chi:.2g}.",
         )
-        # Not the work that the march adds up: a law may be known to keep no books.
+        # The energy lost, and not the friction work of the march: energy books may not close.
         lost = -change * (psi1 + 0.5 * change)
-        off = abs(lost - float(np.asarray(answer.friction_work)) / unit)
+        error = abs(lost - float(np.asarray(answer.friction_work)) / unit)
         hold(
-            off <= room * 4.0 * chi * max(psi1, 1.0),
-            f"{each}: the friction work is {off:.2g} off the energy lost in the law's own run "
+            error <= room * 4.0 * chi * max(psi1, 1.0),
+            f"{each}: the friction work is {error:.2g} off the energy lost in the law's own run "
             f"({way})."
             f" Bound: {room * 4.0 * chi * max(psi1, 1.0):.2g}.",
         )
@@ -87,8 +89,8 @@ def whole_impacts(law: Any) -> None:
             _courses_agree(way, each, room)
 
 
-def _courses_agree(way: Way, each: Known, room: float) -> None:
-    """Hold that the course of an answer is that of the march."""
+def _courses_agree(way: Way, each: AnsweredImpact, room: float) -> None:
+    """Hold that the course of a whole-impact answer agrees with the march."""
     marched, _ = course(way, each.psi1, each.chi)
     phases = np.linspace(0.0, np.pi, POINTS)
     sample = each.normal.at(phases)
@@ -114,16 +116,17 @@ def _courses_agree(way: Way, each: Known, room: float) -> None:
 
 @check(TangentialLaw)
 def whole_impact_form(law: Any) -> None:
-    """An answer for a whole impact is a finite number, its work not negative, its course its own.
+    """A whole-impact answer is finite, its work not negative, and its course leads to the answer.
 
-    Along the course the force adds up to the change of slip velocity and to the friction work.
+    The impulse of the force along the course is the change of slip velocity times the mass, and
+    the work of the force is the friction work.
     """
-    found = list(known(law))
-    apply_if(found, "It knows of no impact as a whole.")
-    for each in found:
-        given, answer = each.scene, each.answer
-        mass, slip = float(given.pair.tangential_mass), float(np.asarray(given.slip_velocity))
-        energy = 0.5 * mass * max(abs(slip), 1.0 / float(given.psi_scale)) ** 2
+    answered = list(answered_impacts(law))
+    apply_if(answered, "It has no whole-impact answer.")
+    for each in answered:
+        impact, answer = each.scene, each.answer
+        mass, slip = float(impact.pair.tangential_mass), float(np.asarray(impact.slip_velocity))
+        energy = 0.5 * mass * max(abs(slip), 1.0 / float(impact.psi_scale)) ** 2
         for name in ("slip_velocity_change", "friction_work"):
             value = getattr(answer, name)
             good = well_formed(value, ()) and np.isfinite(value)
@@ -134,30 +137,30 @@ def whole_impact_form(law: Any) -> None:
             continue
         sample = each.normal.at(np.linspace(0.0, np.pi, POINTS))
         load = sample.contact.friction_load
-        gained, force = (np.asarray(one) for one in answer.course(sample.load_impulse, load))
+        gained, force = (np.asarray(column) for column in answer.course(sample.load_impulse, load))
         hold(
             gained.shape == force.shape == (POINTS,),
             f"{each}: its course answers shapes {gained.shape}, {force.shape} to {(POINTS,)}.",
         )
-        most = float(given.friction_coefficient) * float(each.normal.total_load_impulse)
-        gap = abs(gained[-1] - change) * mass / most
+        largest = float(impact.friction_coefficient) * float(each.normal.total_load_impulse)
+        gap = abs(gained[-1] - change) * mass / largest
         hold(
             gap <= ROUNDING,
             f"{each}: its course ends {gap:.2g} off its answer. Bound: {ROUNDING:.2g}.",
         )
         added = -float(trapezoid(force, sample.time))
         hold(
-            abs(added - mass * change) <= QUADRATURE * most,
+            abs(added - mass * change) <= QUADRATURE * largest,
             f"{each}: the force along its course gives an impulse of {added:.4g} N s, its "
             f"answer one of {mass * change:.4g} N s."
-            f" Bound: {QUADRATURE * most:.2g}.",
+            f" Bound: {QUADRATURE * largest:.2g}.",
         )
         lost = float(trapezoid(force * (slip + gained), sample.time))
         hold(
-            abs(lost - work) <= QUADRATURE * max(energy, most * abs(slip)),
+            abs(lost - work) <= QUADRATURE * max(energy, largest * abs(slip)),
             f"{each}: the force along its course does {lost:.4g} J of work, and its answer says "
             f"{work:.4g} J."
-            f" Bound: {QUADRATURE * max(energy, most * abs(slip)):.2g}.",
+            f" Bound: {QUADRATURE * max(energy, largest * abs(slip)):.2g}.",
         )
 
 
@@ -165,8 +168,8 @@ def whole_impact_form(law: Any) -> None:
 def sliding_impulse(law: Any) -> None:
     """A grazing impact slips throughout: friction takes mu (1 + e) v1 M_n/M_t from v_x.
 
-    Under Hertz's law, where that is eq. (45), and under a damped one; by the march, and by what
-    the law knows of whole impacts.
+    The impacts are under Hertz's law, eq. (45), and a damped law; by the march and as
+    whole-impact answers.
     """
     tried = 0
     for normal_law in (REGISTRY.create("normal.hertz"), DampedHertz()):
@@ -175,28 +178,28 @@ def sliding_impulse(law: Any) -> None:
         except NotApplicableError:
             continue
         for chi in CHI:
-            given = scene(GRAZING * 4.0 * chi, chi)
-            normal = normal_motion(normal_law, given)
-            bounce = 1.0 - float(normal.final_rate) / float(given.normal_speed)
-            taken = -2.0 * chi * bounce
+            impact = scene(GRAZING * 4.0 * chi, chi)
+            normal = normal_motion(normal_law, impact)
+            bounce = 1.0 - float(normal.final_rate) / float(impact.normal_speed)
+            expected = -2.0 * chi * bounce
             for way in marches:
                 tried += 1
-                off = abs(way.run(given).change / taken - 1.0)
-                # Discs and steps apart: a law with a grid slips at a limit of its own.
+                error = abs(way.run(impact).change / expected - 1.0)
+                # The limit of a law with a grid differs by its discretisation.
                 room = slack(law, 0.0) + (1e-6 if way.exact else INTEGRATION)
                 hold(
-                    off <= room,
+                    error <= room,
                     f"A grazing impact under {type(normal_law).__name__}, chi = {chi:.3g}, is "
-                    f"{off:.2g} off mu (1 + e) v1 M_n/M_t ({way})."
+                    f"{error:.2g} off mu (1 + e) v1 M_n/M_t ({way})."
                     f" Bound: {room:.2g}.",
                 )
-            for _, answer in answers(given, normal, law, history=False):
+            for _, answer in answers(impact, normal, law, history=False):
                 change = spread(answer.slip_velocity_change, ())
-                off = abs(float(given.psi(change)) / taken - 1.0)
+                error = abs(float(impact.psi(change)) / expected - 1.0)
                 hold(
-                    off <= 1e-6,
+                    error <= 1e-6,
                     f"A grazing impact under {type(normal_law).__name__}, chi = {chi:.3g}, is "
-                    f"{off:.2g} off mu (1 + e) v1 M_n/M_t ({answer.reason})."
+                    f"{error:.2g} off mu (1 + e) v1 M_n/M_t ({answer.reason})."
                     " Bound: 1e-6.",
                 )
     apply_if(tried, "There is no way to run it.")

@@ -21,12 +21,11 @@ from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.study.bench_methods import Method
 from contactlab.study.model_error import ModelError, model_error
 from contactlab.study.stability import Stability
-from contactlab.study.stability_cases import Case
+from contactlab.study.stability_cases import Case, Extreme
 from contactlab.study.stability_map import ALL_ANSWERED, Region, region
 from contactlab.study.stability_outcome import ANSWERED, UNDECLARED, WRONG, judge_run
 from contactlab.study.stability_references import continuum
 from contactlab.study.stability_references import none as no_change
-from contactlab.study.stability_scenes import Extreme
 
 CHI = 49 / 34
 

@@ -14,19 +14,18 @@ from contactlab.contracts.error_model import range_of
 from contactlab.study import stability_references
 from contactlab.study.bench_methods import Method, methods
 from contactlab.study.stability import Stability, stability
-from contactlab.study.stability_bounds import broken_invariants
-from contactlab.study.stability_cases import Case, cases
+from contactlab.study.stability_cases import Case, Extreme, cases, extreme_scenes, normal_scenes
 from contactlab.study.stability_outcome import (
     ANSWERED,
     REFUSED,
     SKIPPED,
     WRONG,
     Outcome,
+    broken_invariants,
     judge,
     judge_run,
 )
 from contactlab.study.stability_references import continuum, itself, reference_for, rigid
-from contactlab.study.stability_scenes import Extreme, extreme_scenes, normal_scenes
 from tests.outside_laws import RescaledSpring
 
 CHI = 49 / 34

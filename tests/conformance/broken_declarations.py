@@ -102,6 +102,6 @@ BROKEN = [
     (OneOfThreeWays, "contract", "It must be derived from one of SteppedTangentialLaw"),
     (Mutable, "immutable", "ratio can be set"),
     (CannotBePickled, "copies", "Can't pickle local object"),
-    (TakesAnything, "parameters", "extra = nan: taken without a word"),
-    (TakesAnyFlag, "parameters", "flag = nan: taken without a word"),
+    (TakesAnything, "parameters", "extra = nan: accepted without a ValueError"),
+    (TakesAnyFlag, "parameters", "flag = nan: accepted without a ValueError"),
 ]
