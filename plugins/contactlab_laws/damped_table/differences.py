@@ -23,7 +23,7 @@ from contactlab_laws.damped_table.courses import solve
 from contactlab_laws.damped_table.rings import Array
 from contactlab_laws.differences.table import FILE, key
 
-#: The impacts: least psi1 and number of psi1, up to slip throughout and 1 more, at each chi; as many
+#: The impacts: least and number of psi1, up to slip throughout and 1 more, at each chi; as many
 #: again in ``NARROW``, the range of psi1 with the largest error of springs.
 LEAST, COUNT, CHI = 0.2, 24, (0.8, 1.0, 1.2, 49.0 / 34.0, 1.6, 1.8)
 NARROW = (0.7, 2.0)
