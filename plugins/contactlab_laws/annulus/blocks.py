@@ -1,11 +1,11 @@
-"""All steps of one impact at once: step by step at the edge of stick, all tests in blocks.
+"""All steps of one impact: step by step at the edge of stick, with the tests in blocks.
 
-Almost always the inner annuli stick and the outer ones slip in one direction. Then a step is one
-small product, and what changes is the number that stick: it is followed by two scalar tests at
-the edge, of the outermost annulus that sticks (36) and the innermost that slips (37). After
-a block of such steps the tests of all annuli are made together. The steps before the first
-failure are kept; the one that failed is left to the search of ``one.advance``, as are
-divisions of other kinds. So the result is that of step by step, at a fraction of the calls.
+Almost always the inner annuli stick and the outer annuli slip in one direction. Then a step is one
+small product, and two scalar tests at the edge give the number of annuli that stick: of the
+outermost annulus that sticks (36) and of the innermost that slips (37). After a block of such steps
+all annuli are tested together. The steps before the first failure are kept; ``one.advance``
+searches the division of the step that failed, and divisions of other kinds. The result is that of
+step by step, at a fraction of the calls.
 """
 
 from __future__ import annotations
@@ -16,24 +16,18 @@ from contactlab_laws.annulus import one
 from contactlab_laws.annulus.tables import Array, Tables, hertz_pressure, response
 from contactlab_laws.jaeger.all_steps import ScaledSteps
 
-#: Steps in a block: it grows while no test fails.
+#: Least and most steps in a block, which grows while no test fails.
 SHORTEST, LONGEST = 4, 128
 #: Moves of the edge in one step; more are left to the search.
 MOST_MOVES = 4
-#: Divisions tried on one step before it is left to ``one.advance``, which gives up in the end.
+#: Divisions tried on one step before it is left to ``one.advance``.
 MOST_TRIES = 8
 
 
 class BlockMarch:
-    """The march of one impact. Row k of its arrays is step k; row 0 of lags and tractions is touch.
+    """The march of one impact. Row k of an array is step k; row 0 of lags and tractions is touch.
 
-    Parameters
-    ----------
-    table : Tables
-    steps : ScaledSteps
-        In the paper's variables.
-    velocity : float
-        Slip velocity at first touch, in m/s.
+    ``velocity`` is the slip velocity at first touch, in m/s (``steps`` are scaled).
     """
 
     def __init__(self, table: Tables, steps: ScaledSteps, velocity: float) -> None:
@@ -45,7 +39,7 @@ class BlockMarch:
         self.drifts, self.kicks = steps.drift.tolist(), steps.kick.tolist()
         self.lags, self.tractions = np.zeros((count + 1, size)), np.zeros((count + 1, size))
         self.answers = np.zeros((count, size + 1))
-        self.signs, self.touching = np.zeros(size), 0  # the division, as in ``one.Memory``
+        self.signs, self.touching = np.zeros(size), 0  # the division, as in ``one.ContactState``
         self.at, self.total, self.change = 0, 0.0, 0.0
 
     @property
@@ -54,7 +48,7 @@ class BlockMarch:
         return self.answers[: self.at, 0]
 
     def march(self) -> bool:
-        """Take all steps; return whether every division was found."""
+        """Take all steps; return whether each has a division that passes the tests."""
         count, length, tries = len(self.answers), SHORTEST, 0
         while self.at < count:
             if tries > MOST_TRIES or not self.table.responses:
@@ -75,7 +69,7 @@ class BlockMarch:
         return 0.5 * float(np.einsum("ij,ij,j->", means, slips, self.table.weight))
 
     def _edge(self) -> tuple[int, float] | None:
-        """Return how many leading annuli stick and the sign of the rest, if that says it all."""
+        """Return the number of leading annuli that stick and the sign of slip, or None."""
         touching = self.touching
         signs = self.signs[:touching]
         slipping = signs.nonzero()[0]
@@ -105,11 +99,11 @@ class BlockMarch:
             strict=True,
         ):
             total = totals[-1] + (self.velocity + changes[-1]) * self.drifts[k]
-            known = stuck  # annuli whose lag is in ``lag``
+            filled = stuck  # annuli whose lag is in ``lag``
             stuck = now if stuck == touching else min(stuck, now)
-            if known < stuck:
-                lag[known:stuck] = before[known:stuck]
-                known = stuck
+            if filled < stuck:
+                lag[filled:stuck] = before[filled:stuck]
+                filled = stuck
             row[0], row[1 : stuck + 1] = total, lag[:stuck]
             for _ in range(MOST_MOVES):
                 np.dot(row, responses[stuck], out=answer)
@@ -123,12 +117,12 @@ class BlockMarch:
                     continue
                 if stuck == now:
                     break
-                lag_before = (lag if stuck < known else before).item(stuck)
+                lag_before = (lag if stuck < filled else before).item(stuck)
                 if sign * (lag_before - answer.item(stuck + 1)) > 0.0:
                     break
                 lag[stuck] = row[stuck + 1] = lag_before
                 stuck += 1
-                known = max(known, stuck)
+                filled = max(filled, stuck)
             else:
                 break  # not a matter of the edge alone
             before, touching = answer[1:], now
@@ -137,7 +131,7 @@ class BlockMarch:
             edges.append(stuck)
             slip_signs.append(sign)
         if not edges:
-            self.signs[: self.touching] = 0.0  # start the tries anew, from stick all over
+            self.signs[: self.touching] = 0.0  # the next try begins with stick all over
             return 0
         rows = rows[: len(edges)]
         inner = np.arange(len(lag)) < np.array(edges)[:, None]
@@ -146,10 +140,10 @@ class BlockMarch:
         )
 
     def _by_division(self, until: int) -> int:
-        """Take steps up to ``until`` with any division as it stands; return how many were kept."""
+        """Take steps up to ``until`` with the present division; return how many were kept."""
         at, signs, touching = self.at, self.signs, self.touching
         signs[touching:] = signs[touching - 1]
-        if not signs[-1]:  # newcomers stick, from where they then are: not beyond this block
+        if not signs[-1]:  # new annuli stick where they are: the block ends before them
             until = next((k for k in range(at, until) if self.touching_at[k] > touching), until)
             signs[touching:] = 1.0
         if until == at:
@@ -162,32 +156,22 @@ class BlockMarch:
         np.multiply(self.limits[at:until], signs, out=rows[:, 1:])
         np.copyto(rows[:, 1:], self.lags[at], where=sticks)
         totals, changes = [self.total], [self.change]
-        for k, known in enumerate(rows.dot(matrix[:, 0]).tolist(), at):
+        for k, rest in enumerate(rows.dot(matrix[:, 0]).tolist(), at):
             totals.append(totals[-1] + (self.velocity + changes[-1]) * self.drifts[k])
-            force = matrix.item(0) * totals[-1] + known
+            force = matrix.item(0) * totals[-1] + rest
             changes.append(changes[-1] - self.kicks[k] * force)
         rows[:, 0] = totals[1:]
         self.answers[at:until] = rows.dot(matrix)
         return self._tested(rows, np.tile(signs, (len(rows), 1)), totals, changes)
 
     def _tested(self, rows: Array, signs: Array, totals: list[float], changes: list[float]) -> int:
-        """Enter a block of steps; keep and count those that pass (36) and (37).
-
-        Parameters
-        ----------
-        rows : array, shape (steps, n + 1)
-            D, and what is given of each annulus: its lag where it sticks, else its traction.
-        signs : array, shape (steps, n)
-            Of slip, 0 where stuck.
-        totals, changes : list of float
-            D and the change of slip velocity, before the block and after each step.
-        """
+        """Enter a block of steps, ``rows`` as in ``one.respond``; return how many pass."""
         at, until = self.at, self.at + len(rows)
-        given, answer, limits = rows[:, 1:], self.answers[at:until, 1:], self.limits[at:until]
-        sticks, here = signs == 0.0, slice(at + 1, until + 1)
-        self.lags[here] = np.where(sticks, given, answer)
-        self.tractions[here] = np.where(sticks, answer, given)
-        good = signs * (self.lags[at:until] - self.lags[here]) > 0.0
+        drive, answer, limits = rows[:, 1:], self.answers[at:until, 1:], self.limits[at:until]
+        sticks, ends = signs == 0.0, slice(at + 1, until + 1)
+        self.lags[ends] = np.where(sticks, drive, answer)
+        self.tractions[ends] = np.where(sticks, answer, drive)
+        good = signs * (self.lags[at:until] - self.lags[ends]) > 0.0
         good |= limits == 0.0
         np.copyto(good, np.abs(answer) <= limits, where=sticks)
         first = int(good.argmin())
@@ -202,16 +186,16 @@ class BlockMarch:
         return kept
 
     def _step(self) -> bool:
-        """Take one step by the search for any division."""
+        """Take one step by the search of ``one.advance``."""
         at, steps = self.at, self.steps
-        memory = one.Memory(
+        state = one.ContactState(
             self.total, self.lags[at], self.tractions[at], self.signs, self.touching
         )
         move = (self.velocity + self.change) * self.drifts[at]
         radius, pressure = float(steps.radius[at]), float(steps.pressure[at])
-        force, _, settled, memory = one.advance(self.table, memory, move, radius, pressure)
+        force, _, settled, state = one.advance(self.table, state, move, radius, pressure)
         if settled:
-            self.total, self.lags[at + 1], self.tractions[at + 1], signs, self.touching = memory
+            self.total, self.lags[at + 1], self.tractions[at + 1], signs, self.touching = state
             self.signs = signs.copy()
             self.answers[at, 0] = force
             self.change -= self.kicks[at] * force

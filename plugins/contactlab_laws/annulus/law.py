@@ -30,11 +30,11 @@ from contactlab_laws.jaeger.pressure import hemisphere
 
 
 class State(NamedTuple):
-    """Memory of a contact, and its scales. A value: never changed once made."""
+    """Scales and memory of a contact, or of a batch; never changed once made."""
 
     scales: Scales
     hertz: bool  # whether the normal law is Hertz's
-    memory: Any  # one.Memory or many.Memory
+    memory: Any  # one.ContactState or many.ContactStates
 
 
 @attrs.frozen(kw_only=True)
@@ -45,9 +45,9 @@ class Annulus(AllStepsTangentialLaw):
     division into stick and slip by (36) and (37), and repeats with all violators flipped
     until the tests pass. Annuli outside the contact are left out (16).
 
-    The pressures in the middles of (34) carry the load P but for about n^-1.5. Under Hertz's law
-    they are left as in the paper; under any other they are scaled to carry it, so that gross slip
-    is exact.
+    The pressures in the middles of (34) carry the load P to within about n^-1.5. Under Hertz's
+    law they are those of the paper; under any other law they are scaled to carry P, so that gross
+    slip is exact.
 
     Parameters
     ----------
@@ -55,8 +55,8 @@ class Annulus(AllStepsTangentialLaw):
         n, the number of annuli across the largest contact radius. The error is about 1/n, for n
         up to half the steps: annuli that come into contact in one step share one displacement.
     displacement : str
-        Where (33) prescribes it: ``"midpoint"`` of each annulus, as in the paper, or its
-        ``"mean"``, which is as accurate and closes the energy books at every n.
+        The displacement that (33) prescribes: at the ``"midpoint"`` of each annulus, as in the
+        paper, or its ``"mean"``, which is as accurate and closes the energy books at every n.
 
     References
     ----------
@@ -74,18 +74,18 @@ class Annulus(AllStepsTangentialLaw):
 
     @property
     def books_bound(self) -> float:
-        """Return 1/n: collocation at midpoints is not reciprocal, and leaves about 0.3/n.
+        """Return 1/n for midpoints, which are not reciprocal and leave about 0.3/n; else 0.01.
 
-        With means, what is left is the error of the steps: 0.01 is generous.
+        With means only the error of the steps is left: 0.01 is generous.
         """
         return 1.0 / self.annuli if self.displacement == "midpoint" else 0.01
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return those of gross slip too, where (44) and (46) say so."""
+        """Return the whole-impact answers, with those of gross slip by (44) and (46)."""
         return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return those of every law, and that of a pressure that may be no hemisphere."""
+        """Return the cautions of every law, and one on a pressure that may be no hemisphere."""
         return (*super().cautions(scene, normal), *hemisphere(normal))
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
@@ -109,7 +109,7 @@ class Annulus(AllStepsTangentialLaw):
         scales, hertz, memory = state
         radius: Any = after.radius / scales.radius
         pressure = self._pressure(scales, radius, after.friction_load, hertz=hertz)
-        solve = one.advance if isinstance(memory, one.Memory) else many.advance
+        solve = one.advance if isinstance(memory, one.ContactState) else many.advance
         slip: Any = increment.displacement * scales.displacement
         force, work, settled, memory = solve(self._tables(), memory, slip, radius, pressure)
         response = TangentialResponse(force * scales.force, work * scales.work, settled)
@@ -118,7 +118,7 @@ class Annulus(AllStepsTangentialLaw):
     def advance_all(
         self, scene: Scene, normal: NormalMotion, steps: Steps
     ) -> AllStepsResponse | None:
-        """Return the forces (22) of a whole impact, found in blocks of steps; of one only."""
+        """Return the forces (22) of one impact, computed in blocks of steps; None for a batch."""
         if scene.shape:
             return None
         scales = Scales.of(scene, normal)
@@ -135,22 +135,11 @@ class Annulus(AllStepsTangentialLaw):
         return AllStepsResponse(march.forces * scales.force, work, settled)
 
     def _pressure(self, scales: Scales, radius: Any, load: Any, *, hertz: bool) -> Any:
-        """Return the ratio of the pressures of (34) to those of a Hertz contact of this radius.
-
-        Parameters
-        ----------
-        scales : Scales
-        radius : float or array
-            beta.
-        load : float or array
-            Friction load, in N.
-        hertz : bool
-            Whether the normal law is Hertz's.
-        """
+        """Return the ratio of the pressures of (34) to those of a Hertz contact of this radius."""
         if hertz:
             return scales.pressure(radius, load)
         table = self._tables()
-        carried: Any = hertz_pressure(table, radius) @ table.weight  # beta³ but for about n^-1.5
+        carried: Any = hertz_pressure(table, radius) @ table.weight  # beta³ to within about n^-1.5
         return load / (scales.normal_force * carried + (carried == 0.0))
 
     def _tables(self) -> Tables:

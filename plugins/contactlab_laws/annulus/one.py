@@ -12,13 +12,13 @@ from contactlab_laws.annulus.tables import Array, Tables, hertz_pressure, respon
 
 #: Passes of the division into stick and slip; measured never above 14 (theory §6).
 MOST_PASSES = 200
-#: Back at a turning point the traction is at its limit to rounding, and would be found now
-#: above it, now below, without end: a tie is stick.
+#: Traction over its limit up to which an annulus sticks. Back at a turning point the traction
+#: equals its limit to rounding, and would be above it and below it by turns, without end.
 TIE = 1.0 + 1e-12
 
 
-class Memory(NamedTuple):
-    """What the contact remembers, and the last division into stick and slip.
+class ContactState(NamedTuple):
+    """The memory of one contact, and its last division into stick and slip.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class Memory(NamedTuple):
     traction : array, shape (n,)
         q_j, zero outside the contact.
     signs : array, shape (n,)
-        Of the traction of annuli that slip, 0 for those that stick.
+        Sign of the traction of annuli that slip, 0 for annuli that stick.
     touching : int
         Annuli in contact.
     """
@@ -41,61 +41,51 @@ class Memory(NamedTuple):
     touching: int
 
     def division(self) -> tuple[NDArray[np.bool_], NDArray[np.int8]]:
-        """Return which annuli are stuck, and the sign of those that slip."""
+        """Return which annuli are stuck, and the sign of slip of each annulus."""
         inside = np.arange(len(self.lag)) < self.touching
         return inside & (self.signs == 0.0), (inside * self.signs).astype(np.int8)
 
 
-def start(annuli: int) -> Memory:
+def start(annuli: int) -> ContactState:
     """Return a contact without traction."""
-    return Memory(0.0, np.zeros(annuli), np.zeros(annuli), np.zeros(annuli), 0)
+    return ContactState(0.0, np.zeros(annuli), np.zeros(annuli), np.zeros(annuli), 0)
 
 
 def advance(
-    table: Tables, memory: Memory, displacement: float, radius: float, pressure: float
-) -> tuple[float, float, bool, Memory]:
-    """Return force, friction work, whether a division was found, and the new memory.
-
-    Parameters
-    ----------
-    table : Tables
-    memory : Memory
-    displacement : float
-        Slip displacement of the step, 2.9432 psi dtau of eq. (33).
-    radius : float
-        beta at the end of the step.
-    pressure : float
-        Ratio of the pressure to that of a Hertz contact of this radius.
-    """
-    total = memory.total + displacement
+    table: Tables, state: ContactState, displacement: float, radius: float, pressure: float
+) -> tuple[float, float, bool, ContactState]:
+    """Return force, friction work, whether a division passes the tests, and the new state."""
+    # Scaled: ``displacement`` is 2.9432 psi dtau of eq. (33), ``radius`` is beta at the end of the
+    # step, ``pressure`` the ratio to the pressure of a Hertz contact of this radius.
+    total = state.total + displacement
     if not math.isfinite(total * (radius * radius) * pressure):
-        return math.nan, math.nan, True, memory
+        return math.nan, math.nan, True, state
     limit = pressure * hertz_pressure(table, radius)
     inside = limit > 0.0
-    touching, lag = int(np.count_nonzero(inside)), memory.lag
-    signs = extended(memory.signs, memory.touching, touching)
+    touching, lag = int(np.count_nonzero(inside)), state.lag
+    signs = extended(state.signs, state.touching, touching)
     seen: set[bytes] = set()
     for _ in range(MOST_PASSES):
         sticks = inside & (signs == 0.0)
-        given = np.where(sticks, lag, signs * limit)
-        force, found = respond(table, sticks, total, given)
-        over = sticks & (np.abs(found) > TIE * limit)  # (36) fails
-        back = inside & ~sticks & (signs * (lag - found) <= 0.0)  # (37) fails
+        drive = np.where(sticks, lag, signs * limit)
+        force, answer = respond(table, sticks, total, drive)
+        over = sticks & (np.abs(answer) > TIE * limit)  # (36) fails
+        back = inside & ~sticks & (signs * (lag - answer) <= 0.0)  # (37) fails
         key = signs.tobytes()
         if not (over | back).any():
-            traction, new_lag = np.where(sticks, found, given), np.where(sticks, lag, found)
-            mean = 0.5 * table.weight * (traction + memory.traction)
+            traction, new_lag = np.where(sticks, answer, drive), np.where(sticks, lag, answer)
+            mean = 0.5 * table.weight * (traction + state.traction)
             work = float(mean.dot(lag - new_lag))
-            return force, work, True, Memory(total, new_lag, traction, signs, touching)
+            return force, work, True, ContactState(total, new_lag, traction, signs, touching)
         if key in seen:
             break
         seen.add(key)
-        signs = np.where(over, np.sign(found), np.where(back, 0.0, signs))
-    return math.nan, math.nan, False, memory
+        signs = np.where(over, np.sign(answer), np.where(back, 0.0, signs))
+    return math.nan, math.nan, False, state
 
 
 def extended(signs: Array, touching_before: int, touching: int) -> Array:
-    """Return a first guess of the division: as before, newcomers as the outermost annulus."""
+    """Return a first guess of the division: new annuli do as the outermost annulus did."""
     if touching <= touching_before or touching_before == 0:
         return signs
     guess = signs.copy()
@@ -104,25 +94,16 @@ def extended(signs: Array, touching_before: int, touching: int) -> Array:
 
 
 def respond(
-    table: Tables, sticks: NDArray[np.bool_], total: float, given: Array
+    table: Tables, sticks: NDArray[np.bool_], total: float, drive: Array
 ) -> tuple[float, Array]:
-    """Return the force, and tractions where it sticks, lags where not.
-
-    Parameters
-    ----------
-    table : Tables
-    sticks : array of bool, shape (n,)
-    total : float
-        D, slip displacement so far.
-    given : array, shape (n,)
-        Lags where it sticks and tractions where not; see ``tables.exchange``.
-    """
+    """Return the force, and tractions of annuli that stick, lags of annuli that slip."""
+    # ``drive`` holds lags of annuli that stick and tractions of annuli that slip.
     if table.responses:
-        drive = np.concatenate(([total], given))
-        found = drive.dot(response(len(sticks), table.mean, sticks.tobytes()))
-        return found.item(0), found[1:]
-    traction = np.where(sticks, 0.0, given)
-    rest = total + given[sticks] - table.compliance[sticks] @ traction
+        row = np.concatenate(([total], drive))
+        answer = row.dot(response(len(sticks), table.mean, sticks.tobytes()))
+        return answer.item(0), answer[1:]
+    traction = np.where(sticks, 0.0, drive)
+    rest = total + drive[sticks] - table.compliance[sticks] @ traction
     c = len(rest)
     if sticks[:c].all():
         traction[:c] = table.upper_inverse[:c, :c] @ (table.lower_inverse[:c, :c] @ rest)

@@ -1,4 +1,4 @@
-"""The annulus law, sharper: the same series of tractions with conditions that need no matrix."""
+"""A sharper annulus law: the same series of tractions with conditions that need no matrix."""
 
 from __future__ import annotations
 
@@ -23,29 +23,29 @@ class Circles(Bundle):
     def __init__(self, annuli: int) -> None:
         circles = np.arange(annuli + 1) / annuli
         widths = np.diff(circles)
-        # What the inner value gets from the annulus between two circles, and the outer one.
+        # Weights of the inner and the outer value in the annulus between two circles.
         inner = 1.5 * _rim(circles[1:], circles[:-1])
         outer = 1.5 * widths - inner
         super().__init__(circles[:-1], inner + np.concatenate(([0.0], outer[:-1])))
         self.circles, self.inner, self.count = circles[:-1], inner, annuli
 
     def weights(self, square: Array) -> Array:
-        """Return the weights with the last circle's set to what it has within the contact."""
+        """Return the weights, shape (n, K); the last circle's weight ends at the contact radius."""
         last = np.maximum(self.squares.searchsorted(square) - 1, 0)
         last = np.minimum(last, self.count - 1)
         radius = np.sqrt(square)
         rim = 1.5 * _rim(np.where(radius > 0.0, radius, 1.0), self.circles[last])
-        found = np.repeat(self.full_weights[:, None], len(square), axis=1)
-        found[last, np.arange(len(square))] += rim - self.inner[last]
-        return found
+        weights = np.repeat(self.full_weights[:, None], len(square), axis=1)
+        weights[last, np.arange(len(square))] += rim - self.inner[last]
+        return weights
 
     def weights_of_one(self, square: float, touching: int) -> Array:
-        """Return the same for one contact."""
-        found = self.full_weights[:touching].copy()
+        """Return the weights of the innermost circles of one contact, shape (touching,)."""
+        weights = self.full_weights[:touching].copy()
         if touching:
             rim = 1.5 * _rim(square**0.5, self.circles[touching - 1])
-            found[-1] += rim - self.inner[touching - 1]
-        return found
+            weights[-1] += rim - self.inner[touching - 1]
+        return weights
 
 
 def _rim(radius: Any, circle: Any) -> Any:
@@ -55,7 +55,7 @@ def _rim(radius: Any, circle: Any) -> Any:
 
 @lru_cache(maxsize=32)
 def circles(annuli: int) -> Circles:
-    """Return the circles of ``annuli`` annuli, made once."""
+    """Return the circles of ``annuli`` annuli, cached."""
     return Circles(annuli)
 
 
@@ -67,19 +67,19 @@ class SharpAnnulus(ProfileLaw):
 
         w(s) = (pi/2) sum (phi_i / a_i) (a_i² - s²)_+,
 
-    so that the series is no more and no less than a w that is continuous, and linear in s²
-    between the circles. The traction at r depends on w beyond r only, the displacement at r
-    on w within r only. So while the stuck part is a disc of radius c, the two conditions
+    so that the series is any w that is continuous, and linear in s² between the circles. The
+    traction at r depends on w beyond r only, the displacement at r on w within r only. While the
+    stuck part is a disc of radius c, the two conditions
 
-        displacement given for r < c  (33)   and   traction at its limit for r > c  (34)
+        displacement prescribed for r < c  (33)   and   traction at its limit for r > c  (34)
 
-    are w given for s < c and w = +-(b² - s²) for s > c; and with the values of w on the
-    circles as unknowns every circle decides for itself. The limit is in the series exactly,
-    and the outermost distribution ends at the contact radius, so gross slip gives mu P at
-    every radius. Annuli that the growing contact meets move from then on only. Both make
-    the error fall as the square of annuli and steps; with the conditions put on the middles
-    of annuli it falls as 1/n at best. Where the stuck part is not a disc (seldom), this is
-    the theorem of Ciavarella and Jaeger in place of the paper's conditions.
+    prescribe w for s < c, and w = +-(b² - s²) for s > c. With the values of w on the circles as
+    unknowns, each circle has its own condition. The limit is in the series exactly, and the
+    outermost distribution ends at the contact radius, so gross slip gives mu P at every radius.
+    Annuli that the growing contact meets move from then on only. The error falls as the square
+    of annuli and steps; with conditions at the middles of annuli it falls as 1/n at best. Where
+    the stuck part is not a disc (seldom), the theorem of Ciavarella and Jaeger replaces the
+    paper's conditions.
 
     Parameters
     ----------

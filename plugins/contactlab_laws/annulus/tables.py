@@ -1,13 +1,13 @@
 """Matrices of the annulus method that depend on the number of annuli alone.
 
 The unknowns are the tractions q_j in the middles of the annuli, in units in which the
-Coulomb limit of eq. (34) is sqrt(beta² - r_j²), and not the coefficients phi_i of eq. (1):
+Coulomb limit of eq. (34) is sqrt(beta² - r_j²), not the coefficients phi_i of eq. (1):
 q = S phi with S upper triangular. The displacement of eq. (33) is then xi = B q with
 B = A S^-1 / 2, everywhere and always, the free surface outside the contact included. B has
 condition 3 n, the mixed matrix in phi n^2.5 (theory §6).
 
 Memory is the lag of each annulus behind the bodies, g_j = xi_j - D with D the slip displacement
-so far: while an annulus sticks its lag is constant, and (33) says no more than that.
+so far: while an annulus sticks its lag is constant, which is all that (33) says.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: Above this the responses of all leading divisions (8 n³ bytes: 8 MB at 100) are not kept.
+#: Most annuli for which the responses of all leading divisions are kept (8 n³ bytes: 8 MB at 100).
 LARGEST_TABLE = 100
 
 
 class Tables(NamedTuple):
     """Read-only arrays for ``n`` annuli."""
 
-    mean: bool  # which displacement (33) prescribes, see ``mean_compliance``
+    mean: bool  # (33) prescribes the mean displacement of an annulus, else its middle's
     radius_squared: Array  # r_j², shape (n,)
     weight: Array  # F^ = weight . q, eq. (22), shape (n,)
     compliance: Array  # B, shape (n, n)
@@ -37,27 +37,14 @@ class Tables(NamedTuple):
 
 
 def hertz_pressure(table: Tables, radius: Any) -> Array:
-    """Return sqrt(beta² - r_j²), the limits (34) of a Hertz pressure; 0 outside the contact.
-
-    Parameters
-    ----------
-    table : Tables
-    radius : float or array
-        beta.
-
-    Returns
-    -------
-    array, shape (..., n)
-    """
+    """Return sqrt(beta² - r_j²), the limits (34) of a Hertz pressure, shape (..., n)."""
     limits = np.square(np.asarray(radius))[..., None] - table.radius_squared
     return np.asarray(np.sqrt(np.maximum(limits, 0.0, out=limits), out=limits))
 
 
 def influence(annuli: int) -> Array:
-    """Return A of eq. (14), middles of annuli j in rows and distributions i in columns.
-
-    The misprint in the second branch is corrected: it holds for j = i+1 .. n.
-    """
+    """Return A of eq. (14), middles of annuli j in rows and distributions i in columns."""
+    # The misprint in the second branch is corrected: it holds for j = i+1 .. n.
     i = np.arange(1, annuli + 1)[None, :]
     middle = np.arange(1, annuli + 1)[:, None] - 0.5
     ratio = np.minimum(i / middle, 1.0)  # inside, arcsin 1 = pi/2 gives the first branch
@@ -73,13 +60,11 @@ def traction_shape(annuli: int) -> Array:
 
 
 def mean_compliance(inverse_shape: Array, weight: Array) -> Array:
-    """Return B for displacements averaged with the weight of each annulus's own traction.
-
-    With W the weights of the force, W B then is symmetric (Betti), and the energy books
-    close at every n. For displacements in the middles (33) they do not: friction takes 5 %
-    more than is lost at n = 10. The distribution sqrt(1 - r²/a_i²) of eq. (1) has the Abel
-    transform (a_i² - s²)/a_i, and works add up along s.
-    """
+    """Return B for displacements averaged with the weight of each annulus's own traction."""
+    # With W the weights of the force, W B is symmetric (Betti), and the energy books close at every
+    # n. For displacements in the middles (33) they do not: friction takes 5 % more than is lost at
+    # n = 10. The distribution sqrt(1 - r²/a_i²) of eq. (1) has the Abel transform (a_i² - s²)/a_i,
+    # and works add up along s.
     circle = np.arange(1, len(weight) + 1) / len(weight)
     low, high = np.minimum.outer(circle, circle), np.maximum.outer(circle, circle)
     products = 2.0 / 3.0 * low**3 * high**2 - 2.0 / 15.0 * low**5
@@ -88,12 +73,10 @@ def mean_compliance(inverse_shape: Array, weight: Array) -> Array:
 
 
 def factors(matrix: Array) -> tuple[Array, Array]:
-    """Return L and U of ``matrix`` without pivoting.
-
-    For B, n = 1 to 1000, no multiplier exceeds 1: partial pivoting would choose this order.
-    Leading blocks of L^-1 and U^-1 invert the leading blocks of B, so that one
-    factorisation serves every number of stuck annuli.
-    """
+    """Return L and U of ``matrix`` without pivoting."""
+    # For B, n = 1 to 1000, no multiplier exceeds 1: partial pivoting would choose this order.
+    # Leading blocks of L^-1 and U^-1 invert the leading blocks of B, so that one factorisation
+    # serves every number of stuck annuli.
     size = len(matrix)
     lower, upper = np.eye(size), matrix.copy()
     for k in range(size - 1):
@@ -103,13 +86,11 @@ def factors(matrix: Array) -> tuple[Array, Array]:
 
 
 def exchange(response: Array, annulus: int) -> Array:
-    """Return the response after ``annulus`` (from 0) went from slip to stick or back.
-
-    A response M takes x to x M. In: D first, then for each annulus its lag where it
-    sticks and its traction where it slips. Out: the force first, then traction where
-    it sticks and lag where it slips. Exchanging one unknown for the other is a
-    principal pivot, so that nothing is ever solved anew.
-    """
+    """Return the response after ``annulus`` (from 0) went from slip to stick or back."""
+    # A response M takes x to x M. x holds D, then the lag of each annulus that sticks and the
+    # traction of each that slips. x M holds the force, then the traction of each annulus that
+    # sticks and the lag of each that slips. The exchange of one unknown is a principal pivot, no
+    # new solve.
     k = annulus + 1
     pivot = response[k, k]
     row, column = response[k] / pivot, response[:, k].copy()
@@ -122,7 +103,7 @@ def exchange(response: Array, annulus: int) -> Array:
 
 @lru_cache(maxsize=8)
 def tables(annuli: int, mean: bool = False) -> Tables:
-    """Return the tables for ``annuli`` annuli, made once."""
+    """Return the tables for ``annuli`` annuli, cached."""
     inverse_shape = np.asarray(np.linalg.inv(traction_shape(annuli)), dtype=np.float64)
     ring = 0.5 * np.pi * (np.arange(1, annuli + 1) / annuli) ** 2
     weight: Array = ring @ inverse_shape
@@ -156,15 +137,13 @@ def tables(annuli: int, mean: bool = False) -> Tables:
 
 @lru_cache(maxsize=512)
 def response(annuli: int, mean: bool, sticks: bytes) -> Array:
-    """Return the response of any division; ``sticks`` holds a boolean an annulus.
-
-    Found from the nearest division with leading annuli stuck by one exchange an annulus, and
-    remembered (20 kB each at 50 annuli): divisions recur from step to step and impact to impact.
-    """
+    """Return the response of any division; ``sticks`` holds a boolean an annulus."""
+    # One exchange an annulus leads here from the nearest division with leading annuli stuck.
+    # Responses are cached (20 kB each at 50 annuli): divisions recur in steps and impacts.
     stuck = np.frombuffer(sticks, dtype=bool)
     before = np.concatenate([[0], np.cumsum(stuck)])
     nearest = int((np.arange(annuli + 1) - 2 * before).argmin())
-    found = tables(annuli, mean).responses[nearest]
+    matrix = tables(annuli, mean).responses[nearest]
     for annulus in np.flatnonzero(stuck != (np.arange(annuli) < nearest)):
-        found = exchange(found, int(annulus))
-    return found
+        matrix = exchange(matrix, int(annulus))
+    return matrix

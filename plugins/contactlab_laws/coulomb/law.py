@@ -16,7 +16,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 
-#: Of the energy books, over the energy at the start.
+#: Bound of the imbalance of the energy books, over the energy at the start.
 ROUNDING = 1e-9
 
 
@@ -25,8 +25,8 @@ class Coulomb(WholeImpactTangentialLaw):
     """Coulomb friction between bodies that do not deform tangentially.
 
     While the contact slips the force is mu times the friction load; once slip has stopped the
-    bodies roll and the force is zero. So the change of slip velocity is the lesser of what
-    friction can do and what stops the slip, under any normal law.
+    bodies roll and the force is zero. Under any normal law the change of slip
+    velocity is the lesser of mu J/M_t, J the load impulse, and the slip velocity itself.
 
     References
     ----------
@@ -41,11 +41,11 @@ class Coulomb(WholeImpactTangentialLaw):
 
     @property
     def books_bound(self) -> float:
-        """Return the bound of rounding: the work is that of the force."""
+        """Return the bound of rounding: the friction work follows from the force."""
         return ROUNDING
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return slip until it stops, if it does."""
+        """Return the motion of every impact: slip until the slip velocity is zero, then rolling."""
         reason = "rigid bodies: slip until it stops, if it does, then rolling"
         return (
             *super().whole_impacts(scene, normal),
@@ -53,7 +53,7 @@ class Coulomb(WholeImpactTangentialLaw):
         )
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return that the elasticity of the surfaces is left out."""
+        """Return the caution that the elasticity of the surfaces is left out."""
         return (
             "rigid bodies: tangential elasticity is left out, which moves psi2 of solid spheres by "
             "up to about 1.5 where the contact sticks (model, not numerical error)",
@@ -73,13 +73,13 @@ class Frictionless(WholeImpactTangentialLaw):
 
     @property
     def books_bound(self) -> float:
-        """Return the bound of rounding: there is no work."""
+        """Return the bound of rounding: there is no friction work."""
         return ROUNDING
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return no force."""
+        """Return impacts without tangential force."""
         return (no_force(scene, where=True, reason="the law makes no force"),)
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return nothing: there is no coupling without traction."""
+        """Return no caution: without traction there is no coupling."""
         return ()

@@ -12,18 +12,18 @@ from contactlab_laws.damped_table.coordinates import CHI, RESTITUTION
 from contactlab_laws.damped_table.function import rebound
 from contactlab_laws.damped_table.table import SHIPPED, read
 
-#: Rings of the impacts that the table is compared with: other numbers than its own, and more.
+#: Numbers of rings in the comparison: others than those of the table, and more.
 COUNTS = (64, 96, 128)
-#: Impacts that are timed, and runs of which the fastest counts.
+#: Impacts that are timed, and runs; the fastest run counts.
 TIMED, RUNS = 1_000_000, 5
-#: Restitutions that are drawn: for each a batch of impacts.
+#: Restitutions that are drawn, with a batch of impacts for each.
 DRAWS = 12
 #: psi1 of a draw is at most this.
 LARGEST = 9.0
 
 
 def main() -> int:
-    """Run one command; return 0, or 1 if the table is not as good as it should be."""
+    """Run one command; return 0, or 1 if the error of the table exceeds the declared error."""
     parser = argparse.ArgumentParser(
         prog="python -m contactlab_laws.damped_table", description=__doc__
     )
@@ -34,18 +34,18 @@ def main() -> int:
     verifying.add_argument("--count", type=int, default=480, help="impacts (480)")
     verifying.add_argument("--seed", type=int, default=1)
     commands.add_parser("bench", help="print the processor time an impact takes")
-    asked = parser.parse_args()
-    if asked.command == "build":
+    arguments = parser.parse_args()
+    if arguments.command == "build":
         from contactlab_laws.damped_table.build import build
 
         build(SHIPPED)
         return 0
-    if asked.command == "differences":
+    if arguments.command == "differences":
         from contactlab_laws.damped_table import differences
 
         differences.write()
         return 0
-    return verify(asked.count, asked.seed) if asked.command == "verify" else bench()
+    return verify(arguments.count, arguments.seed) if arguments.command == "verify" else bench()
 
 
 def verify(count: int, seed: int) -> int:
@@ -78,12 +78,12 @@ def bench() -> int:
     """Print nanoseconds of processor time an impact takes in bulk."""
     draw = np.random.default_rng(1)
     psi1, chi = draw.uniform(0.0, LARGEST, TIMED), draw.uniform(*CHI, TIMED)
-    taken = []
+    seconds = []
     for _ in range(RUNS):
         began = time.process_time()
         rebound(psi1, chi, 0.9)
-        taken.append(time.process_time() - began)
-    print(f"{TIMED} impacts: {1e9 * min(taken) / TIMED:.0f} ns of processor time each")
+        seconds.append(time.process_time() - began)
+    print(f"{TIMED} impacts: {1e9 * min(seconds) / TIMED:.0f} ns of processor time each")
     return 0
 
 

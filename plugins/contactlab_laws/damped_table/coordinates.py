@@ -1,4 +1,4 @@
-"""Where psi2(psi1, chi, e) under Tsuji's law is smooth: theory §11, "As a table"."""
+"""Coordinates in which psi2(psi1, chi, e) under Tsuji's law is smooth: theory §11, "As a table"."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: The range of the table. chi of solid spheres and shells; e as it is called a restitution.
+#: The range of the table: chi from solid spheres to shells, and e.
 CHI = (0.8, 1.8)
 RESTITUTION = (0.5, 1.0)
 #: Pieces of t = (1 - e)^(1/3), in which psi2 is smooth down to e = 1; the border is e = 0.9.
@@ -23,12 +23,12 @@ NODES = (16, 8, 8)
 
 
 def depth(restitution: Any) -> Any:
-    """Return t."""
+    """Return t = (1 - e)^(1/3)."""
     return np.cbrt(1.0 - restitution)
 
 
 def restitution(depth: Any) -> Any:
-    """Return e."""
+    """Return e = 1 - t³."""
     return 1.0 - depth**3
 
 
@@ -51,12 +51,12 @@ def coefficients(values: Array) -> Array:
 
 
 def place(piece: int, psi1: Any, cuts: Any) -> Any:
-    """Return the coordinate in [-1, 1] of ``psi1`` in a piece."""
+    """Return the coordinate of ``psi1`` in a piece, in [-1, 1]."""
     if piece == STICKS:
         return 2.0 * psi1 / cuts[0] - 1.0
     if piece == SLIPS:
         return 2.0 * (cuts[-1] - 1.0) / (psi1 - 1.0) - 1.0
-    low, high = cuts[piece - 1], cuts[piece]  # rough where it begins: the root makes it smooth
+    low, high = cuts[piece - 1], cuts[piece]  # psi2 is smooth in the root of psi1 - low
     return 2.0 * np.sqrt((psi1 - low) / (high - low)) - 1.0
 
 
@@ -72,32 +72,14 @@ def incidence(piece: int, at: Any, cuts: Any) -> Any:
 
 
 def smooth(piece: int, psi1: Any, psi2: Any, chi: Any, e: Any) -> Any:
-    """Return what is tabulated: psi2/psi1, psi2, or what gross slip lacks.
-
-    Parameters
-    ----------
-    piece : int
-        ``STICKS``, ``RINGS``, ``TURNS`` or ``SLIPS``.
-    psi1, psi2, chi, e : float or array
-        Impacts of that piece; e is the restitution.
-    """
+    """Return the tabulated quantity: psi2/psi1, psi2, or psi2 less that of gross slip."""
     if piece == STICKS:
         return psi2 / psi1
     return psi2 if piece != SLIPS else psi2 - (psi1 - 2.0 * chi * (1.0 + e))
 
 
 def rough(piece: int, psi1: Any, value: Any, chi: Any, e: Any) -> Any:
-    """Return psi2 of what is tabulated: the inverse of ``smooth``.
-
-    Parameters
-    ----------
-    piece : int
-        ``STICKS``, ``RINGS``, ``TURNS`` or ``SLIPS``.
-    psi1, chi, e : float or array
-        Impacts of that piece; e is the restitution.
-    value : float or array
-        What ``smooth`` returned.
-    """
+    """Return psi2 from the tabulated ``value``: the inverse of ``smooth``."""
     if piece == STICKS:
         return value * psi1
     return value if piece != SLIPS else value + (psi1 - 2.0 * chi * (1.0 + e))

@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
@@ -14,28 +13,21 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.impact.scene import Scene
 from contactlab_laws.damped_table.rings import Array, Course, rebound
 
-#: Phases among which the largest radius is looked for, and halvings that find an instant.
-LOOKED, HALVINGS = 4001, 60
-#: Rings from whose answers the limit is found, to 2e-4 in psi2: ``tests/exact/test_rings.py``.
+#: Phases in the search of the largest radius, and halvings in that of an instant.
+SEARCHED, HALVINGS = 4001, 60
+#: Numbers of rings, from whose answers the limit follows to 2e-4 in psi2:
+#: ``tests/exact/test_rings.py``.
 COUNTS = (48, 64, 80, 96, 112, 128)
-#: Radii at first touch and at separation, over the largest, that count as none.
+#: Largest radius at first touch and at separation that counts as 0, over the largest radius.
 NOTHING = 1e-6
 
 
 def course(motion: NormalMotion, count: int) -> Course:
-    """Return the course of one impact over ``count`` rings.
-
-    The edges stand at a sin(i pi/(2 count)), a the largest radius, but for those next to the
-    radii at first touch and at separation, which are edges too.
-
-    Parameters
-    ----------
-    motion : NormalMotion
-        Of one impact, whose radius grows to its maximum and then falls.
-    count : int
-    """
+    """Return the course over ``count`` rings of one impact whose radius grows, then falls."""
+    # The edges stand at a sin(i pi/(2 count)), a the largest radius. The edges next to the radii at
+    # first touch and at separation are moved to these radii.
     scene = motion.scene
-    phases = np.linspace(0.0, math.pi, LOOKED)
+    phases = np.linspace(0.0, math.pi, SEARCHED)
     radius = _radii(motion, phases)
     top = _largest(motion, phases, radius)
     largest = float(motion.at(top).contact.radius)
@@ -67,74 +59,54 @@ def course(motion: NormalMotion, count: int) -> Course:
 def solve(
     psi1: Array, chi: Array, motion: NormalMotion, *, counts: tuple[int, ...] = COUNTS
 ) -> Array:
-    """Return psi2 in the limit of many rings, shape (impacts,).
-
-    Parameters
-    ----------
-    psi1, chi : array, shape (impacts,)
-    motion : NormalMotion
-        Of one impact; in their own units that of all of them.
-    counts : tuple of int
-        Numbers of rings, from which the limit is found by the rule a + b/n². Where a slip front
-        stands between two edges adds an error that differs from one number to the next: several
-        make its mean smaller.
-    """
+    """Return psi2 in the limit of many rings, shape (impacts,); ``motion`` is scaled for each."""
+    # The limit is that of a + b/n². Where a slip front stands between two edges adds an error that
+    # differs from one number of rings to the next: several numbers make its mean smaller.
     numbers = np.array(counts, dtype=np.float64)
-    found = np.array([rebound(psi1, chi, course(motion, count)) for count in counts])
+    answers = np.array([rebound(psi1, chi, course(motion, count)) for count in counts])
     weights = (numbers / numbers.max()) ** 2
     terms = np.stack([weights, weights / numbers**2], axis=1)
-    return np.asarray(np.linalg.lstsq(terms, found * weights[:, None])[0][0])
+    return np.asarray(np.linalg.lstsq(terms, answers * weights[:, None])[0][0])
 
 
 def tsuji(e: float) -> NormalMotion:
-    """Return the normal motion under Tsuji's law, in units of its own that of every impact."""
+    """Return the normal motion under Tsuji's law, in scaled units that of every impact."""
     law = REGISTRY.create("normal.tsuji", restitution=e)
     return normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0))
 
 
 def _edges(count: int, marks: list[float]) -> tuple[Array, list[int]]:
-    """Return the edges, among them the two radii of ``marks``, and the number of each of these."""
+    """Return the edges, which include the radii ``marks``, and the numbers of these edges."""
     angles = [2.0 / math.pi * math.asin(mark) for mark in marks]
     numbers = [min(max(round(count * each), 1), count - 1) if each > 0.0 else 0 for each in angles]
-    known = {0: 0.0, count: 1.0}
-    known.update((number, each) for number, each in zip(numbers, angles, strict=True) if number)
-    places = sorted(known)
-    at = np.interp(np.arange(count + 1), places, [known[place] for place in places])
+    angle_at = {0: 0.0, count: 1.0}
+    angle_at.update((number, each) for number, each in zip(numbers, angles, strict=True) if number)
+    places = sorted(angle_at)
+    at = np.interp(np.arange(count + 1), places, [angle_at[place] for place in places])
     return np.sin(0.5 * np.pi * at), numbers
 
 
 def _radii(motion: NormalMotion, phases: Any) -> Array:
-    """Return the contact radius at phases, in m."""
+    """Return the contact radius at ``phases``, in m."""
     sample = motion.at(phases)
     return np.asarray(sample.contact.radius, dtype=np.float64)
 
 
 def _largest(motion: NormalMotion, phases: Array, radius: Array) -> float:
-    """Return the phase of the largest radius, by thirds."""
+    """Return the phase of the largest radius, by ternary search."""
     k = int(radius.argmax())
     low, high = float(phases[max(k - 1, 0)]), float(phases[min(k + 1, len(phases) - 1)])
     for _ in range(HALVINGS):
         third = (high - low) / 3.0
-        one, two = _radii(motion, np.array([low + third, high - third]))
-        low, high = (low + third, high) if one < two else (low, high - third)
+        inner, outer = _radii(motion, np.array([low + third, high - third]))
+        low, high = (low + third, high) if inner < outer else (low, high - third)
     return 0.5 * (low + high)
 
 
 def _instants(
     motion: NormalMotion, wanted: Array, start: float, end: float, *, rising: bool
-) -> NDArray[np.float64]:
-    """Return the phases at which the contact has given radii, by halving.
-
-    Parameters
-    ----------
-    motion : NormalMotion
-    wanted : array, shape (K,)
-        Radii, in m.
-    start, end : float
-        Phases between which the radius only grows or only falls.
-    rising : bool
-        Whether it grows.
-    """
+) -> Array:
+    """Return the phases at which the contact has the ``wanted`` radii (m), by halving."""
     low, high = np.full(len(wanted), start), np.full(len(wanted), end)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)

@@ -1,4 +1,4 @@
-"""Measuring how far psi2 differs: springs from Coulomb's law, normal laws from Tsuji's.
+"""Differences of psi2: of springs from Coulomb's law, of normal laws from Tsuji's.
 
 ``python -m contactlab_laws.damped_table differences`` writes ``differences.csv`` of the package
 ``contactlab_laws.differences``: minutes.
@@ -23,16 +23,16 @@ from contactlab_laws.damped_table.courses import solve
 from contactlab_laws.damped_table.rings import Array
 from contactlab_laws.differences.table import FILE, key
 
-#: The impacts: so many psi1 from the least to slip throughout and one more, and as many where the
-#: error of springs is largest in a narrow range of psi1, at each chi.
+#: The impacts: least and number of psi1, up to slip throughout and 1 more, at each chi; as many
+#: again in ``NARROW``, the range of psi1 with the largest error of springs.
 LEAST, COUNT, CHI = 0.2, 24, (0.8, 1.0, 1.2, 49.0 / 34.0, 1.6, 1.8)
 NARROW = (0.7, 2.0)
-#: Rings; springs, of which half as many are extrapolated with, four steps to each.
+#: Numbers of rings; springs, extrapolated from this number and half of it, with four steps each.
 RINGS, SPRINGS = (48, 64, 80), 120
 #: Laws whose restitution is an option, and its values.
 CALIBRATED = ("tsuji", "hunt_crossley", "kuwabara_kono", "linear", "walton_braun")
 RESTITUTION = (1.0, 0.99, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3, 0.1)
-#: Options of the others, in the units of ``Scene.nondimensional``; some restitutions come of them.
+#: Options of the other laws, in units of ``Scene.nondimensional``; they give some restitutions.
 OTHERS: tuple[tuple[str, str, tuple[float, ...]], ...] = (
     ("thornton", "yield_velocity", (0.6, 0.3, 0.1, 0.03, 0.01)),
     ("jkr", "work_of_adhesion", (1e-3, 1e-2, 5e-2)),
@@ -51,15 +51,15 @@ def impacts(e: float) -> tuple[Array, Array]:
 def springs(law: NormalLaw, psi1: Array, chi: Array) -> Array:
     """Return psi2 by springs, extrapolated in their number, shape (impacts,)."""
     scene = Scene.nondimensional(psi1=psi1, chi=chi)
-    found = []
+    psi2 = []
     for count in (SPRINGS // 2, SPRINGS):
         simulation = Simulation(
             normal=law,
             tangential=REGISTRY.create("tangential.springs", springs=count),
             integrator=REGISTRY.create("integrator.symplectic", steps=4 * count),
         )
-        found.append(np.asarray(simulation.sweep(scene).check().psi2))
-    return np.asarray(found[1] + (found[1] - found[0]) / 3.0)
+        psi2.append(np.asarray(simulation.sweep(scene).check().psi2))
+    return np.asarray(psi2[1] + (psi2[1] - psi2[0]) / 3.0)
 
 
 def by_rings(law: NormalLaw, psi1: Array, chi: Array) -> Array:
@@ -89,17 +89,17 @@ def row(law: NormalLaw) -> list[str]:
     motion = normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0))
     e = round(-float(motion.final_rate), 6)
     psi1, chi = impacts(e)
-    known = by_rings(law, psi1, chi)
-    sizes = (np.abs(each - known).max() for each in (springs(law, psi1, chi), tsuji(e)))
+    exact = by_rings(law, psi1, chi)
+    sizes = (np.abs(each - exact).max() for each in (springs(law, psi1, chi), tsuji(e)))
     return [key(law), f"{e:g}", *(f"{size:.1e}" for size in sizes)]
 
 
 def write() -> None:
     """Measure all the laws and write the table; progress goes to stderr."""
-    found = []
+    measured = []
     for law in laws():
-        found.append(row(law))
-        print(*found[-1], file=sys.stderr, flush=True)
+        measured.append(row(law))
+        print(*measured[-1], file=sys.stderr, flush=True)
     with FILE.open("w", encoding="utf-8", newline="") as file:
         lines = csv.writer(file, lineterminator="\n")
-        lines.writerows([["law", "restitution", "springs", "choice"], *found])
+        lines.writerows([["law", "restitution", "springs", "choice"], *measured])

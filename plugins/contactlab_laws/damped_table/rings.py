@@ -1,11 +1,11 @@
-"""psi2 with Coulomb's law at every point: rings of a contact, all else axisymmetric.
+"""psi2 with Coulomb's law at every point, by rings of an axisymmetric contact.
 
 The traction is q(r) = sum a_i sqrt(e_i² - r²) over the edges e_i of rings, theory §9 "Basis". The
 displacement that it makes is known in closed form inside and outside of e_i. On the inner edge of
-every ring Coulomb's law holds: abs(q) <= p, where q is less the ring sticks, where it is equal the
+every ring Coulomb's law holds: abs(q) <= p. Where abs(q) < p the ring sticks, where abs(q) = p the
 ring slips along q.
 
-Everything here is dimensionless. A unit of length r0 is free. Slip displacements are in units of
+All quantities are dimensionless, with any unit of length r0. Slip displacements are in units of
 mu r0²/(kappa R), time in units of r0²/(R v1), the friction load in units of what Hertz's contact of
 radius r0 carries, (4/3) E* r0³/R, and the impulse of the friction load in units of M_n v1.
 """
@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-#: What a traction may exceed its limit by, and a slip be against its traction, over the largest.
+#: Tolerance of a traction above its limit, and of a slip against its traction, over the largest.
 ROUNDING = 1e-11
-#: Divisions into stick and slip tried in a step; beyond ``GENTLE`` one ring at a time is changed.
+#: Most divisions tried in a step; beyond ``GENTLE`` one ring at a time is changed.
 MOST_TRIES, GENTLE = 400, 20
 
 
@@ -34,8 +34,8 @@ class Course(NamedTuple):
     edges : array, shape (rings + 1,)
         Radii, from 0 to the largest contact.
     inside : array of int, shape (K + 1,)
-        Rings within the contact at each instant, from first touch to separation. It changes by
-        one at most, but for first touch.
+        Rings within the contact at each instant, from first touch to separation. After first
+        touch the number changes by at most one.
     time, load, impulse : array, shape (K + 1,)
         Since first touch; the friction load and its integral.
     """
@@ -48,17 +48,17 @@ class Course(NamedTuple):
 
 
 class Rings(NamedTuple):
-    """Matrices of rings. Leading blocks are those of smaller contacts.
+    """Matrices of rings. Leading blocks are the matrices of smaller contacts.
 
     Attributes
     ----------
     points : array, shape (rings,)
         The inner edge of every ring.
     compliance : array, shape (rings, rings)
-        Displacement at the points for a unit of traction at each.
+        Displacement at the points for a unit of traction at each point.
     lower, upper : array, shape (rings, rings)
-        Inverses of its triangular factors: with them contacts whose stuck part is a disc need no
-        solve.
+        Inverses of the triangular factors of ``compliance``: contacts whose stuck part is a disc
+        need no solve.
     weights : array, shape (rings,)
         The force for a unit of traction at each point.
     """
@@ -97,7 +97,7 @@ def rings(edges: Array) -> Rings:
 
 
 def _factors(matrix: Array) -> tuple[Array, Array]:
-    """Return the triangular factors of a matrix, without any exchange of rows."""
+    """Return the triangular factors of a matrix, without pivoting."""
     upper, lower = matrix.copy(), np.eye(len(matrix))
     for k in range(len(matrix) - 1):
         lower[k + 1 :, k] = upper[k + 1 :, k] / upper[k, k]
@@ -106,7 +106,7 @@ def _factors(matrix: Array) -> tuple[Array, Array]:
 
 
 class History(NamedTuple):
-    """What impacts did at the instants of a course.
+    """Velocities, slips and shares of Coulomb's limit at the instants of a course.
 
     Attributes
     ----------
@@ -115,8 +115,8 @@ class History(NamedTuple):
     moved : array, shape (K, impacts)
         Slip displacement of each step.
     share, centre : array, shape (K + 1, impacts)
-        Share of Coulomb's limit that acts, from -1 to 1: of the force, and of the traction at the
-        centre.
+        Share of Coulomb's limit that acts, from -1 to 1: in the force, and in the traction at
+        the centre.
     """
 
     psi: Array
@@ -126,35 +126,15 @@ class History(NamedTuple):
 
 
 def rebound(psi1: Array, chi: Array, course: Course) -> Array:
-    """Return psi2 of impacts that share a normal motion, shape (impacts,).
-
-    Parameters
-    ----------
-    psi1, chi : array, shape (impacts,)
-        Eqs (29) and (38).
-    course : Course
-    """
+    """Return psi2 of impacts that share a normal motion, shape (impacts,)."""
     return np.asarray(march(psi1, chi, course).psi[-1])
 
 
 def march(psi1: Array, chi: Array, course: Course) -> History:
-    """Return the history of impacts that share a normal motion.
-
-    In every step the share of Coulomb's limit that acts, F/(mu P), is linear in the impulse of
-    the friction load, so that gross slip is exact. Each step is solved twice: first with the share
-    that it begins with, then with both.
-
-    Parameters
-    ----------
-    psi1, chi : array, shape (impacts,)
-        Eqs (29) and (38).
-    course : Course
-
-    Raises
-    ------
-    RuntimeError
-        If a step finds no division into stick and slip.
-    """
+    """Return the history of impacts that share a normal motion; RuntimeError without division."""
+    # In every step the share of Coulomb's limit that acts, F/(mu P), is linear in the impulse of
+    # the friction load, so that gross slip is exact. Each step is solved twice: first with the
+    # share at its start, then with the shares at both ends.
     table, steps = rings(course.edges), np.diff(course.time)
     psi = np.empty((len(steps) + 1, len(psi1)))
     moved, shares, centre = (
@@ -192,33 +172,24 @@ def march(psi1: Array, chi: Array, course: Course) -> History:
 
 
 def settle(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) -> Array:
-    """Return tractions that obey Coulomb's law at every point, shape (impacts, rings).
-
-    A ring that sticks is displaced by ``aim``. A ring that slips has the traction ``limit`` along
-    its slip, aim less displacement.
-
-    Parameters
-    ----------
-    table : Rings
-    aim : array, shape (impacts, rings)
-    limit : array, shape (rings,)
-    stuck, sense : array, shape (impacts, rings)
-        A first guess of the division, and the senses of slip; the division found is written here.
-    """
+    """Return tractions that obey Coulomb's law at every point, shape (impacts, rings)."""
+    # A ring that sticks is displaced by ``aim``. A ring that slips has the traction ``limit`` along
+    # its slip, aim less displacement. ``stuck`` and ``sense`` hold a first guess of the division,
+    # and then the division of the answer.
     traction = np.empty(aim.shape)
     left = np.arange(len(aim))
     slack = ROUNDING * (float(limit.max()) + float(np.abs(aim).max()))
     for tried in range(MOST_TRIES):
         still, sign, wanted = stuck[left], sense[left], aim[left]
-        found = _divided(table, wanted, limit, still, sign)
-        slip = wanted - found @ table.compliance.T
-        wrong = np.where(still, np.abs(found) > limit + slack, slip * sign < -slack)
+        pulls = _divided(table, wanted, limit, still, sign)
+        slip = wanted - pulls @ table.compliance.T
+        wrong = np.where(still, np.abs(pulls) > limit + slack, slip * sign < -slack)
         if tried >= GENTLE:  # one at a time, the outermost first
             last = wrong.shape[1] - 1 - wrong[:, ::-1].argmax(axis=1)
             wrong &= np.arange(wrong.shape[1]) == last[:, None]
-        sense[left] = np.where(wrong & still, np.sign(found), sign)
+        sense[left] = np.where(wrong & still, np.sign(pulls), sign)
         stuck[left] = still ^ wrong
-        traction[left] = found
+        traction[left] = pulls
         left = left[wrong.any(axis=1)]
         if not left.size:
             return traction
@@ -226,17 +197,7 @@ def settle(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) ->
 
 
 def _divided(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) -> Array:
-    """Return the tractions of given divisions, shape (impacts, rings).
-
-    Parameters
-    ----------
-    table : Rings
-    aim : array, shape (impacts, rings)
-        Displacement of what sticks.
-    limit : array, shape (rings,)
-    stuck, sense : array, shape (impacts, rings)
-        The divisions, and the senses of slip.
-    """
+    """Return the tractions of prescribed divisions, shape (impacts, rings)."""
     traction = np.where(stuck, 0.0, sense * limit)
     rest = aim - traction @ table.compliance.T
     discs = np.all(stuck[:, :-1] >= stuck[:, 1:], axis=1)

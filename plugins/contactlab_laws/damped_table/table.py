@@ -1,4 +1,4 @@
-"""The table file: coefficients, and where they came from, under a checksum."""
+"""The table file: coefficients with version and day, under a checksum."""
 
 from __future__ import annotations
 
@@ -23,10 +23,11 @@ class Table:
     Attributes
     ----------
     cuts : array, shape (pieces of t, 3, chi, t)
-        Of the values of psi1 at which the table is cut.
+        Coefficients of the values of psi1 at which the table is cut.
     terms : array, shape (pieces of t, 4, psi1, chi, t)
+        Coefficients of the tabulated quantity.
     version, built : str
-        Of contactlab, and the day.
+        Version of contactlab, and the day of building.
     """
 
     cuts: Array
@@ -42,7 +43,7 @@ class Table:
         return cls(cuts, terms, contactlab.__version__, datetime.now(UTC).date().isoformat())
 
     def checksum(self) -> str:
-        """Return the SHA-256 of all that is in it."""
+        """Return the SHA-256 of coefficients, format, version and day."""
         digest = hashlib.sha256(f"{FORMAT} {self.version} {self.built}".encode())
         for values in (self.cuts, self.terms):
             digest.update(np.ascontiguousarray(values).tobytes())
@@ -58,13 +59,7 @@ def write(path: Path, table: Table) -> None:
 
 
 def read(path: Path) -> Table:
-    """Return the table at ``path``.
-
-    Raises
-    ------
-    ValueError
-        If the file is of another format, incomplete, or not what its checksum says.
-    """
+    """Return the table at ``path``; ValueError if the file is damaged or of another format."""
     remedy = (
         "install contactlab anew, or build the table: python -m contactlab_laws.damped_table build"
     )

@@ -17,7 +17,7 @@ from contactlab.contracts.restitution import restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness, linear_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, Real, quantity
-from contactlab_laws.dashpot.motion import Course, DashpotMotion
+from contactlab_laws.dashpot.motion import DashpotMotion, ScaledMotion
 from contactlab_laws.dashpot.oscillator import damping_of
 from contactlab_laws.differences.table import choice
 from contactlab_laws.hertz.motion import HertzMotion
@@ -32,19 +32,7 @@ class Parts(NamedTuple):
 
 
 def pressed(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float]) -> NormalContact:
-    """Return the contact of P = k z^n + c z^m z', ended where P returns to zero; b² = R z.
-
-    Parameters
-    ----------
-    parts : Parts
-        Stiffness k in N/m^n, damping c in N s/m^(m + 1), radius R in m.
-    approach : float or array, shape (...,)
-        z in m, positive in contact.
-    rate : float or array, shape (...,)
-        z' in m/s, positive inward.
-    powers : (float, float)
-        n and m.
-    """
+    """Return the contact of P = k z^n + c z^m z', ``powers`` (n, m), without tension; b² = R z."""
     touching: Any = approach >= 0.0
     inside: Any = approach * touching  # NaN stays NaN
     damping = parts.damping * inside ** powers[1] * touching
@@ -54,7 +42,7 @@ def pressed(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float
 
 @attrs.frozen(kw_only=True)
 class Tsuji(ClosedFormNormalLaw):
-    """Hertz's spring with the dashpot whose restitution is the same at any speed.
+    """Hertz's spring with a dashpot that gives the same restitution at any speed.
 
     P = k z^1.5 + 2 beta sqrt(1.25 M k) z^0.25 z', k = (4/3) E* sqrt(R), in N, positive in
     compression, z' positive while the bodies approach. Contact ends where P returns to zero: no
@@ -78,7 +66,7 @@ class Tsuji(ClosedFormNormalLaw):
     restitution: float = restitution(default=0.9)
 
     def start(self, scene: Scene) -> Parts:
-        """Return stiffness and damping of the pair; there is nothing to remember."""
+        """Return stiffness and damping of the pair; the law has no memory."""
         pair = scene.pair
         stiffness = hertz_stiffness(scene)
         critical = 2.0 * (1.25 * pair.normal_mass * stiffness) ** 0.5
@@ -89,17 +77,14 @@ class Tsuji(ClosedFormNormalLaw):
         return pressed(state, approach, rate, (1.5, 0.25)), state
 
     def motion(self, scene: Scene) -> ClosedFormMotion:
-        """Return the motion: with x = zeta^1.25 it is a linear oscillator; without damping Hertz's.
-
-        The phase that makes it smooth is another where there is no damping.
-        """
-        if self.restitution == 1.0:
+        """Return the motion in closed form: an oscillator in zeta^1.25, Hertz's without damping."""
+        if self.restitution == 1.0:  # another phase makes this motion smooth
             return HertzMotion.of(self, scene)
-        course = Course(damping_of(self.restitution), 1.25)
-        return DashpotMotion.of(self, scene, course, hertz_scales(scene).approach)
+        scaled = ScaledMotion(damping_of(self.restitution), 1.25)
+        return DashpotMotion.of(self, scene, scaled, hertz_scales(scene).approach)
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return those of every law, and how far others of the same restitution move psi2."""
+        """Return the cautions of every law, and how far psi2 moves with other laws of equal e."""
         return (*super().cautions(scene, motion), *choice(scene, motion))
 
 
@@ -108,16 +93,16 @@ class Linear(ClosedFormNormalLaw):
     """A linear spring and dashpot.
 
     P = k z + 2 beta sqrt(M k) z', in N, positive in compression; contact ends where P returns to
-    zero. beta follows from the restitution, which is the same at any speed. The spring knows no
-    contact radius: that of Hertz at the same approach, b² = R z, is taken.
+    zero. beta follows from the restitution, which is the same at any speed. The contact
+    radius is taken from Hertz's contact at the same approach, b² = R z.
 
     Parameters
     ----------
     restitution : float
         e, rebound over approach velocity, at most 1.
     stiffness : float, optional
-        k, in N/m. By default each impact has that with which its spring, undamped, would give way
-        as far as Hertz's: k = M (v1/z_max)².
+        k in N/m. By default k = M (v1/z_max)² for each impact: without damping a spring of this
+        stiffness reaches the largest approach of Hertz's contact, z_max.
 
     References
     ----------
@@ -133,7 +118,7 @@ class Linear(ClosedFormNormalLaw):
     stiffness: float | None = quantity("N/m", rule=POSITIVE, default=None)
 
     def start(self, scene: Scene) -> Parts:
-        """Return stiffness and damping; there is nothing to remember."""
+        """Return stiffness and damping of the pair; the law has no memory."""
         pair = scene.pair
         stiffness = linear_stiffness(scene) if self.stiffness is None else self.stiffness
         critical = 2.0 * (pair.normal_mass * stiffness) ** 0.5
@@ -147,8 +132,10 @@ class Linear(ClosedFormNormalLaw):
         """Return the motion of the oscillator."""
         stiffness = self.start(scene).stiffness
         deepest = scene.normal_speed * (scene.pair.normal_mass / stiffness) ** 0.5
-        return DashpotMotion.of(self, scene, Course(damping_of(self.restitution), 1.0), deepest)
+        return DashpotMotion.of(
+            self, scene, ScaledMotion(damping_of(self.restitution), 1.0), deepest
+        )
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return those of every law, and how far others of the same restitution move psi2."""
+        """Return the cautions of every law, and how far psi2 moves with other laws of equal e."""
         return (*super().cautions(scene, motion), *choice(scene, motion))

@@ -24,11 +24,11 @@ from contactlab_laws.dashpot.oscillator import Oscillator
 
 Array = NDArray[np.float64]
 
-#: Panels over which time is added up: even ones, then halved towards the end, where x^-0.2 is
-#: nearly singular under little damping; and nodes in each.
+#: Edges of the panels over which time is summed, and nodes in each panel. Panels are even, then
+#: halved towards the end, where x^-0.2 is nearly singular under little damping.
 EDGES = np.concatenate((np.arange(8) / 8.0, 1.0 - 0.125 * 0.5 ** np.arange(1, 41), [1.0]))
 NODES = 16
-#: Points from which an inverse begins, and steps of Newton's method.
+#: Points of the table from which Newton's method begins an inverse, and its steps.
 POINTS, NEWTON = 2000, 4
 #: Time goes as the fourth power of the phase at first touch, approach as the fifth: the fifth root
 #: of either makes a table of the inverse even.
@@ -36,10 +36,8 @@ ROOT = 0.2
 
 
 def stretched(share: Any) -> Any:
-    """Return tau = t⁵/(t⁵ + (1 - t)/16): oscillator time over duration, t the phase over pi.
-
-    tau = ½ at t = ½, greatest compression; x^0.2 and so zeta^¼ is analytic at first touch.
-    """
+    """Return tau = t⁵/(t⁵ + (1 - t)/16): oscillator time over duration, t the phase over pi."""
+    # tau = ½ at t = ½, greatest compression; x^0.2 and so zeta^¼ is analytic at first touch.
     fifth = share**5
     return fifth / (fifth + (1.0 - share) / 16.0)
 
@@ -49,8 +47,8 @@ def stretching(share: Any) -> Any:
     return (5.0 - 4.0 * share) / 16.0 / (share**5 + (1.0 - share) / 16.0) ** 2
 
 
-class Scaled(NamedTuple):
-    """zeta, V, force and dT/dt in the units of the undamped impact; t is the phase over pi."""
+class ScaledSample(NamedTuple):
+    """zeta, V, force and dT/dt in units of the undamped impact; t is the phase over pi."""
 
     approach: Any
     rate: Any
@@ -59,7 +57,7 @@ class Scaled(NamedTuple):
 
 
 @attrs.frozen
-class Course:
+class ScaledMotion:
     """The scaled motion: the oscillator with x = zeta^q, d sigma = q zeta^(q-1) dT.
 
     V' = -q P^, P^ = zeta^(q-1) (x + 2 beta V).
@@ -77,7 +75,7 @@ class Course:
 
     @property
     def oscillator(self) -> Oscillator:
-        """The motion in its own time."""
+        """The motion in the oscillator's own time."""
         return Oscillator(self.damping)
 
     @property
@@ -87,12 +85,10 @@ class Course:
 
     @property
     def strongest(self) -> float:
-        """Greatest P^, from its derivative.
-
-        It is zero where y = V/x solves 2 beta p y² + (1 + p - 4 beta²) y - 2 beta = 0, with
-        p = 1 - 1/q, that is at tan(w sigma) = w/(y + beta), w² = 1 - beta². A linear dashpot of
-        beta >= ½ has no such y: its force is greatest at first touch.
-        """
+        """Greatest P^, from the zero of its derivative."""
+        # It is zero where y = V/x solves 2 beta p y² + (1 + p - 4 beta²) y - 2 beta = 0,
+        # p = 1 - 1/q, that is at tan(w sigma) = w/(y + beta), w² = 1 - beta². A linear dashpot of
+        # beta >= ½ has no such y: its force is greatest at first touch.
         beta, p = self.damping, 1.0 - 1.0 / self.power
         if beta == 0.0:
             return 1.0
@@ -110,7 +106,7 @@ class Course:
         x, _, pull = self.oscillator.at(instant)
         return float(x**p * pull)
 
-    def at(self, phase: Any) -> Scaled:
+    def at(self, phase: Any) -> ScaledSample:
         """Return the scaled motion at ``phase`` in [0, pi]."""
         share = np.asarray(phase) / math.pi
         duration = self.oscillator.duration
@@ -118,10 +114,10 @@ class Course:
         p = 1.0 - 1.0 / self.power
         factor = x**p  # zeta^(q-1)
         pace = duration * stretching(share) * share**4 / (self.power * factor + (factor == 0.0))
-        return Scaled(x ** (1.0 / self.power), rate, factor * pull, pace)
+        return ScaledSample(x ** (1.0 / self.power), rate, factor * pull, pace)
 
     def time(self, phase: Any) -> Array:
-        """Return T at ``phase``."""
+        """Return T at ``phase``, of its shape."""
         share = np.clip(np.asarray(phase, dtype=np.float64) / math.pi, 0.0, 1.0)
         values = _times(self)
         panel = np.clip(EDGES.searchsorted(share) - 1, 0, len(EDGES) - 2)
@@ -135,32 +131,33 @@ class Course:
 
     def phase_at(self, fraction: Real) -> Array:
         """Return the phase at ``fraction`` of the duration."""
-        asked, points = np.asarray(fraction, dtype=np.float64), _points()
-        listed = np.maximum(self.time(points), 0.0) / self.duration
-        found = np.interp(np.clip(asked, 0.0, 1.0) ** ROOT, listed**ROOT, points)
+        wanted, points = np.asarray(fraction, dtype=np.float64), _points()
+        fractions = np.maximum(self.time(points), 0.0) / self.duration
+        phase = np.interp(np.clip(wanted, 0.0, 1.0) ** ROOT, fractions**ROOT, points)
         for _ in range(NEWTON):
-            slope = self.at(found).pace / (math.pi * self.duration)
-            away = (self.time(found) / self.duration - asked) / (slope + (slope == 0.0))
-            found = np.clip(found - away, 0.0, math.pi)
-        return np.where(asked >= 1.0, math.pi, np.where(asked <= 0.0, 0.0, found))
+            slope = self.at(phase).pace / (math.pi * self.duration)
+            error = (self.time(phase) / self.duration - wanted) / (slope + (slope == 0.0))
+            phase = np.clip(phase - error, 0.0, math.pi)
+        return np.where(wanted >= 1.0, math.pi, np.where(wanted <= 0.0, 0.0, phase))
 
     def phase_at_rate(self, rate: Real) -> Array:
         """Return the phase at which V = ``rate``."""
-        asked, points = np.asarray(rate, dtype=np.float64), _points()
-        fallen = np.maximum(1.0 - self.at(points).rate, 0.0)
-        found = np.interp(np.maximum(1.0 - asked, 0.0) ** ROOT, fallen**ROOT, points)
+        wanted, points = np.asarray(rate, dtype=np.float64), _points()
+        losses = np.maximum(1.0 - self.at(points).rate, 0.0)
+        phase = np.interp(np.maximum(1.0 - wanted, 0.0) ** ROOT, losses**ROOT, points)
         for _ in range(NEWTON):
-            here = self.at(found)
-            slope = -self.power * here.force * here.pace / math.pi
-            found = np.clip(found - (here.rate - asked) / (slope - (slope == 0.0)), 0.0, math.pi)
-        return found
+            sample = self.at(phase)
+            slope = -self.power * sample.force * sample.pace / math.pi
+            error = (sample.rate - wanted) / (slope - (slope == 0.0))
+            phase = np.clip(phase - error, 0.0, math.pi)
+        return phase
 
 
 @lru_cache(maxsize=64)
-def _times(course: Course) -> Array:
+def _times(motion: ScaledMotion) -> Array:
     """Return T at the nodes of each panel, shape (panels, NODES)."""
     width = np.diff(EDGES)[:, None]
-    pace = course.at(math.pi * (EDGES[:-1, None] + width * lobatto(NODES).points)).pace
+    pace = motion.at(math.pi * (EDGES[:-1, None] + width * lobatto(NODES).points)).pace
     within = width * (pace @ lobatto(NODES).integral.T)
     before = np.concatenate(([0.0], np.cumsum(within[:-1, -1])))
     return np.asarray(before[:, None] + within)
@@ -172,19 +169,19 @@ def _points() -> Array:
 
 
 @lru_cache(maxsize=64)
-def _phases(course: Course, fractions: bytes) -> Array:
-    found = course.phase_at(np.frombuffer(fractions))
-    found.flags.writeable = False
-    return found
+def _phases(motion: ScaledMotion, fractions: bytes) -> Array:
+    phases = motion.phase_at(np.frombuffer(fractions))
+    phases.flags.writeable = False
+    return phases
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class DashpotMotion(ClosedFormMotion):
-    """The scaled motion in SI: ``approach`` and ``force`` are those of the undamped impact."""
+    """Motion under spring and dashpot: a scaled motion in units of the undamped impact."""
 
     law: NormalLaw
     scene: Scene
-    course: Course
+    motion: ScaledMotion
     undamped_approach: Real
     duration: Real
     maximum_radius: Real
@@ -195,29 +192,22 @@ class DashpotMotion(ClosedFormMotion):
     accuracy = 1e-14  # rounding: the impulse is a closed form
 
     @classmethod
-    def of(cls, law: NormalLaw, scene: Scene, course: Course, approach: Real) -> DashpotMotion:
-        """Return the motion of ``scene``.
-
-        Parameters
-        ----------
-        law : NormalLaw
-        scene : Scene
-        course : Course
-        approach : float or array
-            Greatest approach without damping, in m.
-        """
-        speed, e = scene.normal_speed, course.oscillator.restitution
+    def of(
+        cls, law: NormalLaw, scene: Scene, motion: ScaledMotion, approach: Real
+    ) -> DashpotMotion:
+        """Return the motion of ``scene``; ``approach`` is the largest without damping, in m."""
+        speed, e = scene.normal_speed, motion.oscillator.restitution
         momentum = scene.pair.normal_mass * speed
-        deepest = course.deepest * approach
+        deepest = motion.deepest * approach
         return cls(
             law=law,
             scene=scene,
-            course=course,
+            motion=motion,
             undamped_approach=approach,
-            duration=course.duration * (approach / speed),
+            duration=motion.duration * (approach / speed),
             maximum_radius=(scene.pair.radius * deepest) ** 0.5,
             maximum_approach=deepest,
-            maximum_force=course.strongest * course.power * momentum * (speed / approach),
+            maximum_force=motion.strongest * motion.power * momentum * (speed / approach),
             final_rate=-e * speed,
             total_load_impulse=(1.0 + e) * momentum,
         )
@@ -230,49 +220,49 @@ class DashpotMotion(ClosedFormMotion):
 
     @property
     def scaled_mass(self) -> float:
-        """V' = -q P^ in the units of the undamped impact, in those of this one."""
-        return 1.0 / (self.course.deepest * self.course.power * self.course.strongest)
+        """Return M of V' = -P^/M, with zeta and P^ over their own greatest values."""
+        return 1.0 / (self.motion.deepest * self.motion.power * self.motion.strongest)
 
     def scaled(self, phase: Array) -> ScaledContact:
         """Return the motion over its own greatest values."""
-        course = self.course
-        here, deepest = course.at(phase), course.deepest
-        approach = here.approach / deepest
+        motion = self.motion
+        sample, deepest = motion.at(phase), motion.deepest
+        approach = sample.approach / deepest
         return ScaledContact(
             phase,
             approach,
             approach**0.5,
-            here.rate,
-            here.force / course.strongest,
-            here.pace / (math.pi * deepest),
+            sample.rate,
+            sample.force / motion.strongest,
+            sample.pace / (math.pi * deepest),
         )
 
     def scaled_at(self, phase: float) -> ScaledContact:
-        """Return the same in plain floats."""
+        """Return the scaled motion at one phase, in plain floats."""
         return ScaledContact(*map(float, self.scaled(np.asarray(phase))))
 
     def phase_at_rate(self, rate: Real) -> Real:
         """Return the phase at which V = ``rate``, by Newton's method."""
-        return self.course.phase_at_rate(rate)
+        return self.motion.phase_at_rate(rate)
 
     def phase(self, fraction: Real) -> Real:
         """Return the phase at ``fraction`` of the duration, by Newton's method."""
-        asked = np.asarray(fraction, dtype=np.float64)
-        return _phases(self.course, asked.tobytes()).reshape(asked.shape)
+        wanted = np.asarray(fraction, dtype=np.float64)
+        return _phases(self.motion, wanted.tobytes()).reshape(wanted.shape)
 
-    @np.errstate(under="ignore")  # interpolation on a node leaves the others a share of 1e-290
+    @np.errstate(under="ignore")  # on a node the other nodes have weights near 1e-290
     def at(self, phase: Real) -> NormalSample:
         """Return the motion at ``phase`` in [0, pi]."""
         speed, unit = self.scene.normal_speed, self.undamped_approach
         momentum = self.scene.pair.normal_mass * speed
-        here = self.course.at(phase)
-        approach = here.approach * unit
-        force = here.force * (self.course.power * momentum * (speed / unit))
+        sample = self.motion.at(phase)
+        approach = sample.approach * unit
+        force = sample.force * (self.motion.power * momentum * (speed / unit))
         contact = NormalContact(force, (self.scene.pair.radius * approach) ** 0.5, approach, force)
         return NormalSample(
-            self.course.time(phase) * (unit / speed),
+            self.motion.time(phase) * (unit / speed),
             approach,
-            here.rate * speed,
+            sample.rate * speed,
             contact,
-            momentum * (1.0 - here.rate),
+            momentum * (1.0 - sample.rate),
         )

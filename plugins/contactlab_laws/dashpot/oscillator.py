@@ -1,7 +1,9 @@
 """The oscillator x' = V, V' = -x - 2 beta V from x = 0, V = 1 until x + 2 beta V = 0.
 
 Theory §11. A linear spring and dashpot is this oscillator in time, Tsuji's law in a time of its
-own. Every formula is one of arccos(beta), which goes on into arcosh beyond critical damping.
+own. Every formula is one of arccos(beta), which goes on into arcosh beyond critical damping. The
+restitution is eq. (15) of Schwager & Pöschel, Granular Matter 9 (2007) 465-469,
+doi:10.1007/s10035-007-0065-z, in one piece.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from contactlab.contracts.restitution import root
 
 
 def half_duration(damping: float) -> float:
-    """Return arccos(beta)/sqrt(1 - beta²): the time to x_max, half of that to the end."""
+    """Return arccos(beta)/sqrt(1 - beta²): the time to x_max, half the duration."""
     square = (1.0 - damping) * (1.0 + damping)
     if square == 0.0:
         return 1.0
@@ -27,17 +29,13 @@ def half_duration(damping: float) -> float:
 
 
 def restitution(damping: float) -> float:
-    """Return e = exp(-2 beta arccos(beta)/sqrt(1 - beta²)).
-
-    Eq. (15) of Schwager & Pöschel, Granular Matter 9 (2007) 465-469,
-    doi:10.1007/s10035-007-0065-z, in one piece.
-    """
+    """Return e = exp(-2 beta arccos(beta)/sqrt(1 - beta²))."""
     return math.exp(-2.0 * damping * half_duration(damping))
 
 
 @lru_cache(maxsize=256)
 def damping_of(coefficient: float) -> float:
-    """Return beta at a coefficient of restitution; e < 1/beta², so that it lies below e^-½."""
+    """Return beta at a coefficient of restitution: below e^-½, because e < 1/beta²."""
     wanted = -0.5 * math.log(coefficient)
     if wanted == 0.0:
         return 0.0

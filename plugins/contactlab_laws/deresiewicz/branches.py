@@ -13,7 +13,7 @@ and dT = k theta dD + s (1 - theta) dM. With these two epsilon = 1 - theta² obe
 
 w = 1/(1 - h) in loading, ½ after a turn: along a branch a step of any size is exact where q is
 constant, as it is for Hertz. Turning points move with the load, dT* = s dM of the sense s before
-the turn. Shares are kept small where slip is small, so that nothing cancels at huge mu.
+the turn. Where slip is small epsilon and u are small, so that nothing cancels at huge mu.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ LOADING, UNLOADING, RELOADING = 0, 1, 2
 MOST_HELD = 1.0 - 1e-12
 
 
-class Memory(NamedTuple):
-    """What a contact remembers.
+class ContactState(NamedTuple):
+    """The memory of one contact.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Memory(NamedTuple):
     branch : int
         ``LOADING``, ``UNLOADING`` or ``RELOADING``.
     held : float
-        h: the share of the limit that a contact which stuck while it grew holds everywhere.
+        h: the share of the limit everywhere in a contact that stuck while it grew.
     turn, earlier : float
         The last turning point and the one before, in N.
     outrun : float
@@ -72,84 +72,83 @@ class Step(NamedTuple):
         """Return q dD."""
         return self.front_rate * self.displacement
 
-    def outruns(self, memory: Memory, sense: int) -> float:
+    def outruns(self, state: ContactState, sense: int) -> float:
         """Return s q dD - d(M^(2/3)): above zero the edge slips in the sense s."""
-        return sense * self.moved - (_square(self.limit) - _square(memory.limit))
+        return sense * self.moved - (_square(self.limit) - _square(state.limit))
 
 
-def followed(memory: Memory, step: Step) -> tuple[Memory, float]:
-    """Return the memory after a step, and the friction work in J."""
-    before = _turned(memory, step)
+def followed(state: ContactState, step: Step) -> tuple[ContactState, float]:
+    """Return the state after a step, and the friction work in J."""
+    before = _turned(state, step)
     if not before.sense:
-        trial = memory.force + step.stiffness * step.displacement
+        trial = state.force + step.stiffness * step.displacement
         held = min(max(trial, -step.limit), step.limit)
-        ahead = step.outruns(memory, _sign(step.displacement))
+        ahead = step.outruns(state, _sign(step.displacement))
         return before._replace(force=held, limit=step.limit, slipped=0.0, outrun=ahead), 0.0
     after = _slipped(before, step)
     if step.front_rate == 0.0:
         return after, 0.0
     # The traction on the slipping annulus is mu p; it slips by dD - s dM/k all over.
-    slid = max(step.outruns(memory, before.sense), 0.0) / step.front_rate
+    slid = max(step.outruns(state, before.sense), 0.0) / step.front_rate
     traction = before.limit * _annulus(max(before.slipped, 0.0)) + after.limit * _annulus(
         after.slipped
     )
     return after, 0.5 * traction * slid
 
 
-def _turned(memory: Memory, step: Step) -> Memory:
-    """Return the memory with the sense and the branch of a step.
-
-    The edge slips while its displacement outruns the limit. Where it no longer does, the edge
-    turns if it slips the other way, or sticks. Under a falling load both may slip; it then goes
-    on as it did.
-    """
-    sense = memory.sense
-    if sense and step.outruns(memory, sense) > 0.0:
-        return memory
-    if sense and step.outruns(memory, -sense) > 0.0:
-        turned = memory._replace(sense=-sense, slipped=0.0, turn=memory.force)
-        if memory.branch == UNLOADING:
-            return turned._replace(branch=RELOADING, earlier=memory.turn)
+def _turned(state: ContactState, step: Step) -> ContactState:
+    """Return the state with the sense and the branch of a step."""
+    # The edge slips while its displacement outruns the limit. Where the displacement no longer
+    # outruns it, the edge turns if it slips the other way, or sticks. Under a falling load it may
+    # slip both ways, and goes on as before.
+    sense = state.sense
+    if sense and step.outruns(state, sense) > 0.0:
+        return state
+    if sense and step.outruns(state, -sense) > 0.0:
+        turned = state._replace(sense=-sense, slipped=0.0, turn=state.force)
+        if state.branch == UNLOADING:
+            return turned._replace(branch=RELOADING, earlier=state.turn)
         return turned._replace(branch=UNLOADING)
-    begun = 0 if sense else _sign(step.displacement) or _sign(memory.force)
-    ahead = step.outruns(memory, begun)
+    begun = 0 if sense else _sign(step.displacement) or _sign(state.force)
+    ahead = step.outruns(state, begun)
     if not (begun and ahead > 0.0):
-        return memory._replace(sense=0)
+        return state._replace(sense=0)
     held = slipped = 0.0
-    if memory.limit > 0.0:
-        # It began to slip between the middle of the last step and the middle of this one, and
-        # the gap to the limit then stood still.
-        began = -memory.outrun / (ahead - memory.outrun) if memory.outrun < 0.0 else 0.5
-        later = max((began - 0.5) * (step.limit - memory.limit), -0.5 * memory.limit)
-        held = min((begun * memory.force + later) / (memory.limit + later), MOST_HELD)
-        slipped = _edge((begun * memory.force / memory.limit - held) / (1.0 - held))
-    return memory._replace(sense=begun, branch=LOADING, slipped=slipped, held=held)
+    if state.limit > 0.0:
+        # Slip began between the middles of the last step and of this one, at the instant at which
+        # the gap to the limit stood still.
+        began = -state.outrun / (ahead - state.outrun) if state.outrun < 0.0 else 0.5
+        later = max((began - 0.5) * (step.limit - state.limit), -0.5 * state.limit)
+        held = min((begun * state.force + later) / (state.limit + later), MOST_HELD)
+        slipped = _edge((begun * state.force / state.limit - held) / (1.0 - held))
+    return state._replace(sense=begun, branch=LOADING, slipped=slipped, held=held)
 
 
-def _slipped(memory: Memory, step: Step) -> Memory:
-    """Return the memory after a step in which the edge slips."""
-    old, limit, sense, branch = memory.limit, step.limit, memory.sense, memory.branch
+def _slipped(state: ContactState, step: Step) -> ContactState:
+    """Return the state after a step in which the edge slips."""
+    old, limit, sense, branch = state.limit, step.limit, state.sense, state.branch
     pressed, square = limit - old, _square(limit)
-    # The last turn was made from slip in the sense -s, and moves with the load; so does the other.
-    turn, earlier = memory.turn - sense * pressed, memory.earlier + sense * pressed
-    held, loading = memory.held, branch == LOADING
+    # The last turn was made from slip in the sense -s, the earlier one from s: both move with the
+    # load.
+    turn, earlier = state.turn - sense * pressed, state.earlier + sense * pressed
+    held, loading = state.held, branch == LOADING
     # w and 1 - w, which cancels where h is tiny.
     weight, rest = (1.0 / (1.0 - held), -held / (1.0 - held)) if loading else (0.5, 0.5)
     grown = square - _square(old)
-    ahead = memory.slipped * _square(old) + weight * sense * step.moved + rest * grown
+    ahead = state.slipped * _square(old) + weight * sense * step.moved + rest * grown
     slipped = max(ahead / square, 0.0) if square > 0.0 else 0.0
     if loading:
         force = sense * limit * (held + (1.0 - held) * _used(slipped))
     else:
         force = turn + 2.0 * sense * limit * _used(slipped)
         goal = earlier if branch == RELOADING else -turn
-        if limit > 0.0 and sense * force > sense * goal:  # past where it came from: loading
+        if limit > 0.0 and sense * force > sense * goal:  # beyond its starting point: loading
             beyond = 2.0 * (slipped - _edge(0.5 * sense * (goal - turn) / limit))
             slipped, branch, held = _edge(sense * goal / limit) + beyond, LOADING, 0.0
             force = sense * limit * _used(slipped)
-    if slipped >= 1.0:  # gross slip: nothing is remembered
+    if slipped >= 1.0:  # gross slip: the memory is lost
         branch, held, force = LOADING, 0.0, sense * limit
-    return memory._replace(
+    return state._replace(
         force=min(max(force, -limit), limit),
         limit=limit,
         slipped=min(slipped, 1.0),

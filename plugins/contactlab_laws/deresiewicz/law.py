@@ -19,10 +19,10 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
-from contactlab_laws.deresiewicz.branches import Memory, Step, followed
+from contactlab_laws.deresiewicz.branches import ContactState, Step, followed
 from contactlab_laws.jaeger.pressure import hemisphere
 
-#: Of the energy books, over the energy at the start: what the short memory leaves out.
+#: Bound of the imbalance of the energy books, over the energy at the start: from the short memory.
 LARGEST_IMBALANCE = 0.1
 SHORT_MEMORY = (
     "the contact remembers its force and two turning points, not its traction, which moves psi2 "
@@ -31,11 +31,11 @@ SHORT_MEMORY = (
 
 
 class State(NamedTuple):
-    """Twice G* in Pa, the friction coefficient, and the memories of a batch of that shape."""
+    """Twice G* in Pa, the friction coefficient, and the contacts of a batch of shape ``shape``."""
 
     modulus: Real
     friction_coefficient: Real
-    memories: tuple[Memory, ...]
+    contacts: tuple[ContactState, ...]
     shape: tuple[int, ...]
 
 
@@ -45,13 +45,14 @@ class MindlinDeresiewicz(SteppedTangentialLaw):
 
     theta, the stick radius over b, follows from the force and from two turning points, which move
     with the load, by Mindlin & Deresiewicz's curves of loading, unloading and reloading. At fixed
-    load this is their theory. Under a changing one the memory of the contact is more than
-    the force and two points, so that an impact is approximated.
+    load this is their theory. Under a changing load the contact has a longer memory than
+    a force and two points, so that an impact is approximated.
 
-    Where Thornton & Yin decide by the sign of dD whether the edge slips to or fro, here it
-    slips while its displacement outruns the limit, which under a falling load goes on a while after
-    the motion has turned; and a contact that stuck as it grew starts to slip at its edge, with
-    the same share of the limit everywhere, where theirs falls to the curve of first loading.
+    The law differs from Thornton & Yin's in two points. Theirs takes the direction of slip at the
+    edge from the sign of dD; here the edge slips while its displacement outruns the limit, which
+    under a falling load goes on a while after the motion has turned. A contact that stuck as it
+    grew starts to slip at its edge, with the same share of the limit everywhere; theirs falls to
+    the curve of first loading.
 
     References
     ----------
@@ -68,28 +69,27 @@ class MindlinDeresiewicz(SteppedTangentialLaw):
     }
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return that the memory is short, and that of a pressure that may be no hemisphere."""
-        known = (*super().cautions(scene, normal), *hemisphere(normal))
-        return (*known, SHORT_MEMORY)
+        """Return the cautions of every law, of the pressure, and of the short memory."""
+        return (*super().cautions(scene, normal), *hemisphere(normal), SHORT_MEMORY)
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return 2 G* a, of the largest contact."""
+        """Return 2 G* a in N/m, of the largest contact."""
         return scene.pair.tangential_stiffness(normal.maximum_radius)
 
     @property
     def books_bound(self) -> float:
-        """Return what the short memory leaves out of the books."""
+        """Return the bound of the imbalance that the short memory causes."""
         return LARGEST_IMBALANCE
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return contacts without force."""
         modulus = scene.pair.tangential_stiffness(1.0)
-        memories = (Memory(),) * math.prod(scene.shape)
-        return State(modulus, scene.friction_coefficient, memories, scene.shape)
+        contacts = (ContactState(),) * math.prod(scene.shape)
+        return State(modulus, scene.friction_coefficient, contacts, scene.shape)
 
     def fields(self, state: State) -> Mapping[str, NDArray[Any]]:
         """Return the stick radius over the contact radius."""
-        slipped = np.array([memory.slipped for memory in state.memories])
+        slipped = np.array([contact.slipped for contact in state.contacts])
         return {"stick_radius": np.sqrt(1.0 - slipped).reshape(state.shape)}
 
     def advance(
@@ -104,35 +104,25 @@ class MindlinDeresiewicz(SteppedTangentialLaw):
             increment.displacement,
         )
         if not shape:
-            memory, work = _one(state.memories[0], *map(float, columns))
-            return TangentialResponse(memory.force, work), state._replace(memories=(memory,))
-        # Branches differ from impact to impact: one by one they are as fast as together.
+            contact, work = _one(state.contacts[0], *map(float, columns))
+            return TangentialResponse(contact.force, work), state._replace(contacts=(contact,))
+        # Branches differ from impact to impact: one by one is as fast as together.
         rows = zip(
             *(np.broadcast_to(each, shape).ravel().tolist() for each in columns), strict=True
         )
-        answers = [_one(memory, *row) for memory, row in zip(state.memories, rows, strict=True)]
-        memories, works = zip(*answers, strict=True)
-        force = np.array([memory.force for memory in memories]).reshape(shape)
+        answers = [_one(contact, *row) for contact, row in zip(state.contacts, rows, strict=True)]
+        contacts, works = zip(*answers, strict=True)
+        force = np.array([contact.force for contact in contacts]).reshape(shape)
         response = TangentialResponse(force, np.array(works).reshape(shape))
-        return response, state._replace(memories=memories)
+        return response, state._replace(contacts=contacts)
 
 
 def _one(
-    memory: Memory, softer: float, stiffer: float, limit: float, displacement: float
-) -> tuple[Memory, float]:
-    """Return the memory of one contact after a step, and the friction work.
-
-    Parameters
-    ----------
-    memory : Memory
-    softer, stiffer : float
-        Stiffness 2 G* b at the two ends of the step, in N/m.
-    limit : float
-        mu times the friction load at its end, in N.
-    displacement : float
-        In m.
-    """
-    ends = [(softer, memory.limit), (stiffer, limit)]
+    contact: ContactState, softer: float, stiffer: float, limit: float, displacement: float
+) -> tuple[ContactState, float]:
+    """Return one contact after a step, and the friction work in J."""
+    # ``softer`` and ``stiffer`` are 2 G* b at the ends of the step, ``limit`` is mu L at its end.
+    ends = [(softer, contact.limit), (stiffer, limit)]
     rates = [stiffness / math.cbrt(load) for stiffness, load in ends if load > 0.0]
     total = softer + stiffer
     # The mean radius of a contact whose square changes evenly over the step.
@@ -144,5 +134,5 @@ def _one(
         displacement=displacement,
     )
     if not math.isfinite(limit + total + displacement):
-        return memory._replace(force=math.nan), math.nan
-    return followed(memory, step)
+        return contact._replace(force=math.nan), math.nan
+    return followed(contact, step)

@@ -17,10 +17,10 @@ from contactlab.impact.scene import Scene
 FILE = Path(__file__).with_name("differences.csv")
 #: Differences of psi2 below this are not worth a sentence.
 LEAST = 1e-3
-#: Laws whose rows begin at a restitution no larger have any restitution, as Tsuji's.
+#: Laws whose least restitution in the table is at most this take any restitution, as Tsuji's does.
 SPANNED = 0.1
-#: Between the impacts and restitutions that were measured the differences are up to 5 % larger than
-#: at them: what is told is larger by this factor, rounded up to one digit.
+#: Factor on the sizes in cautions, which are then rounded up to one digit: between the measured
+#: impacts and restitutions the differences are up to 5 % larger than at them.
 BETWEEN = 1.1
 #: The impacts that were measured.
 MEASURED = "measured for chi 0.8 to 1.8"
@@ -44,30 +44,22 @@ class Row(NamedTuple):
 
 
 def key(law: Law) -> str:
-    """Return the name by which the table knows a normal law: that of its class, with its module."""
+    """Return the name of a normal law in the table: module and class."""
     return f"{type(law).__module__}.{type(law).__qualname__}"
 
 
 @cache
 def rows() -> dict[str, tuple[Row, ...]]:
-    """Return the rows of each normal law, by restitution from small to large."""
-    found: dict[str, list[Row]] = {}
+    """Return the rows of each normal law, in ascending restitution."""
+    table: dict[str, list[Row]] = {}
     with FILE.open(encoding="utf-8", newline="") as file:
         for law, *numbers in list(csv.reader(file))[1:]:
-            found.setdefault(law, []).append(Row(*map(float, numbers)))
-    return {law: tuple(sorted(each)) for law, each in found.items()}
+            table.setdefault(law, []).append(Row(*map(float, numbers)))
+    return {law: tuple(sorted(each)) for law, each in table.items()}
 
 
 def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-    """Return the caution that independent springs are not Coulomb's law, with its size in psi2.
-
-    Parameters
-    ----------
-    scene : Scene
-        One impact or a batch.
-    normal : NormalMotion
-        Of all impacts of ``scene``.
-    """
+    """Return the caution that springs cut alone are not Coulomb's law, with its size in psi2."""
     if "elastic_hertz" in normal.offers or not _rubs(scene):
         return ()
     measured = rows()
@@ -76,24 +68,16 @@ def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     size = max((_largest(normal, each, "springs") for each in laws), default=0.0)
     if not size >= LEAST:
         return ()
-    whose = ", of other normal laws of this restitution" if own is None else ""
+    scope = ", of other normal laws of this restitution" if own is None else ""
     return (
         "springs that are cut each alone are not Coulomb's law at every point under this normal "
-        f"law: psi2 is off by up to {_above(size)} ({MEASURED}{whose}; model, not numerical "
+        f"law: psi2 is off by up to {_above(size)} ({MEASURED}{scope}; model, not numerical "
         "error); tangential.annulus has the right limit",
     )
 
 
 def choice(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-    """Return the caution that another normal law of the same e gives another psi2, with its size.
-
-    Parameters
-    ----------
-    scene : Scene
-        One impact or a batch.
-    normal : NormalMotion
-        Of all impacts of ``scene``, under a law that ``differences.csv`` holds.
-    """
+    """Return the caution that another normal law of the same e moves psi2, with its size."""
     if not _rubs(scene):
         return ()
     measured, own = rows(), key(normal.law)
@@ -108,15 +92,15 @@ def choice(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
             if law != own and each[0].restitution <= SPANNED
         }
         least, most = (pick(sizes, key=sizes.__getitem__) for pick in (min, max))
-        told = f"{_above(sizes[least])} ({least}) to {_above(sizes[most])} ({most})"
+        size_text = f"{_above(sizes[least])} ({least}) to {_above(sizes[most])} ({most})"
     else:
         size = _largest(normal, measured[own], "choice")
         if not size >= LEAST:
             return ()
-        told = f"{_above(size)} (Tsuji)"
+        size_text = f"{_above(size)} (Tsuji)"
     return (
         "the restitution alone does not decide psi2: under partial slip other normal laws of the "
-        f"same restitution move psi2 by up to {told} ({MEASURED}; model, not numerical error)",
+        f"same restitution move psi2 by up to {size_text} ({MEASURED}; model, not numerical error)",
     )
 
 
@@ -135,11 +119,11 @@ def _rubs(scene: Scene) -> bool:
 
 
 def _largest(normal: NormalMotion, measured: tuple[Row, ...], column: str) -> float:
-    """Return the largest difference over the impacts, by interpolation in their restitution."""
+    """Return the largest difference over the impacts, interpolated in their restitution."""
     e = _restitution(normal)
-    known = [row.restitution for row in measured]
-    found = np.interp(e, known, [getattr(row, column) for row in measured])
-    return float(np.nanmax(found)) if np.isfinite(found).any() else 0.0
+    tabulated = [row.restitution for row in measured]
+    sizes = np.interp(e, tabulated, [getattr(row, column) for row in measured])
+    return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else 0.0
 
 
 def _restitution(normal: NormalMotion) -> Any:

@@ -31,8 +31,8 @@ class DerjaguinMullerToporov(NormalLaw):
     """Small, stiff spheres that attract each other around the contact: Hertz's force less a pull.
 
     P = k z^1.5 - 2 pi Gamma R in contact, k = (4/3) E* sqrt(R), in N, positive in compression.
-    Contact begins and ends at z = 0: nothing is lost, e = 1. The contact is Hertz's, and friction
-    is taken of his load, P + 2 pi Gamma R, which presses the surfaces together.
+    Contact begins and ends at z = 0: nothing is lost, e = 1. The contact is Hertz's. The
+    friction load is Hertz's force, P + 2 pi Gamma R, which presses the surfaces together.
 
     Parameters
     ----------
@@ -53,13 +53,13 @@ class DerjaguinMullerToporov(NormalLaw):
     work_of_adhesion: float = quantity("J/m^2", rule=NON_NEGATIVE, default=0.05)
 
     def start(self, scene: Scene) -> Parts:
-        """Return stiffness and pull of the pair; there is nothing to remember."""
+        """Return stiffness and pull of the pair; the law has no memory."""
         radius = scene.pair.radius
         pull = 2.0 * math.pi * self.work_of_adhesion * radius
         return Parts(hertz_stiffness(scene), pull, radius)
 
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
-        """Return force, Hertz's radius (2) and Hertz's load."""
+        """Return force, Hertz's radius (2) and Hertz's force as friction load."""
         touching: Any = approach >= 0.0
         inside: Any = approach * touching  # NaN stays NaN
         load = state.stiffness * inside**1.5
@@ -72,6 +72,6 @@ class DerjaguinMullerToporov(NormalLaw):
         return contact, state
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return those of every law, and that of a contact too soft for this theory."""
+        """Return the cautions of every law, and one if the contact is too soft for this theory."""
         soft = tabor_caution(scene, self.work_of_adhesion, most=STIFF, other="normal.jkr")
         return (*super().cautions(scene, motion), *soft)

@@ -29,7 +29,7 @@ class Hertz(ClosedFormNormalLaw):
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure", "elastic_hertz"})
 
     def start(self, scene: Scene) -> Pair:
-        """Return the pair; there is nothing to remember."""
+        """Return the pair; the law has no memory."""
         return scene.pair
 
     def respond(self, state: Pair, approach: Real, rate: Real) -> tuple[NormalContact, Pair]:

@@ -23,24 +23,22 @@ from contactlab.numeric.checks import Real
 
 Array = NDArray[np.float64]
 
-#: Longer tables are not kept: 64 of them, three columns of 8 bytes, are 6 MB at most.
+#: Longer tables are not cached: 64 tables of three columns of 8 bytes are 6 MB at most.
 LONGEST_KEPT = 4000
 
 
 def velocity_factor(root: Real) -> Real:
-    """g(u) = sqrt((1+u+u²+u³+u⁴)/(1+u)), so that V = cos x g(u): theory §3."""
+    """Return g(u) = sqrt((1+u+u²+u³+u⁴)/(1+u)), so that V = cos x g(u), theory §3."""
     u = root
     return ((1.0 + u * (1.0 + u * (1.0 + u * (1.0 + u)))) / (1.0 + u)) ** 0.5
 
 
 def scaled_time(root: Real, rate: Real) -> Real:
-    """T at sqrt(zeta) = ``root`` and V = ``rate``: theory §3, an incomplete beta function.
-
-    T = 0.4 B(0.4, 0.5) I(sin² th), with sin² th = u⁵ and cos² th = V². Near the greatest
-    compression the complement in V² is used, where u⁵ rounds to 1.
-    """
+    """Return T at sqrt(zeta) = ``root`` and V = ``rate``: incomplete beta functions, theory §3."""
     from scipy.special import betainc  # not before a motion is asked for its time
 
+    # T = 0.4 B(0.4, 0.5) I(sin² th), sin² th = u⁵, cos² th = V². Near the greatest compression,
+    # where u⁵ rounds to 1, the complement in V² is used.
     quarter = np.where(
         np.abs(rate) > 0.5,
         betainc(0.4, 0.5, np.minimum(root**5, 1.0)),
@@ -67,19 +65,19 @@ def phase_at_fraction(fraction: Array) -> tuple[Array]:
 
 
 def remembered(function: Callable[[Array], tuple[Array, ...]], at: Real) -> tuple[Array, ...]:
-    """Return ``function(at)``, kept if short: every impact with equal steps asks for the same."""
+    """Return ``function(at)``, cached if short: impacts with equal steps share their phases."""
     points = np.asarray(at, dtype=np.float64)
     if points.size > LONGEST_KEPT:
         return function(points)
-    return tuple(array.reshape(points.shape) for array in _kept(function, points.tobytes()))
+    return tuple(array.reshape(points.shape) for array in _cached(function, points.tobytes()))
 
 
 @lru_cache(maxsize=64)
-def _kept(function: Callable[[Array], tuple[Array, ...]], at: bytes) -> tuple[Array, ...]:
-    found = function(np.frombuffer(at))
-    for array in found:
-        array.flags.writeable = False
-    return found
+def _cached(function: Callable[[Array], tuple[Array, ...]], at: bytes) -> tuple[Array, ...]:
+    columns = function(np.frombuffer(at))
+    for column in columns:
+        column.flags.writeable = False
+    return columns
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False)
@@ -101,7 +99,7 @@ class HertzMotion(ClosedFormMotion):
 
     @classmethod
     def of(cls, law: NormalLaw, scene: Scene) -> HertzMotion:
-        """Return the motion of ``scene``, eqs (7)-(9); it parts as fast as it met."""
+        """Return the motion of ``scene``, eqs (7)-(9); the final rate is minus the first."""
         scales, speed = hertz_scales(scene), scene.normal_speed
         return cls(
             law=law,
@@ -120,7 +118,7 @@ class HertzMotion(ClosedFormMotion):
 
     @property
     def scaled_mass(self) -> float:
-        """V' = -1.25 zeta^1.5, theory §1."""
+        """Return 1/1.25, from V' = -1.25 zeta^1.5, theory §1."""
         return 0.8
 
     def scaled(self, phase: Array) -> ScaledContact:
@@ -131,7 +129,7 @@ class HertzMotion(ClosedFormMotion):
         return ScaledContact(phase, square, u, np.cos(phase) * g, u * square, (u + u) / g)
 
     def scaled_at(self, phase: float) -> ScaledContact:
-        """Return the same in plain floats."""
+        """Return the scaled motion at one phase, in plain floats."""
         u = math.sin(phase)
         square = u * u
         g = math.sqrt(1.0 + square + square * square / (1.0 + u))

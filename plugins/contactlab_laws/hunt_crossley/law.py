@@ -15,17 +15,15 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
 from contactlab_laws.differences.table import choice
 
-#: Where neither the restitution nor the damping is given.
+#: Default restitution, for laws with no damping of their own.
 DEFAULT_RESTITUTION = 0.9
 
 
 @lru_cache(maxsize=256)
 def damping_number(coefficient: float) -> float:
-    """Return d = lambda v1 at a coefficient of restitution: d (1 + e) = ln((1 + d)/(1 - e d)).
-
-    That is the work of the force, (v - ln(1 + lambda v)/lambda)/lambda in terms of the rate v,
-    which is the same at both ends of contact. d lies between (1 - e)/e and 1/e.
-    """
+    """Return d = lambda v1 at a coefficient of restitution: d (1 + e) = ln((1 + d)/(1 - e d))."""
+    # The work of the force, (v - ln(1 + lambda v)/lambda)/lambda at the rate v, is equal at both
+    # ends of contact. d lies between (1 - e)/e and 1/e.
     e = coefficient
     if e == 1.0:
         return 0.0
@@ -44,16 +42,16 @@ class Parts(NamedTuple):
 
 @attrs.frozen(kw_only=True)
 class HuntCrossley(NormalLaw):
-    """Hertz's force times one and a dashpot: no jump at first touch, no tension in an impact.
+    """Hertz's force times 1 + lambda z': no jump at first touch, no tension in an impact.
 
     P = k z^1.5 (1 + lambda z'), k = (4/3) E* sqrt(R), in N, positive in compression, z' positive
-    while the bodies approach. A hemisphere of pressure over Hertz's radius, b² = R z.
+    while the bodies approach. The pressure is a hemisphere over Hertz's radius, b² = R z.
 
     Parameters
     ----------
     restitution : float, optional
-        e, rebound over approach velocity, of each impact at its own speed; 0.9 where neither
-        this nor the damping is given.
+        e, rebound over approach velocity, the same at any speed; 0.9 if neither e nor lambda is
+        given.
     damping : float, optional
         lambda in s/m, a constant of the material: e falls with the speed, about as 1 - (2/3)
         lambda v1.
@@ -73,7 +71,7 @@ class HuntCrossley(NormalLaw):
         one_of_two(self, "restitution", "damping", default=DEFAULT_RESTITUTION)
 
     def start(self, scene: Scene) -> Parts:
-        """Return stiffness and damping of the pair; there is nothing to remember."""
+        """Return stiffness and damping of the pair; the law has no memory."""
         damping: Any = self.damping
         if self.restitution is not None:
             damping = damping_number(self.restitution) / scene.normal_speed
@@ -86,5 +84,5 @@ class HuntCrossley(NormalLaw):
         return without_tension(force, (state.radius * inside) ** 0.5, approach), state
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return those of every law, and how far others of the same restitution move psi2."""
+        """Return the cautions of every law, and how far psi2 moves with other laws of equal e."""
         return (*super().cautions(scene, motion), *choice(scene, motion))

@@ -1,11 +1,11 @@
-"""What laws of independent springs along the contact radius share; no law is registered here.
+"""Shared parts of the laws of independent springs along the contact radius; no law is registered.
 
 By the theorem of Ciavarella and Jaeger the axisymmetric contact with friction is a function
 w(s) of one coordinate, 0 <= s < b, whose values do not depend on each other, like the deflections
 of independent springs: w grows with the slip displacement while abs(w) is below the limit l(s), and
 is otherwise held at +-l(s); it begins from zero where the contact grows; the force is 2 G* times
-its integral. A law says where its springs are and how it integrates (its ``Bundle``); the rest is
-here.
+its integral. A law gives the positions of its springs and the rule of integration (its
+``Bundle``).
 
 Scaled by the largest contact, as everywhere in this package: s, b by a; w and displacement by
 mu a²/(kappa R), so that l = p (b² - s²) with p the pressure over Hertz's at the same radius;

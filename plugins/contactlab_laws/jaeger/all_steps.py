@@ -1,4 +1,4 @@
-"""All steps at once: the geometry of every step, then a lean loop; of one impact, or of many."""
+"""All steps at once, of one impact or of many: the geometry of every step, then a lean loop."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from contactlab_laws.jaeger.geometry import of_each
 class ScaledSteps(NamedTuple):
     """The steps, scaled, each of shape (K,); drift and kick of a batch (K, items) or (K, 1).
 
-    ``drift`` takes the slip velocity to displacement, ``kick`` takes F to its change.
+    ``drift`` takes the slip velocity to displacement, ``kick`` takes F to the change of velocity.
     """
 
     radius: Array
@@ -24,10 +24,8 @@ class ScaledSteps(NamedTuple):
 
 
 def advance_all(bundle: Bundle, steps: ScaledSteps, velocity: float) -> tuple[Array, float]:
-    """Return the forces, shape (K,), and the friction work, as ``step.advance`` would.
-
-    ``velocity`` is the slip velocity at first touch, in m/s.
-    """
+    """Return the forces of one impact, shape (K,), and the work, as by ``step.advance``."""
+    # ``velocity`` is the slip velocity at first touch, in m/s.
     square = steps.radius * steps.radius
     before = np.concatenate(([0.0], square[:-1]))
     throughout, part, limit, weights = of_each(bundle, before, square, steps.pressure)
@@ -66,20 +64,9 @@ def advance_all(bundle: Bundle, steps: ScaledSteps, velocity: float) -> tuple[Ar
 def advance_batch(
     bundle: Bundle, steps: ScaledSteps, velocity: Real, items: int
 ) -> tuple[Array, Array]:
-    """Return the same of impacts that share one contact: forces (K, items) and works (items,).
-
-    Springs lead, so that a row is contiguous over the batch. A spring out of contact has limit
-    and deflection 0; only those that touch at the start or the end of a step are looked at.
-
-    Parameters
-    ----------
-    bundle : Bundle
-    steps : ScaledSteps
-    velocity : float or array, shape (items,)
-        Slip velocity at first touch, in m/s.
-    items : int
-        Impacts.
-    """
+    """Return forces (K, items) and friction works (items,) of impacts that share one contact."""
+    # Springs lead, so that a row is contiguous over the batch. A spring out of contact has limit
+    # and deflection 0; each step takes only the springs that touch at its start or end.
     square = steps.radius * steps.radius
     before = np.concatenate(([0.0], square[:-1]))
     throughout, part, limit, weights = of_each(bundle, before, square, steps.pressure)
@@ -129,5 +116,5 @@ def advance_batch(
 
 
 def _columns(table: Array) -> Array:
-    """Return a table (springs, K) as K columns, shape (K, springs, 1)."""
+    """Return K columns of a table (springs, K), shape (K, springs, 1)."""
     return np.ascontiguousarray(table.T)[:, :, None]

@@ -1,4 +1,4 @@
-"""The bundle of springs: where a law keeps w(s), and how it integrates."""
+"""The bundle of springs: positions s at which a law keeps w(s), and weights of its integral."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 class Bundle(ABC):
-    """Springs along the contact radius with rules for the force; made once, never changed.
+    """Springs along the contact radius, with weights that give the force; never changed.
 
     Parameters
     ----------
@@ -38,15 +38,13 @@ class Bundle(ABC):
 
     @abstractmethod
     def weights(self, square: Array) -> Array:
-        """Return weights of F in w, shape (n, K), for contacts of b² = ``square``, shape (K,).
-
-        They hold for the springs in contact; gross slip must give F = b³ with them.
-        """
+        """Return weights of F in w, shape (n, K), for contacts of b² = ``square``, shape (K,)."""
+        # They hold for the springs in contact; gross slip must give F = b³ with them.
 
     @abstractmethod
     def weights_of_one(self, square: float, touching: int) -> Array:
-        """Return the same for one contact, of its ``touching`` innermost springs only."""
+        """Return the weights of the innermost springs of one contact, shape (touching,)."""
 
     def limit_factor(self, square: Real) -> Real:
-        """Return the factor on the limits for which gross slip gives b³: 1 if the weights do."""
+        """Return the factor on the limits for which gross slip gives b³; by default 1."""
         return 1.0

@@ -1,4 +1,4 @@
-"""What one step does to the springs, apart from the displacement: limits, parts and weights."""
+"""Geometry of the springs in a step: limits, parts of the step in contact, and weights."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Geometry(NamedTuple):
     limit : array, shape (touching, K)
         l at the end of the step, zero out of contact.
     weights : array, shape (touching,) or (touching, K)
-        Of the force.
+        Weights of the force.
     """
 
     throughout: int
@@ -35,16 +35,7 @@ class Geometry(NamedTuple):
 
 
 def of_one(bundle: Bundle, before: float, after: float, pressure: Real) -> Geometry:
-    """Return the geometry where one contact serves all impacts.
-
-    Parameters
-    ----------
-    bundle : Bundle
-    before, after : float
-        b² at the ends of the step.
-    pressure : float or array
-        p at its end.
-    """
+    """Return the geometry where one contact serves all impacts; ``before``, ``after`` are b²."""
     touching = bisect_left(bundle.squares_listed, after)
     compression = after - bundle.squares[:touching, None]
     throughout = bisect_left(bundle.squares_listed, before) if after > before else touching
@@ -56,21 +47,10 @@ def of_one(bundle: Bundle, before: float, after: float, pressure: Real) -> Geome
 
 
 def of_each(bundle: Bundle, before: Real, after: Array, pressure: Real) -> Geometry:
-    """Return the geometry of contacts that differ.
-
-    While b grows, a spring that the contact meets in the step moves with the surfaces only from
-    then on; without this the error would be of first order in the step. b² is taken as linear in
-    the step.
-
-    Parameters
-    ----------
-    bundle : Bundle
-    before, after : array, shape (K,)
-        b² at the ends of the step; one number before if it is common.
-    pressure : float or array, shape (K,)
-        p at its end.
-    """
-    touching = int(bundle.squares.searchsorted(after.max()))  # n where that is NaN
+    """Return the geometry of contacts that differ; ``before``, ``after`` are b², shape (K,)."""
+    # While b grows, a spring that the contact meets in the step moves with the surfaces only from
+    # then on; without this the error would be of first order. b² is taken as linear in the step.
+    touching = int(bundle.squares.searchsorted(after.max()))  # n for NaN
     throughout = min(touching, int(bundle.squares.searchsorted(np.min(before))))
     compression = after - bundle.squares[:touching, None]
     growth = after - before

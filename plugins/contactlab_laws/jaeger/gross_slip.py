@@ -8,11 +8,11 @@ from contactlab.impact.scene import Scene
 
 
 def gross_slip(scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-    """Return the impacts of eq. (45), of elastic Hertz contacts; of others nothing is known."""
+    """Return the answers of eq. (45), for impacts of elastic Hertz contacts; else none."""
     if "elastic_hertz" not in normal.offers:
         return ()
     where = slips_throughout_elastic(scene.psi1, scene.chi)
-    if where is False:  # of one impact; of a batch the mask says it
+    if where is False:  # a single impact; a batch has a mask
         return ()
     reason = "the impact slips from start to end, eq. (45)"
     return (sliding(scene, normal, where=where, reason=reason, stops=False),)

@@ -1,4 +1,4 @@
-"""The part of a law of springs that does not depend on where they are."""
+"""Laws of springs: all but the positions of the springs."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from contactlab_laws.jaeger.bundle import Array, Bundle
 from contactlab_laws.jaeger.gross_slip import gross_slip
 from contactlab_laws.jaeger.pressure import hemisphere
 
-#: Numbers in a table of a whole run; larger ones (16 MB each) are not made.
+#: Most numbers in a table of a whole run (16 MB); longer runs go step by step.
 LARGEST_RUN = 2_000_000
 
 
 class Scales(NamedTuple):
-    """What turns SI into scaled variables and back; floats, or arrays of the batch shape.
+    """Units of the scaled variables in SI; floats, or arrays of the batch shape.
 
     Attributes
     ----------
@@ -65,21 +65,21 @@ class Scales(NamedTuple):
         return cls(radius, per_slip, friction * peak, peak, friction * peak * slip)
 
     def pressure(self, radius: Any, load: Any) -> Any:
-        """Return p: 1 for a Hertz contact; another law may carry another load at a radius."""
+        """Return p, the load at a radius over that of a Hertz contact: 1 under Hertz's law."""
         cube = self.normal_force * radius**3
         return load / (cube + (cube == 0.0))
 
 
 class State(NamedTuple):
-    """Memory of the contacts of one batch shape, and their scales; never changed once made."""
+    """Shape of a batch of contacts, their scales and their springs; never changed once made."""
 
     shape: tuple[int, ...]
     scales: Scales
-    memory: step.Memory
+    memory: step.SpringState
 
 
 class ProfileLaw(AllStepsTangentialLaw):
-    """A law of independent springs; a subclass says where they are."""
+    """A law of independent springs; a subclass gives their positions."""
 
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
@@ -90,16 +90,16 @@ class ProfileLaw(AllStepsTangentialLaw):
 
     @abstractmethod
     def bundle(self) -> Bundle:
-        """Return the springs, made once for each number of them."""
+        """Return the springs, cached for each number of springs."""
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return those of gross slip too, where (44) and (46) say so."""
+        """Return the whole-impact answers, with those of gross slip by (44) and (46)."""
         return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return those of every law, of springs cut each alone, and of the pressure."""
-        known = super().cautions(scene, normal)
-        return (*known, *springs(scene, normal), *hemisphere(normal))
+        """Return the cautions of every law, of springs that are cut alone, and of the pressure."""
+        own = (*springs(scene, normal), *hemisphere(normal))
+        return (*super().cautions(scene, normal), *own)
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""
@@ -137,10 +137,8 @@ class ProfileLaw(AllStepsTangentialLaw):
     def advance_all(
         self, scene: Scene, normal: NormalMotion, steps: Steps
     ) -> AllStepsResponse | None:
-        """Return the forces of a whole impact, or of a batch whose contacts differ in scale only.
-
-        Batches of several axes are better done step by step, as are runs of large tables.
-        """
+        """Return the forces of one impact, or of a batch whose contacts differ in scale only."""
+        # Batches of several axes and runs of large tables are faster step by step.
         shape, bundle = scene.shape, self.bundle()
         columns = max(len(bundle.squares), math.prod(shape))
         if len(shape) > 1 or len(steps.drift) * columns > LARGEST_RUN:
@@ -166,8 +164,8 @@ class ProfileLaw(AllStepsTangentialLaw):
     def fields(self, state: State) -> Mapping[str, NDArray[Any]]:
         """Return radius (m), displacement and limit (m), stuck and slipping of every spring.
 
-        ``displacement`` is w, the tangential displacement of the spring; ``slipping``
-        is its sign where it is held at the limit, 0 elsewhere.
+        ``displacement`` is w, the tangential displacement of the spring; ``slipping`` is the sign
+        of w where the spring is at its limit, 0 elsewhere.
         """
         shape, scales, memory = state
         squares = self.bundle().squares

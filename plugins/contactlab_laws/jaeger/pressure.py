@@ -9,22 +9,15 @@ import numpy as np
 
 from contactlab.contracts.motion import NormalMotion
 
-#: Phases at which the friction load is compared with Hertz's, and what they may differ by.
+#: Phases at which the friction load is compared with Hertz's, and the relative tolerance.
 PHASES = np.linspace(0.1, 0.9, 9) * math.pi
 CLOSE = 1e-6
 
 
 def hemisphere(normal: NormalMotion) -> tuple[str, ...]:
-    """Return the caution of a pressure that is taken for a hemisphere and may be none.
-
-    Without the claim ``hertzian_pressure`` the friction law assumes it. With the claim the normal
-    law does, unless the friction load is Hertz's at the contact radius.
-
-    Parameters
-    ----------
-    normal : NormalMotion
-        Of one impact or of a batch.
-    """
+    """Return the caution of an assumed hemisphere of pressure, if there is one."""
+    # Without the claim ``hertzian_pressure`` the friction law makes the assumption. With the claim
+    # the normal law makes it, unless the friction load is Hertz's at the contact radius.
     if "hertzian_pressure" not in normal.offers:
         return (
             "the friction law takes the pressure for a hemisphere over the contact radius that "
@@ -39,7 +32,7 @@ def hemisphere(normal: NormalMotion) -> tuple[str, ...]:
 
 
 def _hertzian(normal: NormalMotion) -> bool:
-    """Return whether the friction load is that of Hertz's contact of the same radius."""
+    """Return whether the friction load is that of a Hertz contact of the same radius."""
     pair, shape = normal.scene.pair, normal.scene.shape
     contact = normal.at(PHASES.reshape(-1, *(1 for _ in shape))).contact
     radius: Any = contact.radius

@@ -15,12 +15,12 @@ from contactlab.numeric.checks import POSITIVE, Real, quantity
 
 #: Tabor's parameter from which the theory holds.
 SOFT = 5.0
-#: Measured: 0.045 of the energy at the start where e = 0.95 by adhesion, 0.001 where e = 0.99.
+#: The books miss 0.045 of the energy at the start at e = 0.95 by adhesion, 0.001 at e = 0.99.
 SNAP = (
     "contact breaks while friction holds it: the elastic energy of that shear is lost, and the "
     "energy books, which know only friction work, miss it (model, not numerical error)"
 )
-#: s at the least scaled approach at which a contact can be, s⁴ - s: its derivative is zero there.
+#: s and s⁴ - s at the least scaled approach of a contact, where the derivative of s⁴ - s is zero.
 LAST = 4.0 ** (-1.0 / 3.0)
 LEAST = LAST**4 - LAST
 
@@ -34,11 +34,9 @@ class Parts(NamedTuple):
 
 
 def root_of_size(scaled: Any) -> Any:
-    """Return s, the larger solution of s⁴ - s = ``scaled``, at least ``LEAST``.
-
-    Ferrari's: s = ½ (sqrt(2m) + sqrt(2/sqrt(2m) - 2m)), m³ + scaled m = 1/8, with m by Cardano,
-    written so that no digits cancel.
-    """
+    """Return s, the larger solution of s⁴ - s = ``scaled``, where ``scaled`` >= ``LEAST``."""
+    # Ferrari: s = ½ (sqrt(2m) + sqrt(2/sqrt(2m) - 2m)), m³ + scaled m = 1/8, with m by Cardano,
+    # written so that no digits cancel.
     third = scaled / 3.0
     larger = np.cbrt(0.0625 + np.sqrt(np.maximum(0.00390625 + third * third * third, 0.0)))
     smaller = -third / larger
@@ -54,9 +52,9 @@ class JohnsonKendallRoberts(NormalLaw):
     With b1³ = 2 pi Gamma R²/E* and b = b1 s² the contact radius:
     z = (b1²/R)(s⁴ - s), P = 2 pi Gamma R ((4/3) s⁶ - 2 s³), in N, positive in compression.
     Contact is made at z = 0, where P = -(8/9) P_c, P_c = 1.5 pi Gamma R, and breaks at negative z,
-    s³ = 1/4, with P = -(5/9) P_c. What is lost in between is ½ M v_s² =
-    7.0922 (Gamma⁵ R⁴/E*²)^(1/3); slower bodies do not part. The pressure is a hemisphere less that
-    of a flat punch. Friction is taken of P + 2 P_c.
+    s³ = 1/4, with P = -(5/9) P_c. The energy lost in between is ½ M v_s²
+    = 7.0922 (Gamma⁵ R⁴/E*²)^(1/3); bodies slower than v_s do not part. The pressure is a
+    hemisphere less that of a flat punch. The friction load is P + 2 P_c.
 
     Parameters
     ----------
@@ -78,14 +76,14 @@ class JohnsonKendallRoberts(NormalLaw):
     work_of_adhesion: float = quantity("J/m^2", rule=POSITIVE, default=0.05)
 
     def start(self, scene: Scene) -> Parts:
-        """Return size and pull of the pair; the surfaces touch from z = 0 on."""
+        """Return size and pull of the pair; the law has no memory."""
         radius = scene.pair.radius
         pull = 2.0 * math.pi * self.work_of_adhesion * radius
         size = (pull * radius / scene.pair.effective_modulus) ** (1.0 / 3.0)
         return Parts(size, pull, radius)
 
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
-        """Return force, radius and the load that friction is taken of."""
+        """Return force, radius and the friction load P + 2 P_c; contact lasts into negative z."""
         size, pull, radius = state
         scaled = approach * (radius / (size * size))
         touching = np.logical_not(scaled <= LEAST)
@@ -101,6 +99,6 @@ class JohnsonKendallRoberts(NormalLaw):
         return contact, state
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return those of every law, of a contact too stiff for this theory, and of its end."""
+        """Return the cautions of every law, of the end of contact, and of a contact too stiff."""
         stiff = tabor_caution(scene, self.work_of_adhesion, least=SOFT, other="normal.dmt")
         return (*super().cautions(scene, motion), *stiff, SNAP)

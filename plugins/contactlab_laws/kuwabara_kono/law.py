@@ -15,22 +15,20 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
 from contactlab_laws.differences.table import choice
 
-#: Where neither the restitution nor the relaxation time is given.
+#: Default restitution, for laws with no relaxation time of their own.
 DEFAULT_RESTITUTION = 0.9
-#: Of the integration, and of the calibration by it.
+#: Tolerance of the integration and of the calibration.
 TOLERANCE = 1e-12
-#: The restitution falls below any e >= 0.01 before A v1/z_max comes to this over e.
+#: Greatest A v1/z_max in the calibration, times e: it gives less than any e >= 0.01.
 STRONGEST = 10.0
 
 
 def rebound(number: float) -> float:
-    """Return e at A v1/z_max = ``number``, z_max the greatest approach without viscosity.
-
-    With u = sqrt(zeta) and dT = 2 u dq the motion is u' = V, V' = -2.5 u² (u² + 1.5 A V), which
-    is smooth from first touch on. Contact ends where the force vanishes: V is stationary there.
-    """
+    """Return e at A v1/z_max = ``number``, z_max the greatest approach without viscosity."""
     from scipy.integrate import solve_ivp  # not before a law is calibrated
 
+    # u = sqrt(zeta), dT = 2 u dq: u' = V, V' = -2.5 u² (u² + 1.5 A V), smooth from first touch.
+    # Contact ends where the force vanishes: V is stationary there.
     def slope(_: float, state: Any) -> list[float]:
         u, rate = state
         return [rate, -2.5 * u * u * (u * u + 1.5 * number * rate)]
@@ -39,11 +37,11 @@ def rebound(number: float) -> float:
         return float(state[0] - max(-1.5 * number * state[1], 0.0) ** 0.5)
 
     released.terminal, released.direction = True, -1  # type: ignore[attr-defined]
-    found = solve_ivp(
+    motion = solve_ivp(
         slope, (0.0, np.inf), [0.0, 1.0], method="DOP853", events=released,
         rtol=TOLERANCE, atol=TOLERANCE,
     )  # fmt: skip
-    return -float(found.y[1, -1])
+    return -float(motion.y[1, -1])
 
 
 @lru_cache(maxsize=256)
@@ -53,10 +51,10 @@ def viscosity_number(coefficient: float) -> float:
 
     if coefficient == 1.0:
         return 0.0
-    found = brentq(
-        lambda number: rebound(number) - coefficient, 0.0, STRONGEST / coefficient, xtol=TOLERANCE
+    number = brentq(
+        lambda trial: rebound(trial) - coefficient, 0.0, STRONGEST / coefficient, xtol=TOLERANCE
     )
-    return float(found)
+    return float(number)
 
 
 class Parts(NamedTuple):
@@ -71,15 +69,15 @@ class Parts(NamedTuple):
 class KuwabaraKono(NormalLaw):
     """Hertz contact of viscoelastic spheres, to first order in the viscosity.
 
-    P = k z^0.5 (z + 1.5 A z'), k = (4/3) E* sqrt(R), in N, positive in compression, z' positive
+    P = k z^0.5 (z + 1.5 A z'), k = (4/3) E* sqrt(R), P in N, positive in compression, z' positive
     while the bodies approach. Contact ends where P returns to zero: no tension. The elastic
     pressure is a hemisphere over b² = R z, the viscous one that of a flat punch.
 
     Parameters
     ----------
     restitution : float, optional
-        e, rebound over approach velocity, of each impact at its own speed; 0.9 where neither
-        this nor the time is given.
+        e, rebound over approach velocity, the same at any speed; 0.9 if neither e nor A is
+        given.
     relaxation_time : float, optional
         A in s, a constant of the materials: 1 - e grows as v1^(1/5).
 
@@ -101,7 +99,7 @@ class KuwabaraKono(NormalLaw):
         one_of_two(self, "restitution", "relaxation_time", default=DEFAULT_RESTITUTION)
 
     def start(self, scene: Scene) -> Parts:
-        """Return stiffness and time of the pair; there is nothing to remember."""
+        """Return stiffness and relaxation time of the pair; the law has no memory."""
         time: Any = self.relaxation_time
         if self.restitution is not None:
             unit = hertz_scales(scene).approach / scene.normal_speed
@@ -115,5 +113,5 @@ class KuwabaraKono(NormalLaw):
         return without_tension(force, (state.radius * inside) ** 0.5, approach), state
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return those of every law, and how far others of the same restitution move psi2."""
+        """Return the cautions of every law, and how far psi2 moves with other laws of equal e."""
         return (*super().cautions(scene, motion), *choice(scene, motion))

@@ -19,11 +19,12 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Real, quantity
 from contactlab_laws.mindlin.dashpot import critical_share, cut, with_dashpot
 
-#: Of the energy books at the fewest steps that are admitted; it falls as their square. A dashpot
-#: adds the share of a step in which the velocity reverses.
+#: Bound of the imbalance of the energy books at the fewest steps admitted, where it is largest: it
+#: falls as the square of the steps. A dashpot adds the share of a step in which the velocity
+#: reverses.
 COARSEST_BOOKS = 0.05
 
-#: What a dashpot fails by its nature.
+#: Checks that a law with a dashpot fails by its nature.
 DAMPED: Mapping[str, str] = {
     "turning_points": "the force of a dashpot depends on the velocity, which a path has not",
     "stiffness": "the force of a dashpot is no force of displacement",
@@ -35,8 +36,8 @@ PARTIAL_SLIP = (
 )
 
 
-class Spring(NamedTuple):
-    """Stiffness (N/m), dashpot (N s/m), masses, friction coefficient, and the memory in N."""
+class State(NamedTuple):
+    """Stiffness (N/m), dashpot (N s/m), M_t (kg), mu; forces of spring and contact (N)."""
 
     stiffness: Real
     constant: Real
@@ -74,42 +75,42 @@ class LinearSpring(SteppedTangentialLaw):
 
     @property
     def books_bound(self) -> float:
-        """Return what the fewest steps leave; without a dashpot the books close to rounding."""
+        """Return the bound at the fewest steps; without a dashpot the books close to rounding."""
         return COARSEST_BOOKS
 
     @property
     def expected_failures(self) -> Mapping[str, str]:
-        """Return what a dashpot fails, if there is one."""
+        """Return the checks that a dashpot fails, if there is one."""
         return DAMPED if self.damping else {}
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return k_t."""
+        """Return k_t in N/m."""
         pair = scene.pair
         ratio = pair.stiffness_ratio if self.stiffness_ratio is None else self.stiffness_ratio
         frequency = scene.normal_speed / normal.maximum_approach
         return ratio * pair.normal_mass * frequency * frequency
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return that partial slip is left out."""
+        """Return the cautions of every law, and one on partial slip."""
         return (*super().cautions(scene, normal), PARTIAL_SLIP)
 
-    def start(self, scene: Scene, normal: NormalMotion) -> Spring:
+    def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return the spring at rest."""
-        nothing: Real = np.zeros(scene.shape) if scene.shape else 0.0
+        zero: Real = np.zeros(scene.shape) if scene.shape else 0.0
         stiffness = self.stiffness(scene, normal)
-        return Spring(
+        return State(
             stiffness,
             critical_share(self.damping, stiffness, scene.pair.normal_mass),
             scene.pair.tangential_mass,
             scene.friction_coefficient,
-            nothing,
-            nothing,
+            zero,
+            zero,
         )
 
     def advance(
-        self, state: Spring, increment: Increment, before: NormalContact, after: NormalContact
-    ) -> tuple[TangentialResponse, Spring]:
-        """Return the force, and what the spring does not keep of the work done on it."""
+        self, state: State, increment: Increment, before: NormalContact, after: NormalContact
+    ) -> tuple[TangentialResponse, State]:
+        """Return the force, and the friction work: the work that the spring does not store."""
         limit = state.friction_coefficient * after.friction_load
         trial = state.spring + state.stiffness * increment.displacement
         spring = force = cut(trial, limit)

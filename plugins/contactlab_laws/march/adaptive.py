@@ -29,15 +29,15 @@ TOLERANCE = Rule(
     lambda value: np.ndim(value) == 0 and 1e-12 <= value <= 1.0,
     "must be one number in [1e-12, 1]",
 )
-#: Steps that are tried first; then twice as many, until the error is small enough.
+#: Steps of the first try; they are doubled until the error is small enough.
 FIRST = 32
-#: Where the steps are doubled the change of psi2 falls by 4 for a smooth law: from this ratio on
-#: one is taken for smooth, and the error left is the last change over the ratio less 1.
+#: Doubled steps divide the change of psi2 by 4 under a smooth law: from this ratio on the law
+#: counts as smooth, and the error left is the last change over the ratio less 1.
 SMOOTH = 3.0
-#: A law that jumps is of first order, and its error wanders: the last change and half the one
-#: before it, times this.
+#: Under a law that jumps the error is of first order and wanders: it is estimated by the larger of
+#: the last change and half the change before it, times this.
 WANDERS = 2.0
-#: Less than this part of the change before is never believed: two answers may agree by chance.
+#: Least error estimate, over the change before: two answers may agree by chance.
 BELIEVED = 1.0 / 6.0
 #: psi2 is rounded to this part of max(1, |psi1|) by sums of many steps.
 ROUNDING = 1e-13
@@ -49,13 +49,14 @@ class Adaptive(Integrator):
 
     The error is that of the whole impact, seen in the answer itself, and not a sum of what
     single steps may have missed. It is the error in time: that of a law's own discretisation
-    is not in it. The tolerance is aimed at and no bound, so that no error is declared: of 6,000
+    is not in it. The tolerance is an aim and no bound, so no error is declared: of 6,000
     impacts of a linear spring at 1e-5, 141 were off by more than twice that, the worst by 22 times.
 
     Parameters
     ----------
     tolerance : float
-        Of psi2 over max(1, |psi1|); from 1e-12 to 1. Cost grows as its inverse square root.
+        Tolerance of psi2 over max(1, |psi1|), from 1e-12 to 1. Cost grows as its inverse square
+        root.
 
     References
     ----------
@@ -105,35 +106,26 @@ class Adaptive(Integrator):
         before: tuple[TangentialMotion, TangentialMotion],
         tried: int,
     ) -> TangentialMotion:
-        """Return the motion in ``count`` steps, and in twice as many where that is not enough.
-
-        Parameters
-        ----------
-        normal : NormalMotion
-        law : SteppedTangentialLaw
-        count : int
-        before : tuple of two TangentialMotion
-            With a quarter and with half the steps.
-        tried : int
-            Steps taken before, for the counters.
-        """
+        """Return the motion in ``count`` steps, doubled where the error exceeds the tolerance."""
+        # ``before``: in a quarter and half of the steps; ``tried``: steps taken before.
         shape = normal.scene.shape
         counters = {"steps": count, "evaluations": tried + count}
         last = attrs.evolve(_march(normal, law, count), counters=counters)
         if not _succeeded(last):
             return last
-        left, allowed = self._error(*before, last), self._allowed(normal.scene)
-        open_: Any = np.asarray(~(left <= allowed))
-        if not open_.any():
+        error, allowed = self._error(*before, last), self._allowed(normal.scene)
+        unresolved: Any = np.asarray(~(error <= allowed))
+        if not unresolved.any():
             return last
         if 2 * count > MOST_STEPS:
             sentence = f"After {count} steps psi2 still changes by more than the tolerance."
-            return last.failing(open_, Status.UNRESOLVED, sentence)
-        if not shape or open_.all():
+            return last.failing(unresolved, Status.UNRESOLVED, sentence)
+        if not shape or unresolved.all():
             return self._doubled(normal, law, 2 * count, (before[1], last), tried + count)
-        middle, fine = (batch.taken(motion, shape, open_) for motion in (before[1], last))
-        finer = self._doubled(normal.take(open_), law, 2 * count, (middle, fine), 0)
-        merged = TangentialMotion.merged(((np.ones_like(open_), last), (open_, finer)), shape)
+        middle, fine = (batch.taken(motion, shape, unresolved) for motion in (before[1], last))
+        finer = self._doubled(normal.take(unresolved), law, 2 * count, (middle, fine), 0)
+        parts = ((np.ones_like(unresolved), last), (unresolved, finer))
+        merged = TangentialMotion.merged(parts, shape)
         # The most steps that any impact took, and all evaluations.
         evaluations = counters["evaluations"] + finer.counters["evaluations"]
         return attrs.evolve(
@@ -147,13 +139,13 @@ class Adaptive(Integrator):
 
     @staticmethod
     def _error(*motions: TangentialMotion) -> Any:
-        """Return the error of the last of three answers, each with twice the steps, in m/s."""
+        """Return the estimated error of the last of three answers with doubled steps, in m/s."""
         coarse, middle, fine = (np.asarray(m.slip_velocity_change) for m in motions)
-        one, two = np.abs(middle - coarse), np.abs(fine - middle)
+        earlier, last = np.abs(middle - coarse), np.abs(fine - middle)
         with np.errstate(all="ignore"):
-            ratio = np.where(two > 0.0, one / two, np.inf)
-            smooth = np.maximum(two / (np.minimum(ratio, 4.0) - 1.0), BELIEVED * one)
-        return np.where(ratio >= SMOOTH, smooth, WANDERS * np.maximum(two, 0.5 * one))
+            ratio = np.where(last > 0.0, earlier / last, np.inf)
+            smooth = np.maximum(last / (np.minimum(ratio, 4.0) - 1.0), BELIEVED * earlier)
+        return np.where(ratio >= SMOOTH, smooth, WANDERS * np.maximum(last, 0.5 * earlier))
 
 
 def _succeeded(motion: TangentialMotion) -> bool:
@@ -164,15 +156,7 @@ def _succeeded(motion: TangentialMotion) -> bool:
 def _march(
     normal: NormalMotion, law: SteppedTangentialLaw, count: int, observer: Observer | None = None
 ) -> TangentialMotion:
-    """Return the motion in ``count`` steps, each sampled in its middle.
-
-    Parameters
-    ----------
-    normal : NormalMotion
-    law : SteppedTangentialLaw
-    count : int
-    observer : callable, optional
-    """
+    """Return the motion in ``count`` steps, each sampled in its middle."""
     with faults.blaming(normal.law):
         steps = midpoints(normal, count)
     return march(normal, law, steps, observer)

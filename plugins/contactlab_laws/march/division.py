@@ -1,4 +1,4 @@
-"""A normal motion divided into even steps, and the steps one by one."""
+"""Even steps of a normal motion."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 
 from contactlab.contracts import NormalContact, NormalMotion, Steps
 
-#: All steps are stretched alike so that the samples of the load add up to its exact impulse:
-#: gross slip throughout is then exact, and the energy books of the scheme close as before. They
-#: are stretched by no more than this over their number squared, which leaves the second order:
-#: smooth loads need less, one that begins as the root of time would need ever more.
+#: Largest stretch of the steps, over their number squared: it keeps the second order. All steps are
+#: stretched alike so that the samples of the load add up to its exact impulse: gross slip
+#: throughout is then exact, and the energy books of the scheme close as before. Smooth loads need
+#: less than the largest stretch, a load that begins as the root of time would need ever more.
 MOST_STRETCH = 1.0
-#: Steps of which plain numbers are made at a time: of all two million they would fill 700 MB.
+#: Steps converted to plain numbers at a time: two million would fill 700 MB.
 BLOCK = 4096
 
 
@@ -30,10 +30,8 @@ def midpoints(normal: NormalMotion, count: int) -> Steps:
 
 
 def endpoints(normal: NormalMotion, count: int) -> Steps:
-    """Return the same steps sampled at their ends.
-
-    The half steps after first touch and before separation have the force of their neighbours.
-    """
+    """Return ``count`` steps of the contact's duration, each sampled at its end."""
+    # The half steps after first touch and before separation have the force of their neighbours.
     fractions = np.linspace(0.0, 1.0, count + 1)
     edges = np.concatenate(([0.0], fractions[1:-1] + 0.5 / count, [1.0]))  # count + 1 of them
     phases = np.array(normal.phase(np.concatenate((fractions[1:], edges))))
@@ -46,17 +44,9 @@ def endpoints(normal: NormalMotion, count: int) -> Steps:
 
 
 def _steps(normal: NormalMotion, phases: Any, kick: Any, load_impulse: Any) -> Steps:
-    """Return steps that sample the contact at ``phases``, as read-only arrays.
-
-    Parameters
-    ----------
-    normal : NormalMotion
-    phases : array, shape (K,)
-    kick : array, shape (K, ...)
-        Time in s for which each force acts.
-    load_impulse : array, shape (K, ...)
-        Exact integral of the friction load over that time, in N s.
-    """
+    """Return steps that sample the contact at ``phases``, shape (K,), as read-only arrays."""
+    # ``kick`` is the time in s for which each force acts, ``load_impulse`` the exact integral of
+    # the friction load over it in N s, both of shape (K, ...).
     time, approach, rate, contact, _ = normal.at(_column(phases, normal))
     drift = np.array(time)
     drift[1:] -= time[:-1]
@@ -66,7 +56,7 @@ def _steps(normal: NormalMotion, phases: Any, kick: Any, load_impulse: Any) -> S
     most = MOST_STRETCH / len(drift) ** 2
     stretch = np.clip(stretch, max(1.0 - most, 0.5), 1.0 + most)
     drift, kick = drift * stretch, kick * stretch
-    full = np.zeros_like(drift + kick)  # what all impacts share may lack the batch's axes
+    full = np.zeros_like(drift + kick)  # values common to all impacts may lack the batch's axes
     steps = Steps(
         contact=NormalContact(*(full + entry for entry in contact)),
         drift=full + drift,
@@ -82,7 +72,7 @@ def _steps(normal: NormalMotion, phases: Any, kick: Any, load_impulse: Any) -> S
 
 
 def one_by_one(steps: Steps) -> Iterator[Steps]:
-    """Iterate over the steps: arrays for a batch, floats where all impacts have one (faster)."""
+    """Iterate over the steps: arrays, or floats (faster) where all impacts share a value."""
     columns = [
         column.ravel() if column.size == len(column) else column
         for column in (*steps.contact, *steps[1:])

@@ -1,4 +1,4 @@
-"""How many even steps an impact needs, and what is done if fewer were asked for."""
+"""Even steps: how many an impact needs, and refinement or refusal of fewer."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ from contactlab.numeric.arrays import for_share
 from contactlab.numeric.checks import Real, count, flag
 from contactlab_laws.march.march import march
 
-#: Largest omega dt of the fastest tangential oscillation. At 2 the leapfrog is unstable (theory
-#: §4) and wrong by any amount; below it is stable, but useless well before: at 1/2 the
-#: phase is off by 1 % a radian.
+#: Largest omega dt of the fastest tangential oscillation. From 2 on the leapfrog is unstable
+#: (theory §4) and wrong by any amount. Below 2 it is stable, but at 1/2 the phase is off by 1 % a
+#: radian already.
 LARGEST_PHASE_STEP = 0.5
-#: The leapfrog's phase runs ahead by (omega dt)²/24 a radian. Where microslip damps the oscillation
-#: that is forgotten with it; where a law has none it adds up over the impact, to no more than
-#: this, in radians: an error of up to a third of it over the range, whatever chi.
+#: Largest phase error over an impact, in radians, for laws without microslip: an error of up to a
+#: third of this over the range of psi2, at any chi. The leapfrog's phase runs ahead by
+#: (omega dt)²/24 a radian; microslip damps the oscillation and the phase error with it.
 LARGEST_LEAD = 0.05
-#: The normal load is half an oscillation, and is resolved alike whatever the tangential law.
+#: Least steps under any tangential law: they resolve the normal load, half an oscillation.
 LEAST_STEPS = math.ceil(math.pi / LARGEST_PHASE_STEP)
-#: More steps than this are refused, whoever asks for them.
+#: More steps than this are refused.
 MOST_STEPS = 2_000_000
 #: Ratio of one number of steps to the next where they are raised.
 RAISE = 1.25
@@ -46,10 +46,7 @@ EvenMarch = Callable[[NormalMotion, int], TangentialMotion]
 
 
 def needed_steps(normal: NormalMotion, law: TangentialLaw) -> Any:
-    """Return the least number of steps an impact that resolve omega = sqrt(stiffness/mass).
-
-    A float, or an array of the batch shape; ``LEAST_STEPS`` for a law without stiffness.
-    """
+    """Return the least steps an impact that resolve omega = sqrt(stiffness/mass), batch shape."""
     assert isinstance(law, SteppedTangentialLaw)
     scene = normal.scene
     omega = np.sqrt(law.stiffness(scene, normal) / scene.pair.tangential_mass)
@@ -61,10 +58,8 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw) -> Any:
 
 
 def refined(steps: int, needed: Any) -> Any:
-    """Return ``steps``, or the first number of a sequence that grows from there that is enough.
-
-    Taken from a sequence, the impacts of a batch fall into a few groups of equal steps.
-    """
+    """Return ``steps``, or the first number >= ``needed`` of a sequence from it."""
+    # With a sequence the impacts of a batch fall into a few groups of equal steps.
     if isinstance(needed, float) and needed <= steps:
         return float(steps)
     sequence = [float(steps)]
@@ -82,18 +77,7 @@ def refusal(steps: int, needed: float) -> str:
 def in_groups(
     normal: NormalMotion, steps: int, needed: Any, taken: Any, even: EvenMarch
 ) -> TangentialMotion:
-    """Return the motion of impacts, each marched in the steps that it would take alone.
-
-    Parameters
-    ----------
-    normal : NormalMotion
-    steps : int
-        Asked for, for the refusal.
-    needed, taken : float or array
-        Steps that an impact needs, and those that it takes.
-    even : callable
-        Marches impacts that take the same number of steps.
-    """
+    """Return the motion of impacts, each marched by ``even`` in the steps ``taken`` alone."""
     shape = normal.scene.shape
     possible = (needed <= taken) & (taken <= MOST_STEPS)
     if np.all(possible) and np.min(taken) == np.max(taken):
@@ -116,7 +100,7 @@ def in_groups(
 
 @attrs.frozen(kw_only=True)
 class FixedSteps(Integrator):
-    """Even steps over the contact's duration, whatever the normal law; a subclass samples them.
+    """Even steps over the contact's duration, under any normal law; a subclass samples them.
 
     Parameters
     ----------
@@ -139,7 +123,7 @@ class FixedSteps(Integrator):
         """Return ``count`` steps of a normal motion."""
 
     def _taken(self, needed: Any) -> Any:
-        """Return how many steps each impact takes, more than ``steps`` where those are too few."""
+        """Return how many steps each impact takes: ``steps``, or more if these are too few."""
         return refined(self.steps, needed) if self.refine else float(self.steps)
 
     def resolution_for(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
@@ -148,14 +132,14 @@ class FixedSteps(Integrator):
         return steps
 
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
-        """Return what the tangential law declares for as many steps."""
+        """Return the error that the tangential law declares for as many steps."""
         steps: Any = self.resolution_for(normal, tangential, scene)
         return tangential.psi2_error(scene, normal, steps)
 
     def remarks(
         self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
     ) -> tuple[str, ...]:
-        """Return a sentence where the steps are too few: what is taken instead, or needed."""
+        """Return a sentence if the steps are too few: the steps taken instead, or needed."""
         needed = needed_steps(normal, tangential)
         most = float(np.nanmax(needed))
         if most <= self.steps:
@@ -174,9 +158,9 @@ class FixedSteps(Integrator):
         scene: Scene,
         observer: Observer | None = None,
     ) -> TangentialMotion:
-        """Return the motion, with more steps than asked for where those are too few.
+        """Return the motion, in more steps than ``steps`` where these are too few.
 
-        Impacts that are observed take as many steps as any of them needs: one time axis.
+        Impacts that are observed share one time axis: the most steps that any of them needs.
         """
         law = tangential
         assert isinstance(law, SteppedTangentialLaw)

@@ -32,16 +32,7 @@ from contactlab_laws.march.division import one_by_one
 def march(
     normal: NormalMotion, law: SteppedTangentialLaw, steps: Steps, observer: Observer | None
 ) -> TangentialMotion:
-    """Return the tangential motion along ``steps``: all at once if the law can, else one by one.
-
-    Parameters
-    ----------
-    normal : NormalMotion
-    law : SteppedTangentialLaw
-    steps : Steps
-        Of the normal motion.
-    observer : callable or None
-    """
+    """Return the tangential motion along ``steps``: all at once if the law can, else one by one."""
     if (complaint := _unsound(normal, steps)) is not None:
         return TangentialMotion.nothing(normal.scene.shape, Status.NON_FINITE, complaint)
     if observer is None and isinstance(law, AllStepsTangentialLaw):
@@ -54,7 +45,7 @@ def march(
 def _all_at_once(
     normal: NormalMotion, law: AllStepsTangentialLaw, steps: Steps
 ) -> TangentialMotion | None:
-    """Return the tangential motion from a law that takes all steps in one call, if it does."""
+    """Return the tangential motion of a law that takes all steps in one call, or None."""
     scene = normal.scene
     try:
         with faults.blaming(law):
@@ -66,8 +57,8 @@ def _all_at_once(
             force, count = response.force, len(response.force)
             kick = steps.kick[:count] / scene.pair.tangential_mass
             change = -np.einsum("k...,k...->...", force, kick)  # makes no table of products
-    except faults.LawFaultError as found:
-        return TangentialMotion.nothing(scene.shape, found.status, found.detail)
+    except faults.LawFaultError as raised:
+        return TangentialMotion.nothing(scene.shape, raised.status, raised.detail)
     fault = None
     if response.settled is not True and not np.all(response.settled):
         detail = faults.sentence(law, "no division found", count + 1)
@@ -80,40 +71,31 @@ def _all_at_once(
 
 
 def _malformed(response: AllStepsResponse, scene: Scene, steps: int) -> str | None:
-    """Return what is wrong with an answer to all steps: its kind, or its shape."""
+    """Return a sentence on an answer of wrong kind or shape, or None."""
     force, work, settled = response
     if not isinstance(force, np.ndarray) or not force.ndim or faults.malformed(force, force.shape):
         return f"the forces {shown(force)}"
     count = len(force)
     missing = count > steps or (count < steps and np.all(settled))
     if missing or force.shape[1:] != scene.shape:
-        given = f"for {steps} steps of a scene of shape {scene.shape}"
-        return f"forces of shape {force.shape} {given}"
+        wanted = f"for {steps} steps of a scene of shape {scene.shape}"
+        return f"forces of shape {force.shape} {wanted}"
     return f"friction work {shown(work)}" if faults.malformed(work, scene.shape) else None
 
 
 def _one_by_one(
     normal: NormalMotion, law: SteppedTangentialLaw, steps: Steps, observer: Observer | None
 ) -> TangentialMotion:
-    """Return the tangential motion, the law asked in every step.
-
-    The change of velocity is summed apart from the velocity, which may be so large
-    that it would swallow the change (theory §8).
-
-    Parameters
-    ----------
-    normal : NormalMotion
-    law : SteppedTangentialLaw
-    steps : Steps
-    observer : callable or None
-    """
+    """Return the tangential motion, the law asked in every step."""
+    # The change of velocity is summed apart from the velocity, which may be so large that it would
+    # swallow the change (theory §8).
     scene = normal.scene
     shape, initial, mass = scene.shape, scene.slip_velocity, scene.pair.tangential_mass
     single = not shape
     change: Real = 0.0 if single else np.zeros(shape)
     work: Real = 0.0 if single else np.zeros(shape)
-    nothing = 0.0 * change
-    before = NormalContact(nothing, nothing, nothing, nothing)
+    zero = 0.0 * change
+    before = NormalContact(zero, zero, zero, zero)
     fault, count = None, 0
     velocity: Real = locked(initial)
     time: Real = 0.0
@@ -147,9 +129,9 @@ def _one_by_one(
                 raise faults.LawFaultError(Status.NON_FINITE, f"force {shown(force)}")
     except KeyboardInterrupt:
         raise
-    except faults.LawFaultError as found:
-        sentence = faults.sentence(law, found.detail, count, time)
-        fault = faults.LawFaultError(found.status, sentence)
+    except faults.LawFaultError as raised:
+        sentence = faults.sentence(law, raised.detail, count, time)
+        fault = faults.LawFaultError(raised.status, sentence)
     except BaseException as error:  # a plug-in may not end the process
         sentence = faults.sentence(law, faults.raised(error), count, time)
         fault = faults.LawFaultError(Status.LAW_RAISED, sentence)
@@ -164,20 +146,7 @@ def _ended(
     count: int,
     fault: faults.LawFaultError | None,
 ) -> TangentialMotion:
-    """Return the motion as it ended; friction work that is not finite is a failure too.
-
-    Parameters
-    ----------
-    normal : NormalMotion
-    law : Law
-        Whose failure it is.
-    change, work : float or array
-        Change of slip velocity (m/s) and friction work (J).
-    count : int
-        Steps taken.
-    fault : LawFaultError or None
-        What ended it before separation.
-    """
+    """Return the motion up to ``fault``; friction work that is not finite is a failure too."""
     if fault is None and not np.all(np.isfinite(work)):
         detail = faults.sentence(law, f"friction work {shown(work)}", count)
         fault = faults.LawFaultError(Status.NON_FINITE, detail)
@@ -192,15 +161,13 @@ def _ended(
 
 
 def _unsound(normal: NormalMotion, steps: Steps) -> str | None:
-    """Return what is wrong with a normal motion that is not finite: then no march is begun.
-
-    Not left to the tangential law: where the load is infinite Coulomb's cap is no cap, and
-    the answer would look right.
-    """
+    """Return a sentence on a normal motion that is not finite, or None; then no march begins."""
+    # The tangential law cannot tell: where the load is infinite Coulomb's cap is no cap, and the
+    # answer would look right.
     for column in (*steps.contact, *steps[1:4]):
         if not np.isfinite(column).all():
             bad = ~np.isfinite(column).reshape(len(column), -1).all(axis=1)
             count: int = int(bad.argmax())
-            what: Any = shown(column[count])
-            return faults.sentence(normal.law, what, count + 1, steps.time[count])
+            value: Any = shown(column[count])
+            return faults.sentence(normal.law, value, count + 1, steps.time[count])
     return None

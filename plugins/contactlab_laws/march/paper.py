@@ -17,10 +17,10 @@ class PaperSteps(FixedSteps):
     """The paper's even steps, eqs (33)-(37): tractions at the ends of steps.
 
     The paper prints the equations and not the order in which a step takes them. Here the
-    displacement grows with the old velocity, the tractions (33)-(37) are found at the new contact,
+    displacement grows with the old velocity, the tractions (33)-(37) are solved at the new contact,
     and the force changes the velocity (35). It is then Verlet's scheme, of second order: the
     velocities stand half a step before the displacements, and the half step missing at
-    first touch has no force. That the paper's errors fall more slowly is its annuli's doing.
+    first touch has no force. The paper's errors fall more slowly because of its annuli.
 
     The normal motion (30)-(32), which the paper integrates by the same steps, is made beforehand
     as for every integrator: its restitution is then 1, where 500 steps of the paper leave 1e-9.

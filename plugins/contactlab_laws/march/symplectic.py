@@ -15,7 +15,7 @@ from contactlab_laws.march.fixed import FixedSteps
 class Symplectic(FixedSteps):
     """Leapfrog: the contact is sampled in the middle of each step.
 
-    Steps are even in time: even in the phase of a closed form the error is about 1.6 times as
+    Steps are even in time: with steps even in the phase the error is about 1.6 times as
     large. A law gets the exact mean friction load of each step.
 
     Parameters

@@ -1,4 +1,4 @@
-"""One spring with a cap: the friction of LAMMPS, LIGGGHTS, YADE, Kratos and MFiX."""
+"""A spring with a cap: the friction of LAMMPS, LIGGGHTS, YADE, Kratos and MFiX."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ FAILURES: Mapping[str, Mapping[str, str]] = {
     },
     "increment_rescaled": {"books": _NO_BOOK, "impact_books": _NO_BOOK},
 }
-#: Those whose scenes miss the gain with a stiffness of two thirds: at a psi1 and a chi the law then
-#: does what it does with a factor of 1 at two thirds of both.
+#: Checks that pass with a stiffness factor of 2/3: the law then does what it does with a factor of
+#: 1 at two thirds of psi1 and chi, where the scenes of the check show no gain.
 SOFTER = frozenset({"impact_bounds"})
-#: Those that pass with a dashpot that takes what the spring gives back, of 0.2 and more.
+#: Checks that pass with a dashpot of 0.2 and more, which takes up what the spring gives back.
 TAKEN = frozenset({"closed_cycles", "random_paths", "partial_unloading", "impact_bounds"})
-#: Those that a dashpot fails besides.
+#: Further checks that a law with a dashpot fails.
 DAMPED = {
     "turning_points": "the force of a dashpot depends on the velocity, which a path has not",
     "stiffness": "the force of a dashpot is no force of displacement",
@@ -68,9 +68,9 @@ _MADE = (
     "energy from nothing: as the contact grows and shrinks, this form of the spring may give back "
     "more than it took, {} (model, not numerical error)"
 )
-#: How much the forms that make energy make, whatever the factor: between elastic spheres, and under
-#: damped normal laws. Measured over 12,000 impacts a form, chi up to 300, and 60,000 damped ones,
-#: chi up to 30, under the five normal laws that take a restitution.
+#: Cautions of the forms that make energy, with its size at any stiffness factor: between elastic
+#: spheres, and under damped normal laws. Measured over 12,000 impacts a form, chi up to 300, and
+#: 60,000 damped ones, chi up to 30, under the five normal laws that take a restitution.
 ELASTIC = {
     "displacement": _MADE.format("and bodies slip up to 6.4 % faster than they met"),
     "displacement_rescaled": _MADE.format("by up to 7.5 % of the energy of slip"),
@@ -85,7 +85,7 @@ DAMPED_GAIN = {
 
 
 class State(NamedTuple):
-    """Twice G* in Pa, masses in kg, the friction coefficient, and what the spring remembers."""
+    """Twice G* in Pa, masses in kg, the friction coefficient, and the memory of the spring."""
 
     modulus: Real
     normal_mass: Real
@@ -101,7 +101,7 @@ class MindlinCap(SteppedTangentialLaw):
     """The stiffness of a contact that sticks all over, k = 2 G* b, under Coulomb's cap mu P.
 
     No part of the contact slips before the whole does. The energy that the changing
-    stiffness makes or loses is in nobody's books and shows as their imbalance.
+    stiffness makes or loses is in no energy book and shows as the imbalance of the books.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ class MindlinCap(SteppedTangentialLaw):
         the cap (LAMMPS ``mindlin/force``, YADE); ``"increment_rescaled"``: the same, F
         multiplied with b/b before while b shrinks (LAMMPS ``mindlin_rescale/force``, Kratos).
     stiffness_factor : float
-        k over 2 G* b, Mindlin's stiffness; 2/3 where (16/3) G b is taken for 8 G b, with 1/G the
+        k over 2 G* b, Mindlin's stiffness; 2/3 for k = (16/3) G b instead of 8 G b, with 1/G the
         sum of (2 - nu)/G of the bodies (Di Renzo & Di Maio 2005). LAMMPS, LIGGGHTS, YADE, Kratos
         and MFiX have 1.
     damping : float
@@ -136,32 +136,30 @@ class MindlinCap(SteppedTangentialLaw):
 
     @property
     def expected_failures(self) -> Mapping[str, str]:
-        """Return what its form fails: each is found out by another path."""
+        """Return the checks that this form fails by its nature, with the path that shows it."""
         passed = TAKEN if self.damping else SOFTER if self.stiffness_factor < 1.0 else frozenset()
         failed = {name: why for name, why in FAILURES[self.form].items() if name not in passed}
         return {**failed, **(DAMPED if self.damping else {})}
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return that partial slip is left out, and how much energy the form makes, if any."""
+        """Return the cautions of every law, of partial slip, and of energy that the form makes."""
         gains = ELASTIC if "elastic_hertz" in normal.offers else DAMPED_GAIN
         made = [gains[self.form]] if self.form in gains else []
         return (*super().cautions(scene, normal), PARTIAL_SLIP, *made)
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return elastic impacts at the cap from start to end too."""
-        known = super().whole_impacts(scene, normal)
+        """Return the whole-impact answers, with elastic impacts at the cap from start to end."""
+        answers = super().whole_impacts(scene, normal)
         if "elastic_hertz" not in normal.offers or self.damping:
-            return known
+            return answers
         stiffer = self._stiffer(scene)
         where = self._slips_throughout(stiffer.psi1, stiffer.chi)
         reason = "the force is at Coulomb's cap from start to end"
-        return (*known, sliding(scene, normal, where=where, reason=reason, stops=False))
+        return (*answers, sliding(scene, normal, where=where, reason=reason, stops=False))
 
     def _stiffer(self, scene: Scene) -> Scene:
-        """Return the scene in which the law with factor 1 does what it does in ``scene``.
-
-        Nothing but G* times the factor is in its equations: psi1 and chi grow as the factor.
-        """
+        """Return the scene in which the law with factor 1 does what this law does in ``scene``."""
+        # The equations hold G* times the factor only: psi1 and chi grow as the factor.
         if self.stiffness_factor == 1.0:
             return scene
         modulus = self.stiffness_factor * scene.pair.effective_shear_modulus
@@ -170,12 +168,10 @@ class MindlinCap(SteppedTangentialLaw):
         return Scene(None, None, friction, speed, slip, pair=pair)
 
     def _slips_throughout(self, psi1: Real, chi: Real) -> Mask:
-        """Return True where the force is at the cap from start to end.
-
-        Gross slip goes on while the cap changes slower than the spring: in scaled variables
-        while psi >= r V, r = 2/3 in the displacement form (F = 1.5 b u, cap b³), 1 in the
-        increment form; if rescaled, in unloading 1/3 and 2/3.
-        """
+        """Return True where the force is at the cap from start to end."""
+        # Gross slip goes on while the cap changes slower than the spring: in scaled variables while
+        # psi >= r V, r = 2/3 in the displacement form (F = 1.5 b u, cap b³), 1 in the increment
+        # form; if rescaled, in unloading 1/3 and 2/3.
         loading = 2.0 / 3.0 if self.form.startswith("displacement") else 1.0
         unloading = loading - (1.0 / 3.0 if self.form.endswith("rescaled") else 0.0)
         return np.abs(psi1) >= np.maximum(
@@ -183,7 +179,7 @@ class MindlinCap(SteppedTangentialLaw):
         )
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return k of the largest contact."""
+        """Return k of the largest contact in N/m."""
         return self._modulus(scene) * normal.maximum_radius
 
     def _modulus(self, scene: Scene) -> Real:
@@ -192,11 +188,11 @@ class MindlinCap(SteppedTangentialLaw):
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return a spring at rest."""
-        nothing: Real = np.zeros(scene.shape) if scene.shape else 0.0
+        zero: Real = np.zeros(scene.shape) if scene.shape else 0.0
         pair = scene.pair
         masses = (pair.normal_mass, pair.tangential_mass)
-        known = (self._modulus(scene), *masses, scene.friction_coefficient)
-        return State(*known, nothing, nothing, nothing)
+        modulus = self._modulus(scene)
+        return State(modulus, *masses, scene.friction_coefficient, zero, zero, zero)
 
     def advance(
         self, state: State, increment: Increment, before: NormalContact, after: NormalContact

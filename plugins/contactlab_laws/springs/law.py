@@ -15,12 +15,12 @@ from contactlab_laws.jaeger.law import ProfileLaw
 
 
 class Midpoints(Bundle):
-    """Springs in the middle of equal cells: F = mu P times the sum of w over that of l.
+    """Springs in the middle of equal cells: F = mu P times the sum of w over the sum of l.
 
     With this rule, rather than 1.5/n times the sum, gross slip gives mu P to rounding and
     abs(F) never exceeds it. While the contact holds the first spring only, the factor would
     fall from infinity to 9/8 of 1.5/n, and a stretched spring that becomes softer or stiffer
-    makes or loses energy: there 9/8 is kept, and the limit gives way instead.
+    makes or loses energy: the factor stays at 9/8 then, and the limit grows instead.
     """
 
     def __init__(self, springs: int) -> None:
@@ -31,16 +31,16 @@ class Midpoints(Bundle):
         self.heaviest = 1.125 * 1.5 / springs
 
     def weights(self, square: Array) -> Array:
-        """Return b³ over the sum of b² - s², for every spring of a contact alike."""
+        """Return the weights, shape (n, K): b³ over the sum of b² - s², equal for all springs."""
         factor = np.minimum(self._factor(square), self.heaviest)
         return np.broadcast_to(factor, (len(self.squares), len(square)))
 
     def weights_of_one(self, square: float, touching: int) -> Array:
-        """Return the same for one contact."""
+        """Return the weights of the innermost springs of one contact, shape (touching,)."""
         return self.ones[:touching] * min(self._factor_of_one(square), self.heaviest)
 
     def limit_factor(self, square: Real) -> Real:
-        """Return 1 but where the contact holds one spring, whose weight is kept down."""
+        """Return the factor on the limits: above 1 where the weight of one spring is capped."""
         if isinstance(square, float):
             return max(self._factor_of_one(square) / self.heaviest, 1.0)
         return np.maximum(self._factor(square) / self.heaviest, 1.0)
@@ -58,7 +58,7 @@ class Midpoints(Bundle):
 
 @lru_cache(maxsize=32)
 def midpoints(springs: int) -> Midpoints:
-    """Return the bundle of ``springs`` springs, made once."""
+    """Return the bundle of ``springs`` springs, cached."""
     return Midpoints(springs)
 
 

@@ -13,7 +13,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, quantity, refuse
 from contactlab_laws.stronge.lumped import Rebound, rebound
 
-#: Of the energy books, over the energy at the start.
+#: Bound of the imbalance of the energy books, over the energy at the start.
 ROUNDING = 1e-9
 #: Share by which the friction load's impulse may exceed that of the spring without a caution.
 PULL = 1e-3
@@ -28,7 +28,7 @@ class Stronge(WholeImpactTangentialLaw):
     The normal spring has k_n in compression and k_n/e² in restitution, e that of the normal
     law's motion; the tangential one k_t throughout. Between the changes of slip and stick
     the motion is one of sines and cosines, so nothing is marched. The contact sticks at first if
-    v_x < mu v1 k_n/k_t. The true normal motion enters by e alone: the course is told by nobody.
+    v_x < mu v1 k_n/k_t. The true normal motion enters by e alone. The law gives no history.
 
     Parameters
     ----------
@@ -56,16 +56,15 @@ class Stronge(WholeImpactTangentialLaw):
         return ROUNDING
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return slip and stick of every impact."""
+        """Return the outcome of every impact."""
         pair = scene.pair
         ratio = pair.stiffness_ratio if self.stiffness_ratio is None else self.stiffness_ratio
         with np.errstate(all="ignore"):
             unit: Any = scene.friction_coefficient * scene.normal_speed / ratio
             incidence = np.abs(scene.slip_velocity) / unit
             frequency = np.sqrt(ratio * pair.normal_mass / pair.tangential_mass)
-            # e of the motion. The friction load's impulse is another number under adhesion.
+            # e from the velocities: adhesion changes the friction load's impulse.
             bounce = -normal.final_rate / scene.normal_speed
-        known = super().whole_impacts(scene, normal)
         change, work = _of_each(incidence, frequency, np.maximum(bounce, 0.0), scene.shape)
         answer = WholeImpact(
             where=True,
@@ -74,10 +73,10 @@ class Stronge(WholeImpactTangentialLaw):
             reason="two springs and a slider: sines and cosines between slip and stick",
             psi2_error=0.0,
         )
-        return (*known, answer)
+        return (*super().whole_impacts(scene, normal), answer)
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return that the contact is lumped, and that its normal spring does not pull."""
+        """Return the cautions of a lumped contact and of a normal spring that does not pull."""
         lumped = (
             "lumped contact: springs that do not know the contact's area, and no partial slip, "
             "which moves psi2 of solid spheres by up to about 0.4 (model, not numerical error)"
@@ -86,7 +85,7 @@ class Stronge(WholeImpactTangentialLaw):
 
 
 def _pull(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-    """Return the caution of a friction load that is not the force of the normal spring."""
+    """Return the caution that the friction load exceeds the force of the normal spring."""
     momentum = scene.pair.normal_mass * (scene.normal_speed - normal.final_rate)
     largest = float(np.max(normal.total_load_impulse / momentum))
     if not largest > 1.0 + PULL:
@@ -99,29 +98,15 @@ def _pull(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
 
 
 def _of_each(incidence: Any, frequency: Any, bounce: Any, shape: tuple[int, ...]) -> Rebound:
-    """Return the rebounds of all impacts, arrays of ``shape``; 0 where there is no friction.
-
-    Parameters
-    ----------
-    incidence : float or array
-        psi before the impact, abs(v_x) k_t/(k_n mu v1); no unit.
-    frequency : float or array
-        omega, the tangential over the normal natural frequency; no unit.
-    bounce : float or array
-        e of the normal motion, at least 0.
-    shape : tuple of int
-        Which all three broadcast to.
-    """
-    columns = (np.broadcast_to(column, shape).ravel().tolist() for column in (
-        incidence, frequency, bounce
-    ))  # fmt: skip
-    answers = [_of_one(*row) for row in zip(*columns, strict=True)]
-    change, work = np.array(answers).T.reshape(2, *shape)
+    """Return change and work of all impacts, arrays of ``shape``, scaled as in ``lumped``."""
+    columns = (incidence, frequency, bounce)
+    rows = zip(*(np.broadcast_to(each, shape).ravel().tolist() for each in columns), strict=True)
+    change, work = np.array([_of_one(*row) for row in rows]).T.reshape(2, *shape)
     return Rebound(change, work)
 
 
 def _of_one(incidence: float, frequency: float, bounce: float) -> Rebound:
-    if not 0.0 < incidence < np.inf:  # central, or smooth: answered already
+    if not 0.0 < incidence < np.inf:  # no slip, or no friction: answered by the base class
         return Rebound(0.0, 0.0)
     if not frequency <= MOST_FREQUENCY:
         why = f"must be at most {MOST_FREQUENCY:g}: each oscillation is followed"

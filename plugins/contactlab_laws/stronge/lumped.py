@@ -1,4 +1,4 @@
-"""One impact of a body on two springs, in closed form between slip and stick.
+"""An impact of a body on two springs, in closed form between slip and stick.
 
 Scaled: theta = Omega t, Omega² = k_n/M_n; psi = (k_t/k_n) v_x/(mu v1); forces in units of mu times
 the greatest normal force; omega = sqrt(k_t/M_t)/Omega. Then psi' = -omega² f, in stick f' = psi, in
@@ -46,7 +46,7 @@ class Rebound(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """psi1, the change since, f, the friction work, the sign of slip or 0 for stick."""
+    """psi1, the change of psi, f, the friction work, and the sign of slip (0 for stick)."""
 
     incidence: float
     change: float
@@ -61,17 +61,8 @@ class Contact(NamedTuple):
 
 
 def rebound(incidence: float, frequency: float, restitution: float) -> Rebound:
-    """Return the outcome of an impact.
-
-    Parameters
-    ----------
-    incidence : float
-        psi before the impact, at least 0.
-    frequency : float
-        omega.
-    restitution : float
-        e: restitution takes e times as long as compression, and gives e times its impulse.
-    """
+    """Return the outcome of an impact with psi = ``incidence`` >= 0 and omega = ``frequency``."""
+    # Restitution takes e times as long as compression, and has e times its impulse.
     contact = Contact(incidence, 0.0, 0.0, 0.0, int(incidence >= 1.0))
     for half in (Half(1.0, True), Half(restitution, False)):
         x, changes = 0.0, 0
@@ -81,32 +72,13 @@ def rebound(incidence: float, frequency: float, restitution: float) -> Rebound:
             changes += 1
             if changes > MOST_CHANGES * (1.0 + frequency):
                 raise ArithmeticError(f"slip and stick change {changes} times, omega = {frequency}")
-    # A load that ends at once, e = 0, leaves the spring its energy: it is lost as it lets go.
-    left = 0.5 * (frequency * contact.force) ** 2
-    return Rebound(contact.change, contact.work + left)
+    # With e = 0 the load ends at once and the spring, which still holds energy, loses it.
+    stored = 0.5 * (frequency * contact.force) ** 2
+    return Rebound(contact.change, contact.work + stored)
 
 
 def _slip(contact: Contact, half: Half, frequency: float, x: float) -> tuple[Contact, float]:
-    """Follow slip of one sign until it ends, psi = dp/d theta, or to the end of the half.
-
-    Parameters
-    ----------
-    contact : Contact
-        At ``x``, slipping.
-    half : Half
-        Closing or opening half of the normal motion.
-    frequency : float
-        Ratio of the tangential to the normal frequency.
-    x : float
-        Phase in [0, pi/2] within the half.
-
-    Returns
-    -------
-    Contact
-        Where slip ends.
-    float
-        The phase there.
-    """
+    """Return contact and phase where slip of one sign ends, psi = dp/d theta, or the half ends."""
     sense, square = contact.sense, frequency**2
     end = _slip_ends(sense * contact.velocity, half, square, x)
     change = -sense * square * half.impulse(x, end)
@@ -124,19 +96,7 @@ def _slip(contact: Contact, half: Half, frequency: float, x: float) -> tuple[Con
 
 
 def _slip_ends(speed: float, half: Half, square: float, x: float) -> float:
-    """Return where s psi falls to dp/d theta: a sine or cosine of it is known; else pi/2.
-
-    Parameters
-    ----------
-    speed : float
-        s psi at ``x``, scaled.
-    half : Half
-        Closing or opening half of the normal motion.
-    square : float
-        Of the ratio of the tangential to the normal frequency.
-    x : float
-        Phase in [0, pi/2] within the half.
-    """
+    """Return the phase where s psi = ``speed`` falls to dp/d theta in closed form, else pi/2."""
     whole = 0.5 * math.pi
     if half.closing:
         # speed - square (cos x0 - cos x) = cos x
@@ -153,26 +113,7 @@ def _slip_ends(speed: float, half: Half, square: float, x: float) -> float:
 
 
 def _stick(contact: Contact, half: Half, frequency: float, x: float) -> tuple[Contact, float]:
-    """Follow the free oscillation until its force meets the limit, or to the end of the half.
-
-    Parameters
-    ----------
-    contact : Contact
-        At ``x``, sticking.
-    half : Half
-        Closing or opening half of the normal motion.
-    frequency : float
-        Ratio of the tangential to the normal frequency.
-    x : float
-        Phase in [0, pi/2] within the half.
-
-    Returns
-    -------
-    Contact
-        Where sticking ends.
-    float
-        The phase there.
-    """
+    """Return contact and phase where the spring force meets the limit, or the half ends."""
     turn = frequency * half.scale
     start, speed = contact.force, contact.velocity / frequency
     swing = math.hypot(start, speed)
@@ -183,15 +124,15 @@ def _stick(contact: Contact, half: Half, frequency: float, x: float) -> tuple[Co
 
     end, sense = 0.5 * math.pi, 0
     for sign in (1, -1):
-        # p - s f is smooth where p - abs(f) is not.
-        found = first_zero(
+        # p - abs(f) is not smooth, p - f and p + f are.
+        zero = first_zero(
             lambda at, sign=sign: half.load(at) - sign * force(at),  # type: ignore[misc]
             1.0 + turn * turn * swing,
             x,
             end,
         )
-        if found is not None:
-            end, sense = found, sign
+        if zero is not None:
+            end, sense = zero, sign
     angle = turn * (end - x)
     change = frequency * (speed * (math.cos(angle) - 1.0) - start * math.sin(angle))
     after = contact._replace(change=contact.change + change, force=force(end), sense=sense)

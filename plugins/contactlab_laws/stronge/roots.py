@@ -1,32 +1,22 @@
-"""The first zero of a smooth function, none missed."""
+"""The first zero of a smooth function: an interval is skipped only if it can hold none."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-#: Zeros closer to each other than this over the root of the second derivative's bound are one, or
-#: none: the function is a straight line there, to 1e-15.
+#: Narrowest interval that is halved, times the root of the second derivative's bound: the function
+#: is a straight line there, to 1e-15, and two zeros count as one or none.
 NARROWEST = 1e-7
-#: What is not below this is rounding.
+#: A function value above minus this is no zero: rounding.
 ROUNDING = 1e-14
 
 
 def first_zero(
     function: Callable[[float], float], bend: float, start: float, stop: float
 ) -> float | None:
-    """Return the first point of (start, stop] at which a function falls below zero, or None.
-
-    An interval is passed over only where its ends and the bound of the second derivative leave
-    no room for a zero; else it is halved, its left half first.
-
-    Parameters
-    ----------
-    function : callable
-        Not negative at ``start``.
-    bend : float
-        Bound of the absolute second derivative.
-    start, stop : float
-    """
+    """Return the first point of (start, stop] where ``function`` falls below 0, or None."""
+    # ``bend`` bounds the absolute second derivative. An interval is passed over only where its ends
+    # and this bound leave no room for a zero; else it is halved, its left half first.
     narrowest = NARROWEST / max(bend, 1.0) ** 0.5
     pending = [(start, function(start), stop, function(stop))]
     while pending:

@@ -12,7 +12,7 @@ from contactlab.contracts import NormalMotion, WholeImpact, WholeImpactTangentia
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Rule, quantity
 
-#: Of the energy books, over the energy at the start.
+#: Bound of the imbalance of the energy books, over the energy at the start.
 ROUNDING = 1e-9
 SHARE = Rule(
     lambda value: (value >= -1.0) & (value <= 1.0),
@@ -22,11 +22,11 @@ SHARE = Rule(
 
 @attrs.frozen(kw_only=True)
 class Walton(WholeImpactTangentialLaw):
-    """The lesser of two tangential impulses: mu times the load's, (1 + beta_0) M_t v_x.
+    """The lesser of two tangential impulses: mu times the load impulse, (1 + beta_0) M_t v_x.
 
     The normal law gives the third parameter of hard spheres, the restitution e. The impulse of
     slip, in N s, is mu times that of the friction load: mu (1 + e) M_n v1 where the normal law
-    does not pull, and more under adhesion. The law says nothing of the course of an impact.
+    does not pull, and more under adhesion. The law gives no history of an impact.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Walton(WholeImpactTangentialLaw):
 
     @property
     def books_bound(self) -> float:
-        """Return the bound of rounding: the work is the loss of the two impulses."""
+        """Return the bound of rounding: the friction work follows from the impulse."""
         return ROUNDING
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
@@ -57,12 +57,12 @@ class Walton(WholeImpactTangentialLaw):
         mass, speed = scene.pair.tangential_mass, np.abs(scene.slip_velocity)
         with np.errstate(all="ignore"):
             slipping = scene.friction_coefficient * normal.total_load_impulse / mass
-            lost = np.minimum(slipping, (1.0 + self.slip_restitution) * speed)
-            # Of a body that loses ``lost``: the mean velocity is that of before and after.
-            work = mass * lost * (speed - 0.5 * lost)
+            loss = np.minimum(slipping, (1.0 + self.slip_restitution) * speed)
+            # The impulse acts at the mean of the velocities before and after.
+            work = mass * loss * (speed - 0.5 * loss)
         answer = WholeImpact(
             where=True,
-            slip_velocity_change=-np.sign(scene.slip_velocity) * lost,
+            slip_velocity_change=-np.sign(scene.slip_velocity) * loss,
             friction_work=work,
             reason="hard spheres: the lesser of gross slip and a constant slip restitution",
             psi2_error=0.0,
@@ -70,7 +70,7 @@ class Walton(WholeImpactTangentialLaw):
         return (*super().whole_impacts(scene, normal), answer)
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return that one number stands for the elasticity of the surfaces."""
+        """Return the caution that one slip restitution stands for all tangential elasticity."""
         return (
             "hard spheres: one slip restitution stands for the tangential elasticity, at every "
             "angle; it moves psi2 of solid spheres by up to about 0.8 (model, not numerical error)",

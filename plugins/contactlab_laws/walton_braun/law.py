@@ -15,8 +15,8 @@ from contactlab.numeric.checks import POSITIVE, Real, quantity
 from contactlab_laws.differences.table import choice
 
 
-class Memory(NamedTuple):
-    """Loading stiffness k1 in N/m, the pair's radius in m, and the deepest approach so far."""
+class State(NamedTuple):
+    """Loading stiffness k1 in N/m, the pair's radius in m, and the deepest approach so far in m."""
 
     stiffness: Real
     radius: Real
@@ -27,17 +27,17 @@ class Memory(NamedTuple):
 class WaltonBraun(NormalLaw):
     """Plastic loading P = k1 z and elastic unloading P = k2 (z - z_p), with e = sqrt(k1/k2).
 
-    In N, positive in compression; z_p = (1 - e²) z_max is left over. The contact is that of a
-    sphere as it is pressed, b² = R z, then that of its flattened cap, b² = (R/e²)(z - z_p): in
-    both b² = R P/k1. The law knows no pressure.
+    P is in N, positive in compression; the remaining indentation is z_p = (1 - e²) z_max. In
+    loading the contact is that of a sphere, b² = R z; in unloading that of its flattened cap,
+    b² = (R/e²)(z - z_p). In both b² = R P/k1. The law gives no pressure.
 
     Parameters
     ----------
     restitution : float
         e, rebound over approach velocity, at most 1; the same at any speed.
     stiffness : float, optional
-        k1 in N/m. By default each impact has that with which its loading spring would give way
-        as far as Hertz's, were it elastic: k1 = M (v1/z_max)².
+        k1 in N/m. By default k1 = M (v1/z_max)² for each impact: an elastic spring of this
+        stiffness reaches the largest approach of Hertz's contact, z_max.
 
     References
     ----------
@@ -51,26 +51,26 @@ class WaltonBraun(NormalLaw):
     restitution: float = restitution(default=0.9)
     stiffness: float | None = quantity("N/m", rule=POSITIVE, default=None)
 
-    def start(self, scene: Scene) -> Memory:
-        """Return stiffness and radius of the pair, never pressed yet."""
+    def start(self, scene: Scene) -> State:
+        """Return the state of a pair that was never pressed."""
         stiffness = linear_stiffness(scene) if self.stiffness is None else self.stiffness
-        return Memory(stiffness, scene.pair.radius, 0.0)
+        return State(stiffness, scene.pair.radius, 0.0)
 
-    def respond(self, state: Memory, approach: Real, rate: Real) -> tuple[NormalContact, Memory]:
-        """Return force and radius, and the memory of this approach."""
+    def respond(self, state: State, approach: Real, rate: Real) -> tuple[NormalContact, State]:
+        """Return force and radius, and the state with the deepest approach."""
         deepest = np.maximum(state.deepest, approach)
         share = self.restitution * self.restitution
-        # The unloading line of the deepest approach; while loading it ends just there.
-        given_way: Any = deepest - (deepest - approach) / share
-        pressing = np.logical_not(given_way <= 0.0)
-        spring = given_way * pressing
+        # (z - z_p)/e², which is z while loading.
+        compression: Any = deepest - (deepest - approach) / share
+        pressing = np.logical_not(compression <= 0.0)
+        spring = compression * pressing
         contact = NormalContact(
             force=state.stiffness * spring,
             radius=(state.radius * spring) ** 0.5,
-            overlap=given_way,
+            overlap=compression,
         )
         return contact, state._replace(deepest=deepest)
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return those of every law, and how far others of the same restitution move psi2."""
+        """Return the cautions of every law, and how far psi2 moves with other laws of equal e."""
         return (*super().cautions(scene, motion), *choice(scene, motion))
