@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from contactlab.contracts.error_model import COARSE, range_of
 from contactlab.numeric.arrays import for_share
 
-if TYPE_CHECKING:
-    from contactlab.outcome.result import ImpactResult
-
 #: Ratio of estimated to declared error above which the declaration is false. Estimates are mostly
 #: within a factor of three of the true error.
 CONTRADICTS = 10.0
 
 
-def error_words(result: ImpactResult) -> str:
+def error_words(result: Any) -> str:
     """Return the numerical error of psi2 in words, estimated and declared."""
     estimate, declared = _errors(result)
     parts = []
@@ -34,7 +31,7 @@ def error_words(result: ImpactResult) -> str:
     return "; ".join(parts)
 
 
-def error_cautions(result: ImpactResult) -> list[str]:
+def error_cautions(result: Any) -> list[str]:
     """Return cautions about a false declared error and about coarse answers."""
     estimate, declared = _errors(result)
     with np.errstate(all="ignore"):
@@ -58,7 +55,7 @@ def error_cautions(result: ImpactResult) -> list[str]:
     return cautions
 
 
-def _errors(result: ImpactResult) -> tuple[Any, Any]:
+def _errors(result: Any) -> tuple[Any, Any]:
     """Return estimated and declared error in the batch shape, NaN where there is none."""
     shape = result.scene.shape
     estimate: Any = np.nan if result.psi2_error_estimate is None else result.psi2_error_estimate
