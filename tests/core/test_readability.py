@@ -4,6 +4,7 @@ import ast
 import importlib
 import inspect
 import re
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -53,6 +54,12 @@ def test_the_map_of_the_package_names_every_room():
 
 def test_the_face_has_at_most_twenty_names():
     assert len(contactlab.__all__) <= 20
+
+
+def test_the_example_of_the_first_docstring_runs(capsys):
+    example = re.search(r"::\n\n((?:    .*\n|\n)+)", contactlab.__doc__).group(1)
+    exec(textwrap.dedent(example), {})
+    assert "numerical error of psi2" in capsys.readouterr().out
 
 
 def test_imports_point_downward():
