@@ -1,26 +1,36 @@
-"""contactlab: oblique impact of elastic bodies, with contact laws as plug-ins.
+"""contactlab computes oblique impacts of elastic bodies, with contact laws as plug-ins.
 
-A scene meets three interchangeable laws, and the answer comes back with its error, its
-cost, its energy books and a list of what was left out.
+A ``Scene`` describes an impact: bodies, friction, velocities. A ``Simulation`` combines a normal
+law, a tangential law and an integrator. ``Simulation.run`` returns an ``ImpactResult``: velocities
+after the impact, energies, the numerical error, and the plan, which states what was computed and
+which effects were left out::
 
-The rooms, each of which imports from those above it only:
+    from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
+
+    steel = Material.named("steel")
+    ball = Sphere(radius=0.01, material=steel)
+    scene = Scene.at_angle(ball, HalfSpace(steel), 0.2, speed=1.0, angle_deg=30.0)
+    result = Simulation().run(scene)
+    print(result.psi2, result.plan)
+
+The package has these parts. Each imports only from the parts above it:
 
 ============== ===========================================================================
-``numeric``    checked numbers, vectors, batches, nodes of collocation
-``impact``     materials, bodies, scenes, encounters, Hertz's closed forms, adhesion
-``contracts``  what a law promises: normal, tangential, whole impact, integrator; statuses
-``outcome``    motion, plan, energy books, history, results and the forms they are read in
-``compose``    laws found by name and fitted together: run, sweep, rebound, collide
+``numeric``    checked numbers, vectors, batches, collocation, Runge-Kutta steps
+``impact``     materials, bodies, scenes, encounters, Hertz's closed forms, cautions
+``contracts``  base classes of normal laws, tangential laws and integrators; statuses
+``outcome``    results: motion, plan, energy books, history, tables and files
+``compose``    laws by name, simulations, sweeps, rebounds, collisions
 ``scene_file`` scenes and sweeps in TOML
-``testing``    the conformance kit for laws
+``testing``    the conformance kit, which checks laws against their contracts
 ``study``      comparison, cost against error, stability, validation, the paper's figures
 ``fitting``    parameters from measured impacts
-``figures``    one function a figure
-``pages``      pages that stand alone, notebooks
-``cli``        the commands
+``figures``    functions that draw on Matplotlib axes
+``pages``      self-contained HTML pages, notebooks
+``cli``        the command line
 ============== ===========================================================================
 
-The pages of the guide lie in ``guide/``, which holds no code.
+The laws are in the package ``contactlab_laws``; the guide is in ``guide/``.
 """
 
 from __future__ import annotations
@@ -80,39 +90,39 @@ def create(name: str, **options: Any) -> Any:
     name : str
         Kind and name, such as ``"tangential.annulus"``.
     **options
-        Of the law: ``contactlab plugins show NAME`` tells them with units.
+        Options of the law; ``contactlab plugins show NAME`` lists them with units.
 
     Raises
     ------
     ValueError
-        If no such law is installed (with the nearest match), or an option is refused.
+        If no such law is installed, with the nearest name, or if an option is refused.
     PluginError
-        If the plug-in is broken, with its traceback.
+        If the plug-in fails to load; the message has its traceback.
     """
     return REGISTRY.create(name, **options)
 
 
 def read_scene(path: str | Path) -> SceneFile:
-    """Read a scene or a sweep, its laws and its measured values from a TOML file.
+    """Return the scene or sweep, the laws and the measured values of a TOML file.
 
     Parameters
     ----------
     path : str or Path
-        Of a TOML file.
+        Path of the file.
 
     Raises
     ------
     ValueError
-        If the file cannot be read, is not TOML, or says something unknown or not physical,
-        with the key, the value, the rule and the remedy.
+        If the file cannot be read, is not TOML, or has an unknown key or a refused value. The
+        message names key, value, rule and remedy.
     """
-    from contactlab import scene_file  # only those who read files pay for the reader
+    from contactlab import scene_file  # imported on use, to keep ``import contactlab`` fast
 
     return scene_file.read_scene(path)
 
 
 def __getattr__(name: str) -> Any:
-    """Return what only some need, when it is asked for."""
+    """Return ``fit`` or ``materials``, imported on first use."""
     import importlib
 
     if name == "fit":

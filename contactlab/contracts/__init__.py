@@ -1,7 +1,7 @@
-"""The three contracts: what a normal law, a tangential law and an integrator promise.
+"""The contracts of normal laws, tangential laws and integrators.
 
-Authors of laws import from here alone: besides the contracts, the fields of checked options, the
-restitution as an option, statuses and faults.
+Authors of laws need no other module. It also has the fields by which a law declares checked
+options (``quantity``, ``count``, ``choice``, ``flag``, ``restitution``), statuses and faults.
 """
 
 from contactlab.contracts import faults

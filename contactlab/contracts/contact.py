@@ -1,4 +1,4 @@
-"""The normal contact at one instant, which normal laws answer and tangential laws read."""
+"""The normal contact at one instant: normal laws return it, tangential laws read it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from contactlab.numeric.checks import Real
 
-#: Overlap in m of a contact that presses at first touch: only its sign means something.
+#: Overlap in m of a contact that presses at first touch; only the sign of an overlap matters.
 TOUCH = 1e-300
 
 
@@ -20,13 +20,13 @@ class NormalContact(NamedTuple):
     force : float or array
         P in N, positive in compression, negative where the surfaces pull; 0 out of contact.
     radius : float or array
-        b in m, the contact radius; 0 out of contact, and 0 from a law that has none.
+        b in m, the contact radius; 0 out of contact, and 0 from a law without contact radius.
     overlap : float or array
-        Positive in contact, zero or negative out of contact: its sign tells where the impact
-        ends. Any measure in m.
+        Any length in m that is positive in contact, and zero or negative out of contact. The
+        impact ends where its sign changes.
     friction_load : float or array, optional
         The normal force in N that Coulomb's limit is taken of, never negative. A normal law
-        may leave it out: it is max(P, 0) then. A tangential law always finds it.
+        may omit the friction load, which is then max(P, 0). Tangential laws always receive it.
     """
 
     force: Real
@@ -36,29 +36,29 @@ class NormalContact(NamedTuple):
 
     @property
     def complete(self) -> NormalContact:
-        """The same contact with its friction load."""
+        """The same contact, with max(P, 0) as friction load if it had none."""
         if self.friction_load is not None:
             return self
         force: Any = self.force
-        # A product with the comparison keeps NaN a NaN, for floats and arrays alike.
+        # Multiplying by the comparison keeps NaN, for floats and arrays alike.
         return self._replace(friction_load=force * (force > 0.0) + 0.0 if np.ndim(force) else (
             0.0 if force <= 0.0 else force
         ))  # fmt: skip
 
 
 def without_tension(force: Real, radius: Real, approach: Real) -> NormalContact:
-    """Return the contact of a law that does not pull: it has ended where ``force`` is not positive.
+    """Return the contact of a law without tension, which ends where ``force`` is not positive.
 
-    Force and radius are 0 there, and the overlap is negative. NaN stays NaN.
+    Where the contact has ended, force and radius are 0 and the overlap is negative. NaN stays NaN.
 
     Parameters
     ----------
     force : float or array, shape (...,)
-        In N, positive in compression.
+        Normal force in N, positive in compression.
     radius : float or array, shape (...,)
-        Of the contact, in m.
+        Contact radius in m.
     approach : float or array, shape (...,)
-        In m, positive in compression.
+        Approach in m, positive in compression.
     """
     pushing = np.logical_not(force <= 0.0)
     return NormalContact(

@@ -1,9 +1,9 @@
-"""The range of psi2, in terms of which its numerical error counts.
+"""The range of psi2, the unit in which the numerical error of psi2 is judged.
 
-The change of slip velocity lies between 0 and the lesser of what friction can do in a whole
-elastic impact of slip (4 chi in psi) and twice the velocity it starts with (|psi2| <= |psi1|). So
-an error of 1 over the range is an answer that says nothing, at any psi1, chi and friction
-coefficient, zero and huge ones included.
+The magnitude of the change of slip velocity is at most the change in an elastic impact of gross
+slip (4 chi in psi) and at most twice the slip velocity at first touch (|psi2| <= |psi1|). The range
+is the lesser of the two bounds. An answer whose error equals the range is worthless, at any psi1,
+chi and friction coefficient, zero and huge values included.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ import numpy as np
 
 from contactlab.impact.scene import Scene
 
-#: An answer whose numerical error is more than this share of the range has no digit: it is coarse.
+#: An answer is coarse if its numerical error is more than this share of the range.
 COARSE = 0.25
-#: No answer is further off than this, over the range: one annulus may overshoot it a little.
+#: Cap on the declared error, over the range; above 1, as one annulus may exceed the range.
 LARGEST_SHARE = 1.1
 
 
 class Range(NamedTuple):
-    """Of a scene, in m/s: the unit of psi, the range of the change, and |v_x|."""
+    """Velocity of psi = 1, range of the change of slip velocity, and |v_x|; all in m/s."""
 
     unit: Any
     width: Any
@@ -30,20 +30,20 @@ class Range(NamedTuple):
 
 
 def range_of(scene: Scene) -> Range:
-    """Return the range in which the change of slip velocity must lie."""
+    """Return the range of the change of slip velocity, in m/s, of the batch shape."""
     pair = scene.pair
     speed: Any = abs(scene.slip_velocity)
     lesser: Any = np.minimum if scene.shape else min
     with np.errstate(over="ignore", under="ignore"):
         friction: Any = scene.friction_coefficient * scene.normal_speed
-        # 4 chi in psi, without forming psi, which is infinite without friction.
-        most = 2.0 * (friction * (pair.normal_mass / pair.tangential_mass))
-        return Range(friction / pair.stiffness_ratio, lesser(most, 2.0 * speed), speed)
+        # This is 4 chi in psi; psi itself would be infinite without friction.
+        slipping = 2.0 * (friction * (pair.normal_mass / pair.tangential_mass))
+        return Range(friction / pair.stiffness_ratio, lesser(slipping, 2.0 * speed), speed)
 
 
 def psi_magnitude(scene: Scene) -> Any:
-    """Return max(1, |psi1|), of which errors of psi2 are shares; 1 where psi1 is infinite."""
-    size: Any = abs(scene.psi1)
+    """Return max(1, |psi1|), the scale of relative errors of psi2; 1 where psi1 is infinite."""
+    magnitude: Any = abs(scene.psi1)
     if not scene.shape:
-        return max(1.0, size) if math.isfinite(size) else 1.0
-    return np.maximum(1.0, np.where(np.isfinite(size), size, 1.0))
+        return max(1.0, magnitude) if math.isfinite(magnitude) else 1.0
+    return np.maximum(1.0, np.where(np.isfinite(magnitude), magnitude, 1.0))

@@ -1,7 +1,7 @@
-"""Faults of laws in the middle of a run: how they are found, and what is said of them.
+"""Faults of laws in the middle of a run: detection, and sentences that describe them.
 
-For integrators: nothing here is called in a step that goes well, but for ``malformed``, and
-that only where an answer is not a plain float.
+Integrators use this module. A step without fault calls ``malformed`` only, and only if an answer
+is not a plain float.
 """
 
 from __future__ import annotations
@@ -15,17 +15,22 @@ from contactlab.contracts.status import Status
 
 
 class LawFaultError(Exception):
-    """A law failed; raised and caught within an integrator, to end the run with a status."""
+    """A law failed. Integrators raise and catch this error to end a run with a status."""
 
     def __init__(self, status: Status, detail: str) -> None:
         super().__init__(detail)
         self.status, self.detail = status, detail
 
 
-class blaming:  # noqa: N801 a context manager, named as those of contextlib are
-    """Turns whatever is raised within, but Ctrl-C, into a ``LawFaultError`` of a law.
+class blaming:  # noqa: N801 a context manager with a lower-case name, as in contextlib
+    """Context manager that turns any error but KeyboardInterrupt into a ``LawFaultError``.
 
-    Written out, for a generator costs each impact microseconds.
+    A class, as a generator would cost each impact microseconds.
+
+    Parameters
+    ----------
+    law : Law
+        The law that runs in the context; the error names it.
     """
 
     __slots__ = ("law",)
@@ -39,12 +44,12 @@ class blaming:  # noqa: N801 a context manager, named as those of contextlib are
     def __exit__(self, kind: object, error: BaseException | None, where: object) -> None:
         if error is None or isinstance(error, KeyboardInterrupt | LawFaultError):
             return
-        # whatever else: a plug-in may not end the process
+        # SystemExit too: a plug-in must not end the process
         raise LawFaultError(Status.LAW_RAISED, sentence(self.law, raised(error), 1)) from error
 
 
 def malformed(value: Any, shape: tuple[int, ...]) -> bool:
-    """Return whether ``value`` is other than real numbers that broadcast to the batch ``shape``."""
+    """Return True unless ``value`` is real numbers that broadcast to the batch ``shape``."""
     if isinstance(value, np.ndarray):
         if value.dtype.kind not in "fiu":
             return True
@@ -53,18 +58,18 @@ def malformed(value: Any, shape: tuple[int, ...]) -> bool:
 
 
 def sentence(law: Law, what: str, step: int, time: Any = None) -> str:
-    """Return the sentence of a fault: step, time, what happened, and whose law it was.
+    """Return the sentence that describes a fault: step, time, event, and the law.
 
     Parameters
     ----------
     law : Law
-        The one that failed.
+        The law that failed.
     what : str
-        What it did: ``"force nan"``.
+        The event: ``"force nan"``.
     step : int
-        From 1.
+        Number of the step, from 1.
     time : float or array, optional
-        In s; the latest of several.
+        Time of the fault in s; of an array the latest is named.
     """
     try:
         when = f", time {float(np.max(time)):.6g} s" if time is not None else ""
@@ -74,15 +79,16 @@ def sentence(law: Law, what: str, step: int, time: Any = None) -> str:
 
 
 def raised(error: BaseException) -> str:
-    """Return what was raised, and where, as a sentence."""
-    import traceback  # only where there is something to tell
+    """Return the type, message and place of an error as a sentence."""
+    import traceback  # only failed runs need it
 
     where = traceback.extract_tb(error.__traceback__)[-1]
     return f"{type(error).__name__}: {error} ({where.name}, line {where.lineno})"
 
 
-def _broadcasts(given: tuple[int, ...], shape: tuple[int, ...]) -> bool:
+def _broadcasts(answered: tuple[int, ...], shape: tuple[int, ...]) -> bool:
+    """Return whether the shape ``answered`` broadcasts to ``shape``."""
     try:
-        return np.broadcast_shapes(given, shape) == shape
+        return np.broadcast_shapes(answered, shape) == shape
     except ValueError:
         return False

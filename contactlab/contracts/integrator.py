@@ -1,4 +1,4 @@
-"""The contract of an integrator: the tangential motion along a normal motion."""
+"""The contract of integrators, and the tangential motion that they return."""
 
 from __future__ import annotations
 
@@ -22,26 +22,27 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled, merged, spread
 from contactlab.numeric.checks import Mask, Real
 
-#: Impacts of a sweep handed over together, unless the integrator says otherwise.
+#: Impacts of a sweep that an integrator receives at a time, by default.
 CHUNK = 1000
 
 
 class Sample(NamedTuple):
-    """One instant of an impact, as handed to an observer.
+    """One instant of an impact, as passed to an observer.
 
     Attributes
     ----------
     time : float or array, shape (...,)
-        In s, 0 at first touch.
+        Time in s, 0 at first touch.
     approach, normal_velocity : float or array
-        In m and m/s, positive in compression.
+        Approach in m and its rate in m/s, positive in compression.
     contact : NormalContact
+        The normal contact.
     slip_velocity : float or array
-        In m/s.
+        v_x in m/s.
     tangential_force : float or array
-        In N, positive where it opposes a positive slip velocity.
+        F in N, positive where it opposes a positive slip velocity.
     fields : callable
-        Returns the law's arrays over the radius; asked only if wanted.
+        Returns the law's arrays over the contact radius; observers call it only if they keep them.
     """
 
     time: Real
@@ -53,27 +54,28 @@ class Sample(NamedTuple):
     fields: Callable[[], Mapping[str, Any]]
 
 
-#: Called with each instant; it must not change anything it is given.
+#: Called with each instant; it must not change its argument.
 Observer: TypeAlias = Callable[[Sample], None]
 
 
 @attrs.frozen(kw_only=True, eq=False)
 class TangentialMotion:
-    """What an integrator returns; entries have the batch shape.
+    """The tangential motion that an integrator returns; entries have the batch shape.
 
     Attributes
     ----------
     slip_velocity_change : float or array
-        Change of v_x in m/s. Kept apart from v_x, which may be so large that the
-        change would be lost in it.
+        Change of v_x in m/s. It is not added to v_x, which may be so large that the sum would
+        lose digits of the change.
     friction_work : float or array
-        In J, added up by the tangential law.
+        Friction work in J, summed over the answers of the tangential law.
     status : Status or array of Status
+        How the run of each impact ended.
     detail : str or array of str
-        What went wrong, where and when; empty on success. Of a batch an integrator may give
-        one sentence: it goes to the impacts that failed.
+        What failed, at which step and time; empty on success. An integrator may give one
+        sentence for a batch, which goes to the impacts that failed.
     counters : mapping of str to int
-        Work done: ``steps``, ``evaluations``, ``rejected``, ...
+        Operations counted: ``steps``, ``evaluations``, ``rejected``, ...
     """
 
     slip_velocity_change: Real
@@ -84,7 +86,7 @@ class TangentialMotion:
 
     def __attrs_post_init__(self) -> None:
         if isinstance(self.status, Status):
-            return  # one impact: NumPy takes longer to say so
+            return  # one impact: np.ndim is slower than this test
         if isinstance(self.detail, str) and np.ndim(self.status):
             details = filled("", np.shape(self.status))
             if self.detail:
@@ -96,19 +98,19 @@ class TangentialMotion:
     def numbers(cls) -> tuple[str, ...]:
         """Return the names of the entries that are numbers."""
         fields: Any = attrs.fields(cls)
-        others = ("status", "detail", "counters")
-        return tuple(field.name for field in fields if field.name not in others)
+        no_numbers = ("status", "detail", "counters")
+        return tuple(field.name for field in fields if field.name not in no_numbers)
 
     @classmethod
     def joined(cls, motions: Sequence[Self], shape: tuple[int, ...]) -> Self:
-        """Return one motion of ``shape`` from those of its impacts, or of parts of them.
+        """Return one motion of ``shape`` from the motions of consecutive parts of the batch.
 
         Parameters
         ----------
         motions : sequence of TangentialMotion
-            In the order of the impacts.
+            Motions of single impacts or of batches, in the order of the impacts.
         shape : tuple of int
-            Of the whole.
+            Shape of the whole batch.
         """
         if len(motions) == 1 and shape and np.shape(motions[0].status) == shape:
             return motions[0]
@@ -126,14 +128,14 @@ class TangentialMotion:
     def merged(cls, parts: Sequence[tuple[Any, Self]], shape: tuple[int, ...]) -> Self:
         """Return one motion of ``shape`` from pairs of a mask and the motion of its impacts.
 
-        An impact in several parts has the motion of the last.
+        An impact in several parts has the motion of the last of these parts.
 
         Parameters
         ----------
         parts : sequence of (array of bool, TangentialMotion)
-            Masks of shape ``shape``, and motions of as many impacts.
+            Masks of shape ``shape``, each with the motion of the impacts that it marks.
         shape : tuple of int
-            Of the whole.
+            Shape of the whole batch.
         """
         counters: Counter[str] = Counter()
         for _, motion in parts:
@@ -148,14 +150,16 @@ class TangentialMotion:
     def nothing(
         cls, shape: tuple[int, ...], status: Status, detail: str | Sequence[str] = ""
     ) -> Self:
-        """Return the motion of impacts of which nothing is known: NaN throughout.
+        """Return the motion of impacts that were not computed: all numbers are NaN.
 
         Parameters
         ----------
         shape : tuple of int
+            Batch shape.
         status : Status
+            Status of all impacts.
         detail : str or sequence of str
-            A sentence, or one for each impact.
+            One sentence for all impacts, or one for each.
         """
         entries: dict[str, Any] = dict.fromkeys(cls.numbers(), spread(math.nan, shape))
         return cls(
@@ -165,69 +169,71 @@ class TangentialMotion:
         )
 
     def failing(self, where: Mask, status: Status, detail: Any) -> Self:
-        """Return this motion with ``status`` and ``detail`` on the successes that ``where`` marks.
-
-        ``detail`` is a sentence, or an array of one for each impact.
+        """Return this motion with another status for the successful impacts that ``where`` marks.
 
         Parameters
         ----------
         where : bool or array of bool
+            The impacts that fail; those that had failed before keep status and detail.
         status : Status
+            New status.
         detail : str or array of str
-            A sentence, or one for each impact.
+            One sentence for all these impacts, or one for each impact of the batch.
         """
         statuses: Any = np.array(self.status, dtype=object)
-        fallen = np.asarray(where) & (statuses == Status.SUCCESS)
-        if not fallen.any():
+        failing = np.asarray(where) & (statuses == Status.SUCCESS)
+        if not failing.any():
             return self
         if not statuses.shape:
             return attrs.evolve(self, status=status, detail=detail)
-        statuses[fallen] = status
+        statuses[failing] = status
         return attrs.evolve(
-            self, status=statuses, detail=np.where(fallen, detail, self.detail).astype(object)
+            self, status=statuses, detail=np.where(failing, detail, self.detail).astype(object)
         )
 
 
 class Integrator(Law):
-    """An integrator of the tangential motion along a normal motion that is given.
+    """Base of integrators, which follow the tangential motion along a normal motion.
 
     Contract
     --------
-    1. ``integrate(normal, tangential, scene, observer)`` returns a ``TangentialMotion``. It is
-       pure; it never raises for a numerical failure, but returns a status with the motion so
-       far.
+    1. ``integrate(normal, tangential, scene, observer)`` returns a ``TangentialMotion``. The
+       method is pure. It never raises for a numerical failure; it returns a status and the
+       motion so far.
     2. Every loop is bounded.
-    3. ``observer`` is None or is called at increasing times; having one changes no result.
-    4. ``order`` is the order of convergence in the step that the class declares for smooth
-       laws; None where there are no steps.
-    5. Batch shapes pass through: a batch gives what its impacts give one by one. Where one
-       fails the batch may be given up, a simulation then hands over each by itself; not with
-       ``own_statuses``, which says that a failure within a batch is that of the impact alone.
-    6. ``tangential_contract`` and ``normal_contract`` are the classes of the laws that it runs.
-    7. ``psi2_error`` is a bound of the numerical error of psi2, from what the tangential law
-       declares; NaN, the default, where nothing is declared.
-    8. ``resolution`` is the name of the option, steps or tolerance, that the error falls with.
-       One that raises it by itself where it is too low says so by ``resolution_for``: errors
-       are estimated by doubling what an impact got, not what was asked for.
+    3. ``observer`` is None or is called at increasing times. An observer changes no result.
+    4. ``order`` is the declared order of convergence in the step, for smooth laws; None if the
+       integrator takes no steps.
+    5. A batch gives the same results as its impacts one by one. If an impact fails, the
+       integrator may give the batch up; the simulation then runs each impact alone. An
+       integrator with ``own_statuses`` does not give the batch up: its statuses hold for each
+       impact alone.
+    6. ``tangential_contract`` and ``normal_contract`` are the classes of laws that the
+       integrator accepts.
+    7. ``psi2_error`` is a bound of the numerical error of psi2, from the declaration of the
+       tangential law; NaN, the default, means not declared.
+    8. ``resolution`` is the name of the option, steps or tolerance, that controls the error. If
+       the integrator refines by itself, ``resolution_for`` returns the value used; errors are
+       estimated by doubling that value, not the option.
     """
 
     kind: ClassVar[str] = "integrator"
     tangential_contract: ClassVar[Any]  # a type; mypy allows no abstract one
     normal_contract: ClassVar[Any] = NormalLaw
     order: ClassVar[int | None] = None
-    #: False if each impact of a batch has instants of its own: no history of a batch then.
+    #: False if the impacts of a batch have different instants; batches then have no history.
     common_instants: ClassVar[bool] = True
     own_statuses: ClassVar[bool] = False
 
     @property
     def accuracy(self) -> float | None:
-        """Error of psi2 over max(1, abs(psi1)) that it keeps to in time; None without control."""
+        """Controlled error of psi2 over max(1, abs(psi1)); None if no error is controlled."""
         return None
 
     def chunk(self, tangential: TangentialLaw) -> int:
-        """Return how many impacts a sweep should hand over at a time.
+        """Return the number of impacts that a sweep should pass at a time.
 
-        Enough to hide the cost of a call, few enough that an interruption loses little.
+        Large chunks hide the cost of a call; small chunks lose little by an interruption.
 
         Parameters
         ----------
@@ -242,33 +248,35 @@ class Integrator(Law):
         tangential: TangentialLaw,
         scene: Scene,
     ) -> tuple[str, ...]:
-        """Return what a plan should say of these impacts: sentences, none by default.
+        """Return sentences for the plan of these impacts; empty by default.
 
         Parameters
         ----------
         normal : NormalMotion
-            Of all impacts of ``scene``.
+            Normal motion of all impacts of ``scene``.
         tangential : TangentialLaw
+            The law that is run.
         scene : Scene
             One impact or a batch.
         """
         return ()
 
     def resolution_for(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
-        """Return the resolution that each impact gets: that of the option, unless overridden.
+        """Return the resolution used for each impact: by default the value of the option.
 
         Parameters
         ----------
         normal : NormalMotion
-            Of all impacts of ``scene``.
+            Normal motion of all impacts of ``scene``.
         tangential : TangentialLaw
+            The law that is run.
         scene : Scene
             One impact or a batch.
 
         Returns
         -------
         float or array
-            0 of an integrator without one.
+            0 if the integrator has no resolution.
         """
         return float(getattr(self, self.resolution)) if self.resolution else 0.0
 
@@ -278,12 +286,14 @@ class Integrator(Law):
         tangential: TangentialLaw,
         scene: Scene,
     ) -> Real:
-        """Return the declared numerical error of psi2.
+        """Return the declared bound of the numerical error of psi2, of the batch shape.
+
+        NaN, the default, means not declared.
 
         Parameters
         ----------
         normal : NormalMotion
-            Of all impacts of ``scene``.
+            Normal motion of all impacts of ``scene``.
         tangential : TangentialLaw
             The law that is run.
         scene : Scene
@@ -304,11 +314,11 @@ class Integrator(Law):
         Parameters
         ----------
         normal : NormalMotion
-            Already made, of the same impacts.
+            Normal motion of all impacts of ``scene``.
         tangential : TangentialLaw
-            Of the class ``tangential_contract``.
+            A law of the class ``tangential_contract``.
         scene : Scene
-            One impact, or a batch.
+            One impact or a batch.
         observer : callable, optional
             Called with a ``Sample`` at increasing times (clause 3).
         """

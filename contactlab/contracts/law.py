@@ -1,4 +1,4 @@
-"""The base of every law: its kind, needs, offers, and the version of its contract."""
+"""The base class of all laws: kind, needs, offers, and the version of the contract."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from abc import ABC
 from collections.abc import Mapping
 from typing import ClassVar
 
-#: Version of the contracts in this package. A plug-in states the one it was written for.
+#: Version of the contracts in this package. A plug-in states the version it was written for.
 API_VERSION = 2
 
 
@@ -15,34 +15,35 @@ class Law(ABC):
 
     Contract
     --------
-    1. An object is immutable and holds parameters only (``attrs.frozen(kw_only=True)``):
-       the same object may serve any number of simulations at once, and it pickles.
-    2. ``api_version`` is set in the class itself to the version it was written for.
-    3. What a law can do follows from the classes that it is derived from. ``offers`` are
-       claims besides, words that ``contactlab.testing`` holds it to; ``needs`` are the claims
-       that a tangential law depends on in its normal law. Words in use:
+    1. A law is immutable and holds parameters only (``attrs.frozen(kw_only=True)``). The same
+       object may serve any number of simulations at once. A law can be pickled.
+    2. ``api_version`` is set in the class itself, to the version the law was written for.
+    3. The base classes of a law determine how it is run. ``offers`` are further claims, in
+       words, which ``contactlab.testing`` checks. ``needs`` are the claims that a tangential
+       law requires of its normal law. Words in use:
 
        ========================  ====================================================
        ``radius``                the normal contact knows its contact radius
        ``hertzian_pressure``     pressure is a hemisphere over that radius, eq. (3)
        ``elastic_hertz``         the normal motion is the elastic impact of eqs (2)-(7)
        ``partial_slip``          the contact slips from its edge inwards: at fixed normal
-                                 load its force is Cattaneo and Mindlin's; elastic impacts
-                                 end as the axisymmetric continuum's, the finer the closer
-       ``rigid``                 bodies do not deform tangentially: an impact slips until its
-                                 slip stops, if it does, and then rolls without a force
-       ``no_friction``           the law makes no force
+                                 load the force is Cattaneo and Mindlin's; elastic impacts
+                                 converge to the axisymmetric continuum's
+       ``rigid``                 bodies do not deform tangentially: they slip until the slip
+                                 velocity is zero or contact ends, and then roll without
+                                 tangential force
+       ``no_friction``           the tangential force is zero
        ========================  ====================================================
 
-    4. ``resolution`` names the parameter that makes answers finer, if there is one: a count
-       (``steps``, ``annuli``) that grows, or ``tolerance``, which shrinks.
-    5. Words in the names of parameters; each is checked when the object is made and
-       refused with a ``ValueError`` that names it. A ``quantity`` of a law is one number: it
-       refuses arrays (``plain_options``).
-    6. ``expected_failures`` names the checks of ``contactlab.testing`` that the law fails by
-       its nature, each with the reason: a class variable, or a property if it depends on the
+    4. ``resolution`` names the parameter that makes answers finer, or is None: a count
+       (``steps``, ``annuli``), finer the greater, or ``tolerance``, finer the smaller.
+    5. Parameters have words as names. Each parameter is checked when the law is made; a bad
+       value raises a ``ValueError`` that names the parameter. A ``quantity`` of a law is one
+       number and refuses arrays (``plain_options``).
+    6. ``expected_failures`` maps the checks of ``contactlab.testing`` that the law fails by
+       its nature to the reasons. It is a class variable, or a property if it depends on
        parameters.
-    7. Arrays that a law is given are read-only: a law that writes in place raises an error.
+    7. Arrays passed to a law are read-only; writing to them raises an error.
     """
 
     kind: ClassVar[str]
@@ -54,5 +55,5 @@ class Law(ABC):
 
     @property
     def expected_failures(self) -> Mapping[str, str]:
-        """Checks that fail by the law's nature, with the reasons; none by default."""
+        """Checks that the law fails by its nature, mapped to reasons; empty by default."""
         return {}

@@ -1,4 +1,4 @@
-"""The normal motion as a value: made once, before any friction is computed."""
+"""The contract of normal motions, which are made before any friction is computed."""
 
 from __future__ import annotations
 
@@ -24,10 +24,11 @@ class NormalSample(NamedTuple):
     Attributes
     ----------
     time : float or array
-        Since first touch, in s.
+        Time since first touch, in s.
     approach, rate : float or array
-        In m and m/s, positive in compression.
+        Approach in m and its rate in m/s, positive in compression.
     contact : NormalContact
+        The normal contact.
     load_impulse : float or array
         Integral of the friction load since first touch, in N s.
     """
@@ -42,13 +43,15 @@ class NormalSample(NamedTuple):
 class NormalMotion(ABC):
     """A normal motion from first touch to separation, of one impact or of a batch.
 
-    It runs along a phase from 0 to pi, a stand-in for time that grows with it and that the
-    motion chooses: ``phase`` gives the phase at a fraction of the duration.
+    The motion is a function of its phase, which grows with time from 0 at first touch to pi at
+    separation. Each class chooses its phase; ``phase`` returns it for a fraction of the duration.
 
     Attributes
     ----------
     law : NormalLaw
+        The law that made the motion.
     scene : Scene
+        The impacts of the motion.
     duration : float or array
         Time from first touch to separation, in s.
     maximum_radius, maximum_approach : float or array
@@ -58,10 +61,11 @@ class NormalMotion(ABC):
     final_rate : float or array
         Rate of approach at separation, in m/s; negative.
     total_load_impulse : float or array
-        Integral of the friction load over the contact, in N s.
+        Integral of the friction load over the duration, in N s.
     status : Status, or array of Status
-        Of an impact that did not separate everything else means nothing.
+        Status of each impact; the numbers of an impact without success are meaningless.
     detail : str, or array of str
+        What failed; empty on success.
     """
 
     law: Law
@@ -74,7 +78,7 @@ class NormalMotion(ABC):
     total_load_impulse: Real
     status: Any = Status.SUCCESS
     detail: Any = ""
-    #: Declared relative error of the load impulse; NaN, the default: not declared.
+    #: Declared relative error of the load impulse; NaN, the default, means not declared.
     accuracy: float = math.nan
 
     @property
@@ -86,51 +90,53 @@ class NormalMotion(ABC):
     def at(self, phase: Real) -> NormalSample:
         """Return the motion at ``phase``.
 
-        ``phase`` broadcasts against the batch shape: a column of K phases, shape (K, 1, ..., 1),
-        gives K rows of the batch.
+        ``phase`` broadcasts against the batch shape: K phases of shape (K, 1, ..., 1) give
+        samples of shape (K, ...).
 
         Parameters
         ----------
         phase : float or array
-            From 0 at first touch to pi at separation.
+            Phase from 0 at first touch to pi at separation.
         """
 
     @abstractmethod
     def phase(self, fraction: Real) -> Real:
         """Return the phase at which ``fraction`` of the duration has passed, to about 1e-8.
 
-        For steps that are even in time; what they start from is taken exactly from ``at``.
+        Integrators with even steps use it. The error does no harm: ``at`` returns the exact time
+        of that phase.
 
         Parameters
         ----------
         fraction : float or array
-            Of the duration, from 0 to 1; broadcasts against the batch shape.
+            Fraction of the duration, from 0 to 1; broadcasts against the batch shape.
         """
 
     @abstractmethod
     def take(self, part: Any) -> NormalMotion:
-        """Return the motion of some impacts of a batch, as ``contactlab.numeric.arrays.taken``.
+        """Return the motion of the impacts that ``part`` indexes.
 
         Parameters
         ----------
         part : slice, array of bool or int, int or tuple of int
-            As numpy indexes an array of the batch shape.
+            Index of an array of the batch shape.
         """
 
 
 class ScaledContact(NamedTuple):
-    """A normal motion in units of its own, at many phases (arrays) or at one (floats).
+    """A scaled normal motion at many phases (arrays) or at one (floats).
 
-    Approach, radius and force are over their greatest values, the rate over that at first
-    touch; T is time in units of greatest approach over rate at first touch.
+    Approach, radius and force are divided by their greatest values, the rate by its value at
+    first touch. T is time times the rate at first touch over the greatest approach.
 
     Attributes
     ----------
     phase : float or array
+        x, from 0 at first touch to pi at separation.
     approach, radius, rate, force : float or array
         zeta, b/a, V and P/P_max.
     time_rate : float or array
-        dT/dx, x the phase.
+        dT/dx.
     """
 
     phase: Any
@@ -142,25 +148,25 @@ class ScaledContact(NamedTuple):
 
 
 class ClosedFormMotion(NormalMotion):
-    """A normal motion known in closed form, every quantity analytic along its phase.
+    """A normal motion in closed form, whose quantities are analytic functions of the phase.
 
-    Contact begins at the phase 0, compression is greatest at pi/2, contact ends at pi. In such
-    a phase high-order methods keep their order (in time they do not).
+    Contact begins at phase 0, the approach is greatest at pi/2, contact ends at pi. Methods of
+    high order keep their order in such a phase; in time they would not.
     """
 
     @property
     @abstractmethod
     def scaled_mass(self) -> float:
-        """M in M dV/dT = -P/P_max; 0.8 for elastic Hertz contact."""
+        """The mass M of the scaled equation M dV/dT = -P/P_max; 0.8 for elastic Hertz contact."""
 
     @abstractmethod
     def scaled(self, phase: NDArray[np.float64]) -> ScaledContact:
-        """Return the scaled motion of one impact at many phases, as arrays.
+        """Return the scaled motion of one impact at many phases, as arrays of shape (K,).
 
         Parameters
         ----------
         phase : array, shape (K,)
-            From 0 at first touch to pi at separation.
+            Phases from 0 at first touch to pi at separation.
         """
 
     @abstractmethod
@@ -170,15 +176,15 @@ class ClosedFormMotion(NormalMotion):
         Parameters
         ----------
         phase : float
-            From 0 at first touch to pi at separation.
+            Phase from 0 at first touch to pi at separation.
         """
 
     @abstractmethod
     def phase_at_rate(self, rate: Real) -> Real:
-        """Return the phase at which V = ``rate``, a float or an array; V falls throughout.
+        """Return the phase at which V = ``rate``; V falls throughout the impact.
 
         Parameters
         ----------
         rate : float or array
-            V, the scaled normal velocity: 1 at first touch.
+            V, the scaled rate: 1 at first touch.
         """

@@ -1,4 +1,4 @@
-"""Parameters of laws from what is known of an impact: a restitution, and the root that gives it."""
+"""The coefficient of restitution as an option of laws, and helpers of laws that are calibrated."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.numeric.checks import Rule, quantity, refuse
 
-#: Below this coefficient of restitution hardly a law of dissipation means anything.
+#: Least coefficient of restitution: below it no law of dissipation is meaningful.
 LEAST_RESTITUTION = 0.01
 RESTITUTION = Rule(
     lambda value: np.ndim(value) == 0 and LEAST_RESTITUTION <= value <= 1.0,
@@ -18,49 +18,31 @@ RESTITUTION = Rule(
 
 
 def restitution(*, default: Any) -> Any:
-    """Return an attrs field for a coefficient of normal restitution; optional if None.
+    """Return an attrs field for a coefficient of normal restitution, from 0.01 to 1.
 
     Parameters
     ----------
     default : float or None
-        From 0.01 to 1.
+        Value if none is given; None makes the option optional.
     """
     return quantity("1", rule=RESTITUTION, default=default)
 
 
 def root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Return where ``function``, below 0 at ``low`` and not at ``high``, changes its sign.
-
-    To the last bit, by halving.
-    """
+    """Return the sign change of ``function``, negative at ``low``, by bisection to the last bit."""
     while low < (middle := 0.5 * (low + high)) < high:
         low, high = (middle, high) if function(middle) < 0.0 else (low, middle)
     return high
 
 
-def one_of_two(law: Any, one: str, other: str, *, default: float) -> None:
-    """Refuse a law that is given two options which decide the same; of neither, fill in ``one``.
-
-    To be called when a law is made, of options whose default is None.
-
-    Parameters
-    ----------
-    law : object
-        The attrs instance that is being made.
-    one, other : str
-        Names of the two options.
-    default : float
-        Of ``one``, in its unit.
-
-    Raises
-    ------
-    ValueError
-        If neither is None.
-    """
-    values = getattr(law, one), getattr(law, other)
-    given = [value is not None for value in values]  # a value may be an array, to be refused
+def one_of_two(law: Any, first: str, second: str, *, default: float) -> None:
+    """Refuse a law that sets both of two equivalent options; if it sets neither, set ``first``."""
+    values = getattr(law, first), getattr(law, second)
+    given = [value is not None for value in values]  # no comparison: a value may be an array
     if all(given):
         rule = "only one of the two may be given"
-        raise refuse(f"{one}, {other}", values, rule, "each follows from the other: leave one out")
+        raise refuse(
+            f"{first}, {second}", values, rule, "each follows from the other: leave one out"
+        )
     if not any(given):
-        object.__setattr__(law, one, default)  # the object is frozen, and not made yet
+        object.__setattr__(law, first, default)  # the object is frozen

@@ -1,4 +1,4 @@
-"""How a run ended: an enumeration whose values are sentences."""
+"""The status of an impact: an enumeration whose values are sentences."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Status(Enum):
-    """The outcome of an impact. ``SUCCESS`` is the only one with a usable answer."""
+    """How the run of an impact ended. Only ``SUCCESS`` has a usable answer."""
 
     SUCCESS = "The impact was followed from first touch to separation."
     NON_FINITE = "A law returned a value that is not a finite number."
@@ -21,5 +21,5 @@ class Status(Enum):
     INTERRUPTED = "The run was interrupted; this impact was not computed."
 
     def __bool__(self) -> bool:
-        """Return True on success only, so that ``if result.status:`` reads right."""
+        """Return True for ``SUCCESS`` only, so that ``if result.status:`` tests for success."""
         return self is Status.SUCCESS

@@ -1,4 +1,4 @@
-"""The contract of a tangential law: friction force from slip displacement and history."""
+"""The contracts of tangential laws: friction force from slip displacement and history."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ Array = NDArray[np.float64]
 
 
 class Increment(NamedTuple):
-    """One step as a tangential law sees it; every entry broadcasts to the batch shape.
+    """One step as a stepped law sees it; every entry broadcasts to the batch shape.
 
     Attributes
     ----------
     displacement : float or array
-        D in m: relative tangential displacement of the bodies, far from the contact,
-        between the two instants of the step.
+        Increment of D in m over the step: relative tangential displacement of the bodies, far
+        from the contact.
     velocity : float or array
-        v_x in m/s, the local tangential velocity that the step starts with.
+        v_x in m/s, the slip velocity at the start of the step.
     friction_load : float or array
-        The normal force in N that Coulomb's limit is taken of, never negative: the mean over
-        the time in which the answer will act.
+        Friction load in N, never negative: the mean over the time for which the force of the
+        answer acts.
     duration : float or array
-        That time, in s.
+        The time in s for which the force of the answer acts.
     """
 
     displacement: Real
@@ -45,19 +45,19 @@ class Increment(NamedTuple):
 
 
 class TangentialResponse(NamedTuple):
-    """What a tangential law answers; every entry has the batch shape.
+    """Answer of a stepped law to an increment; every entry has the batch shape.
 
     Attributes
     ----------
     force : float or array
-        F in N, positive where it opposes positive slip velocity.
+        F in N, positive where it opposes a positive slip velocity.
     friction_work : float or array
-        In J, at least 0: work done by friction on slipping parts over ``displacement``, added up
-        from traction and slip, not from an energy balance. The slip is part of the
-        displacement, and the traction the mean of those at the two ends of the step: with that
-        the books close under any scheme, whatever its stages.
+        Friction work in J over ``displacement``, at least 0: the sum of traction times slip over
+        slipping parts, not an energy balance. The slip is part of the displacement; the traction
+        is the mean of the tractions at the two ends of the step. With these two rules the energy
+        books close under every integrator.
     settled : bool or array
-        False where the law could not find an answer; the run then ends with a status.
+        False where the law has no answer; the run then ends with a status.
     """
 
     force: Real
@@ -66,46 +66,46 @@ class TangentialResponse(NamedTuple):
 
 
 class TangentialLaw(Law):
-    """Friction of a contact.
+    """Base of tangential laws, which return the tangential force of a contact.
 
     Contract
     --------
-    1. Friction is Coulomb's, abs(F) <= mu times the friction load (a discrete law may exceed
-       this by its own stated discretisation error), and F = 0 out of contact.
-    2. Odd: reversing every displacement reverses every force. A central impact (v_x = 0)
-       makes no tangential force, whatever the normal motion.
-    3. How a law is run is a narrower contract: ``SteppedTangentialLaw`` for laws that answer
+    1. Friction is Coulomb's: abs(F) <= mu times the friction load, and F = 0 out of contact. A
+       discrete law may exceed this limit by its declared discretisation error.
+    2. The law is odd: reversing every displacement reverses every force. A central impact
+       (v_x = 0) has no tangential force, whatever the normal motion.
+    3. A subclass determines how the law is run: ``SteppedTangentialLaw`` for laws that answer
        to a step, ``contactlab.contracts.phases.PhasedTangentialLaw`` for laws that are smooth
        between events, ``WholeImpactTangentialLaw`` for laws that need no march. A law may be
-       several.
-    4. ``whole_impacts`` gives what the law knows of whole impacts; those are not followed. Where
-       several answers hold for an impact the first is taken.
-    5. ``psi2_error`` is a bound of the error of psi2 that the law's own discretisation and
-       ``steps`` even steps of an integrator of second order make; infinite ``steps`` are none.
-       NaN, the default: not declared.
-    6. ``cautions`` says where the model itself is doubtful.
+       derived from several of these classes.
+    4. ``whole_impacts`` returns the whole-impact answers of the law; the impacts for which they
+       hold are not marched. If several answers hold for an impact, the first is used.
+    5. ``psi2_error`` is a bound of the error of psi2 from the law's own discretisation and
+       from ``steps`` even steps of an integrator of second order; infinite ``steps`` add no
+       error. NaN, the default, means not declared.
+    6. ``cautions`` returns doubts about the model.
     """
 
     kind: ClassVar[str] = "tangential"
 
     @property
     def books_bound(self) -> float:
-        """Imbalance of the energy books, over the energy at the start, that still is success.
+        """Largest imbalance of the energy books, over the energy at the start, that is success.
 
-        Infinite unless the law declares one. What an integrator that controls its error adds
-        comes on top.
+        Infinite, the default, means not declared. The error that an integrator controls is
+        allowed in addition.
         """
         return math.inf
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return what is known of whole impacts: by contract, those of no slip or no friction.
+        """Return the whole-impact answers: by default for central impacts and for mu = 0.
 
         Parameters
         ----------
         scene : Scene
             One impact or a batch.
         normal : NormalMotion
-            Of all impacts of ``scene``.
+            Normal motion of all impacts of ``scene``.
         """
         slip: Any = scene.slip_velocity
         friction: Any = scene.friction_coefficient
@@ -116,73 +116,73 @@ class TangentialLaw(Law):
         )
 
     def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
-        """Return the declared numerical error of psi2 at so many steps of an impact.
+        """Return the declared bound of the numerical error of psi2, of the batch shape.
 
         Parameters
         ----------
         scene : Scene
             One impact or a batch.
         normal : NormalMotion
-            Of all impacts of ``scene``.
+            Normal motion of all impacts of ``scene``.
         steps : int or array of int
-            Of each impact, from first touch to separation.
+            Steps of each impact from first touch to separation.
         """
         return math.nan
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return what to be wary of in the model, a sentence each: coupling of unlike bodies.
+        """Return one sentence for each doubt about the model; by default on unlike bodies.
 
         Parameters
         ----------
         scene : Scene
             One impact or a batch.
         normal : NormalMotion
-            Of all impacts of ``scene``.
+            Normal motion of all impacts of ``scene``.
         """
         return coupling(scene)
 
 
 class WholeImpactTangentialLaw(TangentialLaw):
-    """A tangential law that answers every impact as a whole: no integrator is asked.
+    """Base of tangential laws that have a whole-impact answer for every impact.
 
     Contract
     --------
-    1. ``whole_impacts`` holds everywhere: the last of its answers is for all impacts left.
+    1. The answers of ``whole_impacts`` together hold for all impacts. No integrator is used.
     """
 
     @abstractmethod
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return what is known of whole impacts: everything.
+        """Return whole-impact answers that together hold for all impacts.
 
         Parameters
         ----------
         scene : Scene
             One impact or a batch.
         normal : NormalMotion
-            Of all impacts of ``scene``.
+            Normal motion of all impacts of ``scene``.
         """
         return super().whole_impacts(scene, normal)
 
 
 class Steps(NamedTuple):
-    """All even steps of an impact, arrays of shape (K,).
+    """The K even steps of an impact, as arrays of shape (K,).
 
-    Of a batch they are (K, ...), with axes of length 1 where all impacts agree.
-
-    The march drifts to a sample of the normal contact, asks the law, and kicks.
+    For a batch the shape is (K, ...), with axes of length 1 along which all impacts are equal.
+    Each step drifts to a sample of the normal contact, asks the law for a force, and kicks.
 
     Attributes
     ----------
     contact : NormalContact
-        At the samples, of arrays.
+        Normal contact at the samples, as arrays.
     drift : array
-        Time from the last sample to this one, in s: slip velocity acts on displacement.
+        Time in s from the last sample to this sample, for which the slip velocity acts on the
+        displacement.
     kick : array
-        Time in s for which the force found at the sample acts on velocity.
+        Time in s for which the force at the sample acts on the slip velocity.
     friction_load : array
         Mean of the friction load over the kick, in N.
     time, approach, rate : array
-        At the sample.
+        Time in s, approach in m and rate in m/s at the samples.
     """
 
     contact: Any
@@ -195,16 +195,16 @@ class Steps(NamedTuple):
 
 
 class AllStepsResponse(NamedTuple):
-    """What a law answers to all steps.
+    """Answer of a law to all steps.
 
     Attributes
     ----------
     force : array, shape (K,), or (K, ...) of a batch
-        In N, at the samples; fewer than K where it stopped.
+        F in N at the samples; fewer than K if the law stopped.
     friction_work : float or array of the batch shape
-        In J, added up over the steps.
+        Friction work in J, summed over the steps.
     settled : bool or array of bool
-        False where no answer was found to the step after the last force.
+        False where the law has no answer to the step after the last force.
     """
 
     force: Array
@@ -213,25 +213,25 @@ class AllStepsResponse(NamedTuple):
 
 
 class SteppedTangentialLaw(TangentialLaw):
-    """A tangential law that answers to a step: the return mapping of plasticity.
+    """Base of tangential laws that answer to a step, as in the return mapping of plasticity.
 
     Contract
     --------
-    1. ``start(scene, normal)`` returns the state at first touch. It holds what the law needs of
-       scene and normal motion (stiffness, friction coefficient, a grid that spans the largest
-       contact) and its memory.
+    1. ``start(scene, normal)`` returns the state at first touch. The state holds the memory of
+       the law, and the numbers that the law needs of scene and normal motion: stiffness,
+       friction coefficient, a grid that spans the largest contact.
     2. ``advance(state, increment, before, after)`` returns ``(TangentialResponse, state)``.
-       History is a value: the state that goes in stays untouched, so an integrator may try a
-       step, reject it and try again.
+       The method does not change its argument ``state``, so an integrator may reject a step and
+       try another one.
     3. ``before`` and ``after`` are the normal contact at the two ends of the step. Coulomb's
-       limit is taken of their friction load, or of the increment's, never of the force, which
-       may be a pull.
-    4. Growing normal force alone (displacement 0) makes no tangential force.
-    5. ``fields(state)`` names arrays for the history; it changes nothing.
+       limit uses their friction load, or the increment's; never the normal force, which may
+       pull.
+    4. A normal force that grows at displacement 0 makes no tangential force.
+    5. ``fields(state)`` returns named arrays for the history and changes nothing.
     6. ``stiffness(scene, normal)`` is an upper bound of dF/dD in N/m, from which an integrator
-       knows its largest stable step; 0 for a law whose force does not come from displacement.
-       Of a law that does not offer ``partial_slip``, whose microslip damps the oscillation,
-       the errors of phase of all periods are taken to add up, and more steps are needed.
+       computes its largest stable step; 0 for a law whose force does not depend on
+       displacement. A law that offers ``partial_slip`` damps the oscillation by microslip. For
+       other laws integrators take more steps, as phase errors add up over all periods.
     """
 
     @abstractmethod
@@ -243,7 +243,7 @@ class SteppedTangentialLaw(TangentialLaw):
         scene : Scene
             One impact or a batch.
         normal : NormalMotion
-            Of all impacts of ``scene``.
+            Normal motion of all impacts of ``scene``.
         """
 
     @abstractmethod
@@ -255,7 +255,7 @@ class SteppedTangentialLaw(TangentialLaw):
         Parameters
         ----------
         state : object
-            As ``start`` or the step before left it.
+            The state that ``start`` or the last step returned.
         increment : Increment
             Displacement, slip velocity, mean friction load and duration of the step.
         before, after : NormalContact
@@ -263,14 +263,14 @@ class SteppedTangentialLaw(TangentialLaw):
         """
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return the largest tangential stiffness, in N/m.
+        """Return an upper bound of the tangential stiffness, in N/m, of the batch shape.
 
         Parameters
         ----------
         scene : Scene
             One impact or a batch.
         normal : NormalMotion
-            Of all impacts of ``scene``.
+            Normal motion of all impacts of ``scene``.
         """
         return 0.0
 
@@ -280,35 +280,36 @@ class SteppedTangentialLaw(TangentialLaw):
         Parameters
         ----------
         state : object
-            What ``start`` or ``advance`` returned.
+            The state that ``start`` or ``advance`` returned.
         """
         return {}
 
 
 class AllStepsTangentialLaw(SteppedTangentialLaw):
-    """A stepped law that can also take all steps in one call, which is faster.
+    """Base of stepped laws that can also take all steps in one call, which is faster.
 
     Contract
     --------
-    1. ``advance_all(scene, normal, steps)`` gives, to rounding, the forces that ``advance`` gives
-       step by step when the slip velocity falls by force times kick over mass after each step.
-    2. ``scene`` is one impact or a batch, whose forces have shape (K, ...).
-    3. It may return None: these impacts are better done step by step. A law that takes single
-       impacts only returns it where ``scene.shape`` is not empty.
+    1. ``advance_all(scene, normal, steps)`` returns, to rounding, the forces that ``advance``
+       returns step by step when each step reduces the slip velocity by force times kick over
+       tangential mass.
+    2. ``scene`` is one impact or a batch. Forces of a batch have shape (K, ...).
+    3. ``advance_all`` may return None; the impacts are then marched step by step. A law that
+       implements single impacts only returns None if ``scene.shape`` is not empty.
     """
 
     @abstractmethod
     def advance_all(
         self, scene: Scene, normal: NormalMotion, steps: Steps
     ) -> AllStepsResponse | None:
-        """Return the forces of a whole impact, or of each of a batch.
+        """Return the forces of all steps, of one impact or of each of a batch.
 
         Parameters
         ----------
         scene : Scene
             One impact or a batch.
         normal : NormalMotion
-            Of all impacts of ``scene``.
+            Normal motion of all impacts of ``scene``.
         steps : Steps
-            The contact at every step.
+            The steps, with the normal contact at each.
         """

@@ -1,4 +1,4 @@
-"""Answers for a whole impact: the change of slip velocity without following the contact."""
+"""Whole-impact answers: changes of slip velocity without a march."""
 
 from __future__ import annotations
 
@@ -16,25 +16,28 @@ from contactlab.numeric.checks import Mask, Real
 
 @attrs.frozen(kw_only=True, eq=False)
 class WholeImpact:
-    """What a law knows of whole impacts, from the scene and the normal motion alone.
+    """Whole-impact answer of a law for some impacts of a batch.
+
+    The answer follows from the scene and the normal motion alone.
 
     Attributes
     ----------
     where : bool or array of bool
-        The impacts of which it is known; broadcasts to the batch shape, as the next two.
+        The impacts that the answer holds for; broadcasts to the batch shape, as do
+        ``slip_velocity_change`` and ``friction_work``.
     slip_velocity_change : float or array
-        In m/s; anything where it is not known.
+        Change of v_x in m/s; arbitrary where ``where`` is False.
     friction_work : float or array
-        In J, at least 0.
+        Friction work in J, at least 0.
     reason : str
-        Why these impacts need not be followed, for the plan: ``"friction coefficient 0"``.
+        Why these impacts need no march, for the plan: ``"friction coefficient 0"``.
     course : callable, optional
         ``course(load_impulse, friction_load)`` returns the change of slip velocity (m/s) and
-        the tangential force (N) at the instants where the integral of the friction load and
-        the load itself have these values, for a history. Without it a history has none.
+        the tangential force (N) at the instants that have this integral of the friction load
+        and this friction load. Without it slip velocity and force are NaN in a history.
     psi2_error : float or array
-        Bound of the numerical error of psi2, rounding aside: 0 for a closed form. NaN, the
-        default: not declared.
+        Bound of the numerical error of psi2, rounding aside; 0 for a closed form. NaN, the
+        default, means not declared.
     """
 
     where: Mask
@@ -48,19 +51,21 @@ class WholeImpact:
 def sliding(
     scene: Scene, normal: NormalMotion, *, where: Mask, reason: str, stops: bool
 ) -> WholeImpact:
-    """Return impacts whose tangential force is mu times the friction load.
+    """Return the answer for impacts whose tangential force is mu times the friction load.
 
     Parameters
     ----------
     scene : Scene
+        One impact or a batch.
     normal : NormalMotion
+        Normal motion of all impacts of ``scene``.
     where : bool or array of bool
-        The impacts.
+        The impacts that the answer holds for.
     reason : str
-        For the plan.
+        Why these impacts need no march, for the plan.
     stops : bool
-        Whether the force ends as the slip velocity comes to zero, as between rigid bodies, or
-        goes on to separation, as in gross slip of an elastic contact, eq. (45).
+        If True the force ends when the slip velocity reaches zero, as between rigid bodies. If
+        False it acts until separation, as in gross slip of an elastic contact, eq. (45).
     """
     friction, mass = scene.friction_coefficient, scene.pair.tangential_mass
     slip: Any = scene.slip_velocity
@@ -68,12 +73,12 @@ def sliding(
     with np.errstate(all="ignore"):
         impulse: Any = friction * normal.total_load_impulse
         if stops:
-            # Where friction stops the slip it takes all of the velocity, to the last bit.
+            # If friction stops the slip, the slip velocity after is exactly zero.
             lost: Any = np.minimum(impulse / mass, speed)
             impulse = np.minimum(impulse, mass * speed)
         else:
             lost = impulse / mass
-        # A constant ratio of force to load: the mean velocity is that of before and after.
+        # Force over load is constant: work = impulse times the mean of first and last velocity.
         work = impulse * (speed - 0.5 * lost)
 
     def course(load_impulse: Any, load: Any) -> tuple[Any, Any]:
@@ -95,21 +100,21 @@ def sliding(
 
 
 def no_force(scene: Scene, *, where: Mask, reason: str) -> WholeImpact:
-    """Return impacts without any tangential force.
+    """Return the answer for impacts without tangential force.
 
     Parameters
     ----------
     scene : Scene
         One impact or a batch.
     where : bool or array of bool
-        Impacts of which this is known.
+        The impacts that the answer holds for.
     reason : str
-        For the plan.
+        Why these impacts need no march, for the plan.
     """
 
     def course(load_impulse: Any, load: Any) -> tuple[Any, Any]:
-        nothing = 0.0 * (scene.slip_velocity + load_impulse + load)
-        return nothing, nothing
+        zero = 0.0 * (scene.slip_velocity + load_impulse + load)
+        return zero, zero
 
     return WholeImpact(
         where=where,

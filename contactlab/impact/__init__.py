@@ -1,1 +1,1 @@
-"""What happens: materials, bodies, scenes, and what the paper knows of them in closed form."""
+"""Materials, bodies, scenes and encounters, and the closed forms of the paper."""

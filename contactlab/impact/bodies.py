@@ -1,4 +1,4 @@
-"""Bodies, and the reduction of a pair of bodies to what the laws need."""
+"""Bodies, and the reduction of two bodies to the numbers that laws need."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)
 
 
 def _material() -> Any:
+    """Return the attrs field for the material of a body."""
     return instance(
         Material, remedy="make one, Material(...), or by its name: Material.named('steel')"
     )
@@ -37,10 +38,11 @@ class Sphere:
     radius : float
         R, in m.
     material : Material
+        Elastic material; its density is needed if no mass is given.
     mass : float, optional
-        M, in kg; by default that of a solid homogeneous sphere of the material's density.
+        M, in kg; by default the mass of a solid homogeneous sphere of the material's density.
     gyration_ratio : float, optional
-        K = sqrt(I / (M R²)), by default that of a solid homogeneous sphere, K² = 2/5.
+        K = sqrt(I / (M R²)); by default K² = 2/5 of a solid homogeneous sphere.
 
     Raises
     ------
@@ -77,7 +79,7 @@ class HalfSpace:
     Parameters
     ----------
     material : Material
-        Its density does not count.
+        Elastic material; the density is not used.
     """
 
     material: Material = _material()
@@ -85,10 +87,10 @@ class HalfSpace:
 
 @attrs.frozen(kw_only=True)
 class Pair:
-    """What the laws need to know of two bodies in contact: theory §1.
+    """The numbers of two bodies in contact that laws need (theory §1).
 
-    For like bodies ``stiffness_ratio`` and ``inertia_ratio`` are the paper's
-    2(1-nu)/(2-nu) of eq. (29) and chi of eq. (38).
+    For bodies of one material ``stiffness_ratio`` is 2(1-nu)/(2-nu) of eq. (29), and
+    ``inertia_ratio`` is chi of eq. (38).
 
     Parameters
     ----------
@@ -97,15 +99,15 @@ class Pair:
     effective_modulus : float or array
         E* in Pa.
     effective_shear_modulus : float or array
-        G* in Pa, 1/G* = sum of (2-nu)/(4 G): four times the G* of discrete-element codes.
-        Those have 1/G* = sum of (2-nu)/G and the stiffness 8 G* a; here it is 2 G* a, which
-        ``tangential_stiffness`` returns.
+        G* in Pa, 1/G* = sum of (2-nu)/(4 G). Discrete-element codes define 1/G* = sum of
+        (2-nu)/G, a quarter of this G*, and the tangential stiffness 8 G* a. Here the tangential
+        stiffness is 2 G* a, see ``tangential_stiffness``.
     normal_mass : float or array
-        M_n in kg, of the approach of the centres.
+        M_n in kg: normal force over the deceleration of the approach.
     tangential_mass : float or array
-        M_t in kg, of the slip of the contact point.
+        M_t in kg: tangential force over the deceleration of slip.
     dundurs_beta : float or array
-        Dundurs' beta, by which pressure and shear are coupled; 0 for like bodies.
+        Dundurs' beta, which couples pressure and shear; 0 for bodies of one material.
     """
 
     radius: Real = quantity("m", rule=POSITIVE)
@@ -126,7 +128,7 @@ class Pair:
         return 0.5 * self.stiffness_ratio * (self.normal_mass / self.tangential_mass)
 
     def tangential_stiffness(self, radius: Real) -> Real:
-        """Return Mindlin's stiffness without slip, 2 G* a, in N/m, shape of ``radius`` and pair.
+        """Return Mindlin's stiffness without slip, 2 G* a, in N/m; ``radius`` and pair broadcast.
 
         Parameters
         ----------
@@ -141,12 +143,14 @@ class Pair:
 
     @classmethod
     def of(cls, sphere: Sphere, target: Sphere | HalfSpace) -> Pair:
-        """Reduce a sphere and its target, elastic coupling neglected: theory §1.
+        """Return the pair of a sphere and its target (theory §1).
 
         Parameters
         ----------
         sphere : Sphere
+            The sphere.
         target : Sphere or HalfSpace
+            The body that the sphere meets.
         """
         compliance_n = _normal_compliance(sphere.material) + _normal_compliance(target.material)
         compliance_t = _shear_compliance(sphere.material) + _shear_compliance(target.material)
@@ -168,22 +172,22 @@ class Pair:
 
 
 def _normal_compliance(material: Material) -> Real:
-    """(1-nu)/(2G) = (1-nu²)/E: one body's part of 1/E*."""
+    """Return (1-nu)/(2G) = (1-nu²)/E, one body's part of 1/E*, in 1/Pa."""
     return (1.0 - material.poisson_ratio) / (2.0 * material.shear_modulus)
 
 
-def _coupling_compliance(one: Material, other: Material) -> Real:
-    """Return half the difference of (1-2nu)/(2G): over 1/E* it is Dundurs' beta."""
-    first = (1.0 - 2.0 * one.poisson_ratio) / (2.0 * one.shear_modulus)
-    second = (1.0 - 2.0 * other.poisson_ratio) / (2.0 * other.shear_modulus)
+def _coupling_compliance(sphere: Material, target: Material) -> Real:
+    """Return half the difference of (1-2nu)/(2G), which is Dundurs' beta over E*, in 1/Pa."""
+    first = (1.0 - 2.0 * sphere.poisson_ratio) / (2.0 * sphere.shear_modulus)
+    second = (1.0 - 2.0 * target.poisson_ratio) / (2.0 * target.shear_modulus)
     return 0.5 * (first - second)
 
 
 def _shear_compliance(material: Material) -> Real:
-    """(2-nu)/(4G): one body's part of 1/G*."""
+    """Return (2-nu)/(4G), one body's part of 1/G*, in 1/Pa."""
     return (2.0 - material.poisson_ratio) / (4.0 * material.shear_modulus)
 
 
 def _inverse_tangential_mass(sphere: Sphere) -> Real:
-    """(1 + 1/K²)/m: how readily a force at the contact moves the contact point, eq. (21)."""
+    """Return (1 + 1/K²)/m, one body's part of 1/M_t, in 1/kg, eq. (21)."""
     return (1.0 + 1.0 / sphere.gyration_ratio**2) / sphere.mass

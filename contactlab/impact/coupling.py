@@ -1,4 +1,4 @@
-"""Sentences on what a model leaves out, with a size where one is known (theory §9)."""
+"""Cautions about elastic coupling of unlike bodies (theory §9), and about three numbers."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ import numpy as np
 from contactlab.impact.hertz import slips_throughout_elastic
 from contactlab.impact.scene import Scene
 
-#: Shift of psi2 by elastic coupling of unlike bodies, of three-dimensional half-space solutions
-#: with one-way coupling, against the axisymmetric theory; to 0.002. They were made for this chi
-#: and this effective Poisson's ratio; for other scenes the table is a rough guide to the size.
+#: Shift of psi2 by elastic coupling of unlike bodies, to 0.002: the difference between
+#: three-dimensional half-space solutions with one-way coupling and the axisymmetric theory. The
+#: solutions have this chi and this effective Poisson's ratio; for other scenes the table gives
+#: a rough size only.
 COUPLING_CHI, COUPLING_NU = 49.0 / 34.0, 0.3
 COUPLING_LAMBDA = (0.0, 0.25, 0.5, 1.0, 2.0)
 COUPLING_PSI1 = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0)
@@ -22,9 +23,9 @@ COUPLING_SHIFT = (
     (0.0, 0.0667, 0.1266, 0.0463, 0.0062, 0.0208),
     (0.0, 0.1681, 0.2560, 0.1428, 0.0413, 0.0598),
 )
-#: Shifts below this are not worth a sentence.
+#: Smallest shift of psi2 with a caution.
 LEAST_SHIFT = 1e-3
-#: The table is said to be for a scene whose chi and Poisson's ratio are as near as this.
+#: Largest difference of chi, and of Poisson's ratio, at which the table fits a scene.
 NEAR = 0.03
 
 
@@ -36,10 +37,9 @@ def coupling_number(scene: Scene) -> Any:
 
 
 def coupling_shift(scene: Scene) -> Any:
-    """Return about how far coupling moves psi2, by the table above; at its ends beyond it.
+    """Return the shift of psi2 by coupling, from the table, clipped to its range.
 
-    Where the whole contact slips from start to end the table has no entry, and the shift is NaN;
-    without friction it is 0.
+    In gross slip throughout the table does not hold and the shift is NaN; without friction it is 0.
     """
     row, column = np.broadcast_arrays(
         np.clip(coupling_number(scene), 0.0, COUPLING_LAMBDA[-1]),
@@ -52,12 +52,13 @@ def coupling_shift(scene: Scene) -> Any:
     edges = np.array(COUPLING_LAMBDA)
     share = (row - edges[at]) / (edges[at + 1] - edges[at])
     shift = below + share * (above - below)
-    shift = np.where(_slips(scene), np.nan, shift)
+    slipping = slips_throughout_elastic(np.asarray(scene.psi1), np.asarray(scene.chi))
+    shift = np.where(slipping, np.nan, shift)
     return np.where(np.asarray(scene.friction_coefficient) == 0.0, 0.0, shift)
 
 
 def coupling(scene: Scene) -> tuple[str, ...]:
-    """Return the cautions of unlike bodies, whose pressure drags the surfaces sideways."""
+    """Return the cautions of unlike bodies, whose normal pressure shears the contact."""
     beta = scene.pair.dundurs_beta
     if beta == 0.0 if isinstance(beta, float) else not np.any(beta):
         return ()
@@ -77,12 +78,12 @@ def coupling(scene: Scene) -> tuple[str, ...]:
         "Lambda = kappa beta/mu"
     )
     upto = "up to " if scene.shape else ""
-    found = []
+    cautions = []
     if np.any(shift >= LEAST_SHIFT):
         worst = int(np.nanargmax(shift))
         nu = (2.0 - 2.0 * kappa[worst]) / (2.0 - kappa[worst])
         beyond = "at least " if number[worst] > COUPLING_LAMBDA[-1] else "about "
-        found.append(
+        cautions.append(
             f"{start} = {number[worst]:.2g}; it moves psi2 by {upto}{beyond}{shift[worst]:.1g} "
             f"(model, not numerical error; {_table(chi[worst], nu, psi1[worst])})"
         )
@@ -90,22 +91,16 @@ def coupling(scene: Scene) -> tuple[str, ...]:
         slipping = np.where(np.isnan(shift), number / psi1, 0.0)
     if np.any(slipping * slipping >= LEAST_SHIFT):
         worst = int(np.argmax(slipping))
-        found.append(
+        cautions.append(
             f"{start} = {number[worst]:.2g}; where the whole contact slips it moves psi2 to second "
             f"order in Lambda/psi1 = {upto}{slipping[worst]:.2g} only, by how much is not known "
             "(model, not numerical error)"
         )
-    return tuple(found)
-
-
-def _slips(scene: Scene) -> Any:
-    """Return whether the elastic theory without coupling has slip from start to end."""
-    psi1, chi = np.asarray(scene.psi1), np.asarray(scene.chi)
-    return slips_throughout_elastic(psi1, chi)
+    return tuple(cautions)
 
 
 def _table(chi: float, nu: float, psi1: float) -> str:
-    """Return what the table is for, and where the scene is another."""
+    """Return in words which scenes the table is for, and how this scene differs."""
     off = []
     if abs(chi - COUPLING_CHI) > NEAR:
         off.append(f"chi = {chi:.3g}")
@@ -113,12 +108,12 @@ def _table(chi: float, nu: float, psi1: float) -> str:
         off.append(f"nu = {nu:.2g}")
     if psi1 > COUPLING_PSI1[-1]:
         off.append(f"psi1 = {psi1:.3g}")
-    told = f"by a table for chi = {COUPLING_CHI:.3g}, nu = {COUPLING_NU:g}, psi1 up to 3"
-    return told + (f"; a rough guide at {', '.join(off)}" if off else "")
+    source = f"by a table for chi = {COUPLING_CHI:.3g}, nu = {COUPLING_NU:g}, psi1 up to 3"
+    return source + (f"; a rough guide at {', '.join(off)}" if off else "")
 
 
 def three_numbers(scene: Scene) -> tuple[str, ...]:
-    """Return the caution of three numbers, all else being one, that may be meant for a vector."""
+    """Return the caution of a single entry with three numbers, which may be meant as a vector."""
     if scene.shape != (3,) or scene.sphere is None:
         return ()
     arrays = [name for name, number in scene.numbers().items() if np.ndim(number)]

@@ -1,4 +1,4 @@
-"""Two bodies that meet in space, by vectors, and the scene in their plane of friction."""
+"""Encounters: two bodies that meet in space, by vectors, and the scene of their impact."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from contactlab.numeric.vectors import LEAST, components, difference, first_of, 
 Array = NDArray[np.float64]
 
 NOTHING = (0.0, 0.0, 0.0)
-#: Encounters whose directions are found together: arrays of this length stay in the cache.
+#: Encounters computed at a time: arrays of this length stay in the processor's cache.
 TOGETHER = 1 << 14
 
 
 class Contact(NamedTuple):
-    """How the surfaces of both bodies meet; vectors have their components first, (3, encounters).
+    """Directions and speeds at the contact; vectors are tuples of three components.
 
     Attributes
     ----------
     normal, along : tuple of three arrays
-        Unit vectors from the sphere to the target, and of the slip; the latter is zero where there
-        is no slip.
+        Unit vectors from the sphere to the target, and along the slip; ``along`` is zero without
+        slip.
     approach, slip : array
-        Speeds along the normal, negative where the bodies separate, and of slip, in m/s.
+        Speed of approach, negative where the bodies separate, and speed of slip, in m/s.
     """
 
     normal: tuple[Any, Any, Any]
@@ -43,7 +43,7 @@ class Contact(NamedTuple):
 
 @attrs.frozen
 class Encounter:
-    """A sphere and a target as they touch, or a batch of such pairs, by vectors in SI units.
+    """A sphere and a target at first touch, or a batch of such pairs, by vectors in SI units.
 
     ::
 
@@ -53,28 +53,31 @@ class Encounter:
           '----'      '----'                  '----'   |////
 
     Every vector may be an array of shape ``(..., 3)``, every number an array; the encounters are
-    then a batch of the broadcast ``shape``. Spins turn by the right-hand rule. Friction acts in the
-    plane of the normal and of the slip, and for spheres the motion stays in it.
+    then a batch of the broadcast ``shape``. Spins follow the right-hand rule. Friction acts in the
+    plane of the normal and the slip, and the slip of spheres stays in this plane.
 
     Parameters
     ----------
     sphere : Sphere
+        The first body.
     target : Sphere or HalfSpace
+        The second body.
     friction_coefficient : float or array
         Coulomb's mu, at least 0.
     normal : vector
         From the centre of the sphere towards the target: to the target's centre, or at right
-        angles into its surface. Of any length but zero: only the direction counts.
+        angles into its surface. Only the direction counts; the length must not be zero.
     velocity, target_velocity : vector
-        Of the centres (of the surface of a half-space), in m/s; by default the target rests.
+        Velocities of the centres, or of the surface of a half-space, in m/s; by default the
+        target is at rest.
     spin, target_spin : vector
-        In rad/s; zero by default. A half-space has none.
+        Angular velocities in rad/s; zero by default. A half-space has no spin.
 
     Raises
     ------
     ValueError
-        With the argument's name: a scalar or another shape where a vector is meant, a number that
-        is not finite, a normal of length zero, the spin of a half-space.
+        If a vector has a wrong shape, a number is not finite, the normal has length zero, or a
+        half-space has a spin. The message names the argument.
     """
 
     sphere: Sphere = instance(Sphere, remedy="make one: Sphere(...)")
@@ -112,58 +115,59 @@ class Encounter:
             raise refuse("normal", first, rule, "two bodies at one place have no normal")
 
     def _vectors(self) -> dict[str, Array]:
+        """Return every vector, by name."""
         return {name: getattr(self, name) for name in _fields(Encounter, "vector")}
 
     def _numbers(self) -> dict[str, Real]:
         """Return every number, by name."""
-        found = {"friction_coefficient": self.friction_coefficient}
+        numbers = {"friction_coefficient": self.friction_coefficient}
         for name, body in (("sphere", self.sphere), ("target", self.target)):
             material = body.material
             parts: list[Any] = [body, material] if isinstance(body, Sphere) else [material]
             for part in parts:
                 kind: Any = type(part)
-                for own in _fields(kind, "unit"):
-                    if getattr(part, own) is not None:
-                        found[f"{name}.{own}"] = getattr(part, own)
-        return found
+                for entry in _fields(kind, "unit"):
+                    if getattr(part, entry) is not None:
+                        numbers[f"{name}.{entry}"] = getattr(part, entry)
+        return numbers
 
     def take(self, part: Any) -> Encounter:
-        """Return some of a batch: a slice, mask or indices, or the index of one.
+        """Return the encounters that ``part`` indexes.
 
         Parameters
         ----------
         part : slice, array of bool or int, int or tuple of int
-            As numpy indexes an array of the batch shape.
+            Index of an array of the batch shape.
         """
-        found: Encounter = object.__new__(Encounter)  # every number was checked before
+        taken: Encounter = object.__new__(Encounter)  # every number was checked before
         for name in ("sphere", "target", "friction_coefficient"):
             value = batch.taken(getattr(self, name), self.shape, part)
-            object.__setattr__(found, name, value)
+            object.__setattr__(taken, name, value)
         for name, value in self._vectors().items():
-            chosen = value
+            vectors = value
             if value.ndim > 1:
-                chosen = np.broadcast_to(value, (*self.shape, 3))[part]
-            object.__setattr__(found, name, chosen)
-        one = np.empty(self.shape, dtype=bool)[part] if self.shape else ()
-        object.__setattr__(found, "shape", np.shape(one))
-        return found
+                vectors = np.broadcast_to(value, (*self.shape, 3))[part]
+            object.__setattr__(taken, name, vectors)
+        example = np.empty(self.shape, dtype=bool)[part] if self.shape else ()
+        object.__setattr__(taken, "shape", np.shape(example))
+        return taken
 
     @property
     def pair(self) -> Pair:
-        """What the laws need of the two bodies."""
+        """The numbers of the two bodies that laws need."""
         return Pair.of(self.sphere, self.target)
 
     @property
     def approaching(self) -> Any:
-        """Whether the bodies come nearer, a bool or an array of them; 1e-100 m/s counts as rest."""
+        """True where the bodies approach, of the batch shape; below 1e-100 m/s they rest."""
         approach = np.empty(self.shape)
         for where, part in self.parts():
             approach.reshape(-1)[where] = part.contact().approach
-        found = approach >= LEAST
-        return found if self.shape else bool(found)
+        approaching = approach >= LEAST
+        return approaching if self.shape else bool(approaching)
 
     def parts(self) -> Any:
-        """Iterate over parts of the batch as one-dimensional batches, and where they belong."""
+        """Yield (slice, encounters): one-dimensional parts and their places in the flat batch."""
         size = math.prod(self.shape)
         flat = self.take(np.full(self.shape, True)) if len(self.shape) > 1 else self
         for first in range(0, size, TOGETHER):
@@ -171,10 +175,11 @@ class Encounter:
             yield where, flat.take(where) if size > TOGETHER else flat
 
     def contact(self) -> Contact:
-        """Return how the surfaces meet, before the impact; of one encounter or a batch.
+        """Return directions and speeds at the contact before the impact.
 
-        A tuple: ``normal`` and ``along``, the unit vectors from the sphere to the target and of the
-        slip, each of three components; ``approach`` and ``slip``, speeds in m/s.
+        The result is a named tuple. ``normal`` and ``along`` are the unit vectors from the sphere
+        to the target and along the slip, as three components of the batch shape. ``approach`` and
+        ``slip`` are speeds in m/s, of the batch shape.
         """
         n1, n2, n3 = components(self.normal)
         length = square_root(n1 * n1 + n2 * n2 + n3 * n3)
@@ -186,26 +191,27 @@ class Encounter:
         u2 = u2 + (w3 * n1 - w1 * n3) - approach * n2
         u3 = u3 + (w1 * n2 - w2 * n1) - approach * n3
         slip = square_root(u1 * u1 + u2 * u2 + u3 * u3)
-        one = 1.0 / (slip + (slip == 0.0))
-        return Contact((n1, n2, n3), (u1 * one, u2 * one, u3 * one), approach, slip)
+        inverse = 1.0 / (slip + (slip == 0.0))
+        along = (u1 * inverse, u2 * inverse, u3 * inverse)
+        return Contact((n1, n2, n3), along, approach, slip)
 
     def _rim(self) -> tuple[Any, Any, Any]:
-        """Return R1 omega1 + R2 omega2: its product with the normal is slip by spin, in m/s."""
-        parts = [self.sphere.radius * each for each in components(self.spin)]
+        """Return R1 omega1 + R2 omega2 in m/s, whose cross product with the normal is slip."""
+        rim = [self.sphere.radius * component for component in components(self.spin)]
         if isinstance(self.target, Sphere) and self.target_spin.any():
-            other = self.target.radius
-            for k, each in enumerate(components(self.target_spin)):
-                parts[k] = parts[k] + other * each
-        return parts[0], parts[1], parts[2]
+            radius = self.target.radius
+            for k, component in enumerate(components(self.target_spin)):
+                rim[k] = rim[k] + radius * component
+        return rim[0], rim[1], rim[2]
 
     @property
     def scene(self) -> Scene:
-        """The scene in the plane of friction, in which the target rests and does not spin.
+        """The scene in the plane of friction, relative to a target at rest without spin.
 
-        Its tangential velocity is that of the centres relative to each other, along the slip;
-        its spin is that which alone would make the same slip: (R1 omega1 + R2 omega2)/R1. So the
-        velocities and spins of its results are relative to the target; ``Collision.of`` gives each
-        body its own. Without slip it is the scene of a central impact.
+        The tangential velocity is the relative velocity of the centres along the slip. The spin
+        is the part of (R1 omega1 + R2 omega2)/R1 that makes slip in this plane. Velocities and
+        spins of the results are therefore relative to the target; ``Collision.of`` computes those
+        of each body. Without slip the scene is a central impact.
 
         Raises
         ------
@@ -216,7 +222,7 @@ class Encounter:
         if not np.all(contact.approach >= LEAST):
             raise self.separate()
         u = difference(self.velocity, self.target_velocity)
-        along = sum(each * direction for each, direction in zip(u, contact.along, strict=True))
+        along = sum(component * axis for component, axis in zip(u, contact.along, strict=True))
         along = np.broadcast_to(along, self.shape)
         spin = (contact.slip - along) / self.sphere.radius
         numbers: list[Any] = [contact.approach, along, spin]
@@ -225,21 +231,21 @@ class Encounter:
         return Scene(self.sphere, self.target, self.friction_coefficient, *numbers)
 
     def separate(self) -> ValueError:
-        """Return the refusal of bodies that do not approach each other."""
+        """Return the ValueError for bodies that do not approach each other."""
         approach = np.broadcast_to(self.contact().approach, self.shape)
         where = np.argwhere(~(approach >= LEAST))
         first = tuple(where[0].tolist())
-        told = "bodies separate" if approach[first] < 0.0 else "bodies separate, or rest"
+        state = "bodies separate" if approach[first] < 0.0 else "bodies separate, or rest"
         turned = "turn normal from the sphere to the target, or " if approach[first] < 0.0 else ""
         return refuse(
             "velocity, target_velocity",
             float(approach[first]),
-            f"{told}: the speed of approach, in m/s, must be positive{first_of(where)}",
+            f"{state}: the speed of approach, in m/s, must be positive{first_of(where)}",
             f"{turned}let such pairs pass: collide(encounter, separating='pass')",
         )
 
 
 @cache
 def _fields(kind: Any, word: str) -> tuple[str, ...]:
-    """Return names of the fields with this word in their metadata."""
+    """Return the names of the fields of ``kind`` that have ``word`` in their metadata."""
     return tuple(field.name for field in attrs.fields(kind) if word in field.metadata)

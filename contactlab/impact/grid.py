@@ -1,4 +1,4 @@
-"""Grids: every combination of the values of some entries, the last varying fastest."""
+"""Grids: all combinations of the values of some entries, the last varying fastest."""
 
 from __future__ import annotations
 
@@ -11,19 +11,13 @@ from numpy.typing import NDArray
 
 from contactlab.numeric.checks import real, refuse
 
-#: Most impacts of a grid: a slip of the finger should not fill the memory.
+#: Largest number of impacts of a grid; a typing error must not fill the memory.
 MOST_IMPACTS = 10_000_000
 Array = NDArray[np.float64]
 
 
 def axes_of(entries: Mapping[str, Any]) -> dict[str, Array]:
-    """Return the entries that vary, each a plain list of numbers.
-
-    Raises
-    ------
-    ValueError
-        If none varies, or a list has more than one dimension.
-    """
+    """Return the entries that are lists, as arrays of one dimension; at least one must be."""
     axes: dict[str, Any] = {}
     for name, values in entries.items():
         if np.ndim(values):
@@ -36,7 +30,7 @@ def axes_of(entries: Mapping[str, Any]) -> dict[str, Array]:
 
 
 def product(axes: Mapping[str, Any]) -> dict[str, Array]:
-    """Return the values of each axis in every combination, flat, the last varying fastest."""
+    """Return the values of each axis in all combinations, flat, the last varying fastest."""
     size = math.prod(np.size(values) for values in axes.values())
     if size > MOST_IMPACTS:
         raise refuse("product", size, f"must be at most {MOST_IMPACTS} impacts", "vary less")

@@ -1,7 +1,4 @@
-"""The closed forms of the paper as small pure functions.
-
-Shortcuts for the plan, oracles for the tests. Arguments may be floats or arrays.
-"""
+"""Closed forms of the paper, for plans and tests; arguments may be floats or arrays."""
 
 from __future__ import annotations
 
@@ -18,7 +15,7 @@ DURATION_CONSTANT = 4.0 * math.gamma(0.4) * math.sqrt(math.pi) / (5.0 * math.gam
 
 
 class HertzScales(NamedTuple):
-    """Largest contact radius (m), approach (m) and force (N), and duration (s), eqs (7)-(9)."""
+    """Largest contact radius (m), approach (m) and force (N), and the duration (s), eqs (7)-(9)."""
 
     radius: Real
     approach: Real
@@ -29,22 +26,8 @@ class HertzScales(NamedTuple):
 def size_ratio(
     normal_mass: Real, effective_modulus: Real, radius: Real, normal_speed: Real
 ) -> Real:
-    """Return C of eq. (9), general pair: C⁵ = 15 M v1² / (16 E* R³).
-
-    Each factor is raised to its power on its own, so that v1² and R³ neither underflow
-    nor overflow.
-
-    Parameters
-    ----------
-    normal_mass : float or array
-        M, in kg.
-    effective_modulus : float or array
-        E*, in Pa.
-    radius : float or array
-        R, in m.
-    normal_speed : float or array
-        v1, in m/s.
-    """
+    """Return C of eq. (9) for any pair, C⁵ = 15 M v1² / (16 E* R³); arguments M, E*, R, v1."""
+    # Factors are raised to their powers one by one: v1² and R³ might underflow or overflow.
     stiffness = 15.0 * normal_mass / (16.0 * effective_modulus)
     ratio: Real = stiffness**0.2 * normal_speed**0.4 / radius**0.6
     return ratio
@@ -55,8 +38,8 @@ def hertz_scales(scene: Scene) -> HertzScales:
     pair, speed = scene.pair, scene.normal_speed
     ratio = size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, speed)
     approach = ratio * ratio * pair.radius  # a product: a float squared raises OverflowError
-    # P_max follows from energy: ½ M v1² = (2/5) P_max C² R.
-    force = 1.25 * pair.normal_mass * speed * (speed / approach)  # the square may underflow
+    # P_max follows from energy: ½ M v1² = (2/5) P_max C² R; the square of v1 may underflow.
+    force = 1.25 * pair.normal_mass * speed * (speed / approach)
     return HertzScales(
         radius=ratio * pair.radius,
         approach=approach,
@@ -72,21 +55,21 @@ def peak_pressure(scene: Scene) -> Real:
 
 
 def linear_stiffness(scene: Scene) -> Real:
-    """Return k of the linear spring that gives way as far as Hertz's contact, M (v1/z_max)²."""
+    """Return the k of a linear spring with Hertz's largest approach, M (v1/z_max)², in N/m."""
     frequency = scene.normal_speed / hertz_scales(scene).approach
     return scene.pair.normal_mass * frequency * frequency
 
 
 def hertz_stiffness(scene: Scene) -> Real:
-    """Return k = (4/3) E* sqrt(R) of P = k z^1.5, eq. (4)."""
+    """Return k = (4/3) E* sqrt(R) of P = k z^1.5, eq. (4), in N/m^1.5."""
     return (4.0 / 3.0) * scene.pair.effective_modulus * scene.pair.radius**0.5
 
 
 def slips_throughout_elastic(psi1: Real, chi: Real) -> Mask:
-    """Return whether an elastic impact slips from start to end, eqs (44) and (46).
+    """Return True where an elastic impact is in gross slip throughout, eqs (44) and (46).
 
-    ``|psi1| >= max(1, 4 chi - 1)``. For chi < 1/2 eq. (46) alone is not enough:
-    below ``|psi1| = 1`` the contact sticks from the start (44).
+    The condition is ``|psi1| >= max(1, 4 chi - 1)``. For chi < 1/2 eq. (46) alone does not
+    suffice: below ``|psi1| = 1`` the contact sticks from the start (44).
     """
     greater: Any = max if isinstance(chi, float) else np.maximum
     slips: Mask = abs(psi1) >= greater(1.0, 4.0 * chi - 1.0)
@@ -94,6 +77,6 @@ def slips_throughout_elastic(psi1: Real, chi: Real) -> Mask:
 
 
 def rigid_body_rebound(psi1: Real, chi: Real, restitution: Real = 1.0) -> Real:
-    """Return psi2 of the rigid-body theory (paper §4.3): slip until rolling, then rolling."""
+    """Return psi2 of the rigid-body theory (paper §4.3): slip, then rolling if slip ends."""
     reduced = np.maximum(np.abs(psi1) - 2.0 * chi * (1.0 + restitution), 0.0)
     return np.copysign(reduced, psi1)

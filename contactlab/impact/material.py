@@ -1,6 +1,6 @@
-"""Elastic materials, and a collection of some thirty by name.
+"""Elastic materials, and a collection of about thirty materials by name.
 
-The numbers stand in ``materials.toml`` beside this file, each with its source.
+The numbers and their sources are in ``materials.toml`` beside this file.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ class Material:
     Parameters
     ----------
     shear_modulus, young_modulus : float
-        Exactly one of the two, in Pa. They are related by E = 2 G (1 + nu).
+        G and E in Pa; exactly one of the two is given, as E = 2 G (1 + nu).
     poisson_ratio : float
-        In [-1, 0.5].
+        nu, from -1 to 0.5.
     density : float, optional
-        In kg/m³; needed only by a sphere whose mass is not given.
+        Density in kg/m³; needed only by a sphere without given mass.
     yield_stress : float, optional
-        Y in Pa, of a tension test: plans caution where the contact pressure exceeds 1.6 Y. No law
-        computes with it.
+        Y in Pa, from a tension test. Plans have a caution where the contact pressure exceeds
+        1.6 Y; no law uses this number.
 
     Raises
     ------
@@ -75,17 +75,17 @@ class Material:
 
     @classmethod
     def named(cls, name: str) -> Material:
-        """Return a material of the collection by name: see ``contactlab.impact.material``.
+        """Return a material of the collection by name.
 
         Parameters
         ----------
         name : str
-            Such as ``"steel"``; ``contactlab materials`` lists them.
+            A name such as ``"steel"``; the command ``contactlab materials`` lists all names.
 
         Raises
         ------
         ValueError
-            If there is no such material, with the nearest name.
+            If there is no such material; the message suggests the nearest name.
         """
         return entry(name).material()
 
@@ -102,19 +102,21 @@ class Entry:
     Attributes
     ----------
     name : str
+        Name of the material.
     young_modulus : float
-        In Pa.
+        E in Pa.
     poisson_ratio : float
+        nu.
     density : float
-        In kg/m³.
+        Density in kg/m³.
     elastic_source, density_source : str
-        Where the numbers come from: a work and a place in it.
+        Source of the numbers: a work and a place in it.
     yield_stress : float, optional
-        In Pa, where the entry is one alloy in one condition.
+        Y in Pa, if the entry is one alloy in one condition.
     yield_source : str
-        Where the yield stress comes from; empty without one.
+        Source of the yield stress; empty without yield stress.
     note : str
-        What to know of them: a range, a value that is assumed; empty where there is nothing.
+        Remarks on the numbers, such as a range or an assumed value; may be empty.
     """
 
     name: str
@@ -128,11 +130,11 @@ class Entry:
     note: str = ""
 
     def material(self) -> Material:
-        """Return the material."""
+        """Return the entry as a ``Material``."""
         return Material(**self.numbers())
 
     def numbers(self) -> dict[str, float]:
-        """Return what a scene file says of a material, key to value."""
+        """Return the entries of a material in a scene file, as {key: value}."""
         keys = ("young_modulus", "poisson_ratio", "density", "yield_stress")
         return {key: getattr(self, key) for key in keys if getattr(self, key) is not None}
 
@@ -150,36 +152,39 @@ def entry(name: str) -> Entry:
     Raises
     ------
     ValueError
-        If there is no such material, with the nearest names.
+        If there is no such material; the message suggests the nearest names.
     """
-    found = _collection()[0]
+    collection = _collection()[0]
     if not isinstance(name, str):
         raise refuse("name", name, "must be the name of a material", "such as 'steel'")
-    plain = {_plain(known): known for known in found}
-    if _plain(name) in plain:
-        return found[plain[_plain(name)]]
-    alike = [known for key, known in plain.items() if _plain(name) and _plain(name) in key]
-    hint = f"did you mean {' or '.join(map(repr, alike))}? " if alike else nearest(name, found)
-    raise refuse("name", name, "no such material", f"{hint}known: {', '.join(found)}")
+    names_by_key = {_key(listed): listed for listed in collection}
+    key = _key(name)
+    if key in names_by_key:
+        return collection[names_by_key[key]]
+    similar = [listed for long_key, listed in names_by_key.items() if key and key in long_key]
+    hint = f"did you mean {' or '.join(map(repr, similar))}? " if similar else ""
+    hint = hint or nearest(name, collection)
+    raise refuse("name", name, "no such material", f"{hint}known: {', '.join(collection)}")
 
 
 def entries() -> tuple[Entry, ...]:
-    """Return all materials."""
+    """Return all materials of the collection."""
     return tuple(_collection()[0].values())
 
 
 def references() -> dict[str, str]:
-    """Return the works that the sources name, key to citation."""
+    """Return the works that the sources name, as {key: citation}."""
     return dict(_collection()[1])
 
 
-def _plain(name: str) -> str:
+def _key(name: str) -> str:
+    """Return ``name`` in small letters, with single spaces for hyphens and underscores."""
     return " ".join(name.lower().replace("-", " ").replace("_", " ").split())
 
 
 @cache
 def _collection() -> tuple[dict[str, Entry], dict[str, str]]:
-    """Return the materials and the references of the file."""
+    """Return {name: entry} and {key: citation} of ``materials.toml``."""
     import tomllib
     from importlib import resources
 

@@ -1,4 +1,4 @@
-"""A scene: two bodies, the friction between them, and how they meet."""
+"""Scenes: two bodies, the friction between them, and their velocities before the impact."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ from contactlab.numeric.checks import (
     refuse,
 )
 
-#: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s: numbers
-#: formed from smaller ones are no longer held to sixteen digits.
+#: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s. Numbers
+#: computed from smaller values would have fewer than sixteen digits.
 LEAST_ENERGY = LEAST_VELOCITY = 1e-290
-#: Least momentum that friction can take, mu times that of the normal motion, in N s.
+#: Least mu times momentum of the normal motion, in N s.
 LEAST_IMPULSE = 1e-285
 OBLIQUE = Rule(
     lambda degrees: np.abs(degrees) < 90.0, "must lie between -90 and 90, measured from the normal"
@@ -46,7 +46,9 @@ class Scene:
     Parameters
     ----------
     sphere : Sphere
+        The body that moves.
     target : HalfSpace or Sphere
+        The body at rest.
     friction_coefficient : float or array
         Coulomb's mu, at least 0.
     normal_speed : float or array
@@ -57,13 +59,13 @@ class Scene:
         omega, in rad/s, positive where it adds to the tangential velocity at the
         contact: v_x = v + omega R, eq. (20).
     pair : Pair
-        What the laws need of the two bodies, formed from them; to be given only where a
-        body is not known, as in ``nondimensional``.
+        The numbers of the two bodies that laws need. They are computed from the bodies; a pair
+        is given only for a scene without bodies, as in ``nondimensional``.
 
     Raises
     ------
     ValueError
-        With the argument's name, if a number is not finite or out of range.
+        If a number is not finite or out of range. The message names the argument.
     """
 
     sphere: Sphere | None = instance(Sphere, remedy="make one: Sphere(...)", optional=True)
@@ -72,20 +74,20 @@ class Scene:
     normal_speed: Real = quantity("m/s", rule=POSITIVE)
     tangential_velocity: Real = quantity("m/s", default=0.0)
     spin: Real = quantity("rad/s", default=0.0)
-    # None only until the bodies are looked at, below.
+    # None only until __attrs_post_init__ computes the pair from the bodies.
     pair: Pair = instance(
         Pair, remedy="or leave it out", optional=True, default=None, kw_only=True, repr=False
     )
     #: Batch shape: () for one impact.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
-    #: Place of each impact in the whole batch, whole numbers of the batch shape; 0 of one impact.
-    #: ``take``, blocks, chunks and workers keep it: a key for the random draws of a law.
+    #: Index of each impact in the whole batch, integers of the batch shape; 0 for one impact.
+    #: ``take``, blocks, chunks and workers keep the index, which a law may use as a random seed.
     index: Any = attrs.field(init=False, eq=False, repr=False)
     _axes: tuple[tuple[str, Array], ...] = attrs.field(init=False, eq=False, repr=False, default=())
 
     def __attrs_post_init__(self) -> None:
         if self.sphere is not None and self.target is not None:
-            # A pair that is handed over, as by attrs.evolve, may be that of other bodies.
+            # A given pair is ignored: attrs.evolve passes the pair of the former bodies.
             object.__setattr__(self, "pair", Pair.of(self.sphere, self.target))
         elif self.pair is None:
             raise refuse(
@@ -104,8 +106,8 @@ class Scene:
             remedy="give numbers, or arrays of equal length",
         )
         object.__setattr__(self, "shape", shape)
-        places = batch.locked(np.arange(math.prod(shape)).reshape(shape)) if shape else 0
-        object.__setattr__(self, "index", places)
+        index = batch.locked(np.arange(math.prod(shape)).reshape(shape)) if shape else 0
+        object.__setattr__(self, "index", index)
         real("tangential_velocity + spin * radius", self.slip_velocity)
         self._check_scales()
 
@@ -122,7 +124,7 @@ class Scene:
         return numbers
 
     def _check_scales(self) -> None:
-        """Refuse scenes whose numbers a float cannot hold."""
+        """Refuse scenes whose numbers overflow, or lose digits by underflow."""
         friction: Any = self.friction_coefficient
         speed: Any = self.normal_speed
         with np.errstate(all="ignore"):
@@ -171,21 +173,21 @@ class Scene:
         angle_deg: Any,
         spin: Real = 0.0,
     ) -> Scene:
-        """Return the scene of a centre that moves at an angle from the normal.
+        """Return the scene of a sphere whose centre moves at an angle from the normal.
 
         Parameters
         ----------
         sphere, target, friction_coefficient, spin
-            As of the class.
+            As in the class.
         speed : float or array
-            Of the centre, in m/s, positive.
+            Speed of the sphere's centre in m/s, positive.
         angle_deg : float or array
-            From the normal, in degrees, between -90 and 90.
+            Angle from the normal in degrees, between -90 and 90.
 
         Raises
         ------
         ValueError
-            With the argument's name.
+            If a number is out of range. The message names the argument.
         """
         remedy = "give speed in m/s and angle_deg in degrees from the normal"
         fast = real("speed", speed, rule=POSITIVE, remedy=remedy)
@@ -201,18 +203,18 @@ class Scene:
 
     @classmethod
     def nondimensional(cls, *, psi1: Any, chi: Any) -> Scene:
-        """Return the scene of the paper's own two parameters, eqs (29) and (38).
+        """Return the scene of the paper's two parameters, eqs (29) and (38).
 
-        Units are such that mu = kappa = v1 = R = C = M = 1: velocities come out as
-        the paper's V and psi. It has no sphere, so spin and the centre's velocity
-        are not defined.
+        The units are chosen so that mu = kappa = v1 = R = C = M = 1. Velocities of the results
+        are the paper's V and psi. The scene has no sphere, hence no spin and no velocity of a
+        centre.
 
         Parameters
         ----------
         psi1 : float or array
-            Angle of incidence (29); no unit.
+            Dimensionless angle of incidence (29).
         chi : float or array
-            Inertia ratio (38), positive; no unit. 1.4412 for a solid sphere of nu = 0.3.
+            Inertia ratio (38), positive, without unit; 1.4412 for a solid sphere of nu = 0.3.
 
         Raises
         ------
@@ -235,25 +237,24 @@ class Scene:
 
     @classmethod
     def grid(cls, *bodies: Any, **entries: Any) -> Scene:
-        """Return the batch of every combination of some entries, the last varying fastest.
+        """Return the batch of all combinations of some entries, the last varying fastest.
 
-        ``Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25))``, or bodies first and the
-        entries of ``Scene`` or of ``Scene.at_angle`` by name: lists for those that vary, numbers
-        for the others. The scene knows its ``axes``, and a sweep of it gives tables and arrays
-        with named dimensions: ``ImpactResult.to_xarray``.
+        An example is ``Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25))``. A list gives
+        the values of an entry that varies, a number an entry that does not. The scene keeps its
+        ``axes``, so tables and ``ImpactResult.to_xarray`` have named dimensions.
 
         Parameters
         ----------
         *bodies : Sphere, HalfSpace, optional
-            Sphere and target; none with psi1 and chi.
+            Sphere and target; no bodies with psi1 and chi.
         **entries : float or list
-            Of ``Scene`` or, with speed and angle_deg, of ``Scene.at_angle``, in their units; or
-            psi1 and chi.
+            Entries of ``Scene``; or of ``Scene.at_angle``, with speed and angle_deg; or psi1 and
+            chi.
 
         Raises
         ------
         ValueError
-            If nothing varies, a list has more than one dimension, or the scene is refused.
+            If no entry varies, a list has more than one dimension, or the scene is refused.
         """
         axes = axes_of(entries)
         make: Callable[..., Scene] = cls
@@ -264,23 +265,23 @@ class Scene:
         return make(*bodies, **(entries | product(axes))).over(axes)
 
     def over(self, axes: Mapping[str, Any]) -> Scene:
-        """Return the batch as a grid: it has every combination of ``axes``, in its order.
+        """Return this batch as a grid of ``axes``, whose combinations it must have in order.
 
         Parameters
         ----------
         axes : mapping of str to array, shape (n_i,)
-            The values of each entry that varies, the last varying fastest.
+            Values of each entry that varies, the last varying fastest.
         """
-        found = copy.copy(self)
+        grid = copy.copy(self)
         lines = [(name, np.array(values, dtype=np.float64)) for name, values in axes.items()]
-        object.__setattr__(found, "_axes", tuple((name, batch.locked(v)) for name, v in lines))
-        return found
+        object.__setattr__(grid, "_axes", tuple((name, batch.locked(v)) for name, v in lines))
+        return grid
 
     @property
     def axes(self) -> Mapping[str, Array]:
         """The values of each entry that varies over a grid, by name; empty for other scenes.
 
-        Impact ``i`` of the batch is ``np.unravel_index(i, scene.dimensions)`` of them.
+        ``np.unravel_index(i, scene.dimensions)`` is the index of impact ``i`` on each axis.
         """
         return MappingProxyType({name: batch.locked(values) for name, values in self._axes})
 
@@ -296,7 +297,7 @@ class Scene:
         Parameters
         ----------
         scenes : sequence of Scene
-            Single impacts, all with bodies or all without.
+            Scenes of single impacts, all with bodies or all without.
         """
         if not isinstance(scenes, Iterable):
             raise refuse("scenes", scenes, "must be a sequence of Scene")
@@ -322,15 +323,15 @@ class Scene:
         return attrs.evolve(stacked, normal_speed=np.full(len(scenes), stacked.normal_speed))
 
     def take(self, part: Any) -> Scene:
-        """Return the scene of some of the impacts: a slice, mask or indices, or the index of one.
+        """Return the scene of the impacts that ``part`` indexes.
 
-        What all impacts share stays a plain number: laws are faster then. Each impact keeps its
+        Numbers that all impacts share stay plain numbers, which are faster. Each impact keeps its
         ``index`` in the whole batch.
 
         Parameters
         ----------
         part : slice, array of bool or int, int or tuple of int
-            As numpy indexes an array of the batch shape.
+            Index of an array of the batch shape.
         """
         if isinstance(part, slice) and self.shape and part == slice(0, self.shape[0]):
             return self
@@ -345,29 +346,29 @@ class Scene:
         return spread.numbered(taken.index)
 
     def numbered(self, index: Any) -> Scene:
-        """Return the scene with other places in the whole batch.
+        """Return this scene with another ``index`` of its impacts in the whole batch.
 
         Parameters
         ----------
         index : int or array of int
-            Of the batch shape.
+            Indices, of the batch shape.
 
         Raises
         ------
         ValueError
-            If the shape or the kind of the numbers is another one.
+            If ``index`` has another shape, or its numbers are not integers.
         """
-        places = np.array(index)
-        if places.shape != self.shape or places.dtype.kind not in "iu":
+        indices = np.array(index)
+        if indices.shape != self.shape or indices.dtype.kind not in "iu":
             rule = f"must be whole numbers of the shape {self.shape}"
             raise refuse("index", index, rule, "such as scene.index of the whole batch")
-        found = copy.copy(self)
-        object.__setattr__(found, "index", batch.locked(places) if self.shape else int(places))
-        return found
+        scene = copy.copy(self)
+        object.__setattr__(scene, "index", batch.locked(indices) if self.shape else int(indices))
+        return scene
 
     @property
     def slip_velocity(self) -> Real:
-        """v_x = v + omega R, the local tangential velocity at the contact (20), in m/s."""
+        """v_x = v + omega R, the slip velocity (20), in m/s."""
         if self.sphere is None:
             return self.tangential_velocity
         return self.tangential_velocity + self.spin * self.sphere.radius
@@ -379,8 +380,8 @@ class Scene:
 
     @property
     def psi_scale(self) -> Real:
-        """Psi per m/s of slip velocity, kappa/(mu v1), eq. (29); infinite without friction."""
-        if not self.shape:  # one impact in plain numbers, which is ten times as fast
+        """kappa/(mu v1) of eq. (29), psi per m/s of slip velocity; infinite without friction."""
+        if not self.shape:  # plain numbers are ten times as fast
             unit = float(self.friction_coefficient * self.normal_speed)
             return float(self.pair.stiffness_ratio) / unit if unit else math.inf
         with np.errstate(divide="ignore", over="ignore"):
@@ -390,12 +391,12 @@ class Scene:
         return float(scale) if np.ndim(scale) == 0 else scale
 
     def psi(self, velocity: Real) -> Real:
-        """Return the non-dimensional local tangential velocity of ``velocity`` (m/s), eq. (29).
+        """Return psi of a slip velocity, eq. (29), without unit, of the batch shape.
 
         Parameters
         ----------
         velocity : float or array
-            In m/s, positive as ``slip_velocity``.
+            Slip velocity in m/s, with the sign of ``slip_velocity``.
         """
         if isinstance(velocity, float) and not self.shape:
             return 0.0 if velocity == 0.0 else float(velocity) * self.psi_scale
@@ -405,11 +406,11 @@ class Scene:
 
     @property
     def psi1(self) -> Real:
-        """Non-dimensional local angle of incidence, from the local velocity (20), (29)."""
+        """Dimensionless angle of incidence, psi of the slip velocity, eqs (20) and (29)."""
         return self.psi(self.slip_velocity)
 
 
-#: Units of the entries that a scene may be made of.
+#: Units of the entries from which scenes are made.
 UNITS: dict[str, str] = {
     field.name: field.metadata["unit"]
     for kind in (Scene, Sphere, Material)
@@ -419,5 +420,5 @@ UNITS: dict[str, str] = {
 
 
 def entry_unit(name: str) -> str:
-    """Return the unit of an entry, by a dotted name too: ``"sphere.radius"`` is in m."""
+    """Return the unit of an entry; the name may be dotted: ``"sphere.radius"`` has the unit m."""
     return UNITS[name.rpartition(".")[2]]

@@ -1,1 +1,1 @@
-"""Numbers: checked, in batches, at nodes."""
+"""Checked numbers, vectors, batches, and formulas of numerical analysis."""

@@ -1,8 +1,8 @@
-"""Batches: trees of numbers stacked, taken apart and put together again, in one place.
+"""Batches: functions that stack, index and merge trees of numbers.
 
-A tree is a number, an array, an attrs object or a NamedTuple of trees, or anything else, which is
-left as it is. In a batch of ``shape`` every number is either plain, and holds for all impacts, or
-an array that broadcasts to ``shape``.
+A tree is a number, an array or an attrs object whose fields are trees. Any other value is passed
+through unchanged. In a batch of ``shape`` a plain number holds for all impacts, and an array
+broadcasts to ``shape``.
 """
 
 from __future__ import annotations
@@ -16,20 +16,14 @@ import numpy as np
 
 
 def locked(value: Any) -> Any:
-    """Return ``value``, made read-only if it is an array, as whatever leaves the core is."""
+    """Return ``value``; an array is made read-only."""
     if isinstance(value, np.ndarray):
         value.setflags(write=False)
     return value
 
 
 def common_shape(shapes: Mapping[str, tuple[int, ...]], *, what: str, remedy: str) -> Any:
-    """Return the shape that named shapes broadcast to; () are those of plain numbers.
-
-    Raises
-    ------
-    ValueError
-        With ``what``, the names of those that are no plain numbers, and the remedy.
-    """
+    """Return the common broadcast shape, or raise ValueError with ``what``, names and remedy."""
     shapes = {name: shape for name, shape in shapes.items() if shape}
     try:
         return np.broadcast_shapes(*shapes.values())
@@ -39,12 +33,12 @@ def common_shape(shapes: Mapping[str, tuple[int, ...]], *, what: str, remedy: st
 
 
 def stacked(items: Sequence[Any]) -> Any:
-    """Return one tree from trees of equal type: leaves that differ become arrays, (items,)."""
+    """Return one tree; leaves that differ become arrays of shape (items,)."""
     first = items[0]
     if all(item is first for item in items):
         return first
     if any(type(item) is not type(first) for item in items):
-        return None  # bodies of different kinds: the reduced pair still serves
+        return None  # bodies of different kinds: laws need the pair only
     if attrs.has(type(first)):
         names = [field.name for field in attrs.fields(type(first)) if field.init]
         return type(first)(
@@ -56,28 +50,18 @@ def stacked(items: Sequence[Any]) -> Any:
 
 
 def taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
-    """Return the tree of some impacts of a batch of ``shape``.
-
-    Parameters
-    ----------
-    tree : tree
-        Plain numbers stand for the whole batch, and stay plain: laws are faster then.
-    shape : tuple of int
-        Batch shape.
-    part : int, tuple of int, slice, mask or array of indices
-        Which impacts. Of a single one the numbers come out plain.
-    """
+    """Return the tree of the impacts that ``part`` indexes; plain numbers stay plain."""
     if isinstance(tree, np.ndarray):
-        found = (tree if tree.shape == shape else np.broadcast_to(tree, shape))[part]
-        return found.item() if isinstance(found, np.generic) else locked(found)
+        numbers = (tree if tree.shape == shape else np.broadcast_to(tree, shape))[part]
+        return numbers.item() if isinstance(numbers, np.generic) else locked(numbers)
     if isinstance(tree, float):
         return tree
     if attrs.has(type(tree)):
-        found = object.__new__(type(tree))  # every number was checked when the tree was made
+        copy = object.__new__(type(tree))  # every number was checked when the tree was made
         for field in attrs.fields(type(tree)):
             value = taken(getattr(tree, field.name), shape, part)
-            object.__setattr__(found, field.name, value)
-        return found
+            object.__setattr__(copy, field.name, value)
+        return copy
     return tree
 
 
@@ -90,12 +74,12 @@ def merged(parts: Sequence[tuple[Any, Any]], shape: tuple[int, ...], kind: Any =
 
 
 def spread(value: Any, shape: tuple[int, ...]) -> Any:
-    """Return ``value`` as a float for one impact, or as an array of the batch ``shape``."""
+    """Return ``value`` as a float for one impact, or as an array of ``shape`` for a batch."""
     return np.array(np.broadcast_to(value, shape)) if shape else float(value)
 
 
 def filled(value: Any, shape: tuple[int, ...]) -> Any:
-    """Return ``value``, of whatever kind, for one impact, or an array of it for each of a batch."""
+    """Return ``value`` for one impact, or an object array of ``shape`` filled with it."""
     return np.full(shape, value, dtype=object) if shape else value
 
 
@@ -107,27 +91,27 @@ def halves(shape: tuple[int, ...]) -> tuple[Any, Any]:
 
 
 def some(mask: Any) -> bool:
-    """Return whether a mask holds for any impact."""
+    """Return whether a mask is True for at least one impact."""
     return mask if isinstance(mask, bool) else bool(mask.any() if mask.ndim else mask)
 
 
 def every(mask: Any) -> bool:
-    """Return whether a mask holds for all impacts."""
+    """Return whether a mask is True for all impacts."""
     return mask if isinstance(mask, bool) else bool(mask.all() if mask.ndim else mask)
 
 
-def chosen(condition: Any, one: Any, other: Any) -> Any:
-    """Return ``np.where`` of an array; of one impact the number itself, ten times as fast."""
+def chosen(condition: Any, if_true: Any, if_false: Any) -> Any:
+    """Return ``np.where`` for arrays; a plain condition is decided by ``if``, ten times as fast."""
     if isinstance(condition, np.ndarray):
-        return np.where(condition, one, other)
-    return one if condition else other
+        return np.where(condition, if_true, if_false)
+    return if_true if condition else if_false
 
 
 def share(where: Any) -> str:
-    """Return how many impacts of a batch a mask holds, in words."""
+    """Return "3 of 10 impacts": how many impacts ``where`` marks."""
     return f"{int(np.sum(where))} of {np.size(where)} impacts"
 
 
 def for_share(where: Any) -> str:
-    """Return for how many impacts of a batch something holds, in words; nothing of one impact."""
+    """Return " for 3 of 10 impacts"; empty for a single impact."""
     return f" for {share(where)}" if np.ndim(where) else ""

@@ -1,7 +1,6 @@
-"""Checked numbers: every quantity a user gives goes through here.
+"""Checks of every number that a user gives.
 
-A refusal names the argument, the value, the rule and the remedy, so that a
-person can mend the input without reading any code.
+A refusal is a ValueError that names the argument, the value, the rule and the remedy.
 """
 
 from __future__ import annotations
@@ -14,13 +13,13 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-#: A number or an array of numbers: the code of the laws serves both.
+#: A number or an array of numbers: laws accept both.
 Real: TypeAlias = float | NDArray[np.float64]
-#: A yes or no, or an array of them.
+#: A bool or an array of bool.
 Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
 
-
-#: Words for symbols and other names that people try; more than one where it depends.
+#: Names in this package for symbols and names that users try. The first name that is accepted
+#: where the symbol was used is suggested.
 SYMBOLS: dict[str, tuple[str, ...]] = {
     "mu": ("friction_coefficient",), "friction": ("friction_coefficient", "tangential"),
     "nu": ("poisson_ratio",), "E": ("young_modulus",), "G": ("shear_modulus",),
@@ -50,9 +49,9 @@ class Rule(NamedTuple):
     Attributes
     ----------
     holds : callable
-        Takes a number or an array; True where the condition holds.
+        Takes a number or an array and returns True where the condition holds.
     sentence : str
-        What a refusal says: ``"must be positive"``.
+        The condition in words, for messages: ``"must be positive"``.
     """
 
     holds: Callable[[Any], Any]
@@ -73,43 +72,30 @@ GYRATION = Rule(
 
 
 def shown(value: object, *, most: int = 80) -> str:
-    """Return a value for a message, on one line of at most so many characters."""
+    """Return ``value`` as one line of at most ``most`` characters, for a message."""
     try:
         text = " ".join(repr(value).split())
-    except Exception:  # an integer of too many digits, lists in lists in lists, anybody's class
+    except Exception:  # too many digits, lists nested too deeply, or a faulty __repr__
         text = f"a {type(value).__name__}"
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
 def refuse(argument: str, value: object, rule: str, remedy: str = "") -> ValueError:
-    """Return the error for a bad argument: name, value, rule and remedy in one sentence.
-
-    Parameters
-    ----------
-    argument : str
-        Its name, or its path in a file.
-    value : object
-        As it was given.
-    rule : str
-        What it breaks: ``"must be positive"``.
-    remedy : str
-        What to do about it.
-    """
+    """Return the ValueError for a bad argument: name, value, rule and remedy in one sentence."""
     return ValueError(f"{argument} = {shown(value)}: {rule}" + (f"; {remedy}" if remedy else ""))
 
 
 def nearest(name: str, known: Iterable[str], *, cutoff: float = 0.5) -> str:
-    """Return "did you mean ...? " with the known name most like ``name``, or nothing.
+    """Return "did you mean ...? " with the most similar of ``known``; empty if none is similar.
 
-    A symbol of the paper, or of everybody's, stands for the word used here: mu for
-    friction_coefficient.
+    A symbol counts as similar to its name in this package: mu to friction_coefficient.
     """
-    import difflib  # only for those who misspell
+    import difflib  # slow to import, needed for misspelt names only
 
     names = list(known)
-    meant = [word for word in SYMBOLS.get(name, ()) if word in names]
-    meant += difflib.get_close_matches(name, names, n=1, cutoff=cutoff)
-    return f"did you mean {meant[0]!r}? " if meant else ""
+    similar = [word for word in SYMBOLS.get(name, ()) if word in names]
+    similar += difflib.get_close_matches(name, names, n=1, cutoff=cutoff)
+    return f"did you mean {similar[0]!r}? " if similar else ""
 
 
 def real(
@@ -120,28 +106,11 @@ def real(
     remedy: str = "",
     kept: bool = True,
 ) -> Real:
-    """Return ``value`` as a float or a float64 array, or refuse it.
+    """Return ``value`` as a finite float or float64 array that obeys ``rule``, or raise ValueError.
 
-    Parameters
-    ----------
-    argument : str
-        Name used in the error.
-    value : object
-        A real number, or an array or list of them. Booleans, text, complex numbers
-        and NaN or infinite values are refused; integers and float32 are widened.
-    rule : Rule
-        What every element must satisfy besides being finite.
-    remedy : str
-        What to do about a refusal, such as the unit expected.
-    kept : bool
-        Whether an array outlives the call: then it is a copy, and read-only.
-
-    Raises
-    ------
-    ValueError
-        With argument, value, rule and remedy.
+    An array that outlives the call (``kept``) is copied and made read-only.
     """
-    if type(value) is float:  # the common case, without a detour through numpy
+    if type(value) is float:  # the common case; numpy is slower
         if math.isfinite(value) and rule.holds(value):
             return value
         raise refuse(argument, value, rule.sentence, remedy)
@@ -163,37 +132,28 @@ def real(
     if widened.ndim == 0:
         return float(widened)
     if kept:
-        widened.flags.writeable = False  # nobody may change it under those who read it
+        widened.flags.writeable = False
     return widened
 
 
 def paired(first: str, second: str, values: tuple[Real, Real]) -> tuple[Any, Any]:
-    """Return two quantities as arrays of one shape, or refuse shapes that do not fit."""
+    """Return two quantities as arrays of one shape, or refuse shapes that do not broadcast."""
     if np.ndim(values[0]) and np.shape(values[0]) == np.shape(values[1]):
-        return values  # broadcasting takes longer than this
+        return values  # broadcasting is slower than this comparison
     if isinstance(values[0], float) and isinstance(values[1], float):
         return np.asarray(values[0]), np.asarray(values[1])
     try:
-        one, other = np.broadcast_arrays(*values)
+        broadcast = np.broadcast_arrays(*values)
     except ValueError:
         shapes = f"{np.shape(values[0])} and {np.shape(values[1])}"
         remedy = f"one value of {second} for each {first}"
         rule = "must have shapes that fit"
         raise refuse(f"{first} and {second}", shapes, rule, remedy) from None
-    return one, other
+    return broadcast[0], broadcast[1]
 
 
 def whole(argument: str, value: object, *, least: int = 1, most: int = 10_000_000) -> int:
-    """Return ``value`` as an int between ``least`` and ``most``, or refuse it.
-
-    Parameters
-    ----------
-    argument : str
-        Name used in the error.
-    value : object
-    least, most : int
-        The range, both ends in it.
-    """
+    """Return ``value`` as an int from ``least`` to ``most``, both included, or refuse it."""
     rule = f"must be a whole number from {least} to {most}"
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value[()]
@@ -205,12 +165,12 @@ def whole(argument: str, value: object, *, least: int = 1, most: int = 10_000_00
 
 
 def unit_remedy(unit: str) -> str:
-    """Return what to do about a refused number that has, or lacks, a unit."""
+    """Return the remedy for a refused number: the unit to give it in, or that it has none."""
     return "it has no unit" if unit == "1" else f"give it in {unit}"
 
 
 def _checked(value: object, owner: object, field: attrs.Attribute[Any]) -> Real | None:
-    """Return the checked value of a field; ``owner`` is the object that is being made."""
+    """Return the checked value of a field of ``owner``, the object that is being made."""
     if value is None and field.default is None:
         return None
     meta = field.metadata
@@ -222,7 +182,7 @@ def _checked(value: object, owner: object, field: attrs.Attribute[Any]) -> Real 
 
 
 def key(value: Real | None) -> object:
-    """Return what equality and hash of a quantity go by; arrays have neither of their own."""
+    """Return a key for equality and hash of a quantity; arrays have no usable one."""
     if value is None or isinstance(value, float):
         return value
     array = np.asarray(value) + 0.0  # -0.0 equals 0.0
@@ -234,20 +194,21 @@ def quantity(
 ) -> Any:
     """Return an attrs field for a checked real quantity with its unit in the metadata.
 
-    A default of None makes it optional: None may be given too. A body or a scene takes an array,
-    one value for each impact; a law (``Law.plain_options``) refuses arrays.
+    If the default is None, the quantity is optional and may be None. A body or a scene accepts an
+    array with one value for each impact; a law (``Law.plain_options``) refuses arrays.
 
     Parameters
     ----------
     unit : str
-        In SI; ``"1"`` for none.
+        SI unit; ``"1"`` for a quantity without unit.
     rule : Rule
-        What every element must satisfy besides being finite.
+        Condition that every element must satisfy besides being finite.
     default : float or None, optional
+        Value if none is given; without a default the quantity is required.
     kw_only : bool
-        Whether this field alone is to be given by name.
+        Whether the field is keyword-only, in a class whose other fields are not.
     """
-    keywords: Any = {"kw_only": True} if kw_only else {}  # False would overrule the class
+    keywords: Any = {"kw_only": True} if kw_only else {}  # False would override the class
     return attrs.field(
         default=default,
         **keywords,
@@ -258,7 +219,7 @@ def quantity(
 
 
 def instance(*kinds: type, remedy: str = "", optional: bool = False, **field: Any) -> Any:
-    """Return an attrs field for an object of one of some classes; if optional, None too."""
+    """Return an attrs field that accepts objects of the classes ``kinds``; None too if optional."""
     rule = f"must be a {' or a '.join(kind.__name__ for kind in kinds)}"
 
     def validate(_: object, field: attrs.Attribute[Any], value: object) -> None:
@@ -269,7 +230,7 @@ def instance(*kinds: type, remedy: str = "", optional: bool = False, **field: An
 
 
 def _option(checked: Callable[[str, object], Any], default: Any, **metadata: Any) -> Any:
-    """Return an attrs field whose value is ``checked(name, value)`` of what is given."""
+    """Return an attrs field with the converter ``checked(name, value)``."""
     return attrs.field(
         default=default,
         converter=attrs.Converter(
@@ -280,13 +241,14 @@ def _option(checked: Callable[[str, object], Any], default: Any, **metadata: Any
 
 
 def choice(*words: str, default: str) -> Any:
-    """Return an attrs field for one of a few words.
+    """Return an attrs field whose value is one of ``words``.
 
     Parameters
     ----------
     *words : str
+        The accepted values.
     default : str
-        One of them.
+        The word used if none is given.
     """
     rule = f"must be one of {', '.join(map(repr, words))}"
 
@@ -299,11 +261,12 @@ def choice(*words: str, default: str) -> Any:
 
 
 def flag(*, default: bool) -> Any:
-    """Return an attrs field for True or False.
+    """Return an attrs field whose value is True or False.
 
     Parameters
     ----------
     default : bool
+        The value used if none is given.
     """
     rule = "must be True or False"
 
@@ -321,8 +284,9 @@ def count(*, default: Any = attrs.NOTHING, least: int = 1, most: int = 10_000_00
     Parameters
     ----------
     default : int, optional
+        Value if none is given; without a default the number is required.
     least, most : int
-        The range, both ends in it.
+        Smallest and largest accepted value.
     """
 
     def checked(name: str, value: object) -> int:

@@ -1,4 +1,4 @@
-"""Lobatto collocation on [0, 1]: nodes and the matrices that every panel shares."""
+"""Lobatto collocation on [0, 1]: nodes, and the matrices that all panels share."""
 
 from __future__ import annotations
 
@@ -11,38 +11,38 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: Added to a distance from a node: a point on a node then picks that node, and any other
-#: distance is unchanged.
+#: Added to distances from nodes so that none is zero; no other distance changes.
 ON_NODE = 1e-290
 
 
 class Nodes(NamedTuple):
-    """Everything that depends on the number of nodes only.
+    """Nodes, weights and matrices for n nodes.
 
     Attributes
     ----------
     points : array, shape (n,)
-        tau, 0 and 1 included.
+        The nodes tau, 0 and 1 included.
     integral : array, shape (n, n)
         ``integral[i] @ f`` is the integral of f from 0 to ``points[i]``.
     weights : array, shape (n,)
-        Of barycentric interpolation.
+        Weights of barycentric interpolation.
     fine : array, shape (m,)
-        Finer points, to look for events.
+        Finer points, at which events are looked for.
     second : int
-        The first of the finer points that is not before the second node.
+        Index of the first finer point at or after the second node.
     to_fine : array, shape (n, m)
         Values at nodes @ ``to_fine`` are values at the finer points.
     slope : array, shape (n,)
         ``slope @ f`` is f'(0).
     legendre, tail : arrays, shape (n, n) and (2, n)
-        All coefficients of Legendre's polynomials in 2 tau - 1, and the two highest.
+        ``legendre @ f`` are the coefficients of Legendre's polynomials in 2 tau - 1; ``tail @ f``
+        are the two highest coefficients.
     powers : array, shape (n, n)
         ``powers @ (legendre @ f)`` are the coefficients of powers of 2 tau - 1, lowest first. The
-        two matrices in one would lose digits, half of them at 20 nodes.
+        product of the two matrices would lose digits, half of them at 20 nodes.
     plain, rooted : tuple of two arrays
-        (x - origin)/length at the nodes, and its derivative: even, or with nodes crowded
-        as (1 - tau)² at the end, which makes (1 - x)^1.5 a polynomial.
+        (x - origin)/length at the nodes and its derivative with respect to tau: linear, or with
+        nodes crowded as (1 - tau)² at the end, which makes (1 - x)^1.5 a polynomial.
     identity : array, shape (n, n)
     """
 
@@ -98,47 +98,33 @@ def lobatto(count: int) -> Nodes:
 
 
 def _powers(coefficients: Array) -> Array:
-    """Return coefficients of powers, as many, from those of Legendre's polynomials."""
-    found = legendre.leg2poly(coefficients)
-    return np.asarray(np.pad(found, (0, coefficients.size - found.size)))
+    """Return coefficients of powers, shape (n,), from coefficients of Legendre's polynomials."""
+    powers = legendre.leg2poly(coefficients)
+    return np.asarray(np.pad(powers, (0, coefficients.size - powers.size)))
 
 
 def rows(nodes: Nodes, tau: Array) -> Array:
-    """Return the matrix that takes values at the nodes to values at ``tau``."""
+    """Return the matrix, shape (..., n), that interpolates values at the nodes to ``tau``."""
     basis = nodes.weights / ((tau[..., None] - nodes.points) + ON_NODE)
     return np.asarray(basis / basis.sum(axis=-1, keepdims=True))
 
 
 def value_at(nodes: Nodes, tau: float, values: Array) -> float:
-    """Return the interpolant of ``values`` at the nodes at one tau; faster."""
+    """Return the interpolant of ``values`` at one tau; faster than ``rows``."""
     basis = nodes.weights / ((tau - nodes.points) + ON_NODE)
     return float(basis.dot(values) / basis.dot(nodes.plain[1]))
 
 
 def row(nodes: Nodes, tau: float) -> Array:
-    """Return the row of the matrix for one tau, as a vector; faster."""
+    """Return the row of the matrix ``rows`` for one tau, shape (n,); faster than ``rows``."""
     basis = nodes.weights / ((tau - nodes.points) + ON_NODE)
     return np.asarray(basis / basis.dot(nodes.plain[1]))
 
 
 def dips(nodes: Nodes, values: Array, fine: Array, least: Any) -> tuple[Any, Any, Array]:
-    """Return minima below ``least`` that lie between the finer points.
+    """Return finer point, column and tau of each minimum of K polynomials below ``least``.
 
-    A parabola through three neighbours tells where one may be; the polynomial decides.
-
-    Parameters
-    ----------
-    nodes : Nodes
-    values : array, shape (n, K)
-        Of K polynomials, at the nodes.
-    fine : array, shape (m, K)
-        At the finer points.
-    least : float or array, shape (K,)
-
-    Returns
-    -------
-    tuple of three arrays
-        The finer point next to each minimum, in ascending order, its column, and its tau.
+    A parabola through three finer points locates a candidate; the polynomial's value decides.
     """
     step = fine[nodes.second :] - fine[nodes.second - 1 : -1]
     index, column = ((step[:-1] < 0.0) & (step[1:] >= 0.0)).nonzero()

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: Share of the error of order 3 in the error of a step (Hairer, Nørsett & Wanner, §II.10).
+#: Weight of the third-order error in the error of a step (Hairer, Nørsett & Wanner, §II.10).
 LOWER = 0.01
 
 
 class Tableau(NamedTuple):
-    """Coefficients: stages, weights, two error estimates, and what a polynomial is made of."""
+    """Coefficients of the stages, of two error estimates, and of the interpolating polynomial."""
 
     stages: list[Array]
     fifth: Array
@@ -25,14 +25,14 @@ class Tableau(NamedTuple):
 
 
 class Attempt(NamedTuple):
-    """A step of every system.
+    """One step of every system.
 
     Attributes
     ----------
     error : array, shape (systems,)
-        Over the tolerance: at most 1 is good enough; NaN where a slope was not finite.
+        Error over tolerance, accepted up to 1; NaN where a slope was not finite.
     course : array, shape (P, n, systems)
-        The values at the points asked for.
+        Values at the requested points of the step.
     """
 
     error: Array
@@ -47,19 +47,10 @@ def attempt(
     tolerance: float,
     points: Array,
 ) -> Attempt:
-    """Return one step of autonomous systems y' = f(y), each of its own width.
+    """Return one step of autonomous systems y' = ``slope(y)``, y of shape (n, systems).
 
-    Parameters
-    ----------
-    slope : callable
-        Returns f of values, shape (n, systems), in the same shape.
-    begin : array, shape (n, systems)
-        Values at the start of the step.
-    width : array, shape (systems,)
-    tolerance : float
-        Of the error over 1 + abs(y), summed over the n values in quadrature.
-    points : array, shape (P,)
-        Fractions of the step.
+    ``width`` has one step width per system, ``points`` are fractions of the step, ``tolerance``
+    bounds the error over 1 + abs(y), summed over the n values in quadrature.
     """
     tableau = _tableau()
     count = len(tableau.fifth)
@@ -77,20 +68,20 @@ def attempt(
         np.square(_summed(each, slopes) / scale).reshape(begin.shape).sum(axis=0)
         for each in (tableau.fifth, tableau.third)
     )
-    both = fifth + LOWER * third
-    error = width * fifth / np.sqrt(np.where(both > 0.0, both, 1.0))
+    squared = fifth + LOWER * third
+    error = width * fifth / np.sqrt(np.where(squared > 0.0, squared, 1.0))
     gained, first, last = end - flat, spread * slopes[0], spread * slopes[count - 1]
     parts = [gained, first - gained, 2.0 * gained - first - last]
     parts += [spread * _summed(weights, slopes) for weights in tableau.dense]
     course = flat + _summed(_basis(points.tobytes()), np.array(parts)[:, None])
-    return Attempt(np.where(np.isnan(both), np.nan, error), course.reshape(-1, *begin.shape))
+    return Attempt(np.where(np.isnan(squared), np.nan, error), course.reshape(-1, *begin.shape))
 
 
 def _summed(weights: Array, values: Array) -> Array:
     """Return the weighted sum along the first axis.
 
-    Added up in the same order however many systems there are: a product of matrices is not, and
-    the steps of a system would depend on the last bits of what stands beside it.
+    The order of summation does not depend on the number of systems. In a product of matrices the
+    order does depend on that number, so last bits would differ between batches.
     """
     weights = weights.reshape(weights.shape + (1,) * (values.ndim - weights.ndim))
     return np.asarray((weights * values[: len(weights)]).sum(axis=0))
@@ -98,8 +89,8 @@ def _summed(weights: Array, values: Array) -> Array:
 
 @cache
 def _tableau() -> Tableau:
-    """Return the coefficients: stages of the step, its end, and three more for the polynomial."""
-    from scipy.integrate import DOP853  # not before a law without closed form is met
+    """Return scipy's coefficients: stages, end of the step, and three stages for the polynomial."""
+    from scipy.integrate import DOP853  # only laws without closed form need scipy
 
     method: Any = DOP853
     inner = [np.array(row[:stage]) for stage, row in enumerate(method.A)]
@@ -110,7 +101,7 @@ def _tableau() -> Tableau:
 
 @cache
 def _basis(points: bytes) -> Array:
-    """Return the seven polynomials of the method's interpolant at points, shape (7, P, 1)."""
+    """Return the interpolant's seven polynomials at ``points``, shape (7, P, 1)."""
     x = np.frombuffer(points)
     left, right = x, 1.0 - x
     columns = [left]

@@ -1,4 +1,4 @@
-"""Vectors of three numbers, or arrays of them: checked, and taken apart."""
+"""Vectors of shape (3,) or (..., 3): checks and components."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from contactlab.numeric.checks import Rule, key, real, refuse
 
 Array = NDArray[np.float64]
 
-#: Largest number in a vector, and least length of a normal and speed of approach: their squares
-#: are held in floating point.
+#: Largest number in a vector, and least length of a normal and least speed of approach. The
+#: squares of these bounds are finite and positive in floating point.
 LARGEST, LEAST = 1e100, 1e-100
 RANGE = Rule(lambda value: np.abs(value) <= LARGEST, f"must be finite, at most {LARGEST:g}")
 
@@ -40,24 +40,24 @@ def _checked(value: object, field: attrs.Attribute[Any]) -> Array:
 
 
 def _alone(value: Any) -> Array | None:
-    """Return one vector of three plain numbers without a detour, as loops give it; else None."""
+    """Return ``value`` as a vector if it is three plain numbers, the fast path; else None."""
     numbers = value.tolist() if type(value) is np.ndarray and value.shape == (3,) else value
     if type(numbers) not in (list, tuple) or len(numbers) != 3:
         return None
-    for each in numbers:
-        plain = isinstance(each, float) or type(each) is int
-        if not (plain and -LARGEST <= each <= LARGEST):
+    for number in numbers:
+        plain = isinstance(number, float) or type(number) is int
+        if not (plain and -LARGEST <= number <= LARGEST):
             return None
     return np.array(numbers, dtype=np.float64)
 
 
 def _many(value: Any, field: attrs.Attribute[Any]) -> Array:
-    """Return a copy of vectors, or refuse them."""
+    """Return ``value`` as a new array of shape (..., 3), or refuse it."""
     remedy = f"give three numbers in {field.metadata['unit']}, or an array of shape (..., 3)"
     if field.metadata["unit"] == "1":
         remedy = "give three numbers, or an array of shape (..., 3)"
     floats = type(value) is np.ndarray and value.dtype.kind == "f" and value.size
-    # no temporary arrays: a million vectors are common; NaN fails both comparisons
+    # This test makes no temporary arrays; NaN fails both comparisons.
     if floats and value.min() >= -LARGEST and value.max() <= LARGEST:
         vectors: Array = value.astype(np.float64, order="C")
     else:
@@ -76,13 +76,13 @@ def _many(value: Any, field: attrs.Attribute[Any]) -> Array:
 
 
 def first_of(where: Any) -> str:
-    """Return the index of the first of those at ``where``, in words; nothing of one encounter."""
+    """Return " (the first of 3 has index [0])" for indices ``where``; empty for one encounter."""
     return f" (the first of {len(where)} has index {where[0].tolist()})" if where.shape[1] else ""
 
 
 def components(vectors: Array) -> tuple[Any, Any, Any]:
-    """Return x, y and z of vectors, each contiguous, or a number of one vector."""
-    if vectors.ndim == 1:  # plain numbers, as one collision after another wants them
+    """Return x, y and z: contiguous arrays, or floats for a single vector."""
+    if vectors.ndim == 1:  # floats are faster for single collisions
         x, y, z = vectors.tolist()
         return x, y, z
     x, y, z = np.ascontiguousarray(np.moveaxis(vectors, -1, 0))
@@ -90,14 +90,14 @@ def components(vectors: Array) -> tuple[Any, Any, Any]:
 
 
 def square_root(square: Any) -> Any:
-    """Return the square root of a plain number, as one, or of an array."""
+    """Return the square root of an array, or of a float as a float."""
     return math.sqrt(square) if isinstance(square, float) else np.sqrt(square)
 
 
-def difference(one: Array, other: Array) -> tuple[Any, Any, Any]:
-    """Return the components of a difference of vectors."""
-    x, y, z = components(one)
-    if not other.any():
+def difference(minuend: Array, subtrahend: Array) -> tuple[Any, Any, Any]:
+    """Return the components of ``minuend - subtrahend``."""
+    x, y, z = components(minuend)
+    if not subtrahend.any():
         return x, y, z
-    a, b, c = components(other)
+    a, b, c = components(subtrahend)
     return x - a, y - b, z - c
