@@ -119,7 +119,7 @@ def test_pieces_in_the_wrong_place_are_refused(tmp_path):
     contents = first.read_bytes(), second.read_bytes()
     first.write_bytes(contents[1])
     second.write_bytes(contents[0])
-    with pytest.raises(ValueError, match=r"impacts 40 to 80 by its content.*impacts-40-80\.npz"):
+    with pytest.raises(ValueError, match=r"impacts 40 to 80, which.*impacts-40-80\.npz"):
         simulation.sweep(scene(), keep=folder)
     first.write_bytes(contents[0])
     second.write_bytes(contents[1])
