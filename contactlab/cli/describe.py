@@ -7,6 +7,7 @@ from typing import Any
 
 from contactlab.cli.table import table
 from contactlab.compose.collision import VECTORS, Collision
+from contactlab.compose.planning import ADVICE
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
@@ -32,8 +33,11 @@ def describe(
         if collision is not None:
             body.insert(1, table(["in space", "before", "after", "unit"], _space(collision)))
             plan = collision.plan
+    planned = str(plan)
+    if result.psi2_error_estimate is not None:
+        planned = planned.replace(ADVICE, "")  # it was followed
     ending = "\n".join(f"{name + ':':9} {words}" for name, words in closing(result))
-    parts = [title, *body, cautions, str(plan), ending]
+    parts = [title, *body, cautions, planned, ending]
     return "\n\n".join(part for part in parts if part)
 
 

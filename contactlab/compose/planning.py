@@ -21,6 +21,8 @@ from contactlab.outcome.plan import Clause, Plan
 
 #: Error of what is known in closed form, over max(1, |psi1|).
 CLOSED_FORM = 1e-12
+#: What a plan says after an error that is not declared.
+ADVICE = "; run(scene, estimate_error=True) estimates it"
 
 
 def make_plan(
@@ -151,6 +153,6 @@ def _error_clauses(error: Any, separated: Mask) -> list[Clause]:
         text = "numerical error of psi2: at most {:.2g}, declared"
         found.append(Clause(text, declared, (error,)))
     if some(undeclared):
-        text = "numerical error of psi2: not declared; run(scene, estimate_error=True) estimates it"
+        text = f"numerical error of psi2: not declared{ADVICE}"
         found.append(Clause(text, undeclared))
     return found

@@ -57,6 +57,16 @@ def test_table_of_a_nondimensional_scene_claims_no_units(run):
     assert " J" not in out
 
 
+def test_nobody_is_told_to_estimate_what_was_estimated(run):
+    """The plan said how to estimate the error, below the estimate."""
+    scene = ("run", "--psi1", "2", "--chi", "1.44", "--tangential", "springs")
+    for words, advised in ((scene, False), ((*scene, "--no-estimate"), True)):
+        out = run(*words).out
+        assert ("estimates it" in out) is advised
+        assert (", estimated" in out) is not advised
+        assert "computed: numerical error of psi2: not declared" in out
+
+
 def test_options_reach_the_laws(run):
     laws = ("--tangential", "springs", "--integrator", "symplectic")
     content = json.loads(run("run", "--psi1", "1", "--chi", "1", *laws, "--json",

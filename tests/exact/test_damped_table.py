@@ -109,6 +109,14 @@ def test_odd_to_the_last_bit_and_slip_throughout():
     assert psi2[0] == 0.0
 
 
+@pytest.mark.parametrize("chi", [0.001, 0.5, 9.0])
+def test_no_impact_gains_slip_velocity(chi):
+    """By rings psi1 = 1e-19 came back as -1.17 at e = 0.3, chi = 0.001."""
+    psi1 = np.array([1e-31, 1e-19, 1e-7, 1e-3])
+    for e in (0.3, 0.9):
+        assert (np.abs(contactlab.rebound(psi1, chi, restitution=e)) <= psi1).all()
+
+
 def test_the_same_on_both_sides_of_the_border():
     """And in one array."""
     psi1 = np.full(4, 1.3)

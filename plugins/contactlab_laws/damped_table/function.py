@@ -83,7 +83,8 @@ def by_rings(psi1: Array, chi: Array, e: float, *, counts: tuple[int, ...] = COU
 
     near = np.minimum(psi1, LARGEST)
     change = courses.solve(near, chi, courses.tsuji(e), counts=counts) - near
-    return np.asarray(psi1 + change)
+    # no impact gains energy: not even by an error
+    return np.asarray(np.clip(psi1 + change, -psi1, psi1))
 
 
 def _by_table(psi1: Array, chi: Array, restitution: float) -> Array:
