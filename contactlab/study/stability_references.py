@@ -38,6 +38,9 @@ SETTLED = 3e-5
 #: changes it by less than ``AGREED`` of the range; heavy inertia needs more doublings than a ball.
 FINE_PARTS, STEPS_A_PART, DOUBLINGS = 50, 8, 5
 AGREED = 3e-3
+#: A law fails this check of the kit if its limit under damped normal laws is not Coulomb's law at
+#: every point: two laws of which one fails the check have different limits there.
+POINTWISE = "coulomb_at_a_point_damped"
 
 #: Returns the exact change of slip velocity in m/s, or None if there is no reference.
 Reference = Callable[[Scene, TangentialLaw], float | None]
@@ -52,8 +55,8 @@ def reference_for(law: TangentialLaw, normal: NormalLaw) -> Reference:
     """Return the reference of a tangential law under a normal law.
 
     Under a normal law other than elastic Hertz contact there is no exact solution. A law that
-    converges to the continuum is then judged by another such law, a rigid body by the impulse of
-    the friction load.
+    converges to the continuum is then judged by another law with the same limit, or else by itself
+    at high resolution, a rigid body by the impulse of the friction load.
     """
     elastic = "elastic_hertz" in normal.offers
     if "no_friction" in law.offers:
@@ -61,7 +64,7 @@ def reference_for(law: TangentialLaw, normal: NormalLaw) -> Reference:
     if "rigid" in law.offers:
         return rigid if elastic else _rigid_under(normal)
     if converges(law):
-        return continuum if elastic else _another(normal, type(law))
+        return continuum if elastic else _another(normal, law)
     return itself if elastic else nothing
 
 
@@ -74,13 +77,18 @@ def nothing(scene: Scene, law: TangentialLaw) -> None:
     """Return None: there is no reference."""
 
 
-def _another(normal: NormalLaw, judged: type[TangentialLaw]) -> Reference:
-    name = another_of_the_continuum(normal, judged)
-    return nothing if name is None else lambda scene, _: fine_under(scene, normal, name)
+def _another(normal: NormalLaw, judged: TangentialLaw) -> Reference:
+    """Return the reference by another law with the limit of ``judged``, or else by itself."""
+    other: Any = another_of_the_continuum(normal, judged)
+    if other is None and _refines(judged):
+        other = type(judged)
+    return nothing if other is None else lambda scene, _: fine_under(scene, normal, other)
 
 
-def another_of_the_continuum(normal: NormalLaw, judged: type[TangentialLaw]) -> str | None:
-    """Return the name of a stepped law of the continuum other than ``judged``; None if none fits.
+def another_of_the_continuum(
+    normal: NormalLaw, judged: TangentialLaw
+) -> type[SteppedTangentialLaw] | None:
+    """Return the class of another stepped law with the limit of ``judged``; None if none fits.
 
     The law fits ``normal``, and needs only the contact radius. The default laws of elastic bodies
     are tried first, because they are of second order; then contactlab's other laws by name.
@@ -91,17 +99,22 @@ def another_of_the_continuum(normal: NormalLaw, judged: type[TangentialLaw]) -> 
             law = REGISTRY.create(full_name(KIND, name))
         except (ValueError, PluginError):  # blocked, broken, or an option has no default
             continue
-        refines = isinstance(law, SteppedTangentialLaw) and law.resolution is not None
         suits = converges(law) and law.needs <= {"radius"} and misfit(normal, law) is None
-        if refines and suits and type(law) is not judged:
-            return name
+        same_limit = (POINTWISE in law.expected_failures) is (POINTWISE in judged.expected_failures)
+        if suits and same_limit and _refines(law) and type(law) is not type(judged):
+            assert isinstance(law, SteppedTangentialLaw)
+            return type(law)
     return None
 
 
+def _refines(law: TangentialLaw) -> bool:
+    """Return whether a law is stepped and has a resolution."""
+    return isinstance(law, SteppedTangentialLaw) and law.resolution is not None
+
+
 @lru_cache(maxsize=4096)
-def fine_under(scene: Scene, normal: NormalLaw, name: str) -> float | None:
-    """Return the change in m/s by a fine law of the continuum; None if it does not settle."""
-    law: Any = REGISTRY.law_class(full_name("tangential", name))
+def fine_under(scene: Scene, normal: NormalLaw, law: Any) -> float | None:
+    """Return the change in m/s by a fine law of class ``law``; None if it does not settle."""
     width = range_of(scene).width
     before = np.inf
     for parts in FINE_PARTS * 2 ** np.arange(DOUBLINGS + 1):

@@ -17,12 +17,11 @@ from numpy.typing import NDArray
 
 from contactlab.compose import composition
 from contactlab.compose.simulation import Simulation
-from contactlab.contracts import TangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.outcome.result import ImpactResult
 from contactlab.study.bench_methods import Method, scenes
 from contactlab.study.interrupts import uninterrupted
-from contactlab.study.stability_references import another_of_the_continuum, fine_under
+from contactlab.study.stability_references import converges, reference_for
 
 Array = NDArray[np.float64]
 
@@ -151,9 +150,7 @@ def bench(
     Benchmark
         Ctrl-C keeps the resolutions that are done.
     """
-    truths = {
-        normal: _truths(normal, quick=quick) for normal in {method.normal for method in methods}
-    }
+    truths = {key: _truths(*key, quick=quick) for key in {_judged(method) for method in methods}}
     resolutions = [
         (method, resolution) for method in methods for resolution in method.resolutions(quick=quick)
     ]
@@ -167,7 +164,7 @@ def bench(
             rows.append(
                 _left_out(method, resolution)
                 if method.name in slow
-                else _row(method, resolution, truths[method.normal])
+                else _row(method, resolution, truths[_judged(method)])
             )
             if rows[-1].time_s > limit:
                 slow.add(method.name)
@@ -195,19 +192,32 @@ class Truth(NamedTuple):
     result: ImpactResult | None
 
 
-def _truths(normal: str, *, quick: bool) -> list[Truth]:
-    """Return scenes with true answers: exact, or by a fine law of the continuum."""
+def _judged(method: Method) -> tuple[str, str]:
+    """Return the normal law of a method, and the friction law whose limit it is judged by.
+
+    The limit is the law's own if it converges to the continuum, and that of the default law
+    otherwise. Under elastic Hertz contact all limits are one; the name is empty.
+    """
+    normal = composition.law("normal", method.normal)
+    if "elastic_hertz" in normal.offers:
+        return method.normal, ""
+    own = converges(composition.law("tangential", method.tangential))
+    return method.normal, method.tangential if own else composition.preferred("tangential", normal)
+
+
+def _truths(normal: str, tangential: str, *, quick: bool) -> list[Truth]:
+    """Return scenes with true answers: exact, or by a fine law of the same limit."""
     law = composition.law("normal", normal)
     truths = []
     elastic = "elastic_hertz" in law.offers
-    name = None if elastic else another_of_the_continuum(law, TangentialLaw)
     for scene in scenes(quick=quick, sized=normal != composition.DEFAULT_NORMAL):
         if elastic:
             exact = Simulation(normal=law, **composition.exact(EXACT_TOLERANCE))
             result = exact.run(scene, history=True).check()
             truths.append(Truth(scene, float(np.asarray(result.psi_change)), result))
             continue
-        change = None if name is None else fine_under(scene, law, name)
+        friction = composition.law("tangential", tangential)
+        change = reference_for(friction, law)(scene, friction)
         psi_change = np.nan if change is None else float(np.asarray(scene.psi(change)))
         truths.append(Truth(scene, psi_change, None))
     return truths

@@ -2,6 +2,7 @@
 
 import ast
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from contactlab.cli.main import main
 from contactlab.compose import composition
 from contactlab.compose.loading import Loader
 from contactlab.compose.registry import REGISTRY
+from contactlab.study import work_precision
 from contactlab.study.bench_methods import Method, methods
 from contactlab.study.stability_cases import cases
 
@@ -102,8 +104,9 @@ def test_laws_that_do_not_fit_are_refused(laws, words):
 
 
 @pytest.mark.usefixtures("theirs")
-def test_bench_of_them(capsys):
+def test_bench_of_them(capsys, monkeypatch):
     """The law scaled in stiffness is Hertz's at another speed: springs converge under it too."""
+    monkeypatch.setattr(work_precision, "SLOW_QUICK", math.inf)  # no resolution is left out
     words = ["bench", "--quick", "--json", "--law", "springs", "--law", "normal.softer"]
     assert main([*words, "--law", "integrator.march"]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]
