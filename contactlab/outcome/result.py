@@ -47,7 +47,7 @@ class ImpactResult:
     """Result of one impact, or of a batch: every quantity has the scene's shape.
 
     A batch can be indexed, sliced and iterated; each item is the result of one impact. Items keep
-    the run time, the counters and the plan's sentences of the whole batch.
+    the run time and the counters of the whole batch.
 
     Attributes
     ----------
