@@ -78,33 +78,37 @@ def nothing(scene: Scene, law: TangentialLaw) -> None:
 
 
 def _another(normal: NormalLaw, judged: TangentialLaw) -> Reference:
-    """Return the reference by another law with the limit of ``judged``, or else by itself."""
-    other: Any = another_of_the_continuum(normal, judged)
-    if other is None and _refines(judged):
-        other = type(judged)
-    return nothing if other is None else lambda scene, _: fine_under(scene, normal, other)
+    """Return the reference by the first law of ``laws_of_the_continuum`` that settles."""
+    candidates = laws_of_the_continuum(normal, judged)
+
+    def change(scene: Scene, _: TangentialLaw) -> float | None:
+        answers = (fine_under(scene, normal, law) for law in candidates)
+        return next((answer for answer in answers if answer is not None), None)
+
+    return change
 
 
-def another_of_the_continuum(
-    normal: NormalLaw, judged: TangentialLaw
-) -> type[SteppedTangentialLaw] | None:
-    """Return the class of another stepped law with the limit of ``judged``; None if none fits.
+def laws_of_the_continuum(normal: NormalLaw, judged: TangentialLaw) -> list[type[TangentialLaw]]:
+    """Return the classes of stepped laws that ``judged`` may be judged by, the best first.
 
-    The law fits ``normal``, and needs only the contact radius. The default laws of elastic bodies
-    are tried first, because they are of second order; then contactlab's other laws by name.
+    A law fits ``normal``, and needs only the contact radius. First come other laws with the limit
+    of ``judged``, or ``judged`` itself if there is none; then laws with another limit. The default
+    laws of elastic bodies are tried first, because they are of second order.
     """
     ours = [info.name for info in REGISTRY.installed() if info.distribution == PROJECT]
+    same_limit: list[type[TangentialLaw]] = []
+    other_limit: list[type[TangentialLaw]] = []
     for name in (*PREFERRED["elastic"], *(name for name in ours if kind_of(name) == KIND)):
         try:
             law = REGISTRY.create(full_name(KIND, name))
         except (ValueError, PluginError):  # blocked, broken, or an option has no default
             continue
         suits = converges(law) and law.needs <= {"radius"} and misfit(normal, law) is None
-        same_limit = (POINTWISE in law.expected_failures) is (POINTWISE in judged.expected_failures)
-        if suits and same_limit and _refines(law) and type(law) is not type(judged):
-            assert isinstance(law, SteppedTangentialLaw)
-            return type(law)
-    return None
+        if suits and _refines(law) and type(law) is not type(judged):
+            pointwise = (POINTWISE in law.expected_failures, POINTWISE in judged.expected_failures)
+            (same_limit if pointwise[0] is pointwise[1] else other_limit).append(type(law))
+    itself_too = [type(judged)] if not same_limit and _refines(judged) else []
+    return [*same_limit, *itself_too, *other_limit]
 
 
 def _refines(law: TangentialLaw) -> bool:

@@ -136,7 +136,7 @@ def test_a_false_declaration_is_said_loudly():
 def test_a_false_declaration_is_said_on_the_command_line(monkeypatch, capsys, json_wanted):
     false = Simulation(tangential=Boasts())
     monkeypatch.setattr(
-        "contactlab.cli.run.given",
+        "contactlab.cli.run.inputs",
         lambda _: (None, Scene.nondimensional(psi1=9.0, chi=1.0), false),
     )
     assert main(["run", "--psi1", "9", "--chi", "1", *(["--json"] * json_wanted)]) == 0
