@@ -110,7 +110,7 @@ def test_table_and_figure(run, sweep, tmp_path, without_annuli):
     [
         (("--tangential", "coulomb"), "leave out --tangential"),
         (("--integrator", "paper"), "leave out --tangential"),
-        (("--set", "tangential.annuli=5"), "say of which law"),
+        (("--set", "tangential.annuli=5"), "with --all name one law"),
         (("--set", "tangential.annulus.anuli=5"), "annuli"),
     ],
 )
