@@ -66,7 +66,7 @@ def solve(
     answers = np.array([rebound(psi1, chi, course(motion, count)) for count in counts])
     weights = (numbers / numbers.max()) ** 2
     terms = np.stack([weights, weights / numbers**2], axis=1)
-    return np.asarray(np.linalg.lstsq(terms, answers * weights[:, None])[0][0])
+    return np.asarray(np.linalg.lstsq(terms, answers * weights[:, None], rcond=None)[0][0])
 
 
 def tsuji(e: float) -> NormalMotion:
