@@ -30,7 +30,8 @@ The package has these parts. Each imports only from the parts above it:
 ``cli``        the command line
 ============== ===========================================================================
 
-The laws are in the package ``contactlab_laws``; the guide is in ``guide/``.
+The laws are in the package ``contactlab_laws``; the guide is in ``guide/``. The friction
+law as a kernel in C and JavaScript is in ``kernels/``, which has no Python.
 """
 
 from __future__ import annotations
@@ -40,11 +41,12 @@ from typing import TYPE_CHECKING, Any
 
 from contactlab.compose.collision import Collision, collide
 from contactlab.compose.hookspecs import hookimpl
+from contactlab.compose.load_path import load_path
 from contactlab.compose.rebound import rebound
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
-from contactlab.impact.bodies import HalfSpace, Pair, Sphere
+from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
@@ -66,7 +68,6 @@ __all__ = [
     "ImpactError",
     "ImpactResult",
     "Material",
-    "Pair",
     "PluginError",
     "Scene",
     "Simulation",
@@ -76,6 +77,7 @@ __all__ = [
     "create",
     "fit",
     "hookimpl",
+    "load_path",
     "materials",
     "read_scene",
     "rebound",

@@ -13,7 +13,7 @@ import numpy as np
 
 from contactlab import Scene, Simulation
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
-from contactlab.figures.files import save
+from contactlab.figures import law_style, name_curves, save
 
 
 class Spring(NamedTuple):
@@ -37,8 +37,8 @@ class MindlinCap(SteppedTangentialLaw):
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
     # Checks of `contactlab.testing` that the model fails by its nature, and why.
     expected_failures: ClassVar[dict[str, str]] = {
-        "books": "what the spring loses as the contact shrinks is in no book",
-        "impact_books": "what the spring loses as the contact shrinks is in no book",
+        "books": "the books leave out what the spring loses as the contact shrinks",
+        "impact_books": "the books leave out what the spring loses as the contact shrinks",
     }
 
     def start(self, scene, normal):
@@ -83,9 +83,14 @@ if __name__ == "__main__":
 
     def draw(axes):
         """Draw the rebounds under both laws."""
-        for name, result in (("mindlin cap", mine), ("annulus", paper)):
-            axes.plot(psi1, result.psi2, "o-", label=name)
-        axes.set(xlabel="psi1", ylabel="psi2")
-        axes.legend()
+        both = {"mindlin cap": mine, "annulus": paper}
+        lines = []
+        for number, result in enumerate(both.values()):
+            lines += axes.plot(psi1, result.psi2, marker="o", **law_style(number))
+        axes.set(
+            xlabel=r"local angle of incidence $\psi_1$", ylabel=r"local angle of reflexion $\psi_2$"
+        )
+        axes.axhline(0.0, color="grey", lw=0.8, zorder=0)
+        name_curves(axes, lines, list(both))
 
     save(Path("custom_law.png"), draw)

@@ -6,9 +6,8 @@ Writes ``kharaz2001.png`` in the current folder.
 from pathlib import Path
 
 from contactlab import Simulation, read_scene
-from contactlab.figures.comparison import laws_over_sweep
-from contactlab.figures.files import save
-from contactlab.study.compare import compare
+from contactlab.figures import laws_over_sweep, save
+from contactlab.study import compare
 
 file = read_scene(Path(__file__).with_name("kharaz2001.toml"))
 laws = ("annulus", "coulomb")

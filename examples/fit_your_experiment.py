@@ -12,7 +12,7 @@ current folder. ``contactlab fit impacts.csv bodies.toml`` does the same without
 from pathlib import Path
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, fit
-from contactlab.figures.fitting import draw_fits
+from contactlab.figures import draw_fits
 from contactlab.fitting import rank
 
 impacts = {

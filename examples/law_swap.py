@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from contactlab import Scene, Simulation
-from contactlab.figures.files import save
+from contactlab.figures import law_style, name_curves, save
 
 scene = Scene.nondimensional(psi1=1.2, chi=1.4412)
 all_angles = Scene.nondimensional(psi1=np.linspace(0.0, 7.0, 141), chi=1.4412)
@@ -24,10 +24,15 @@ for law in ("annulus", "coulomb", "frictionless"):
 
 def draw(axes):
     """Draw the rebound under each law."""
-    for law, psi2 in curves.items():
-        axes.plot(all_angles.psi1, psi2, label=law)
-    axes.set(xlabel="psi1", ylabel="psi2")
-    axes.legend()
+    lines = []
+    for number, psi2 in enumerate(curves.values()):
+        lines += axes.plot(all_angles.psi1, psi2, **law_style(number))
+    axes.set(
+        xlabel=r"local angle of incidence $\psi_1$",
+        ylabel=r"local angle of reflexion $\psi_2$",
+        xlim=(0.0, 7.0),
+    )
+    name_curves(axes, lines, list(curves))
 
 
 save(Path("law_swap.png"), draw)

@@ -12,9 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from contactlab import Scene, Simulation, create, rebound
-from contactlab.figures.files import save
-from contactlab.figures.paper import draw
-from contactlab.study.paper_figures import SOLID_CHI, figures
+from contactlab.figures import draw_paper, save
+from contactlab.study import SOLID_CHI, paper_data
 
 paper = Simulation(
     tangential=create("tangential.annulus", annuli=20),
@@ -24,12 +23,12 @@ paper = Simulation(
 
 def numbers(figure):
     """Return the curves of a figure of the paper."""
-    return figures()[figure](paper)
+    return paper_data()[figure](paper)
 
 
 def drawn(data):
     """Return the picture of a figure, which a notebook shows below its cell."""
-    return save(Path(f"figure-{data.number}.png"), functools.partial(draw, data=data))
+    return save(Path(f"figure-{data.number}.png"), functools.partial(draw_paper, data=data))
 
 
 # %%

@@ -6,8 +6,7 @@ Writes ``stick_slip_map.png`` in the current folder.
 from pathlib import Path
 
 import contactlab
-from contactlab.figures.files import save
-from contactlab.figures.stick_slip import draw_stick_slip
+from contactlab.figures import draw_stick_slip, save
 
 scene = contactlab.Scene.nondimensional(psi1=1.2, chi=1.4412)
 simulation = contactlab.Simulation(
@@ -16,7 +15,6 @@ simulation = contactlab.Simulation(
 )
 result = simulation.run(scene, history="fields").check()
 history = result.history
-assert history is not None
 fields = history.fields
 time = history.time / result.motion.duration
 in_contact = fields["stuck"] | (fields["slipping"] != 0)

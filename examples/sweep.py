@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import contactlab
-from contactlab.figures.files import save
+from contactlab.figures import save
 
 simulation = contactlab.Simulation(
     tangential=contactlab.create("tangential.annulus", annuli=20),

@@ -3,14 +3,17 @@
     pip install "contactlab[dask,xarray]"
 
 Writes ``sweep_on_a_cluster.png`` in the current folder. The scene is a grid, so that the answer
-is an array with named axes, which xarray can draw. Of `LocalCluster` only the
+is an array with named axes. Of `LocalCluster` only the
 name changes elsewhere: `dask_jobqueue.SLURMCluster`, say.
 """
+
+from pathlib import Path
 
 import numpy as np
 from dask.distributed import Client, LocalCluster
 
 import contactlab
+from contactlab.figures import name_curves, ordered_colours, save
 
 
 def main() -> None:
@@ -27,7 +30,22 @@ def main() -> None:
         least = psi2.sel(chi=chi).min()
         print(f"chi = {chi:.1f}: least psi2 = {float(least):.3f}")
     here = simulation.sweep(grid)
-    psi2.plot.line(x="psi1")[0].figure.savefig("sweep_on_a_cluster.png")
+
+    def draw(axes):
+        """Draw psi2 over psi1, each curve with its chi."""
+        lines = []
+        for chi, colour in zip(psi2.chi.values, ordered_colours(len(psi2.chi)), strict=True):
+            lines += axes.plot(psi2.psi1, psi2.sel(chi=chi), color=colour)
+        axes.set(
+            xlabel=r"local angle of incidence $\psi_1$",
+            ylabel=r"local angle of reflexion $\psi_2$",
+            xlim=(0.0, 6.0),
+        )
+        axes.axhline(0.0, color="grey", lw=0.8, zorder=0)
+        name_curves(axes, lines, [f"{chi:.1f}" for chi in psi2.chi.values])
+        axes.text(0.03, 0.04, "at each curve: inertia ratio $\\chi$", transform=axes.transAxes)
+
+    save(Path("sweep_on_a_cluster.png"), draw)
     print(f"the same to the last bit as here: {np.array_equal(here.psi2, result.psi2)}")
 
 

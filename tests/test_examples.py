@@ -9,12 +9,17 @@ import sys
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 PLUGIN = EXAMPLES / "third_party_plugin"
 
 FIGURES = tuple(f"figure-{number}.png" for number in range(1, 5))
+BEYOND = tuple(
+    f"beyond-{name}.png"
+    for name in ("axisymmetry", "experiment", "finite-elements", "map", "vectors")
+)
 #: Script, a word it prints, and the picture or pictures it writes.
 SCRIPTS = {
     "one_impact": ("psi2 = -0.4", "one_impact.png"),
@@ -27,11 +32,22 @@ SCRIPTS = {
     "fit_your_experiment": ("exact          friction 0.0932, rms residual 0.012", "fit.png"),
     "sweep_on_a_cluster": ("the same to the last bit as here: True", "sweep_on_a_cluster.png"),
     "billiards": ("does not add up: ", "billiards.gif"),
+    "throw_of_billiard_balls": ("20°  0.45 m/s   4.41°    2.98°", "throw_of_billiard_balls.png"),
+    "granular_gas": ("elastic spheres", "granular_gas.png"),
+    "superball": ("at most 0.59 of its velocity", "superball.png"),
+    "beyond_the_paper": ("one-way coupling: 0.021 from the finite elements (rms)", BEYOND),
+    "law_in_five_minutes": ("0.1 of the normal speed", "law_in_five_minutes.png"),
 }
 #: Those that wait for processes to start, or draw many pictures.
-SLOW = ("sweep_on_a_cluster", "reproduce_the_paper", "fit_your_experiment", "billiards")
+SLOW = (
+    *("sweep_on_a_cluster", "reproduce_the_paper", "fit_your_experiment", "billiards"),
+    "beyond_the_paper",
+)
 #: Options that make a script short.
-OPTIONS = {"billiards": ("--collisions", 40, "--frames", 3)}
+OPTIONS = {
+    "billiards": ("--collisions", 40, "--frames", 3),
+    "granular_gas": ("--grains", 100, "--collisions", 3),
+}
 
 
 def python(*arguments, folder, path="", warnings="error"):
@@ -60,6 +76,32 @@ def test_script(name, tmp_path):
     assert words in done.stdout
     expected = [picture] if isinstance(picture, str) else picture or []
     assert sorted(path.name for path in tmp_path.iterdir()) == list(expected)
+
+
+@pytest.mark.slow
+def test_the_laws_order_the_temperatures_of_a_gas(tmp_path):
+    """The ratios that the docstring tells, to the scatter of 2,000 grains."""
+    options = ("--grains", 2000, "--collisions", 30)
+    done = python(EXAMPLES / "granular_gas.py", *options, folder=tmp_path)
+    found = [float(line.split()[-3]) for line in done.stdout.splitlines() if "±" in line]
+    assert found == pytest.approx([0.77, 0.69, 0.65, 0.53], abs=0.03)
+
+
+def test_the_throw_of_rigid_balls_is_the_published_formula(tmp_path):
+    """Balls that rub without giving way tangentially throw by min(mu, tan(cut)/7)."""
+    from contactlab import Encounter, Simulation, collide
+
+    code = (EXAMPLES / "throw_of_billiard_balls.py").read_text("utf-8")
+    script: dict[str, object] = {}
+    exec(code.partition("print(")[0], script)
+    ball, friction, no_slip = (script[name] for name in ("BALL", "friction", "no_slip"))
+    rigid = Simulation(tangential="coulomb")
+    for cut in np.radians([5.0, 15.0, 25.0, 45.0]):
+        mu = float(friction(0.45 * np.sin(cut)))
+        met = Encounter(ball, ball, mu, normal=[np.cos(cut), np.sin(cut), 0], velocity=[0.45, 0, 0])
+        velocity = collide(met, rigid).target_velocity
+        thrown = np.degrees(cut - np.arctan2(velocity[1], velocity[0]))
+        assert thrown == pytest.approx(float(no_slip(cut, mu)), rel=1e-9)
 
 
 def test_one_impact_is_six_lines():

@@ -13,6 +13,7 @@ from examples import NOT_RUN, Pictures, arguments
 
 project = "contactlab"
 author = "The contactlab developers"
+copyright = "The contactlab developers, MIT licence"
 release = version = contactlab.__version__
 
 extensions = [
@@ -33,6 +34,8 @@ html_theme = "furo"
 html_title = f"contactlab {version}"
 html_theme_options = {"navigation_with_keys": True}
 exclude_patterns = ["gallery-source"]
+html_extra_path = ["explore.html"]
+html_copy_source = html_show_sourcelink = True
 suppress_warnings = [
     "config.cache",  # the gallery's order is an object, not a word
     "ref.python",  # words of types, such as "shape", are taken for names that several classes have

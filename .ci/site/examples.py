@@ -16,7 +16,10 @@ __file__, __doc__ = {path!r}, {doc!r}
 """
 
 #: Arguments that make a script short.
-SHORT = {"billiards": ["--collisions", "60", "--frames", "40"]}
+SHORT = {
+    "billiards": ["--collisions", "60", "--frames", "40"],
+    "granular_gas": ["--grains", "600", "--collisions", "20"],
+}
 
 #: Start processes, and are not run for the gallery; their pictures are those kept in the tree.
 NOT_RUN = ("sweep_on_a_cluster",)

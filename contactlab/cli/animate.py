@@ -3,6 +3,7 @@
 Examples
 --------
   contactlab animate examples/steel_ball.toml --out impact.gif
+  contactlab animate examples/thrown_ball.toml --ghost coulomb --out thrown.gif
   contactlab animate --psi1 1.2 --chi 1.4412 --out contact.gif
 """
 
@@ -14,11 +15,22 @@ import sys
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_scene, inputs
+from contactlab.compose.simulation import Simulation
+
+#: Words in the picture for laws with a name of their own.
+GHOST_NAMES = {"coulomb": "rigid", "mindlin_cap": "capped spring"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the scene, the laws and the file."""
     add_scene(parser)
+    parser.add_argument(
+        "--ghost",
+        type=shared.names,
+        default=[],
+        metavar="A,B,...",
+        help="tangential laws whose spheres part from this one after the contact, as outlines",
+    )
     parser.add_argument("--out", type=shared.file_of(".gif"), required=True, metavar="FILE.gif")
     shared.add_progress(parser)
 
@@ -31,8 +43,14 @@ def execute(arguments: argparse.Namespace) -> int:
     with shared.progress(arguments.progress, "frames") as progress:
         with contextlib.redirect_stdout(sys.stderr):  # plug-ins may print
             result = simulation.run(scene, history="fields").check()
+            ghosts = {
+                GHOST_NAMES.get(name, name): Simulation(normal=simulation.normal, tangential=name)
+                .run(scene)
+                .check()
+                for name in arguments.ghost
+            }
         from contactlab.figures.animation import animate  # matplotlib only when drawing
 
-        animate(arguments.out, result, progress=progress)
+        animate(arguments.out, result, ghosts=ghosts, progress=progress)
     print(arguments.out)
     return shared.OK

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any
 from contactlab.cli.progress import progress as progress  # exported to the subcommands
 from contactlab.compose.registry import KINDS
 from contactlab.outcome.files import distinct, unwritable
+from contactlab.scene_file import SceneFile
 
 #: Exit statuses; the last two are those of a shell for a program that a signal ended.
 OK, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
@@ -22,10 +24,21 @@ def finite(text: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number{_range_hint(text)}") from None
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"{text!r}: must be a finite number")
     return value
+
+
+def _range_hint(text: str) -> str:
+    """Return how to write a range if the text looks like one, else nothing."""
+    ends = re.fullmatch(
+        r"([+-]?[\d.]+) *(?:-|:|,|\.\.|to) *([+-]?[\d.]+)(?::[\d.]+)?", text.strip()
+    )
+    if not ends:
+        return ""
+    example = f"{ends[1]}:{ends[2]}:71"
+    return f"; a range is START:STOP:COUNT, {example}, in contactlab sweep and compare"
 
 
 def names(text: str) -> list[str]:
@@ -146,6 +159,50 @@ def add_laws(
         metavar="KIND.OPTION=VALUE",
         help="option of a law: tangential.annuli=50, integrator.steps=500; may be repeated",
     )
+
+
+def add_columns(parser: argparse.ArgumentParser) -> None:
+    """Add ``--column``, names for headings of a CSV of measured impacts."""
+    parser.add_argument(
+        "--column",
+        type=_column,
+        action="append",
+        default=[],
+        metavar="HEADING=NAME",
+        help="name a column of the CSV: 'impact angle [deg]=incidence_angle'; 'remark=#' leaves "
+        "it unread; may be repeated",
+    )
+
+
+def _column(text: str) -> tuple[str, str]:
+    """Return the heading and the name in ``"impact angle [deg]=incidence_angle"``."""
+    heading, _, name = text.rpartition("=")
+    if not heading.strip() or not name.strip():
+        raise argparse.ArgumentTypeError(f"{text!r}: write HEADING=NAME")
+    return heading.strip(), name.strip()
+
+
+def add_measured(parser: argparse.ArgumentParser) -> None:
+    """Add ``--measured`` and ``--column``."""
+    parser.add_argument(
+        "--measured",
+        type=Path,
+        metavar="DATA.csv",
+        help="measured impacts to set beside the laws, with the headings of contactlab fit",
+    )
+    add_columns(parser)
+
+
+def measured(arguments: argparse.Namespace, file: SceneFile) -> SceneFile:
+    """Return the scene file with the values of ``--measured`` in place of its own."""
+    if arguments.measured is None:
+        if arguments.column:
+            raise ValueError("--column: names headings of --measured DATA.csv, which is missing")
+        return file
+    from contactlab.fitting import read_measurements, with_measurements  # only for --measured
+
+    table = read_measurements(arguments.measured, columns=dict(arguments.column))
+    return with_measurements(file, table)
 
 
 def add_progress(parser: argparse.ArgumentParser) -> None:

@@ -45,7 +45,13 @@ def execute(arguments: argparse.Namespace) -> int:
         raise ValueError("--json, --markdown: cannot be combined; leave out one")
     chosen = methods(arguments.law)
     with shared.progress(arguments.progress, "bench") as progress:
-        benchmark = bench(chosen, quick=arguments.quick, budget=arguments.budget, progress=progress)
+        benchmark = bench(
+            chosen,
+            quick=arguments.quick,
+            with_rebound=not arguments.law,
+            budget=arguments.budget,
+            progress=progress,
+        )
     saved = shared.save(
         (arguments.csv, lambda path: _write_csv(path, benchmark)),
         (arguments.figure, lambda path: _draw(path, benchmark, **shared.look(arguments))),
@@ -66,7 +72,7 @@ def _draw(path: Path, benchmark: Benchmark, **look: Any) -> None:
     from contactlab.figures.files import save  # matplotlib only when drawing
     from contactlab.figures.work_precision import work_precision
 
-    save(path, lambda axes: work_precision(axes, benchmark), wide=True, **look)
+    save(path, lambda axes: work_precision(axes, benchmark), columns=2, **look)
 
 
 def _content(benchmark: Benchmark) -> dict[str, object]:
@@ -81,12 +87,13 @@ def _content(benchmark: Benchmark) -> dict[str, object]:
 
 def markdown(benchmark: Benchmark) -> str:
     """Return the short table, a row or two for each law, as Markdown."""
-    lines = [["law, integrator", "resolution", "psi2 rms", "worst", "energy books", "one impact",
-              "in a sweep"], ["---"] * 7]  # fmt: skip
+    lines = [["law, integrator", "resolution", "psi2 rms", "worst", "beyond spheres",
+              "energy books", "one impact", "each of many"], ["---"] * 8]  # fmt: skip
     for row in benchmark.short():
         law, _, integrator = row.method.partition(" / ")
         name = f"`{law}`" + f", `{integrator}`" * bool(integrator)
-        numbers = [f"{value:.1e}" for value in (row.error_rms, row.error_worst, row.books_worst)]
+        errors = (row.error_rms, row.error_worst, row.elsewhere_rms, row.books_worst)
+        numbers = [f"{value:.1e}" if value == value else "-" for value in errors]
         lines.append([name, row.options, *numbers, *_times(row)])
     text = "\n".join(f"| {' | '.join(line)} |" for line in lines)
     return text if benchmark.complete else f"{text}\n\n{_incomplete(benchmark)}"
@@ -108,12 +115,14 @@ def _report(benchmark: Benchmark) -> str:
     lines = []
     for row in benchmark.rows:
         times = _times(row)
-        errors = [row.error_rms, row.error_worst, row.force_error_rms, row.books_worst]
+        errors = [
+            row.error_rms, row.error_worst, row.elsewhere_rms, row.force_error_rms, row.books_worst
+        ]  # fmt: skip
         note = "front" if row in front else "" if row.ok else f"{row.failed} x {row.status}"
         lines.append([row.method, row.options, *errors, *times, note])
     headings = [
-        "method", "resolution", "psi2 rms", "psi2 worst", "force rms", "books worst",
-        "one impact", "in a sweep", "note",
+        "method", "resolution", "psi2 rms", "worst", "elsewhere", "force", "books", "one",
+        "of many", "note",
     ]  # fmt: skip
     text = table(headings, lines, digits=2)
     orders = [[name, order] for name, order in benchmark.orders.items() if order == order]

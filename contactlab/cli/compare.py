@@ -9,8 +9,10 @@ Examples
   contactlab compare --all --figure laws.png
   contactlab compare examples/kharaz2001.toml --figure kharaz.png
   contactlab compare examples/steel_ball.toml --tangential annulus,coulomb
+  contactlab compare ball.toml --measured drops.csv --column "impact angle [deg]=angle_deg"
   contactlab compare --psi1 0:6:13 --chi 1.18 --tangential fronts,stronge,coulomb
   contactlab compare examples/sweep.toml --integrator paper,symplectic --csv > sweep.csv
+  contactlab compare examples/steel_ball.toml --tangential springs,mindlin_cap --loops loops.png
 """
 
 from __future__ import annotations
@@ -35,9 +37,16 @@ from contactlab.numeric.checks import nearest
 from contactlab.outcome.columns import quantity_named
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.scene_file.laws import same_law
-from contactlab.study.compare import Comparison, compare
-from contactlab.study.compare_export import plain_score, to_dict, write_csv
-from contactlab.study.scores import DEFAULT_SCENE, candidates, scores
+from contactlab.study.comparison import Comparison, compare
+from contactlab.study.loops import loops
+from contactlab.study.scores import (
+    DEFAULT_SCENE,
+    candidates,
+    plain_score,
+    scores,
+    to_dict,
+    write_csv,
+)
 
 #: Default laws: the paper's elastic law and Coulomb's law for rigid bodies.
 DEFAULT_LAWS = ["annulus", "coulomb"]
@@ -52,6 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a scene or a sweep (default: psi2 over psi1 of a solid sphere, chi = 49/34)",
     )
     add_ranges(parser)
+    shared.add_measured(parser)
     parser.add_argument(
         "--all",
         action="store_true",
@@ -65,6 +75,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="quantities to compare (default: the measured quantities, or psi2)",
     )
     shared.add_figure(parser, "also draw the comparison")
+    parser.add_argument(
+        "--loops",
+        type=shared.file_of(*shared.PICTURES),
+        metavar="FILE",
+        help="also draw friction force over displacement, at constant and at oscillating load",
+    )
     parser.add_argument(
         "--estimate-error",
         action="store_true",
@@ -80,7 +96,9 @@ def execute(arguments: argparse.Namespace) -> int:
     """Compare and report; the status is 1 if a law failed in an impact."""
     for quantity in arguments.quantity or ():
         quantity_named(quantity, where="--quantity")
-    file = _file(arguments)
+    if arguments.measured and not arguments.scene:
+        raise ValueError("--measured: needs a SCENE.toml with the bodies of the experiment")
+    file = shared.measured(arguments, _file(arguments))
     if arguments.all:
         compared = _all(arguments, file)
     else:
@@ -98,6 +116,7 @@ def execute(arguments: argparse.Namespace) -> int:
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
     saved = shared.save(
         (arguments.figure, lambda path: _draw(path, arguments, comparison)),
+        (arguments.loops, lambda path: _draw_loops(path, arguments, file.scene, compared)),
         progress_wanted=arguments.progress,
     )
     if arguments.json:
@@ -157,6 +176,18 @@ def _draw(path: Path, arguments: argparse.Namespace, comparison: Comparison) -> 
         draw_all(path, comparison, quantities[0], **shared.look(arguments))
     else:
         draw_comparison(path, comparison, quantities, **shared.look(arguments))
+
+
+def _draw_loops(
+    path: Path, arguments: argparse.Namespace, scene: Scene, compared: dict[str, Simulation]
+) -> None:
+    """Draw hysteresis loops of the laws that have some; name the others on stderr."""
+    from contactlab.cli.drawing import draw_load_paths  # matplotlib only when drawing
+
+    found = loops(scene, compared)
+    for name, reason in found.left_out.items():
+        print(f"contactlab compare: --loops: {name} is left out: {reason}", file=sys.stderr)
+    draw_load_paths(path, found, **shared.look(arguments))
 
 
 def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation]:

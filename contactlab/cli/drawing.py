@@ -13,7 +13,9 @@ from contactlab.figures.comparison import (
     laws_over_sweep,
 )
 from contactlab.figures.files import save
-from contactlab.study.compare import Comparison
+from contactlab.figures.load_paths import draw_loops
+from contactlab.study.comparison import Comparison
+from contactlab.study.loops import Loops
 
 
 def draw_comparison(
@@ -47,7 +49,19 @@ def draw_all(path: Path, comparison: Comparison, quantity: str, **look: Any) -> 
     def draw(axes: Any) -> None:
         all_laws(axes[0, 0], axes[1, 0], comparison, quantity)
 
-    save(path, draw, rows=2, heights=(1.9, 1.0), wide=True, **look)
+    save(path, draw, rows=2, heights=(2.4, 1.2), **look)
+
+
+def draw_load_paths(path: Path, found: Loops, **look: Any) -> None:
+    """Draw loops at constant and at oscillating load, one panel each."""
+
+    def draw(axes: Any) -> None:
+        draw_loops(axes[0, 0], found.constant, title="constant load")
+        draw_loops(axes[0, 1], found.oscillating, title="oscillating load")
+        axes[0, 1].set_ylabel("")
+        axes[0, 0].legend()
+
+    save(path, draw, columns=2, **look)
 
 
 def _labels(axes: Any) -> list[str]:

@@ -1,37 +1,44 @@
-"""Write a page with sliders for psi1 and chi, for a browser without a network.
+"""Write a page on which one throws a ball, for a browser without a network.
 
 Examples
 --------
   contactlab explore --out explore.html
-  contactlab explore --psi1 1.9 --chi 1.18 --out superball.html
+  contactlab explore --material rubber --angle 45 --predict --out superball.html
 """
 
 from __future__ import annotations
 
 import argparse
+import inspect
 
 from contactlab.cli import arguments as shared
 from contactlab.outcome.files import written
-from contactlab.pages.explore import CHI, PSI1, explore_page
+from contactlab.pages.explore import RANGES, explore_page
+
+UNITS = {"angle": "in degrees from the normal", "speed": "in m/s", "spin": "in rad/s"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the first values of the sliders, and the file."""
-    for name, axis in (("psi1", PSI1), ("chi", CHI)):
+    defaults = inspect.signature(explore_page).parameters
+    for name in RANGES:
+        first = defaults[name].default
+        words = " ".join(["first", name, UNITS.get(name, "")]).strip()
         parser.add_argument(
-            f"--{name}",
-            type=shared.finite,
-            default=axis.first,
-            help=f"first value of the slider (default: {axis.first:g})",
+            f"--{name}", type=shared.finite, default=first, help=f"{words} (default: {first:g})"
         )
+    parser.add_argument(
+        "--material", default="pmma", metavar="NAME", help="of ball and block (default: pmma)"
+    )
+    parser.add_argument("--predict", action="store_true", help="ask for a prediction first")
     parser.add_argument("--out", type=shared.file_of(".html"), required=True, metavar="FILE.html")
     shared.add_progress(parser)
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the page and print its path."""
-    with shared.progress(arguments.progress, "page"):
-        page = explore_page(psi1=arguments.psi1, chi=arguments.chi)
+    values = {name: getattr(arguments, name) for name in (*RANGES, "material", "predict")}
+    page = explore_page(**values)
     with written(arguments.out) as stream:
         stream.write(page)
     print(arguments.out)

@@ -17,7 +17,7 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.scene import composed
 from contactlab.outcome.files import unwritable, write_table
 from contactlab.scene_file import LawChoice
-from contactlab.study.paper_figures import FigureData, figures
+from contactlab.study.paper_figures import FigureData, paper_data
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--only",
         type=_numbers,
-        default=list(figures()),
+        default=list(paper_data()),
         metavar="1,2,...",
         help="numbers of the figures to draw (default: all)",
     )
@@ -56,15 +56,15 @@ def execute(arguments: argparse.Namespace) -> int:
         raise ValueError(f"--out {arguments.out}: {why_not}")
     with shared.progress(arguments.progress, "figures") as progress:
         from contactlab.figures.files import save  # matplotlib only when drawing
-        from contactlab.figures.paper import draw
+        from contactlab.figures.paper import draw_paper
 
         for done, number in enumerate(arguments.only, start=1):
-            data = figures()[number](simulation)
+            data = paper_data()[number](simulation)
             numbers, picture = (
                 arguments.out / f"figure-{number}.{end}" for end in ("csv", arguments.format)
             )
             _write_csv(numbers, data)
-            save(picture, functools.partial(draw, data=data), **shared.look(arguments))
+            save(picture, functools.partial(draw_paper, data=data), **shared.look(arguments))
             print(picture, numbers, sep="\n")
             if progress is not None:
                 progress(done, len(arguments.only))
@@ -83,8 +83,8 @@ def _write_csv(path: Path, data: FigureData) -> None:
 def _numbers(text: str) -> list[int]:
     """Return the numbers of figures in a list separated by commas."""
     words = [word.strip() for word in text.split(",")]
-    unknown = [word for word in words if word not in map(str, figures())]
+    unknown = [word for word in words if word not in map(str, paper_data())]
     if unknown:
-        numbers = ", ".join(map(str, figures()))
+        numbers = ", ".join(map(str, paper_data()))
         raise argparse.ArgumentTypeError(f"{unknown[0]!r}: the paper's figures are {numbers}")
     return [int(word) for word in dict.fromkeys(words)]

@@ -68,29 +68,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="SAMPLES",
         help=f"samples of the bootstrap of the first law (default {SAMPLES}; 0 for none)",
     )
-    parser.add_argument(
-        "--column",
-        type=_column,
-        action="append",
-        default=[],
-        metavar="HEADING=NAME",
-        help="name a column of the CSV: 'impact angle [deg]=incidence_angle'; 'remark=#' leaves "
-        "it unread; may be repeated",
-    )
+    shared.add_columns(parser)
     shared.add_figure(parser, "draw measured values, laws and residuals")
     parser.add_argument(
         "--csv", type=shared.file_of(".csv"), metavar="FILE.csv", help="write the residuals"
     )
     parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
     shared.add_progress(parser)
-
-
-def _column(text: str) -> tuple[str, str]:
-    """Return the heading and the name in ``"impact angle [deg]=incidence_angle"``."""
-    heading, _, name = text.rpartition("=")
-    if not heading.strip() or not name.strip():
-        raise argparse.ArgumentTypeError(f"{text!r}: write HEADING=NAME")
-    return heading.strip(), name.strip()
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -18,8 +18,10 @@ from contactlab.numeric.checks import refuse
 
 #: Topics in reading order; each is a file of ``contactlab/guide``.
 TOPICS = (
-    "getting-started", "units-and-signs", "choosing", "how-far-to-trust", "plans-and-statuses",
-    "for-a-paper", "command-line", "fitting", "extending", "version-2", "theory", "glossary",
+    "getting-started", "units-and-signs", "choosing", "laws", "how-far-to-trust",
+    "plans-and-statuses", "for-a-paper", "beyond-the-paper", "command-line", "fitting",
+    "load-paths", "extending", "version-2",
+    "theory", "glossary",
 )  # fmt: skip
 #: Heading of a numbered section, such as ``## 5. The slip front``.
 SECTION = re.compile(r"^## (\d+)\. ", re.MULTILINE)

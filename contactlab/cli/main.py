@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 #: Subcommands, each a module of this package.
 COMMANDS = (
     "run", "sweep", "compare", "fit", "bench", "stability", "validate", "figures", "animate",
-    "explore", "report", "cite", "materials", "plugins", "guide",
+    "explore", "report", "kernel", "cite", "materials", "plugins", "guide",
 )  # fmt: skip
 
 EPILOG = """examples:

@@ -17,7 +17,7 @@ from contactlab.cli import arguments as shared
 from contactlab.compose.names import full_name, short_name
 from contactlab.outcome.files import written
 from contactlab.scene_file import read_scene
-from contactlab.study.compare import compare
+from contactlab.study.comparison import compare
 
 #: Default laws to compare with the file's own.
 DEFAULT_LAWS = ("fronts", "coulomb")
@@ -37,22 +37,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--integrator", metavar="NAME", help="integrator in place of the file's own"
     )
-    parser.add_argument(
-        "--measured",
-        metavar="DATA.csv",
-        help="measured impacts to draw beside the laws, as for contactlab fit; needs a sweep",
-    )
+    shared.add_measured(parser)
     parser.add_argument("--out", type=shared.file_of(".html"), required=True, metavar="FILE.html")
     shared.add_progress(parser)
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the scene under the laws, write the page and print its path."""
-    file = read_scene(arguments.scene)
-    if arguments.measured:
-        from contactlab.fitting import read_measurements, with_measurements  # only for --measured
-
-        file = with_measurements(file, read_measurements(arguments.measured))
+    file = shared.measured(arguments, read_scene(arguments.scene))
     laws = file.laws.choose(normal=arguments.normal, integrator=arguments.integrator)
     own = laws.resolved()
     simulations = {str(own.tangential): own.simulation()}

@@ -47,6 +47,8 @@ def add_ranges(parser: argparse.ArgumentParser) -> None:
 def numbers(text: str) -> Any:
     """Return one number, or an evenly spaced array from START:STOP:COUNT."""
     parts = text.split(":")
+    if len(parts) == 2:  # a range without its count
+        shared.finite(text)
     if len(parts) == 1:
         return shared.finite(text)
     if len(parts) != 3:

@@ -12,7 +12,7 @@ from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import COMPARISON_TABLE, QUANTITIES
 from contactlab.outcome.tables import heading, number, time
 from contactlab.scene_file import SceneFile
-from contactlab.study.compare import Agreement, Comparison
+from contactlab.study.comparison import Agreement, Comparison
 from contactlab.study.scores import Score
 
 #: Scores below this are rounding errors and shown as 0.
@@ -121,7 +121,7 @@ def _points(agreement: Agreement) -> str:
     columns = [measured.x, measured.values, measured.error, *agreement.predicted.values()]
     columns += [agreement.difference(name) for name in names]
     rows = np.transpose(columns).tolist()
-    title = heading(measured.quantity, QUANTITIES[measured.quantity].unit)
+    title = heading(measured.quantity, agreement.unit)
     return f"{title}, measured: {measured.source}\n{table(headings, rows, digits=4)}"
 
 
@@ -130,12 +130,11 @@ def _agreement(comparison: Comparison) -> str:
     rows = []
     for agreement in comparison.agreements:
         measured = agreement.measured
-        unit = QUANTITIES[measured.quantity].unit
         for law in agreement.predicted:
             place = number(agreement.where_largest(law), digits=3)
             worst = f"at {measured.against} {place}"
-            row = [measured.quantity, law, agreement.rms(law), agreement.largest(law), unit, worst]
-            rows.append(row)
+            off = [agreement.rms(law), agreement.largest(law), agreement.unit]
+            rows.append([measured.quantity, law, *off, worst])
     headings = ["law - measured", "law", "rms", "largest", "unit", "where largest"]
     return table(headings, rows, digits=3)
 

@@ -12,8 +12,8 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import attrs
 import numpy as np
@@ -22,12 +22,13 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.table import table
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.files import write_table
-from contactlab.study.bench_methods import methods
+from contactlab.study.bench_methods import Method, methods
+from contactlab.study.error_map import error_maps
 from contactlab.study.model_error import ModelError
 from contactlab.study.stability import Stability, stability
 from contactlab.study.stability_cases import Case
+from contactlab.study.stability_judge import RAISED, WRONG, Outcome, judge
 from contactlab.study.stability_map import Region
-from contactlab.study.stability_outcome import RAISED, WRONG, Outcome, judge
 
 #: Most failures listed under the table; CSV and JSON hold all of them.
 LISTED = 40
@@ -51,11 +52,11 @@ def execute(arguments: argparse.Namespace) -> int:
         judgements.append(judge(case))
         return judgements[-1]
 
-    why_not = "the budget ran out"
+    why_not, chosen = "the budget ran out", methods(arguments.law)
     try:
         with shared.progress(arguments.progress, "stability") as progress:
             result = stability(
-                methods(arguments.law),
+                chosen,
                 quick=arguments.quick,
                 budget=arguments.budget,
                 progress=progress,
@@ -67,7 +68,7 @@ def execute(arguments: argparse.Namespace) -> int:
         result = Stability(outcomes=tuple(judgements), regions=(), complete=False)
     saved = shared.save(
         (arguments.csv, lambda path: _write_csv(path, result)),
-        (arguments.figure, lambda path: _draw(path, result, why_not, **shared.look(arguments))),
+        (arguments.figure, lambda path: _draw(path, arguments, chosen, result, why_not)),
         progress_wanted=arguments.progress,
     )
     content = json.dumps(_content(result), indent=2) if arguments.json else report(result, why_not)
@@ -77,15 +78,22 @@ def execute(arguments: argparse.Namespace) -> int:
     return shared.FAILED if result.failures() else saved
 
 
-def _draw(path: Path, result: Stability, why_not: str, **look: Any) -> None:
-    """Draw the map, or report on stderr why there is none."""
-    if not result.regions and not result.models:
+def _draw(
+    path: Path,
+    arguments: argparse.Namespace,
+    chosen: Sequence[Method],
+    result: Stability,
+    why_not: str,
+) -> None:
+    """Draw the maps and the model errors, or report on stderr why there are none."""
+    maps = error_maps(chosen, quick=arguments.quick) if result.complete else []
+    if not maps and not result.models:
         why = "there is nothing to map" if result.complete else f"{why_not} before the map was done"
         print(f"no map drawn: {why}", file=sys.stderr)
         return
     from contactlab.figures.stability import draw_stability  # matplotlib only when drawing
 
-    draw_stability(path, result, **look)
+    draw_stability(path, maps, result.models, **shared.look(arguments))
 
 
 def report(result: Stability, why_not: str = "the budget ran out") -> str:

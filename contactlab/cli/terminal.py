@@ -11,7 +11,6 @@ import contextlib
 import io
 import re
 import sys
-import threading
 import unicodedata
 from collections.abc import Iterable, Iterator
 from typing import Any, TextIO
@@ -28,10 +27,6 @@ LETTERS = {
     "\N{RIGHT SINGLE QUOTATION MARK}": "'", "“": '"', "”": '"', "\N{FRACTION SLASH}": "/",
     "ß": "ss", "ø": "o", "§": "section ", "∫": "int",
 }  # fmt: skip
-
-
-#: Lock of all writing, because a thread writes the progress line.
-LOCK = threading.RLock()
 
 
 def safe(text: str) -> str:
@@ -53,22 +48,16 @@ def fitting(text: str, encoding: str) -> str:
 
 
 class Printed:
-    """A text stream that writes safe text to ``stream``.
+    """A text stream that writes safe text to ``stream``."""
 
-    ``other`` is the stream of the same terminal that shows the progress line.
-    """
-
-    def __init__(self, stream: TextIO, other: Printed | None = None) -> None:
-        self._stream, self._liner = stream, other or self
-        self._line_shown = self._within_line = False
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._line_shown = False
 
     def write(self, text: str) -> int:
-        """Clear the progress line, write the text, and return its length."""
-        with LOCK:
-            self._liner.overwrite("")
-            self._stream.write(self._fit(text))
-            if text:
-                self._liner._within_line = not text.endswith("\n")
+        """Write the text, and return its length."""
+        self.overwrite("")
+        self._stream.write(self._fit(text))
         return len(text)
 
     def writelines(self, lines: Iterable[str]) -> None:
@@ -76,12 +65,11 @@ class Printed:
         self.write("".join(lines))
 
     def overwrite(self, text: str) -> None:
-        """Replace the progress line by ``text``, unless a printed line is unfinished."""
-        with LOCK:
-            if not self._within_line and (text or self._line_shown):
-                self._stream.write(("\r\x1b[K" if self._line_shown else "") + self._fit(text))
-                self._stream.flush()
-                self._line_shown = bool(text)
+        """Replace the progress line by ``text``."""
+        if text or self._line_shown:
+            self._stream.write(("\r\x1b[K" if self._line_shown else "") + self._fit(text))
+            self._stream.flush()
+            self._line_shown = bool(text)
 
     def _fit(self, text: str) -> str:
         """Return the text in characters that the stream can show."""
@@ -95,7 +83,6 @@ class Printed:
 def fitted() -> Iterator[None]:
     """Redirect stdout and stderr through ``Printed`` inside a ``with`` block."""
     # A program without a terminal may have no streams; print would then take stdout for stderr.
-    err = Printed(sys.stderr or io.StringIO())
-    out = Printed(sys.stdout or io.StringIO(), err)
+    out, err = (Printed(stream or io.StringIO()) for stream in (sys.stdout, sys.stderr))
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         yield

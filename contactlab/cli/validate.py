@@ -19,10 +19,9 @@ import attrs
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.table import WIDTH, table
-from contactlab.outcome.columns import QUANTITIES, json_value
+from contactlab.outcome.columns import json_value
 from contactlab.outcome.tables import heading
-from contactlab.study.evidence import Evidence, gather
-from contactlab.study.validation import Finding, judged, validate
+from contactlab.study.validation import Evidence, Finding, gather, judged, validate
 
 #: Laws in a picture, if installed; more curves could not be distinguished.
 DRAWN = ("fronts", "springs, tsuji restitution=0.98", "mindlin_cap", "coulomb")
@@ -94,9 +93,7 @@ def _agreement(evidence: Evidence) -> str:
     headings = ["law"]
     rows: list[list[Any]] = [[law] for law in evidence.laws]
     for agreement in agreements:
-        quantity = agreement.measured.quantity
-        unit = QUANTITIES[quantity].unit
-        name = heading(quantity, unit)
+        name = heading(agreement.measured.quantity, agreement.unit)
         headings += [f"{name} rms", "largest", "at"]
         for row in rows:
             law = str(row[0])

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import faults
+from contactlab.contracts.contact import NormalContact
+from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.integrator import Observer, Sample
-from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.motion import NormalMotion, NormalSample
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
 from contactlab.contracts.whole_impact import WholeImpact
@@ -25,6 +28,9 @@ ONE: Mask = locked(np.array(True))
 NONE: Mask = locked(np.array(False))
 
 
+#: Errors that differ by less, over themselves, are equal.
+ROUNDING = 1e-12
+
 #: Instants in the history of an impact that is not marched.
 INSTANTS = 201
 
@@ -37,12 +43,19 @@ class Answer(NamedTuple):
 
 
 def answers(
-    scene: Scene, normal: NormalMotion, tangential: TangentialLaw, *, history: bool | str
+    scene: Scene,
+    normal: NormalMotion,
+    tangential: TangentialLaw,
+    *,
+    history: bool | str,
+    accuracy: float | None = None,
 ) -> list[Answer]:
     """Return the answers of ``tangential`` to whole impacts, each impact in one of them at most.
 
     None where a march is asked for: traction and stick/slip fields come from nothing else, and
-    the impacts of a batch that keeps its history share one time axis.
+    the impacts of a batch that keeps its history share one time axis. Where a law can be marched,
+    an answer without a course is not taken for a history, nor one with a larger error than
+    ``accuracy``.
 
     Parameters
     ----------
@@ -52,6 +65,8 @@ def answers(
     tangential : TangentialLaw
     history : bool or "fields"
         What is asked for.
+    accuracy : float or None
+        Error of psi2 over max(1, abs(psi1)) that the integrator controls; None for no bound.
     """
     shape = scene.shape
     always = isinstance(tangential, WholeImpactTangentialLaw)
@@ -61,16 +76,19 @@ def answers(
         if normal.status is not Status.SUCCESS:
             return []
         for known in tangential.whole_impacts(scene, normal):
-            if known.where:
+            if known.where and (always or _serves(known, scene, history, accuracy)):
                 return [Answer(ONE, _checked(known, tangential, shape))]
         if always:
             raise _unanswered(tangential)
         return []
-    left = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
-    left = np.array(np.broadcast_to(left, shape))
+    left = separated(normal)
     found = []
     for known in tangential.whole_impacts(scene, normal):
+        if known.where is False:
+            continue
         where = left & np.broadcast_to(known.where, shape)
+        if not always:
+            where &= _serves(known, scene, history, accuracy)
         if where.any():
             found.append(Answer(where, _checked(known, tangential, shape)))
             left &= ~where
@@ -81,31 +99,78 @@ def answers(
     return found
 
 
+def separated(normal: NormalMotion) -> Mask:
+    """Return the impacts of a batch that the normal motion ends, as a new array."""
+    shape = normal.scene.shape
+    if normal.status is Status.SUCCESS:
+        return np.ones(shape, dtype=bool)
+    success = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
+    return np.array(np.broadcast_to(success, shape))
+
+
 def show(normal: NormalMotion, known: Sequence[Answer], observer: Observer) -> None:
     """Show ``observer`` the impacts that have whole-impact answers, at ``INSTANTS`` of each.
 
     NaN stands for slip velocity and force where an answer has no ``course``.
     """
     scene = normal.scene
-    for phase in np.linspace(0.0, np.pi, INSTANTS).tolist():
-        time, approach, rate, contact, impulse = normal.at(phase)
-        change: Any = np.full(scene.shape, np.nan)
-        force: Any = np.full(scene.shape, np.nan)
-        for where, answer in known:
-            if answer.course is not None:
-                gained, acting = answer.course(impulse, contact.friction_load)
-                change, force = np.where(where, gained, change), np.where(where, acting, force)
-        observer(
-            Sample(
-                time=time,
-                approach=approach,
-                normal_velocity=rate,
-                contact=contact,
-                slip_velocity=scene.slip_velocity + change,
-                tangential_force=force,
-                fields=dict,
-            )
-        )
+    shape = (INSTANTS, *scene.shape)
+    phases = np.linspace(0.0, np.pi, INSTANTS).reshape(-1, *(1 for _ in scene.shape))
+    sample = normal.at(phases)
+    change, force = np.full((2, *shape), np.nan)
+    for where, answer in known:
+        if answer.normal is not None:
+            sample = _where(where, answer.normal.at(phases), sample)
+        if answer.course is not None:
+            gained, acting = answer.course(sample.load_impulse, sample.contact.friction_load)
+            change, force = np.where(where, gained, change), np.where(where, acting, force)
+    time, approach, rate, contact, impulse = sample
+    columns = (time, approach, rate, *contact, scene.slip_velocity + change, force, impulse)
+    lists = [np.broadcast_to(column, shape) for column in columns]
+    rows = lists if scene.shape else [column.tolist() for column in lists]
+    for time, approach, rate, load, radius, overlap, friction_load, velocity, acting, passed in zip(
+        *rows, strict=True
+    ):
+        touching = NormalContact(load, radius, overlap, friction_load)
+        fields = partial(_fields, known, passed, scene.shape)
+        observer(Sample(time, approach, rate, touching, velocity, acting, fields))
+
+
+def _where(where: Mask, one: NormalSample, other: NormalSample) -> NormalSample:
+    """Return the samples ``one`` where the mask is True, else the samples ``other``."""
+    pairs = zip(one.contact, other.contact, strict=True)
+    contact = NormalContact(*(np.where(where, *pair) for pair in pairs))
+    columns = {
+        name: np.where(where, getattr(one, name), getattr(other, name))
+        for name in ("time", "approach", "rate", "load_impulse")
+    }
+    return NormalSample(contact=contact, **columns)
+
+
+def _fields(known: Sequence[Answer], impulse: Any, shape: tuple[int, ...]) -> Mapping[str, Any]:
+    """Return the fields of whole-impact answers at one instant; NaN for impacts without."""
+    fields: dict[str, Any] = {}
+    if not shape:
+        return {} if known[0].known.fields is None else known[0].known.fields(impulse)
+    for where, answer in known:
+        if answer.fields is None:
+            continue
+        for name, values in answer.fields(impulse).items():
+            tail = values.shape[len(shape) :]
+            column = fields.setdefault(name, np.full((*shape, *tail), np.nan))
+            column[where] = values[where]
+    return fields
+
+
+def _serves(known: WholeImpact, scene: Scene, history: bool | str, accuracy: float | None) -> Any:
+    """Return where an answer is as accurate as a march, and has a course if one is asked for."""
+    if history and known.course is None:
+        return False
+    error = known.psi2_error
+    if accuracy is None or (isinstance(error, float) and not error > accuracy):
+        return True
+    excessive: Any = error > accuracy * (1.0 + ROUNDING) * psi_magnitude(scene)
+    return ~excessive if scene.shape else not excessive
 
 
 def _checked(known: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> WholeImpact:

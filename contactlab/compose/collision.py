@@ -11,19 +11,20 @@ from numpy.typing import NDArray
 
 from contactlab.compose import impulses
 from contactlab.compose.collision_plan import by_rebound, collision_plan
-from contactlab.compose.composition import OF_REBOUND
 from contactlab.compose.rebound import damped
 from contactlab.compose.simulation import Simulation
-from contactlab.contracts.restitution import RESTITUTION
+from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.contracts.status import Status
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.encounter import Encounter
+from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import Real, real, refuse
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
+from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Plan
-from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.result import ImpactError, ImpactResult
 
 Array = NDArray[np.float64]
 
@@ -54,7 +55,7 @@ class Collision:
         In J.
     collided : bool or array of bool
         False if the bodies were separating and passed through untouched.
-    restitution : float
+    restitution : float or array
         e of the normal motion given to ``contactlab.rebound``; 1 with a simulation.
     simulation : Simulation or None
         The laws; None for ``contactlab.rebound``.
@@ -71,7 +72,7 @@ class Collision:
     slip_velocity_change: Real
     friction_work: Real
     collided: Any
-    restitution: float = 1.0
+    restitution: Real = 1.0
     simulation: Simulation | None = None
     known: ImpactResult | None = None
 
@@ -120,7 +121,19 @@ class Collision:
         """
         if self.known is not None:
             return self.known
-        return _run(self._simulation, self._met.scene)
+        scene = self._met.scene
+        if isinstance(self.restitution, float):
+            return _run(self._simulation(self.restitution), scene)
+        parts = [
+            (mask, _run(self._simulation(value), scene.take(mask))) for mask, value in self._parts
+        ]
+        return ImpactResult(
+            scene=scene,
+            plan=_joined([(mask, part.plan) for mask, part in parts]),
+            motion=Motion.merged([(mask, part.motion) for mask, part in parts], scene.shape),
+            laws=parts[0][1].laws,
+            run_time=sum(part.run_time for _, part in parts),
+        )
 
     @cached_property
     def plan(self) -> Plan:
@@ -128,11 +141,32 @@ class Collision:
         passed = ~np.asarray(self.collided)
         if passed.all():
             return collision_plan(Plan.nothing(passed.shape), None, passed)
-        met, result = self._met, self.known
-        plan = self._simulation.plan(met.scene) if result is None else result.plan
-        if self.simulation is None and result is None and self.restitution != 1.0:
-            plan = by_rebound(plan, met.scene.chi, self.restitution)
+        met = self._met
+        if self.known is not None:
+            plan = self.known.plan
+        elif isinstance(self.restitution, float):
+            plan = self._planned(met.scene, self.restitution)
+        else:
+            parts = [
+                (mask, self._planned(met.scene.take(mask), value)) for mask, value in self._parts
+            ]
+            plan = _joined(parts)
         return collision_plan(plan, met, passed)
+
+    def _planned(self, scene: Scene, restitution: float) -> Plan:
+        """Return the plan of impacts of one restitution."""
+        plan = self._simulation(restitution).plan(scene)
+        if self.simulation is None and restitution != 1.0:
+            return by_rebound(plan, scene.chi, restitution)
+        return plan
+
+    @property
+    def _parts(self) -> list[tuple[Any, float]]:
+        """Masks of the encounters that collided, and the restitution of each mask."""
+        each = np.broadcast_to(self.restitution, self.encounter.shape)
+        if not np.all(self.collided):
+            each = each[self.collided]
+        return [(each == value, value) for value in np.unique(each).tolist()]
 
     @property
     def status(self) -> Any:
@@ -145,16 +179,27 @@ class Collision:
         status[self.collided] = self.known.status
         return status
 
-    def check(self) -> Collision:
-        """Return this collision if every impact succeeded.
+    def __str__(self) -> str:
+        """Return ``repr`` and every caution of the plan, one line each."""
+        return "\n".join([repr(self), *(f"caution: {text}" for text in self.plan.cautions)])
+
+    def check(self, *, cautions: bool = False) -> Collision:
+        """Return this collision if every impact succeeded; with ``cautions`` if there is none.
+
+        Parameters
+        ----------
+        cautions : bool
+            Raise the first caution too.
 
         Raises
         ------
         ImpactError
-            With the sentence on the first impact that failed.
+            With the sentence on the first impact that failed, or of the first caution.
         """
         if self.known is not None:
             self.known.check()
+        if cautions and self.plan.cautions:
+            raise ImpactError(f"caution: {self.plan.cautions[0]}", Status.SUCCESS)
         return self
 
     @property
@@ -163,7 +208,21 @@ class Collision:
         contact = self.encounter.contact()
         before = (contact.approach, contact.slip)
         after = (self.normal_velocity, self.slip_velocity_change)
-        return books(self.encounter.pair, before, after, self.friction_work)
+        checked: Any = False
+        exchange: Any = 0.0
+        if self.known is not None:
+            checked = np.ones(self.encounter.shape, dtype=bool)
+            checked[self.collided] = self.known.energy.checked
+            exchange = np.zeros(self.encounter.shape)
+            exchange[self.collided] = self.known.motion.exchange
+        return books(
+            self.encounter.pair,
+            before,
+            after,
+            self.friction_work,
+            exchange=exchange,
+            checked=checked,
+        )
 
     @property
     def impulse(self) -> Array:
@@ -203,24 +262,20 @@ class Collision:
             raise refuse("encounter", self.encounter, "no bodies met: all separate")
         return self.encounter.take(self.collided)
 
-    @property
-    def _simulation(self) -> Simulation:
-        """The laws, or laws with the answers of ``contactlab.rebound``."""
+    def _simulation(self, restitution: float) -> Simulation:
+        """Return the laws, or laws with the answers of ``contactlab.rebound``."""
         if self.simulation is not None:
             return self.simulation
-        if self.restitution != 1.0:
-            return damped(self.restitution)
-        try:
-            return Simulation(tangential=OF_REBOUND)
-        except ValueError:  # blocked, or not installed
-            return Simulation()
+        if restitution != 1.0:
+            return damped(restitution)
+        return Simulation()
 
 
 def collide(
     encounter: Encounter,
     simulation: Simulation | None = None,
     *,
-    restitution: float = 1.0,
+    restitution: Real = 1.0,
     separating: str = "refuse",
 ) -> Collision:
     """Return velocities and spins of both bodies after an encounter, or after each of a batch.
@@ -232,8 +287,9 @@ def collide(
         The laws. The default is ``contactlab.rebound``, exact for elastic spheres with Hertz
         contact and partial slip: under a microsecond per encounter in a large batch, 0.2 ms for a
         single one.
-    restitution : float
-        e of the normal motion without a simulation, from 0.01 to 1. Below 1 the law is Tsuji's,
+    restitution : float or array, shape (...,)
+        e of the normal motion without a simulation, from 0.01 to 1, one number or one for each
+        encounter; each different value costs a call of its own. Below 1 the law is Tsuji's,
         with Coulomb's law at every point: from a table for e from 0.5 and chi from 0.8 to 1.8
         (solid spheres), by rings elsewhere. ``Collision.plan`` states the error of psi2. Other laws
         of the same e give another psi2, at e = 0.9 by up to 0.021 (viscoelastic) or 0.62 (a linear
@@ -245,7 +301,13 @@ def collide(
     Raises
     ------
     ValueError
-        If the input is bad, or if bodies separate and ``separating`` is "refuse".
+        If the input is bad, or if bodies separate and ``separating`` is "refuse". Of an array the
+        index of the first bad number is named.
+
+    Notes
+    -----
+    An empty batch gives an empty collision. Arrays are float64. Threads may call this function at
+    the same time: it keeps no state but tables that never change.
 
     Examples
     --------
@@ -268,12 +330,14 @@ def collide(
         raise refuse("simulation", simulation, "must be a Simulation", remedy)
     if separating not in SEPARATING:
         raise refuse("separating", separating, "must be 'refuse' or 'pass'")
-    e = real("restitution", restitution, rule=RESTITUTION, remedy="leave it out for 1")
+    e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
+    if not isinstance(e, float):
+        e = _spread(e, encounter.shape)
     if simulation is None:
         strict = separating == "refuse"
-        moved = impulses.moved(encounter, restitution=float(e), strict=strict)
-        return _collision(encounter, moved, restitution=float(e))
-    if e != 1.0:
+        moved = impulses.moved(encounter, restitution=e, strict=strict)
+        return _collision(encounter, moved, restitution=e)
+    if np.any(e != 1.0):
         remedy = "give it to the normal law: create('normal.tsuji', restitution=0.9)"
         raise refuse("restitution", restitution, "stands in place of a simulation", remedy)
     met: Any = encounter.approaching
@@ -289,6 +353,22 @@ def collide(
     result = _run(simulation, scene)
     moved = impulses.moved(encounter, _columns(encounter, result, met))
     return _collision(encounter, moved, simulation=simulation, known=result)
+
+
+def _joined(parts: list[tuple[Any, Plan]]) -> Plan:
+    """Return the plan of a batch from masks and the plans of their impacts."""
+    places = np.concatenate([np.flatnonzero(mask) for mask, _ in parts])
+    order = np.argsort(places).reshape(parts[0][0].shape)
+    return Plan.joined([plan for _, plan in parts], places.shape)[order]
+
+
+def _spread(restitution: Any, shape: tuple[int, ...]) -> Any:
+    """Return a restitution for each encounter, read-only, or refuse another shape."""
+    try:
+        return np.broadcast_to(restitution, shape)
+    except ValueError:
+        rule = f"must be one number, or of the shape {shape} of the encounters"
+        raise refuse("restitution", restitution, rule) from None
 
 
 def _run(simulation: Simulation, scene: Any) -> ImpactResult:

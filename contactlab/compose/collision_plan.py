@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-import attrs
 import numpy as np
 
 from contactlab.compose.rebound import damped_error
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import some
 from contactlab.numeric.vectors import components
-from contactlab.outcome.plan import Clause, Plan
+from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
 
 PARTED = "collision: the bodies separate, they pass through untouched"
 TURNS = "spin about the normal: friction makes no moment about it, it passes through unchanged"
@@ -38,7 +37,7 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
             left_out.append(Clause(TURNS, turning))
     if passed.any():
         left_out.append(Clause(PARTED, passed))
-    return attrs.evolve(plan, left_out=tuple(left_out))
+    return plan.changed(left_out=tuple(left_out))
 
 
 def by_rebound(plan: Plan, chi: Any, restitution: float) -> Plan:
@@ -54,25 +53,22 @@ def by_rebound(plan: Plan, chi: Any, restitution: float) -> Plan:
     """
     unknown = np.isnan(plan.psi2_error)
     bound = np.broadcast_to(damped_error(chi, restitution), unknown.shape)
-    heads = {
-        "tangential motion": f"contactlab.rebound with restitution={restitution:g}",
-        "numerical error of psi2": "none was measured beyond chi = 10, of contactlab.rebound",
-    }
+    error_words = "none was measured beyond chi = 10, of contactlab.rebound"
     if not np.isnan(bound[unknown]).all():
-        heads["numerical error of psi2"] = (
-            "at most {:g} beside Coulomb's law at every point, of contactlab.rebound"
-        )
+        error_words = "at most {:g} beside Coulomb's law at every point, of contactlab.rebound"
+    laws = f"contactlab.rebound with restitution={restitution:g}"
+    texts = {
+        TANGENTIAL_MOTION: f"tangential motion: {laws}",
+        PSI2_ERROR: f"numerical error of psi2: {error_words}",
+    }
     computed = []
     for clause in plan.computed:
-        head = clause.text.partition(": ")[0]
-        if head in heads and some(clause.where & unknown):
-            text = f"{head}: {heads[head]}"
-            clause = Clause(text, clause.where, (np.where(unknown, bound, np.nan),))
+        if clause.code in texts and some(clause.where & unknown):
+            values = (np.where(unknown, bound, np.nan),)
+            clause = clause._replace(text=texts[clause.code], values=values)
         computed.append(clause)
     error = np.where(unknown, bound, plan.psi2_error)
-    return attrs.evolve(
-        plan, computed=tuple(computed), psi2_error=error if error.ndim else float(error)
-    )
+    return plan.changed(computed=tuple(computed), psi2_error=error if error.ndim else float(error))
 
 
 def _turns(encounter: Encounter) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from contactlab.compose.loading import outdated
@@ -11,7 +12,7 @@ from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.law import Law
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
-from contactlab.contracts.phases import PhasedTangentialLaw
+from contactlab.contracts.path import PathTangentialLaw
 from contactlab.contracts.tangential import (
     SteppedTangentialLaw,
     TangentialLaw,
@@ -26,16 +27,20 @@ PREFERRED = {
     "tangential": ("annulus", "springs", "coulomb"),
     "elastic": ("fronts", "springs", "coulomb"),  # under elastic Hertz contact: fronts is exact
     "integrator": ("events", "symplectic"),
+    "steps": ("symplectic", "events"),  # integrators of laws that are stepped and nothing else
 }
 #: Laws that the core and the studies request by purpose: exact answers between elastic spheres,
-#: fixed steps, a restitution, and the law with the answers of ``contactlab.rebound``. No other
-#: plug-in names stand in the core.
+#: fixed steps, prescribed paths, and a restitution. No other plug-in names stand in the core.
 EXACT = {"tangential": "fronts", "integrator": "events"}
+#: Option of the exact law that follows every impact, none from a table.
+FOLLOWED = {"table": False}
 FIXED_STEPS = "symplectic"
+#: Integrators of fixed steps under which laws are mapped, the usual one first.
+STEPPED = (FIXED_STEPS, "paper")
+ON_A_PATH = "springs"
 RESTITUTION = {"normal": "tsuji", "tangential": "annulus"}
-OF_REBOUND = "tabulated"
 #: Contracts of tangential laws that can be run; every law must be derived from one of them.
-WAYS = (SteppedTangentialLaw, PhasedTangentialLaw, WholeImpactTangentialLaw)
+WAYS = (SteppedTangentialLaw, PathTangentialLaw, WholeImpactTangentialLaw)
 
 
 class Laws(NamedTuple):
@@ -49,7 +54,10 @@ class Laws(NamedTuple):
 def law(kind: str, value: object, **options: Any) -> Any:
     """Return the law of ``kind`` that ``value`` names, made with ``options``; or a law as it is."""
     if isinstance(value, str):
-        return REGISTRY.create(full_name(kind, value), **options)
+        name = full_name(kind, value)
+        if options:
+            return REGISTRY.create(name, **options)
+        return _with_defaults(name, REGISTRY.law_class(name))
     if isinstance(value, Law) and value.kind == kind:
         if (complaint := outdated(type(value))) is not None:
             raise ValueError(f"{kind} = {complaint}")
@@ -60,10 +68,17 @@ def law(kind: str, value: object, **options: Any) -> Any:
     raise refuse(kind, value, f"must be a name or a {kind} law", remedy)
 
 
+@lru_cache(maxsize=128)
+def _with_defaults(name: str, _: type[Law]) -> Any:
+    """Return the law of a name with its defaults; laws are immutable, so that one serves all."""
+    # The class is part of the key: another plug-in may take the name over.
+    return REGISTRY.create(name)
+
+
 def exact(tolerance: float) -> dict[str, Any]:
-    """Return laws for ``Simulation``: exact for elastic spheres, psi2 to ``tolerance``."""
+    """Return laws for ``Simulation`` that follow elastic spheres exactly, psi2 to ``tolerance``."""
     return {
-        "tangential": law("tangential", EXACT["tangential"]),
+        "tangential": law("tangential", EXACT["tangential"], **FOLLOWED),
         "integrator": law("integrator", EXACT["integrator"], tolerance=tolerance),
     }
 
@@ -79,9 +94,10 @@ def compose(normal: object, tangential: object, integrator: object) -> Laws:
     first = law("normal", DEFAULT_NORMAL if normal is None else normal)
     named = () if integrator is None else (law("integrator", integrator),)
     if tangential is None:
-        tangential = preferred("tangential", first, after=named)
-    second = law("tangential", tangential)
-    third = named[0] if named else law("integrator", preferred("integrator", first, second))
+        _, second = _preferred("tangential", first, after=named)
+    else:
+        second = law("tangential", tangential)
+    third = named[0] if named else _preferred("integrator", first, second)[1]
     laws = Laws(first, second, third)
     if (complaint := misfit(*laws)) is not None:
         raise ValueError(complaint + _would_fit(laws))
@@ -91,21 +107,36 @@ def compose(normal: object, tangential: object, integrator: object) -> Laws:
 def preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> str:
     """Return the name of the first law in ``PREFERRED`` that fits, or of the first installed."""
     # ``before`` are the laws in front of this kind, ``after`` is a named integrator.
-    installed = []
-    elastic = kind == "tangential" and "elastic_hertz" in before[0].offers
-    for name in PREFERRED["elastic" if elastic else kind]:
+    return _preferred(kind, *before, after=after)[0]
+
+
+def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[str, Any]:
+    """Return the preferred law with its name; arguments as in ``preferred``."""
+    installed: list[tuple[str, Any]] = []
+    which = kind
+    if kind == "tangential" and "elastic_hertz" in before[0].offers:
+        which = "elastic"
+    elif kind == "integrator" and _only_stepped(before[-1]):
+        which = "steps"  # no other integrator is imported
+    for name in PREFERRED[which]:
         try:
             candidate = law(kind, name)
         except ValueError:  # blocked, or not installed
             continue
-        installed.append(name)
         if _fits(*before, candidate, *after):
-            return name
+            return name, candidate
+        installed.append((name, candidate))
     if not installed:
         names = ", ".join(REGISTRY.names(kind))
         why = "must be given: none of the defaults is installed"
         raise refuse(kind, None, why, f"installed: {names}")
     return installed[0]
+
+
+def _only_stepped(tangential: Law) -> bool:
+    """Return whether a law answers to steps, and in no other way."""
+    others = (PathTangentialLaw, WholeImpactTangentialLaw)
+    return isinstance(tangential, SteppedTangentialLaw) and not isinstance(tangential, others)
 
 
 def _fits(*parts: Law) -> bool:
@@ -128,6 +159,8 @@ def misfit(normal: Any, tangential: Any = None, integrator: Any = None) -> str |
             f"tangential = {_name(tangential)}: needs {word!r} of the normal law, which "
             f"{_name(normal)} does not offer"
         )
+    if (complaint := _refused(normal, tangential)) is not None:
+        return complaint
     if integrator is None or isinstance(tangential, WholeImpactTangentialLaw):
         return None
     if not isinstance(tangential, integrator.tangential_contract):
@@ -140,6 +173,23 @@ def misfit(normal: Any, tangential: Any = None, integrator: Any = None) -> str |
             f"integrator = {_name(integrator)}: needs a {integrator.normal_contract.__name__}, "
             f"and normal = {_name(normal)} is not one"
         )
+    if isinstance(tangential, SteppedTangentialLaw):
+        for word in ("marks", "normal_motion"):
+            asked = getattr(type(tangential), word) is not getattr(SteppedTangentialLaw, word)
+            if asked and word not in integrator.offers:
+                return (
+                    f"integrator = {_name(integrator)}: does not offer {word!r}, which "
+                    f"tangential = {_name(tangential)} asks of it"
+                )
+    return _refused(normal, integrator) or _refused(tangential, integrator)
+
+
+def _refused(first: Law, second: Law) -> str | None:
+    """Return why one of two laws refuses the other, with the names of both; or None."""
+    for law, other in ((first, second), (second, first)):
+        if (reason := law.refuses(other)) is not None:
+            both = f"{law.kind} = {_name(law)}: does not run beside {other.kind} = {_name(other)}"
+            return f"{both}: {reason}"
     return None
 
 
@@ -171,4 +221,9 @@ def _name(law: Law) -> str:
 
 def versions(*laws: Law) -> dict[str, str]:
     """Return each law's name and version, by kind."""
-    return {law.kind: REGISTRY.describe(law) for law in laws}
+    return dict(_versions(*map(type, laws)))
+
+
+@lru_cache(maxsize=128)
+def _versions(*classes: type[Law]) -> dict[str, str]:
+    return {law_class.kind: REGISTRY.describe(law_class) for law_class in classes}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any
 
 import attrs
 import numpy as np
@@ -11,10 +11,7 @@ from contactlab.compose import solve
 from contactlab.compose.composition import Laws
 from contactlab.compose.planning import CLOSED_FORM
 from contactlab.contracts.error_model import psi_magnitude
-from contactlab.contracts.integrator import Integrator
-from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab.outcome.result import ImpactResult
@@ -30,23 +27,7 @@ TOLERANCE = 4.0
 LEFT = 0.5
 
 
-class Composed(Protocol):
-    """An object with three laws: ``Laws``, or a ``Simulation``."""
-
-    @property
-    def normal(self) -> NormalLaw:
-        """The normal law."""
-
-    @property
-    def tangential(self) -> TangentialLaw:
-        """The tangential law."""
-
-    @property
-    def integrator(self) -> Integrator:
-        """The integrator."""
-
-
-def estimated(composed: Composed, result: ImpactResult) -> Real:
+def estimated(laws: Laws, result: ImpactResult) -> Real:
     """Return the estimated numerical error of psi2 of a result, of the scene's shape.
 
     Each impact is run again at two finer resolutions of all laws that have a resolution: normal
@@ -58,7 +39,7 @@ def estimated(composed: Composed, result: ImpactResult) -> Real:
 
     Parameters
     ----------
-    composed : Laws or Simulation
+    laws : Laws
         The laws of the result.
     result : ImpactResult
 
@@ -67,7 +48,6 @@ def estimated(composed: Composed, result: ImpactResult) -> Real:
     float or array
         NaN where a run failed, and where nothing is declared and no resolution shows an error.
     """
-    laws = Laws(composed.normal, composed.tangential, composed.integrator)
     scene = result.scene
     successes = _successes(result.status)
     error = np.where(successes, result.plan.psi2_error, np.nan)
@@ -98,9 +78,9 @@ def _distance(laws: Laws, scene: Scene, resolution: float | None, change: Any) -
     counts = {kind: value for kind, value in options.items() if isinstance(value, int)}
     factor = ALONE if len(options) == len(counts) == 1 else TOGETHER
     answers = []
-    for times in (factor, factor**2):
-        finer = _finer(laws, options, times)
-        if finer is None:
+    refined = {times: _finer(laws, options, times) for times in (factor, factor**2)}
+    for times, finer in refined.items():
+        if finer is None or refined[factor**2] is None:
             return np.zeros(change.shape)
         answer = _change(finer, scene)
         with_tolerance = _finer(laws, counts, times) if counts else None

@@ -37,14 +37,15 @@ class Moved(NamedTuple):
 
 
 def rebounding(
-    part: Encounter, contact: Contact, pair: Pair, restitution: float
+    part: Encounter, contact: Contact, pair: Pair, restitution: Real
 ) -> tuple[Any, Any, Any]:
     """Return rebound rate (m/s), slip change (m/s) and friction work (J) by ``rebound``."""
     # From psi1 = 4 chi + 1 on elastic bodies slip throughout, eq. (46), and the change of psi is
     # constant. So psi1 is cut there: it stays finite, with all digits, at any slip and friction.
     # With a restitution the change of psi tends to -2 chi (1 + e) as 1/psi1.
     chi = pair.inertia_ratio
-    end: Any = 4.0 * chi + 1.0 if restitution == 1.0 else END_OF_DAMPED
+    elastic: Any = restitution == 1.0
+    end: Any = chosen(elastic, 4.0 * chi + 1.0, END_OF_DAMPED)
     with np.errstate(all="ignore"):
         # m/s for each unit of psi, eq. (29)
         unit: Any = part.friction_coefficient * contact.approach / pair.stiffness_ratio
@@ -80,12 +81,14 @@ def moved(
     encounter: Encounter,
     answers: Array | None = None,
     *,
-    restitution: float = 1.0,
+    restitution: Real = 1.0,
     strict: bool = False,
 ) -> Moved:
     """Return both bodies after an encounter; ``strict`` refuses bodies that separate."""
     # ``answers``, shape (3, encounters), are the columns of ``rebounding``; its own by default.
     shape = encounter.shape
+    if not shape and answers is None:
+        return _alone(encounter, restitution, strict)
     vectors = [np.empty((*shape, 3)) for _ in VECTORS]
     flat = [array.reshape(-1, 3) for array in vectors]
     numbers, collided = np.empty((3, *shape)), np.empty(shape, dtype=bool)
@@ -97,7 +100,8 @@ def moved(
         if strict and not met:
             raise encounter.separate()
         if answers is None:
-            after, change, work = rebounding(part, contact, pair, restitution)
+            e = restitution if isinstance(restitution, float) else restitution.reshape(-1)[where]
+            after, change, work = rebounding(part, contact, pair, e)
             _check(part, chosen(meets, pair.normal_mass * contact.approach, 1.0), change)
         else:
             after, change, work = answers[:, where]
@@ -120,6 +124,62 @@ def moved(
         friction_work=work,
         collided=locked(collided) if shape else bool(collided),
     )
+
+
+def _alone(encounter: Encounter, restitution: Any, strict: bool) -> Moved:
+    """Return both bodies after a single encounter, in plain numbers."""
+    contact, pair = encounter.contact(), encounter.pair
+    collided = contact.approach >= LEAST
+    after, change, work, psi2 = contact.approach, 0.0, 0.0, 0.0
+    if collided:
+        chi, mass = float(pair.inertia_ratio), float(pair.tangential_mass)
+        unit = float(encounter.friction_coefficient * contact.approach / pair.stiffness_ratio)
+        end = 4.0 * chi + 1.0 if restitution == 1.0 else END_OF_DAMPED
+        psi1 = end if contact.slip >= end * unit else contact.slip / unit
+        psi2 = float(rebound(psi1, chi, restitution=float(restitution)))
+        change = (psi2 - psi1) * unit
+        work = max(-mass * change * (contact.slip + 0.5 * change), 0.0)
+        after = -float(restitution) * contact.approach
+        _check(encounter, pair.normal_mass * contact.approach, change)
+    elif strict:
+        raise encounter.separate()
+    push, drag = pair.normal_mass * (after - contact.approach), pair.tangential_mass * change
+    velocity, spin, target_velocity, target_spin = _pushed(
+        encounter, contact, float(push), float(drag)
+    )
+    return Moved(velocity, spin, target_velocity, target_spin, after, change, work, collided)
+
+
+def _pushed(part: Encounter, contact: Contact, push: float, drag: float) -> list[Array]:
+    """Return ``VECTORS`` of a single encounter after both impulses, in N s."""
+    (n1, n2, n3), (t1, t2, t3) = contact.normal, contact.along
+    vectors = []
+    for body, velocity, spin, sense in (
+        (part.sphere, part.velocity, part.spin, 1.0),
+        (part.target, part.target_velocity, part.target_spin, -1.0),
+    ):
+        if not isinstance(body, Sphere):
+            vectors += [velocity, spin]
+            continue
+        (v1, v2, v3), (w1, w2, w3) = velocity.tolist(), spin.tolist()
+        mass, radius, gyration = float(body.mass), float(body.radius), float(body.gyration_ratio)
+        ahead, aside = sense * push / mass, sense * drag / mass
+        # divided step by step: the moment of inertia of a tiny body underflows
+        turn = drag / mass / (gyration * gyration * radius)
+        moved = (
+            v1 + (ahead * n1 + aside * t1),
+            v2 + (ahead * n2 + aside * t2),
+            v3 + (ahead * n3 + aside * t3),
+        )
+        turned = (
+            w1 + turn * (n2 * t3 - n3 * t2),
+            w2 + turn * (n3 * t1 - n1 * t3),
+            w3 + turn * (n1 * t2 - n2 * t1),
+        )
+        vectors += [np.array(moved), np.array(turned)]
+    for vector in vectors:
+        vector.flags.writeable = False
+    return vectors
 
 
 def _push(moved: list[Array], part: Encounter, contact: Contact, push: Any, drag: Any) -> None:

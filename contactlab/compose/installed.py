@@ -8,10 +8,12 @@ import sys
 import warnings
 from typing import TYPE_CHECKING, Any
 
+from contactlab.compose.names import normal_form
+
 if TYPE_CHECKING:
     from importlib import metadata
 
-GROUP = "contactlab"
+GROUP, UNKNOWN = "contactlab", "unknown"
 
 
 class PluginWarning(UserWarning):
@@ -33,36 +35,29 @@ def entry_points() -> set[tuple[str, str, str, str]]:
     """Return name, distribution, version and module of every entry point of the group."""
     from importlib import metadata  # takes 20 ms to import
 
-    try:
-        points = list(metadata.entry_points(group=GROUP))
-    except Exception:  # one unreadable distribution makes the common reading fail
-        points = [point for each in metadata.distributions() for point in _points_of(each)]
-    origins: dict[int, tuple[str, str]] = {}
-    entries = set()
-    for point in points:
-        if id(point.dist) not in origins:  # each reading opens a file
-            origins[id(point.dist)] = _name_and_version(point.dist)
-        entries.add((point.name, *origins[id(point.dist)], point.value))
+    entries, seen = set(), set()
+    for distribution in metadata.distributions():
+        where = getattr(distribution, "_path", "a distribution")
+        try:
+            points = list(distribution.entry_points.select(group=GROUP))
+        except Exception as error:
+            text = f"the entry points of {where} cannot be read and are passed over: {short(error)}"
+            warnings.warn(text, PluginWarning, stacklevel=4)
+            continue
+        if points:  # only then are the papers read: each reading opens a file
+            name, version = _name_and_version(distribution)
+            if name == UNKNOWN or normal_form(name) not in seen:  # the first is the one imported
+                entries |= {(point.name, name, version, point.value) for point in points}
+            seen.add(normal_form(name))
     return entries
 
 
-def _name_and_version(distribution: metadata.Distribution | None) -> tuple[str, str]:
-    """Return name and version of a distribution; "unknown" if they cannot be read."""
+def _name_and_version(distribution: metadata.Distribution) -> tuple[str, str]:
+    """Return name and version of a distribution; ``UNKNOWN`` if they cannot be read."""
     about: Any = {}
     with contextlib.suppress(Exception):
-        about = distribution.metadata if distribution else {}
-    return about.get("Name") or "unknown", about.get("Version") or "unknown"
-
-
-def _points_of(distribution: metadata.Distribution) -> list[metadata.EntryPoint]:
-    """Return a distribution's entry points of the group; none, with a warning, if unreadable."""
-    try:
-        return list(distribution.entry_points.select(group=GROUP))
-    except Exception as error:
-        where = getattr(distribution, "_path", "a distribution")
-        text = f"the entry points of {where} cannot be read and are passed over: {short(error)}"
-        warnings.warn(text, PluginWarning, stacklevel=5)
-        return []
+        about = distribution.metadata
+    return about.get("Name") or UNKNOWN, about.get("Version") or UNKNOWN
 
 
 def short(error: BaseException) -> str:

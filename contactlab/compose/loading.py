@@ -5,8 +5,6 @@ from __future__ import annotations
 import contextlib
 import sys
 from collections.abc import Iterator
-from functools import cached_property
-from types import ModuleType
 
 import attrs
 import numpy as np
@@ -65,52 +63,33 @@ class PluginInfo:
         return self.kind not in KINDS or not self.name.partition(".")[2]
 
 
-class Loader:
-    """The plug-ins imported so far, with the manager of their hooks."""
+def law_class(info: PluginInfo) -> type[Law]:
+    """Return the class of an installed law, from the hook of its module.
 
-    @cached_property
-    def _manager(self) -> pluggy.PluginManager:
-        manager = pluggy.PluginManager(hookspecs.PROJECT)
-        manager.add_hookspecs(hookspecs)
-        return manager
+    Raises
+    ------
+    PluginError
+        If the plug-in cannot be imported or has no hook, or its law breaks the contract.
+    """
+    from importlib import metadata
 
-    def law_class(self, info: PluginInfo) -> type[Law]:
-        """Return the class of an installed law.
-
-        Raises
-        ------
-        PluginError
-            If the plug-in cannot be imported or has no hook, or its law breaks the contract.
-        """
-        source = f"{info.name!r} of {info.distribution} {info.version}"
-        from importlib import metadata
-
-        with _guarded(source, "could not be imported"):
-            module = metadata.EntryPoint(info.name, info.module, GROUP).load()
-        self._register(module, info, source)
-        others = [plugin for plugin in self._manager.get_plugins() if plugin is not module]
-        ask = self._manager.subset_hook_caller("contactlab_law", others)
-        with _guarded(source, "raised when asked for its law"):
-            law = ask(name=info.name)
-        return _checked(law, info, source)
-
-    def _register(self, module: ModuleType, info: PluginInfo, source: str) -> None:
-        """Register a module, or raise PluginError if its hooks do not fit the project's."""
-        if self._manager.is_registered(module):
-            return
-        try:
-            self._manager.register(module, name=info.module)
-            self._manager.check_pending()
-        except Exception as error:
-            # pluggy leaves a plug-in that failed validation registered.
-            if self._manager.is_registered(module):
-                self._manager.unregister(module)
-            raise PluginError(f"{source} does not fit the hooks: {short(error)}") from error
-        if not self._manager.get_hookcallers(module):
-            self._manager.unregister(module)
-            raise PluginError(
-                f"{source} has no hook: define @contactlab.hookimpl def contactlab_law(name)"
-            )
+    source = f"{info.name!r} of {info.distribution} {info.version}"
+    with _guarded(source, "could not be imported"):
+        module = metadata.EntryPoint(info.name, info.module, GROUP).load()
+    manager = pluggy.PluginManager(hookspecs.PROJECT)  # of its own: modules do not see each other
+    manager.add_hookspecs(hookspecs)
+    try:
+        manager.register(module, name=info.module)
+        manager.check_pending()
+    except Exception as error:
+        raise PluginError(f"{source} does not fit the hooks: {short(error)}") from error
+    if not manager.get_hookcallers(module):
+        raise PluginError(
+            f"{source} has no hook: define @contactlab.hookimpl def contactlab_law(name)"
+        )
+    with _guarded(source, "raised when asked for its law"):
+        law = manager.hook.contactlab_law(name=info.name)
+    return _checked(law, info, source)
 
 
 @contextlib.contextmanager

@@ -30,7 +30,7 @@ def march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) ->
     if shape and size == 1 and observer is None:  # one impact is faster as plain numbers
         return TangentialMotion.joined([part((0,) * len(shape))], shape)
     motion, raised = _attempt(laws, normal, observer)
-    if not shape or observer or np.all(motion.status == Status.SUCCESS):
+    if not shape or observer is not None or np.all(motion.status == Status.SUCCESS):
         return motion
     if laws.integrator.own_statuses and not raised:
         return motion

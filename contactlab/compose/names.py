@@ -35,4 +35,9 @@ def short_name(name: str) -> str:
 
 def same_distribution(first: str, second: str) -> bool:
     """Return True if two names mean the same distribution, as ``My_Laws`` and ``my-laws`` do."""
-    return len({re.sub(r"[-_.]+", "-", name).lower() for name in (first, second)}) == 1
+    return normal_form(first) == normal_form(second)
+
+
+def normal_form(distribution: str) -> str:
+    """Return the name of a distribution in small letters, with hyphens: ``my-laws``."""
+    return re.sub(r"[-_.]+", "-", distribution).lower()

@@ -58,17 +58,42 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
             if not isinstance(motion, NormalMotion):
                 raise TypeError(f"motion returned {shown(motion)}, which is no NormalMotion")
             return motion
-    quantities = (*attrs.astuple(scene.pair), scene.normal_speed)
-    if scene.shape and all(isinstance(quantity, float) for quantity in quantities):
-        single = attrs.evolve(scene, friction_coefficient=0.0, tangential_velocity=0.0, spin=0.0)
-        if not single.shape:  # the impacts of the batch differ in their tangential motion only
-            watched = _Watched.of(single)
-            common = normal_motion(law, watched)
-            assert isinstance(common, SolvedMotion)
-            if not watched.was_read:
-                return SolvedMotion(law, scene, common.table)
+    table = _common(law, scene)
+    if table is not None:
+        return SolvedMotion(law, scene, table)
     with np.errstate(all="ignore"):
         return _Solver(law, scene).solve()
+
+
+def _common(law: NormalLaw, scene: Scene) -> MotionTable | None:
+    """Return the table of impacts that differ in their tangential motion only, or None."""
+    numbers = (*attrs.astuple(scene.pair), scene.normal_speed)
+    if not all(isinstance(number, float) for number in numbers):
+        return None
+    single = attrs.evolve(scene, friction_coefficient=0.0, tangential_velocity=0.0, spin=0.0)
+    if single.shape:
+        return None
+    key = law, single
+    try:
+        if key in _TABLES:
+            return _TABLES[key]
+    except TypeError:  # a law, or a body of a law's own, that cannot be hashed
+        return None
+    watched = _Watched.of(single)
+    with np.errstate(all="ignore"):
+        solved = _Solver(law, watched).solve()
+    if watched.was_read:
+        return None
+    while len(_TABLES) >= MOST_KEPT:
+        del _TABLES[next(iter(_TABLES))]
+    _TABLES[key] = solved.table
+    return solved.table
+
+
+#: Tables of the last normal motions, by law and scene: solving takes milliseconds, and the same
+#: impact is often run under several friction laws. A table takes some 50 kB.
+MOST_KEPT = 16
+_TABLES: dict[tuple[NormalLaw, Scene], MotionTable] = {}
 
 
 class _Watched(Scene):

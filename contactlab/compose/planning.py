@@ -6,9 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import attrs
 import numpy as np
 
-from contactlab.compose.answers import NONE, ONE, Answer, Mask
+from contactlab.compose.answers import NONE, ONE, Answer, Mask, separated
 from contactlab.compose.composition import Laws
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.motion import NormalMotion
@@ -17,7 +18,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.impact.unit_slips import unit_slips
 from contactlab.numeric.arrays import every, some, spread
-from contactlab.outcome.plan import Clause, Plan
+from contactlab.outcome.plan import BOOKS, PSI2_ERROR, TANGENTIAL_MOTION, UNCHECKED, Clause, Plan
 
 #: Error of what is known in closed form, over max(1, |psi1|).
 CLOSED_FORM = 1e-12
@@ -46,37 +47,64 @@ def make_plan(
     history : bool or "fields"
         What is asked for.
     """
-    everywhere = np.ones(scene.shape, dtype=bool) if scene.shape else ONE
-    separated, marched = _separated_and_marched(scene, normal, known)
+    ended, marched = _ended_and_marched(scene, normal, known)
     error = _error(scene, normal, laws, known, marched)
-    how = "integrated from first touch to separation"
-    if isinstance(normal.law, ClosedFormNormalLaw):
-        how = "in closed form"
-    computed = [Clause(f"normal motion: {type(normal.law).__name__}, {how}", everywhere)]
-    cautions = unit_slips(scene)
-    if some(separated):
-        cautions += laws.normal.cautions(scene, normal)
-        cautions += laws.tangential.cautions(scene, normal)
+    cautions: tuple[str, ...] = ()  # those of the laws, which are asked now: they may raise
+    if some(ended):
+        cautions = laws.normal.cautions(scene, normal) + laws.tangential.cautions(scene, normal)
     if some(marched):
-        text = "tangential motion: {!r} over {!r}"
-        computed.append(Clause(text, marched, (laws.integrator, laws.tangential)))
         part = (normal, scene)
         if not every(marched):
             part = normal.take(marched), scene.take(marched)
         cautions += laws.integrator.remarks(part[0], laws.tangential, part[1])
-    left_out = _not_marched(known, separated)
-    if reason := _no_history(history, marched):
-        left_out.append(Clause(reason, everywhere))
-    return Plan(
-        computed=(*computed, *_error_clauses(error, separated)),
-        left_out=tuple(left_out),
-        cautions=tuple(Clause(text, everywhere) for text in cautions),
-        marched=marched,
-        psi2_error=error,
-    )
+
+    # Kept until the plan is read: neither the normal motion nor the numbers of the answers.
+    normal_law = normal.law
+    fields = any(answer.known.fields is not None for answer in known)
+    reasons = [(answer.known.reason, answer.where, answer.known.balanced) for answer in known]
+
+    def clauses() -> tuple[tuple[Clause, ...], tuple[Clause, ...], tuple[Clause, ...]]:
+        everywhere = np.ones(scene.shape, dtype=bool) if scene.shape else ONE
+        how = "integrated from first touch to separation"
+        if isinstance(normal_law, ClosedFormNormalLaw):
+            how = "in closed form"
+        law = f"{type(normal_law).__name__}, {how}{_defaults(normal_law)}"
+        computed = [Clause(f"normal motion: {law}", everywhere)]
+        if some(marched):
+            text = "tangential motion: {!r} over {!r}"
+            computed.append(
+                Clause(text, marched, (laws.integrator, laws.tangential), TANGENTIAL_MOTION)
+            )
+        left_out = _not_marched(reasons, ended)
+        if reason := _no_history(history, marched, fields=fields):
+            left_out.append(Clause(reason, everywhere))
+        return (
+            (*computed, *_error_clauses(error, ended)),
+            tuple(left_out),
+            tuple(Clause(text, everywhere) for text in (*unit_slips(scene), *cautions)),
+        )
+
+    return Plan(late=clauses, marched=marched, psi2_error=error)
 
 
-def _separated_and_marched(
+def _defaults(law: Any) -> str:
+    """Return which options of a law have their default value, with a semicolon before."""
+    if not (attrs.has(type(law)) and attrs.fields(type(law))):
+        return ""
+    try:
+        usual = type(law)()
+    except (TypeError, ValueError):  # it has no defaults, or not for all options
+        return ""
+    values = {item.name: getattr(law, item.name) for item in attrs.fields(type(law))}
+    kept = [
+        f"{name} = {value:g}"
+        for name, value in values.items()
+        if isinstance(value, float) and value == getattr(usual, name)
+    ]
+    return f"; {', '.join(kept)} by default" if kept else ""
+
+
+def _ended_and_marched(
     scene: Scene, normal: NormalMotion, known: Sequence[Answer]
 ) -> tuple[Mask, Mask]:
     """Return the impacts that the normal motion ends, and those of them not known as a whole."""
@@ -84,30 +112,30 @@ def _separated_and_marched(
         if normal.status is not Status.SUCCESS:
             return NONE, NONE
         return ONE, NONE if known else ONE
-    separated = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
-    separated = np.array(np.broadcast_to(separated, scene.shape))
-    marched = np.array(separated)
+    ended = separated(normal)
+    marched = ended.copy()
     for answer in known:
         marched &= ~answer.where
-    return separated, marched
+    return ended, marched
 
 
-def _not_marched(known: Sequence[Answer], separated: Mask) -> list[Clause]:
+def _not_marched(reasons: Sequence[tuple[str, Mask, bool]], ended: Mask) -> list[Clause]:
     """Return why impacts are not marched."""
     march = "march of the tangential motion"
-    found = [Clause(f"{march}: {answer.known.reason}", answer.where) for answer in known]
-    if not every(separated):
-        found.append(Clause(f"{march}: the normal motion came to no end", ~separated))
+    found = [Clause(f"{march}: {reason}", where) for reason, where, _ in reasons]
+    found += [Clause(UNCHECKED, where, code=BOOKS) for _, where, balanced in reasons if balanced]
+    if not every(ended):
+        found.append(Clause(f"{march}: the normal motion came to no end", ~ended))
     return found
 
 
-def _no_history(history: bool | str, marched: Mask) -> str | None:
+def _no_history(history: bool | str, marched: Mask, *, fields: bool) -> str | None:
     """Return what a history leaves out, and why."""
     if not history:
         return "history: not asked for"
     if history != "fields":
         return "traction and stick/slip fields: not asked for (history='fields')"
-    if not some(marched):
+    if not (some(marched) or fields):
         return "traction and stick/slip fields: there is no march to take them from"
     return None
 
@@ -127,6 +155,8 @@ def _error(
         Impacts that no whole-impact answer is for.
     """
     rounding = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
+    if not (scene.shape or marched):
+        return float(rounding + sum(answer.known.psi2_error for answer in known))
     error: Any = spread(rounding, scene.shape)
     for answer in known:
         error = error + np.where(answer.where, answer.known.psi2_error, 0.0)
@@ -139,20 +169,20 @@ def _error(
     return error if scene.shape else float(error)
 
 
-def _error_clauses(error: Any, separated: Mask) -> list[Clause]:
+def _error_clauses(error: Any, ended: Mask) -> list[Clause]:
     """Return what a plan says of the numerical error."""
-    if separated.ndim:
-        undeclared = separated & np.isnan(error)
-        declared = separated & ~undeclared
+    if ended.ndim:
+        undeclared = ended & np.isnan(error)
+        declared = ended & ~undeclared
     elif math.isnan(error):
-        undeclared, declared = separated, NONE
+        undeclared, declared = ended, NONE
     else:
-        undeclared, declared = NONE, separated
+        undeclared, declared = NONE, ended
     found = []
     if some(declared):
         text = "numerical error of psi2: at most {:.2g}, declared"
-        found.append(Clause(text, declared, (error,)))
+        found.append(Clause(text, declared, (error,), PSI2_ERROR))
     if some(undeclared):
         text = f"numerical error of psi2: not declared{ADVICE}"
-        found.append(Clause(text, undeclared))
+        found.append(Clause(text, undeclared, code=PSI2_ERROR))
     return found

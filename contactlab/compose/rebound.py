@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from contactlab.compose.clashes import BLOCK_VARIABLE, blocks
 from contactlab.compose.hookspecs import PROJECT
-from contactlab.contracts.restitution import RESTITUTION
+from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.numeric.checks import POSITIVE, Real, Rule, paired, real, refuse
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ GROUP, TABLE = "contactlab.rebound", "elastic"
 #: Name of the function (psi1, chi, restitution) for a restitution below 1, and its largest chi.
 DAMPED, DAMPED_LARGEST_CHI = "damped", 10.0
 #: Range of chi and least restitution of its table, and the largest errors of psi2 in the table and
-#: outside, against Coulomb's law at every point: ``tests/exact/test_damped_table.py``.
+#: outside, against Coulomb's law at every point: ``tests/laws/test_damped_table.py``.
 DAMPED_CHI, DAMPED_RESTITUTION = (0.8, 1.8), 0.5
 DAMPED_ERROR, BEYOND_ERROR = 1e-3, 4e-3
 #: Number of annuli beyond the largest chi; the steps are four times as many.
@@ -49,38 +49,45 @@ CHI = Rule(
 LARGEST = 1e5
 
 
+#: What ``tolerance`` and ``restitution`` are where they are left out: a comparison takes long.
+USUAL, ELASTIC = 1e-5, 1.0
+#: Arrays that are looked at number by number: NumPy takes longer to begin.
+FEW = 40
+
+
 @overload
 def rebound(
     psi1: object,
     chi: object,
     *,
-    tolerance: float = 1e-5,
+    tolerance: float = USUAL,
     derivatives: Literal[False] = False,
-    restitution: float = 1.0,
+    restitution: Real = ELASTIC,
 ) -> Real: ...
 @overload
 def rebound(
-    psi1: object, chi: object, *, tolerance: float = 1e-5, derivatives: Literal[True]
+    psi1: object, chi: object, *, tolerance: float = USUAL, derivatives: Literal[True]
 ) -> tuple[Real, Real, Real]: ...
 def rebound(
     psi1: object,
     chi: object,
     *,
-    tolerance: float = 1e-5,
+    tolerance: float = USUAL,
     derivatives: bool = False,
-    restitution: float = 1.0,
+    restitution: Real = ELASTIC,
 ) -> Real | tuple[Real, Real, Real]:
     """Return the dimensionless rebound psi2 of spheres, a float or an array of the inputs' shape.
 
     The model is the paper's in its continuum limit: elastic Hertz contact, Coulomb friction. Up to
     chi = 2.5, which covers all spheres except those with a dense core, psi2 is tabulated to 1e-9,
-    at about 0.1 us per impact in a large array. Above, impacts are solved, at about 0.1 ms each.
+    at about 0.1 us per impact in a large array. Above, impacts are solved, at about 2 ms each.
     ``contactlab.Simulation`` gives everything else.
 
     Parameters
     ----------
     psi1 : float or array_like
-        Non-dimensional angle of incidence, eq. (29): kappa v_x / (mu v1). Any sign and size.
+        Non-dimensional angle of incidence, eq. (29): kappa v_x / (mu v1). Any sign and size. An
+        empty array gives an empty array.
     chi : float or array_like
         Eq. (38), broadcast against ``psi1``; positive, at most 1e4.
     tolerance : float
@@ -89,8 +96,9 @@ def rebound(
     derivatives : bool
         Return d psi2/d psi1 and d psi2/d chi too, for chi up to 2.5. Both are tabulated to 1e-6 at
         any tolerance (5e-5 for psi1 just above 1, chi 1.83 to 1.92).
-    restitution : float
-        e of the normal motion, one number. Below 1 the law is Tsuji's (``normal.tsuji``) with
+    restitution : float or array_like
+        e of the normal motion, from 0.01 to 1, broadcast against ``psi1``. Each different value
+        costs a call of its own. Below 1 the law is Tsuji's (``normal.tsuji``) with
         Coulomb's law at every point, and ``tolerance`` has no effect. For chi from 0.8 to 1.8 and e
         from 0.5 a table holds psi2 to 1e-3; elsewhere up to chi = 10 rings give psi2 to 4e-3, in
         about ten milliseconds per impact; beyond, annuli answer, with an error that is not
@@ -104,48 +112,74 @@ def rebound(
         Tangential velocity of the contact after the impact, scaled and signed as ``psi1``: if
         psi1 and psi2 differ in sign, the slip velocity is reversed. Odd in psi1 to the last bit. A
         float if psi1 and chi are scalars. With ``derivatives`` a tuple (psi2, d psi2/d psi1,
-        d psi2/d chi). Other impacts in an array change an answer by less than 1e-10.
+        d psi2/d chi). Other impacts in an array change an answer by less than 1e-10. Arrays are
+        float64 and new; inputs of other types are converted.
 
     Raises
     ------
     ValueError
-        For bad input, with the argument, its value, the rule and the remedy.
+        For bad input, with the argument, its value, the index of the first bad number, the rule
+        and the remedy.
     ValueError, PluginError
         If the law ``tangential.fronts`` is needed, but is blocked or cannot be imported.
     ImpactError
         If an impact cannot be solved; no such impact has been found.
+
+    Notes
+    -----
+    The function keeps no state but tables that never change: threads may call it at the same time.
 
     Examples
     --------
     >>> round(rebound(1.2, 49 / 34), 6)
     -0.180519
     """
-    usual = isinstance(tolerance, float) and TABULATED < tolerance < 1.0 and not derivatives
-    usual = usual and type(restitution) is float and restitution == 1.0
-    if usual and isinstance(psi1, float) and isinstance(chi, float):
-        alone = _alone(psi1, chi)
-        if alone is not None:
-            return alone
+    if (
+        not derivatives
+        and (restitution is ELASTIC or (type(restitution) is float and restitution == 1.0))
+        and (tolerance is USUAL or (isinstance(tolerance, float) and TABULATED < tolerance < 1.0))
+        and _in_table(psi1, chi)
+    ):
+        quick = _kept_table(os.environ.get(BLOCK_VARIABLE))
+        if quick is not None:
+            return quick(psi1, chi)  # type: ignore[no-any-return]
     incidence = real(
-        "psi1", psi1, remedy="give the non-dimensional angle of incidence (29)", kept=False
+        "psi1",
+        psi1,
+        remedy="give the non-dimensional angle of incidence (29)",
+        kept=False,
+        empty=True,
     )
     inertia = real(
-        "chi", chi, rule=CHI, remedy="chi of eq. (38); 1.4412 for a solid steel sphere", kept=False
+        "chi",
+        chi,
+        rule=CHI,
+        remedy="chi of eq. (38); 1.4412 for a solid steel sphere",
+        kept=False,
+        empty=True,
     )
     aim = real("tolerance", tolerance, rule=TOLERANCE, remedy="leave it out for 1e-5")
     if not isinstance(aim, float):
         raise refuse("tolerance", tolerance, "must be one number", "leave it out for 1e-5")
-    e = real("restitution", restitution, rule=RESTITUTION, remedy="leave it out for 1")
+    e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
     velocity, ratio = paired("psi1", "chi", (incidence, inertia))
-    if e != 1.0:
-        if derivatives:
-            remedy = "take differences of psi2, or leave one of the two out"
-            raise refuse(
-                "derivatives", derivatives, "are available for restitution = 1 only", remedy
-            )
-        psi2 = _damped(velocity.ravel(), ratio.ravel(), float(e)).reshape(velocity.shape)
+    if not isinstance(e, float):
+        velocity, each = paired("psi1", "restitution", (velocity, e))
+        velocity, ratio = paired("psi1", "chi", (velocity, ratio))
+    if derivatives and np.any(e != 1.0):
+        remedy = "take differences of psi2, or leave one of the two out"
+        raise refuse("derivatives", derivatives, "are available for restitution = 1 only", remedy)
+    flat, ratios = velocity.ravel(), ratio.ravel()
+    if not flat.size:
+        nothing = (np.empty(velocity.shape), np.empty(velocity.shape), np.empty(velocity.shape))
+        return nothing if derivatives else nothing[0]
+    if not isinstance(e, float):
+        psi2 = _each(flat, ratios, np.broadcast_to(each, velocity.shape).ravel(), aim)
+    elif e != 1.0:
+        psi2 = _damped(flat, ratios, e)
     else:
-        psi2 = _solve(velocity.ravel(), ratio.ravel(), aim).reshape(velocity.shape)
+        psi2 = _solve(flat, ratios, aim)
+    psi2 = psi2.reshape(velocity.shape)
     answer = float(psi2) if psi2.ndim == 0 else psi2
     if not derivatives:
         return answer
@@ -153,16 +187,31 @@ def rebound(
     if table is None:
         remedy = f"install a plug-in that offers {GROUP}: {TABLE}, and do not block it"
         raise refuse("derivatives", derivatives, "are available from a table only", remedy)
-    _, by_psi1, by_chi = table(incidence, inertia, derivatives=True)
+    if not (ratios <= TABULATED_CHI).all():
+        rule = f"derivatives are tabulated up to chi = {TABULATED_CHI}"
+        raise refuse("chi", float(ratios.max()), rule, "take differences of psi2 beyond")
+    _, by_psi1, by_chi = table(velocity, ratio, derivatives=True)
+    if psi2.ndim == 0:
+        return answer, float(by_psi1), float(by_chi)
     return answer, by_psi1, by_chi
 
 
-def _alone(psi1: float, chi: float) -> float | None:
-    """Return psi2 of one impact from the table, without arrays; None outside the table."""
-    if not (math.isfinite(psi1) and 0.0 < chi <= TABULATED_CHI):
-        return None
-    table = _table()
-    return None if table is None else float(table(psi1, chi))
+def _in_table(psi1: Any, chi: Any) -> bool:
+    """Return whether arguments are two floats or two equal arrays of floats in the table's range.
+
+    A quick look: arguments of other kinds, and bad ones, are False.
+    """
+    if isinstance(psi1, float):
+        return isinstance(chi, float) and -math.inf < psi1 < math.inf and 0.0 < chi <= TABULATED_CHI
+    if not type(psi1) is type(chi) is np.ndarray or psi1.shape != chi.shape or not psi1.ndim:
+        return False
+    if not psi1.dtype == chi.dtype == np.float64 or not psi1.size:
+        return False
+    if psi1.size > FEW:  # comparisons with NaN are False
+        inside = chi.min() > 0.0 and chi.max() <= TABULATED_CHI
+        return bool(inside and -math.inf < psi1.min() and psi1.max() < math.inf)
+    speeds, ratios = psi1.ravel().tolist(), chi.ravel().tolist()
+    return all(map(math.isfinite, speeds)) and all(0.0 < one <= TABULATED_CHI for one in ratios)
 
 
 def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
@@ -177,6 +226,18 @@ def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
     if tabulated.any():
         psi2[tabulated] = table(psi1[tabulated], chi[tabulated])
     psi2[~tabulated] = _exact(psi1[~tabulated], chi[~tabulated])
+    return psi2
+
+
+def _each(psi1: Array, chi: Array, restitution: Array, tolerance: float) -> Array:
+    """Return psi2 of impacts with a restitution each, shape (impacts,)."""
+    psi2 = np.empty_like(psi1)
+    for value in np.unique(restitution).tolist():
+        part = restitution == value
+        if value == 1.0:
+            psi2[part] = _solve(psi1[part], chi[part], tolerance)
+        else:
+            psi2[part] = _damped(psi1[part], chi[part], value)
     return psi2
 
 
@@ -220,6 +281,12 @@ def damped_error(chi: Real, restitution: float) -> Any:
 def _table(name: str = TABLE) -> Callable[..., Any] | None:
     """Return a tabulated rebound, if one is installed and not blocked."""
     return _installed(name, os.environ.get(BLOCK_VARIABLE, ""))
+
+
+@cache
+def _kept_table(_: Any) -> Callable[..., Any] | None:
+    """Return the table of elastic impacts while the blocking is the same."""
+    return _table()
 
 
 @cache

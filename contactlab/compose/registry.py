@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import warnings
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -14,7 +14,7 @@ import attrs
 from contactlab.compose import hookspecs
 from contactlab.compose.clashes import BLOCK_VARIABLE, blocked_names, blocks, clash, meant
 from contactlab.compose.installed import PluginWarning, entry_points, stamp
-from contactlab.compose.loading import Loader, PluginError, PluginInfo
+from contactlab.compose.loading import PluginError, PluginInfo, law_class
 from contactlab.compose.names import KINDS, kind_of, parted, same_distribution
 from contactlab.contracts.law import Law
 from contactlab.numeric.checks import nearest, refuse
@@ -29,6 +29,10 @@ __all__ = [
     "blocked_names",
 ]
 
+#: Laws of former versions, each with the law that took its place.
+FORMER = {
+    "tangential.tabulated": "it is the table from which 'tangential.fronts' answers: use that",
+}
 #: Beginnings of the names of other plug-ins that may be blocked.
 OTHER_GROUPS = ("rebound.",)
 
@@ -49,13 +53,12 @@ class Registry:
     """
 
     def __init__(self) -> None:
-        self._loader = Loader()
         self._loaded: dict[str, tuple[type[Law], PluginInfo]] = {}
         self._meant: dict[tuple[str, str], str] = {}
         self._warned: set[str] = set()
         self._found: set[tuple[str, str, str, str]] = set()
         self._stamp: object = None
-        self._origins: WeakKeyDictionary[type[Law], PluginInfo | None] = WeakKeyDictionary()
+        self._described: WeakKeyDictionary[type[Law], str] = WeakKeyDictionary()
 
     @cached_property
     def _modules(self) -> list[tuple[str, str]]:
@@ -159,7 +162,7 @@ class Registry:
         if self._meant.get(key) not in self._loaded:
             info = self.info(name)
             if info.qualified not in self._loaded:
-                self._loaded[info.qualified] = (self._loader.law_class(info), info)
+                self._loaded[info.qualified] = (law_class(info), info)
             self._meant[key] = info.qualified
         return self._loaded[self._meant[key]][0]
 
@@ -173,19 +176,16 @@ class Registry:
         PluginError
             If the plug-in cannot be imported or breaks the contract, with its traceback.
         """
-        import inspect
-
         if not isinstance(name, str):
             raise refuse("name", name, "must be a text such as 'tangential.springs'")
         law = self.law_class(name)
-        parameters = inspect.signature(law).parameters
         for option, value in options.items():
-            if option not in parameters:
+            if option not in (parameters := _parameters(law)):
                 names = ", ".join(parameters) or "no options"
                 remedy = f"{nearest(option, parameters)}it has {names}"
                 raise refuse(option, value, f"{name} does not know it", remedy)
-        for option, parameter in parameters.items():
-            if parameter.default is parameter.empty and option not in options:
+        for option, required in _parameters(law).items():
+            if required and option not in options:
                 raise ValueError(
                     f"{name}: {option} must be given; in Python create({name!r}, {option}=...), "
                     f"on the command line --set {kind_of(name)}.{option}=..."
@@ -195,15 +195,17 @@ class Registry:
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from error
 
-    def describe(self, law: Law) -> str:
+    def describe(self, law: Law | type[Law]) -> str:
         """Return a law's name, distribution and version; its class if no distribution offers it."""
-        law_class = type(law)
-        if law_class not in self._origins:
-            self._origins[law_class] = self._origin(law_class)
-        info = self._origins[law_class]
-        if info is None:
-            return f"{law_class.__module__}.{law_class.__qualname__} (not registered)"
-        return f"{info.name.partition('.')[2]} ({info.distribution} {info.version})"
+        law_class = law if isinstance(law, type) else type(law)
+        text = self._described.get(law_class)
+        if text is None:
+            info = self._origin(law_class)
+            text = f"{law_class.__module__}.{law_class.__qualname__} (not registered)"
+            if info is not None:
+                text = f"{info.name.partition('.')[2]} ({info.distribution} {info.version})"
+            self._described[law_class] = text
+        return text
 
     def _origin(self, law_class: type[Law]) -> PluginInfo | None:
         """Return the plug-in that offers this class, imported by name or not; None if none does."""
@@ -216,6 +218,8 @@ class Registry:
     def _unknown(self, name: str) -> ValueError:
         """Return the refusal of a name that is not installed, with the nearest installed name."""
         distribution, plain = parted(str(name))
+        if plain in FORMER:
+            return refuse("name", name, "no such law is installed", FORMER[plain])
         kind, _, short = plain.rpartition(".")
         names = self.names(kind if kind in KINDS else None)
         others = [law for law in self.names() if law.endswith(f".{short}")]
@@ -242,6 +246,15 @@ class Registry:
         return refuse(
             "name", name, "no such law is installed", f"{hint}installed: {', '.join(names)}"
         )
+
+
+@lru_cache(maxsize=256)
+def _parameters(law: type[Law]) -> dict[str, bool]:
+    """Return the options of a law, and whether each must be given; reading a signature is slow."""
+    import inspect
+
+    parameters = inspect.signature(law).parameters
+    return {name: each.default is each.empty for name, each in parameters.items()}
 
 
 def _rank(kind: str) -> int:

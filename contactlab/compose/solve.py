@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import Any, NamedTuple
 
 import attrs
@@ -12,15 +13,17 @@ from contactlab.compose.answers import Answer, answers, show
 from contactlab.compose.composition import Laws
 from contactlab.compose.marching import march
 from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.older import books_bound
 from contactlab.compose.planning import make_plan
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.solved_motion import FailedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.integrator import TangentialMotion
 from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.sampled_motion import NormalMotions
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import filled, halves
+from contactlab.numeric.arrays import every, halves, some
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.energy import balanced
 from contactlab.outcome.history import Recorder
@@ -78,7 +81,8 @@ def outcome(
     tangential = _tangential(laws, prepared, recorder)
     motion = sound(Motion.along(prepared.normal, tangential))
     # What the books may miss by: the law's own bound, and the integrator's share.
-    bound = laws.tangential.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
+    bound: Any = books_bound(laws.tangential, scene)
+    bound = bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
     return prepared.plan, _named(laws, balanced(motion, scene, bound))
 
 
@@ -111,11 +115,11 @@ def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
     LawFaultError
         If a law raises where it is asked what it knows.
     """
-    with np.errstate(under="ignore"):
-        normal = normal_or_failed(laws, scene)
-        with faults.blaming(laws.tangential):
-            known = answers(scene, normal, laws.tangential, history=history)
-            return Prepared(normal, known, make_plan(scene, normal, laws, known, history=history))
+    normal = normal_or_failed(laws, scene)
+    accuracy = laws.integrator.accuracy
+    with faults.blaming(laws.tangential):
+        known = answers(scene, normal, laws.tangential, history=history, accuracy=accuracy)
+        return Prepared(normal, known, make_plan(scene, normal, laws, known, history=history))
 
 
 def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
@@ -138,9 +142,9 @@ def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> Ta
     """Return the tangential motion: what is known as a whole, and the rest marched."""
     normal, known, plan = prepared
     shape, marched = normal.scene.shape, plan.marched
-    if marched.all():
+    if every(marched):
         return march(laws, normal, recorder)
-    if recorder is not None and not marched.any():
+    if recorder is not None and not some(marched):
         show(normal, known, recorder)
     if not shape:
         if not known:
@@ -149,24 +153,46 @@ def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> Ta
         return TangentialMotion(
             slip_velocity_change=float(answer.slip_velocity_change),
             friction_work=float(answer.friction_work),
+            status=answer.status,
+            detail=answer.detail,
+            counters={} if answer.counter is None else {answer.counter: 1},
+            normal=answer.normal,
         )
-    nothing = TangentialMotion.nothing(shape, Status.NOT_SEPARATED)
-    nothing = attrs.evolve(nothing, status=normal.status, detail=normal.detail)
-    parts: list[tuple[Any, TangentialMotion]] = [(np.ones(shape, dtype=bool), nothing)]
-    parts += [(answer.where, _answered(answer, shape)) for answer in known]
-    if marched.any():
-        parts.append((marched, march(laws, normal.take(marched))))
+    motion = _answered(normal, known)
+    if not some(marched):
+        return motion
+    parts = [(np.ones(shape, dtype=bool), motion), (marched, march(laws, normal.take(marched)))]
     return TangentialMotion.merged(parts, shape)
 
 
-def _answered(answer: Answer, shape: tuple[int, ...]) -> TangentialMotion:
-    """Return the tangential motion of those impacts of a batch that an answer is taken for."""
-    change, work = (
-        np.broadcast_to(np.asarray(entry, dtype=np.float64), shape)[answer.where]
-        for entry in (answer.known.slip_velocity_change, answer.known.friction_work)
+def _answered(normal: NormalMotion, known: list[Answer]) -> TangentialMotion:
+    """Return the tangential motion of a batch by its whole-impact answers, NaN elsewhere."""
+    shape = normal.scene.shape
+    change, work = np.full((2, *shape), math.nan)
+    status, detail = (
+        np.array(np.broadcast_to(np.asarray(entry, dtype=object), shape))
+        for entry in (normal.status, normal.detail)
     )
+    counters: Counter[str] = Counter()
+    for where, answer in known:
+        np.copyto(change, answer.slip_velocity_change, where=where)
+        np.copyto(work, answer.friction_work, where=where)
+        if not isinstance(normal.detail, str):
+            detail[where] = ""
+        if answer.status is not Status.SUCCESS:
+            np.copyto(status, np.asarray(answer.status, dtype=object), where=where)
+            detail[where & (status != Status.SUCCESS)] = answer.detail
+        if answer.counter is not None:
+            counters[answer.counter] += int(np.count_nonzero(where))
+    own = None
+    if any(answer.normal is not None for _, answer in known):
+        parts = [(where, each.normal and each.normal.take(where)) for where, each in known]
+        own = NormalMotions(shape, ((np.ones(shape, dtype=bool), None), *parts))
     return TangentialMotion(
         slip_velocity_change=change,
         friction_work=work,
-        status=filled(Status.SUCCESS, change.shape),
+        status=status,
+        detail=detail,
+        counters=dict(counters),
+        normal=own,
     )

@@ -41,6 +41,8 @@ class MotionTable:
     ----------
     shape : tuple of int
         Shape of the batch; () if one motion serves the whole batch.
+    shared : dict
+        What motions of this table share, by the number of axes of their batches.
     edges : array, shape (items, S + 1)
         Ends of the steps, in units of ``unit``. An item with fewer steps than another has steps
         of zero width at separation.
@@ -61,6 +63,7 @@ class MotionTable:
     largest: Array
     status: Any
     detail: Any
+    shared: dict[Any, Any] = attrs.field(factory=dict, init=False)
 
     @classmethod
     def made(cls, **entries: Any) -> Self:
@@ -150,6 +153,8 @@ class SolvedMotion(NormalMotion):
 
     def __init__(self, law: Law, scene: Scene, table: MotionTable) -> None:
         self.law, self.scene, self.table = law, scene, table
+        # Batches of one table are alike up to the number of their axes.
+        self.shared = table.shared.setdefault(len(scene.shape), {}) if not table.shape else None
         self.duration = table.shaped(table.ends * table.unit)
         self.final_rate = table.shaped(table.last[:, RATE])
         self.total_load_impulse = table.shaped(table.last[:, LOAD_IMPULSE])

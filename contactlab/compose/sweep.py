@@ -47,6 +47,8 @@ def swept(
 ) -> tuple[Plan, Motion]:
     """Return plan and motion of a one-dimensional batch; see ``Simulation.sweep``."""
     size, block = scene.shape[0], block_of(laws)
+    if laws.tangential.needs_no_march(scene, laws.integrator.accuracy):
+        block = WHOLE_IMPACTS
     step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
     kept = None
     if keep is not None:

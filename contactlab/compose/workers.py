@@ -7,12 +7,11 @@ import multiprocessing
 import os
 import pickle
 import signal
+import sys
 import threading
-import time
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing.context import SpawnContext, SpawnProcess
-from types import FrameType
 from typing import Any, NamedTuple
 
 import attrs
@@ -26,8 +25,6 @@ from contactlab.numeric.checks import whole
 
 #: Most processes: more than any machine has processors.
 MOST = 1024
-#: Time in s for a call to end after an interrupt.
-GRACE = 5.0
 MODULE_REMEDY = "define its class at the top of a module that can be imported"
 
 
@@ -69,26 +66,20 @@ def processes(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 def stop(pool: ProcessPoolExecutor) -> None:
-    """Interrupt the calls of a pool and end its processes, by force after ``GRACE``."""
+    """End the processes of a pool, in the middle of their calls."""
     running = list((pool._processes or {}).values())
-    for process in running:
-        if process.is_alive():
-            os.kill(process.pid or 0, signal.SIGINT)
     pool.shutdown(wait=False, cancel_futures=True)
-    deadline = time.monotonic() + GRACE
     for process in running:
-        process.join(max(0.0, deadline - time.monotonic()))
-        if process.is_alive():
-            process.terminate()
+        process.terminate()
     pool.shutdown()
 
 
 class _Process(SpawnProcess):
-    """A process that Ctrl-C cannot reach before ``_begin`` has run in it."""
+    """A process that Ctrl-C does not reach: the program ends its processes itself."""
 
     def start(self) -> None:
         mask: Any = getattr(signal, "pthread_sigmask", lambda *_: set())
-        before = mask(signal.SIG_BLOCK, {signal.SIGINT})
+        before = mask(signal.SIG_BLOCK, {signal.SIGINT})  # the process keeps this mask
         try:
             super().start()
         finally:
@@ -101,19 +92,10 @@ class _Spawn(SpawnContext):
 
 def _begin() -> None:
     """Prepare a new process for its calls."""
-    signal.signal(signal.SIGINT, _interrupt)
-    if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.dup2(2, 1)  # stdout belongs to the parent
+    sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
     threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _interrupt(_: int, frame: FrameType | None) -> None:
-    """Raise KeyboardInterrupt inside ``reply`` only: half a reply would block the pool."""
-    while frame is not None:
-        if frame.f_code is reply.__code__:
-            raise KeyboardInterrupt
-        frame = frame.f_back
 
 
 def _end_with_parent() -> None:

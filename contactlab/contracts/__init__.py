@@ -15,18 +15,9 @@ from contactlab.contracts.motion import (
     ScaledContact,
 )
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
-from contactlab.contracts.phases import (
-    ClosedPhase,
-    DenseOutput,
-    ManyImpacts,
-    ManyPhasedTangentialLaw,
-    Phase,
-    PhasedTangentialLaw,
-    PhaseResponse,
-    PhaseSample,
-    PhaseState,
-)
+from contactlab.contracts.path import LostPathError, PathTangentialLaw, Stretch
 from contactlab.contracts.restitution import restitution
+from contactlab.contracts.sampled_motion import SampledMotion
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import (
     AllStepsResponse,
@@ -38,7 +29,7 @@ from contactlab.contracts.tangential import (
     TangentialResponse,
     WholeImpactTangentialLaw,
 )
-from contactlab.contracts.whole_impact import WholeImpact, no_force, sliding
+from contactlab.contracts.whole_impact import WholeImpact, from_change, no_force, sliding
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import (
@@ -61,13 +52,10 @@ __all__ = [
     "AllStepsTangentialLaw",
     "ClosedFormMotion",
     "ClosedFormNormalLaw",
-    "ClosedPhase",
-    "DenseOutput",
     "Increment",
     "Integrator",
     "Law",
-    "ManyImpacts",
-    "ManyPhasedTangentialLaw",
+    "LostPathError",
     "Mask",
     "NormalContact",
     "NormalLaw",
@@ -75,19 +63,17 @@ __all__ = [
     "NormalSample",
     "Observer",
     "Pair",
-    "Phase",
-    "PhaseResponse",
-    "PhaseSample",
-    "PhaseState",
-    "PhasedTangentialLaw",
+    "PathTangentialLaw",
     "Real",
     "Rule",
     "Sample",
+    "SampledMotion",
     "ScaledContact",
     "Scene",
     "Status",
     "SteppedTangentialLaw",
     "Steps",
+    "Stretch",
     "TangentialLaw",
     "TangentialMotion",
     "TangentialResponse",
@@ -97,6 +83,7 @@ __all__ = [
     "count",
     "faults",
     "flag",
+    "from_change",
     "no_force",
     "quantity",
     "restitution",

@@ -16,6 +16,7 @@ from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.sampled_motion import NormalMotions
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
@@ -54,7 +55,8 @@ class Sample(NamedTuple):
     fields: Callable[[], Mapping[str, Any]]
 
 
-#: Called with each instant; it must not change its argument.
+#: Called with each instant; it must not change its argument. If its attribute ``stepwise`` is
+#: False, it never calls ``Sample.fields``, and a law may take all steps in one call before.
 Observer: TypeAlias = Callable[[Sample], None]
 
 
@@ -76,6 +78,10 @@ class TangentialMotion:
         sentence for a batch, which goes to the impacts that failed.
     counters : mapping of str to int
         Operations counted: ``steps``, ``evaluations``, ``rejected``, ...
+    normal : NormalMotion, NormalMotions or None
+        The normal motion that came of the friction, if the friction changes it. Restitution,
+        duration and maxima of the result are then those of this motion, and the energy books take
+        the dissipation that the normal law declares.
     """
 
     slip_velocity_change: Real
@@ -83,6 +89,7 @@ class TangentialMotion:
     status: Any = Status.SUCCESS
     detail: Any = ""
     counters: Mapping[str, int] = attrs.field(factory=dict)
+    normal: NormalMotion | NormalMotions | None = None
 
     def __attrs_post_init__(self) -> None:
         if isinstance(self.status, Status):
@@ -98,7 +105,7 @@ class TangentialMotion:
     def numbers(cls) -> tuple[str, ...]:
         """Return the names of the entries that are numbers."""
         fields: Any = attrs.fields(cls)
-        no_numbers = ("status", "detail", "counters")
+        no_numbers = ("status", "detail", "counters", "normal")
         return tuple(field.name for field in fields if field.name not in no_numbers)
 
     @classmethod
@@ -122,6 +129,8 @@ class TangentialMotion:
             kind = float if name in cls.numbers() else object
             parts = [np.ravel(np.asarray(getattr(each, name), dtype=kind)) for each in motions]
             entries[name] = np.concatenate(parts).reshape(shape)
+        if any(motion.normal is not None for motion in motions):
+            entries["normal"] = _consecutive(motions, shape)
         return cls(**entries, counters=dict(counters))
 
     @classmethod
@@ -144,6 +153,9 @@ class TangentialMotion:
         for name in (*cls.numbers(), "status", "detail"):
             columns = [(where, getattr(motion, name)) for where, motion in parts]
             entries[name] = merged(columns, shape, float if name in cls.numbers() else object)
+        normals = [(where, motion.normal) for where, motion in parts]
+        if any(normal is not None for _, normal in normals):
+            entries["normal"] = NormalMotions(shape, tuple(normals))
         return cls(**entries, counters=dict(counters))
 
     @classmethod
@@ -192,6 +204,17 @@ class TangentialMotion:
         )
 
 
+def _consecutive(motions: Sequence[TangentialMotion], shape: tuple[int, ...]) -> NormalMotions:
+    """Return the normal motion of consecutive parts of a batch."""
+    place = np.arange(math.prod(shape)).reshape(shape)
+    parts: list[tuple[Any, Any]] = []
+    end = 0
+    for motion in motions:
+        first, end = end, end + np.size(motion.slip_velocity_change)
+        parts.append(((place >= first) & (place < end), motion.normal))
+    return NormalMotions(shape, tuple(parts))
+
+
 class Integrator(Law):
     """Base of integrators, which follow the tangential motion along a normal motion.
 
@@ -215,6 +238,9 @@ class Integrator(Law):
     8. ``resolution`` is the name of the option, steps or tolerance, that controls the error. If
        the integrator refines by itself, ``resolution_for`` returns the value used; errors are
        estimated by doubling that value, not the option.
+    9. An integrator that offers ``marks`` ends a step at every mark of a stepped law. One that
+       offers ``normal_motion`` asks ``law.normal_motion`` for the last state and returns the
+       answer as ``TangentialMotion.normal``.
     """
 
     kind: ClassVar[str] = "integrator"

@@ -6,6 +6,8 @@ from abc import ABC
 from collections.abc import Mapping
 from typing import ClassVar
 
+from contactlab.impact.scene import Scene
+
 #: Version of the contracts in this package. A plug-in states the version it was written for.
 API_VERSION = 2
 
@@ -33,6 +35,8 @@ class Law(ABC):
                                  velocity is zero or contact ends, and then roll without
                                  tangential force
        ``no_friction``           the tangential force is zero
+       ``marks``                 the integrator ends a step at every mark of a stepped law
+       ``normal_motion``         the integrator returns the normal motion of a stepped law
        ========================  ====================================================
 
     4. ``resolution`` names the parameter that makes answers finer, or is None: a count
@@ -44,6 +48,8 @@ class Law(ABC):
        its nature to the reasons. It is a class variable, or a property if it depends on
        parameters.
     7. Arrays passed to a law are read-only; writing to them raises an error.
+    8. ``refuses(other)`` says why the law does not run beside another law; ``accept(scene)``
+       raises a ``ValueError`` for a scene that the law cannot run.
     """
 
     kind: ClassVar[str]
@@ -57,3 +63,33 @@ class Law(ABC):
     def expected_failures(self) -> Mapping[str, str]:
         """Checks that the law fails by its nature, mapped to reasons; empty by default."""
         return {}
+
+    def refuses(self, other: Law) -> str | None:
+        """Return why this law does not run beside ``other``; None, the default, if it does.
+
+        Parameters
+        ----------
+        other : Law
+            A law of another kind.
+
+        Returns
+        -------
+        str or None
+            The reason: ``"it has no pressure over the radius"``. The message of the ``ValueError``
+            adds the names of both laws.
+        """
+        return None
+
+    def accept(self, scene: Scene) -> None:  # noqa: B027 most laws run every scene
+        """Do nothing, or raise a ``ValueError`` if the law cannot run ``scene``.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+
+        Raises
+        ------
+        ValueError
+            With the argument of the scene, its value, the rule and a remedy.
+        """

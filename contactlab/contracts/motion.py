@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,11 @@ if TYPE_CHECKING:
     from contactlab.contracts.contact import NormalContact
     from contactlab.contracts.law import Law
     from contactlab.impact.scene import Scene
+
+
+T = TypeVar("T")
+#: Values that motions share at most; then all are made anew, so that memory stays bounded.
+MOST_SHARED = 8
 
 
 class NormalSample(NamedTuple):
@@ -80,11 +86,32 @@ class NormalMotion(ABC):
     detail: Any = ""
     #: Declared relative error of the load impulse; NaN, the default, means not declared.
     accuracy: float = math.nan
+    #: A dict that equal motions share, for ``once``; None, the default, if nothing is shared.
+    shared: dict[Any, Any] | None = None
 
     @property
     def offers(self) -> frozenset[str]:
         """Claims of the normal law."""
         return self.law.offers
+
+    def once(self, key: Any, make: Callable[[], T]) -> T:
+        """Return ``make()``, or what it returned before for this key and an equal motion.
+
+        Parameters
+        ----------
+        key : hashable
+            Names what is made; it contains all that the value depends on besides the motion.
+        make : callable
+            Returns the value, which nobody may change afterwards.
+        """
+        if self.shared is None:
+            return make()
+        if key not in self.shared:
+            if len(self.shared) >= MOST_SHARED:
+                self.shared.clear()
+            self.shared[key] = make()
+        value: T = self.shared[key]
+        return value
 
     @abstractmethod
     def at(self, phase: Real) -> NormalSample:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from typing import Any, ClassVar
 
@@ -38,6 +39,8 @@ class NormalLaw(Law):
        motion itself.
     6. ``cautions`` returns doubts about the model. ``plastic`` is True for a law whose bodies
        yield; such a law has no caution about yield.
+    7. ``dissipation`` is the energy that the law takes from a motion. It is asked of a motion that
+       friction has changed, whose loss of kinetic energy is not the law's alone.
     """
 
     kind: ClassVar[str] = "normal"
@@ -66,6 +69,18 @@ class NormalLaw(Law):
         rate : float or array, shape (...,)
             Time derivative of the approach in m/s, positive in compression.
         """
+
+    def dissipation(self, motion: NormalMotion) -> Real:
+        """Return the energy in J that the law dissipates along a motion, of the batch shape.
+
+        NaN, the default, means not declared. An elastic law returns 0.
+
+        Parameters
+        ----------
+        motion : NormalMotion
+            A motion under this law, which friction may have changed.
+        """
+        return math.nan
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
         """Return one sentence for each doubt about the model.

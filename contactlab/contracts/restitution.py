@@ -15,6 +15,11 @@ RESTITUTION = Rule(
     lambda value: np.ndim(value) == 0 and LEAST_RESTITUTION <= value <= 1.0,
     f"must be one number from {LEAST_RESTITUTION} to 1: rebound over approach velocity",
 )
+#: The rule of a coefficient for each impact.
+RESTITUTIONS = Rule(
+    lambda value: (value >= LEAST_RESTITUTION) & (value <= 1.0),
+    f"must be from {LEAST_RESTITUTION} to 1: rebound over approach velocity",
+)
 
 
 def restitution(*, default: Any) -> Any:

@@ -36,12 +36,16 @@ class Increment(NamedTuple):
         answer acts.
     duration : float or array
         The time in s for which the force of the answer acts.
+    drift : float or array
+        The time in s for which the bodies moved: ``displacement`` is ``velocity`` times ``drift``.
+        NaN, the default, if the integrator does not tell.
     """
 
     displacement: Real
     velocity: Real
     friction_load: Real
     duration: Real
+    drift: Real = math.nan
 
 
 class TangentialResponse(NamedTuple):
@@ -75,25 +79,38 @@ class TangentialLaw(Law):
     2. The law is odd: reversing every displacement reverses every force. A central impact
        (v_x = 0) has no tangential force, whatever the normal motion.
     3. A subclass determines how the law is run: ``SteppedTangentialLaw`` for laws that answer
-       to a step, ``contactlab.contracts.phases.PhasedTangentialLaw`` for laws that are smooth
+       to a step, ``contactlab.contracts.path.PathTangentialLaw`` for laws that know their path
        between events, ``WholeImpactTangentialLaw`` for laws that need no march. A law may be
        derived from several of these classes.
     4. ``whole_impacts`` returns the whole-impact answers of the law; the impacts for which they
-       hold are not marched. If several answers hold for an impact, the first is used.
+       hold are not marched. If several answers hold for an impact, the first is used. A law that
+       can be marched is marched where an answer has no course and a history is asked for, and
+       where the error of an answer exceeds the error that the integrator controls.
     5. ``psi2_error`` is a bound of the error of psi2 from the law's own discretisation and
        from ``steps`` even steps of an integrator of second order; infinite ``steps`` add no
        error. NaN, the default, means not declared.
     6. ``cautions`` returns doubts about the model.
+    7. ``books_bound`` is a bound of the relative error of the energy books; infinite, the default,
+       means not declared.
     """
 
     kind: ClassVar[str] = "tangential"
 
-    @property
-    def books_bound(self) -> float:
-        """Largest imbalance of the energy books, over the energy at the start, that is success.
+    def books_bound(self, scene: Scene) -> Real:
+        """Return the largest relative error of the energy books that counts as success.
 
-        Infinite, the default, means not declared. The error that an integrator controls is
-        allowed in addition.
+        The error is the imbalance over the energy at the start. Infinite, the default, means not
+        declared. The error that an integrator controls is allowed in addition.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+
+        Returns
+        -------
+        float or array
+            At least 0; broadcasts to the batch shape.
         """
         return math.inf
 
@@ -110,10 +127,29 @@ class TangentialLaw(Law):
         slip: Any = scene.slip_velocity
         friction: Any = scene.friction_coefficient
         central, smooth = slip == 0.0, friction == 0.0
-        return (
-            no_force(scene, where=central, reason="central impact, no slip velocity"),
-            no_force(scene, where=smooth, reason="friction coefficient 0"),
+        reasons = (
+            (central, "central impact, no slip velocity"),
+            (smooth, "friction coefficient 0"),
         )
+        return tuple(
+            no_force(scene, where=where, reason=reason)
+            for where, reason in reasons
+            if where is not False  # not of one impact, which it does not hold for
+        )
+
+    def needs_no_march(self, scene: Scene, accuracy: float | None) -> bool:
+        """Return True if ``whole_impacts`` answers for all impacts: sweeps then take more at once.
+
+        False, the default, is always safe.
+
+        Parameters
+        ----------
+        scene : Scene
+            A batch.
+        accuracy : float or None
+            The error that the integrator controls: answers with a larger one are not used.
+        """
+        return False
 
     def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
         """Return the declared bound of the numerical error of psi2, of the batch shape.
@@ -232,6 +268,11 @@ class SteppedTangentialLaw(TangentialLaw):
        computes its largest stable step; 0 for a law whose force does not depend on
        displacement. A law that offers ``partial_slip`` damps the oscillation by microslip. For
        other laws integrators take more steps, as phase errors add up over all periods.
+    7. ``marks(scene, normal)`` returns phases at which steps must end: ``advance`` is then called
+       with ``after`` at each of them. Only integrators that offer ``marks`` run such a law.
+    8. ``normal_motion(state)`` returns the normal motion from first touch to the instant of
+       ``state``, if the friction changes it. The results are then those of this motion. Only
+       integrators that offer ``normal_motion`` run such a law.
     """
 
     @abstractmethod
@@ -273,6 +314,36 @@ class SteppedTangentialLaw(TangentialLaw):
             Normal motion of all impacts of ``scene``.
         """
         return 0.0
+
+    def marks(self, scene: Scene, normal: NormalMotion) -> Array | None:
+        """Return the phases of ``normal`` at which steps must end; None, the default, for none.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        normal : NormalMotion
+            Normal motion of all impacts of ``scene``.
+
+        Returns
+        -------
+        array, shape (M,), or (M, ...) of a batch; or None
+            Between 0 and pi, growing along the first axis.
+        """
+        return None
+
+    def normal_motion(self, state: Any) -> NormalMotion | None:
+        """Return the normal motion that came of the friction, up to the instant of ``state``.
+
+        None, the default, means that friction does not change the normal motion.
+        ``contactlab.contracts.SampledMotion`` makes a motion from samples.
+
+        Parameters
+        ----------
+        state : object
+            The state that ``advance`` returned.
+        """
+        return None
 
     def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:
         """Return named arrays of ``state`` for the history (traction, stuck, ...).

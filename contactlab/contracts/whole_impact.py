@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Mask, Real
 
@@ -34,10 +36,28 @@ class WholeImpact:
     course : callable, optional
         ``course(load_impulse, friction_load)`` returns the change of slip velocity (m/s) and
         the tangential force (N) at the instants that have this integral of the friction load
-        and this friction load. Without it slip velocity and force are NaN in a history.
+        and this friction load. Without it impacts that can be marched are marched for a history;
+        in the history of other impacts slip velocity and force are NaN.
+    fields : callable, optional
+        ``fields(load_impulse)`` returns named arrays over the contact at the instant that has this
+        integral of the friction load; their shapes begin with the batch shape. A history with
+        fields calls it.
     psi2_error : float or array
         Bound of the numerical error of psi2, rounding aside; 0 for a closed form. NaN, the
-        default, means not declared.
+        default, means not declared. An impact that can be marched is marched where the bound
+        exceeds the error that the integrator controls.
+    status : Status or array of Status
+        How the run of each impact ended; a failed impact has meaningless numbers.
+    detail : str
+        What failed; empty on success.
+    normal : NormalMotion, optional
+        The normal motion that came of the friction, of all impacts of the batch; None if friction
+        does not change it.
+    balanced : bool
+        True if ``friction_work`` is the energy that the change of slip velocity takes: the energy
+        books close by construction, and check nothing.
+    counter : str or None
+        Name under which the result counts the impacts, ``"tabulated"``; None for no count.
     """
 
     where: Mask
@@ -45,7 +65,55 @@ class WholeImpact:
     friction_work: Real
     reason: str
     course: Callable[[Any, Any], tuple[Any, Any]] | None = None
+    fields: Callable[[Any], Mapping[str, NDArray[Any]]] | None = None
     psi2_error: Real = math.nan
+    status: Any = Status.SUCCESS
+    detail: str = ""
+    normal: NormalMotion | None = None
+    balanced: bool = False
+    counter: str | None = None
+
+
+def from_change(
+    scene: Scene,
+    *,
+    where: Mask,
+    psi_change: Real,
+    psi2_error: Real,
+    reason: str,
+    counter: str | None = None,
+) -> WholeImpact:
+    """Return the answer for impacts of which only the change of psi is known.
+
+    The friction work is the tangential energy lost, and the energy books close by construction.
+
+    Parameters
+    ----------
+    scene : Scene
+        One impact or a batch.
+    where : bool or array of bool
+        The impacts that the answer holds for.
+    psi_change : float or array
+        psi2 - psi1; arbitrary where ``where`` is False.
+    psi2_error : float or array
+        Bound of the numerical error of psi2.
+    reason : str
+        Why these impacts need no march, for the plan.
+    counter : str, optional
+        Name under which the result counts the impacts.
+    """
+    unit = scene.friction_coefficient * scene.normal_speed / scene.pair.stiffness_ratio
+    change: Any = psi_change * unit
+    work: Any = -scene.pair.tangential_mass * change * (scene.slip_velocity + 0.5 * change)
+    return WholeImpact(
+        where=where,
+        slip_velocity_change=change,
+        friction_work=np.maximum(work, 0.0) if np.ndim(work) else max(work, 0.0),
+        reason=reason,
+        psi2_error=psi2_error,
+        balanced=True,
+        counter=counter,
+    )
 
 
 def sliding(
@@ -69,17 +137,24 @@ def sliding(
     """
     friction, mass = scene.friction_coefficient, scene.pair.tangential_mass
     slip: Any = scene.slip_velocity
-    sense, speed = np.sign(slip), abs(slip)
-    with np.errstate(all="ignore"):
-        impulse: Any = friction * normal.total_load_impulse
+    speed: Any = abs(slip)
+
+    def after(impulse: Any, lesser: Any) -> tuple[Any, Any]:
+        """Return the speed lost in m/s, and the friction work in J, after ``impulse`` in N s."""
+        lost = impulse / mass
         if stops:
             # If friction stops the slip, the slip velocity after is exactly zero.
-            lost: Any = np.minimum(impulse / mass, speed)
-            impulse = np.minimum(impulse, mass * speed)
-        else:
-            lost = impulse / mass
+            lost, impulse = lesser(lost, speed), lesser(impulse, mass * speed)
         # Force over load is constant: work = impulse times the mean of first and last velocity.
-        work = impulse * (speed - 0.5 * lost)
+        return lost, impulse * (speed - 0.5 * lost)
+
+    if scene.shape:
+        sense = np.sign(slip)
+        with np.errstate(all="ignore"):
+            lost, work = after(friction * normal.total_load_impulse, np.minimum)
+    else:  # plain numbers, several times as fast
+        sense = float((slip > 0.0) - (slip < 0.0))
+        lost, work = after(friction * float(normal.total_load_impulse), _lesser)
 
     def course(load_impulse: Any, load: Any) -> tuple[Any, Any]:
         change = friction * load_impulse / mass
@@ -97,6 +172,11 @@ def sliding(
         course=course,
         psi2_error=0.0,
     )
+
+
+def _lesser(first: float, second: float) -> float:
+    """Return the lesser of two numbers; NaN if the first is NaN."""
+    return second if first > second else first
 
 
 def no_force(scene: Scene, *, where: Mask, reason: str) -> WholeImpact:

@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
+from contactlab.figures.names import name_curves
 from contactlab.figures.style import (
     BELOW,
     LAW_COLOURS,
@@ -24,7 +26,7 @@ from contactlab.figures.style import (
 )
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import QUANTITIES, scaled_forces
-from contactlab.study.compare import Agreement, Comparison
+from contactlab.study.comparison import Agreement, Comparison
 
 POINTS: dict[str, Any] = {
     "color": MEASURED_COLOUR, "linestyle": "none", "marker": "o", "markersize": 4.5,
@@ -36,6 +38,8 @@ POINTS: dict[str, Any] = {
 AS_GOOD_AS = 0.01
 FORM_DASHES: tuple[Any, ...] = ("-", (0, (6, 1.5)), (0, (2.5, 1.2)), (0, (1, 1)))
 MARKERS = "os^Dv"
+#: The names of points, above the curves.
+CODES_AT: Any = {"loc": "upper center", "bbox_to_anchor": (0.56, 1.03), "handlelength": 1.0}
 #: Entries of ``POINTS`` that points without error bars share.
 CODE_LOOK = ("color", "linestyle", "markersize", "markerfacecolor", "markeredgewidth", "zorder")
 
@@ -70,7 +74,11 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
     words = f"{first}, the reference"
     if close:
         words += "; on its line:\n" + ",\n".join(close)
-    upper.plot(x, ordered(exact), color="black", linewidth=3.2, label=verbatim(words), zorder=4)
+    (reference,) = upper.plot(
+        x, ordered(exact), color="black", linewidth=3.2, label=verbatim(words), zorder=4
+    )
+    groups: dict[str, list[Line2D]] = {first: [reference]}
+    below: dict[str, Line2D] = {}
     for axes in (upper, lower):
         zero_line(axes)
     forms: dict[str, int] = {}
@@ -85,28 +93,72 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
         values = ordered(comparison.values(quantity, name))
         difference = ordered(comparison.difference(quantity, name))
         half = ordered(comparison.band(quantity, name))
-        upper.plot(x, values, label=verbatim(name), zorder=3, **look)
-        lower.plot(x, difference, **look)
+        groups.setdefault(family, []).extend(
+            upper.plot(x, values, label=verbatim(name), zorder=3, **look)
+        )
+        (below[name],) = lower.plot(x, difference, **look)
         for axes, middle in ((upper, values), (lower, difference)):
             error_band(axes, x, middle, half, look)
-    _codes(upper, comparison, quantity, varied)
+    points = _codes(upper, comparison, quantity, varied)
     upper.set_ylabel(label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
     lower.set_ylabel(rf"law $-$ {verbatim(first)}")
     lower.set_xlabel(label(varied, entry_unit(varied)))
-    if figure_width(upper) < NARROW:
-        lower.legend(*upper.get_legend_handles_labels(), **BELOW)
-    else:
-        upper.legend(loc="upper left", bbox_to_anchor=(1.0, 1.03), borderaxespad=0.0)
+    if not _named(upper, lower, groups, below, close, points):
+        _legend_of_all(upper, lower)
     return upper, lower
 
 
-def _codes(axes: Axes, comparison: Comparison, quantity: str, varied: str) -> None:
-    """Draw the measured series of the scene file as points."""
+def _named(
+    upper: Axes,
+    lower: Axes,
+    groups: Mapping[str, list[Line2D]],
+    below: Mapping[str, Line2D],
+    close: list[str],
+    points: list[Line2D],
+) -> bool:
+    """Write names beside the curves; return False if there is no room for all of them."""
+    if points:
+        upper.legend(handles=points, fontsize="small", **CODES_AT)
+    first, *others = groups
+    words = [
+        f"{name}, {len(groups[name])} forms" if len(groups[name]) > 1 else name for name in others
+    ]
+    lines = [groups[name][0] for name in (first, *others)]
+    if close:
+        upper.text(
+            0.015, 0.02, verbatim("\n".join([f"on the line of {first}:", *close])),
+            transform=upper.transAxes, fontsize="small",
+        )  # fmt: skip
+    names = [verbatim(name) for name in (first, *words)]
+    if not name_curves(upper, lines, names, alike=list(groups.values())):
+        return False
+    forms = [name for name in below if len(groups[name.split()[0]]) > 1]
+    short = [verbatim(name.partition(" ")[2] or name) for name in forms]
+    name_curves(lower, [below[name] for name in forms], short)
+    return True
+
+
+def _legend_of_all(upper: Axes, lower: Axes) -> None:
+    """Name all curves in a legend, beside the axes or in a narrow figure below."""
+    for text in upper.texts:
+        text.remove()
+    if figure_width(upper) < NARROW:
+        if (own := upper.get_legend()) is not None:
+            own.remove()
+        lower.legend(*upper.get_legend_handles_labels(), **BELOW)
+    else:
+        upper.legend(loc="upper left", bbox_to_anchor=(1.0, 1.03), borderaxespad=0.0)
+
+
+def _codes(axes: Axes, comparison: Comparison, quantity: str, varied: str) -> list[Line2D]:
+    """Draw the measured series of the scene file as points; return them."""
     series = [item.measured for item in comparison.agreements]
     drawn = [item for item in series if (item.quantity, item.against) == (quantity, varied)]
+    found: list[Line2D] = []
     for number, item in enumerate(drawn):
         look = {key: POINTS[key] for key in CODE_LOOK} | {"marker": MARKERS[number % len(MARKERS)]}
-        axes.plot(item.x, item.values, label=verbatim(item.label), **look)
+        found += axes.plot(item.x, item.values, label=verbatim(item.label), **look)
+    return found
 
 
 def laws_over_sweep(
@@ -197,7 +249,7 @@ def forces_over_contact(axes: Axes, comparison: Comparison) -> Axes:
     zero_line(axes)
     drawn = False
     for number, run in enumerate(comparison.runs):
-        if run.result.history is None or run.result.history.time.size == 0:
+        if not run.result.history or run.result.history.time.size == 0:
             continue
         time, tangential, normal = scaled_forces(run.result)
         if not drawn:

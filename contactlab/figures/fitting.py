@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from contactlab.figures.comparison import POINTS
 from contactlab.figures.files import save
 from contactlab.figures.style import label, law_style, verbatim, zero_line
-from contactlab.fitting.outcome import Fit
+from contactlab.fitting.fit_result import Fit
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import QUANTITIES
 

@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
+from contactlab.figures.names import name_curves
 from contactlab.figures.style import (
     ASIDE,
     LAW_COLOURS,
@@ -24,7 +26,7 @@ from contactlab.study.paper_figures import FIXED_PSI1, SOLID_CHI, FigureData, ch
 SOLID_CHI_RANGE = (3.5 / 3.0, 3.5 / 2.0)  # nu = 0.5 and nu = 0 in eq. (38)
 
 
-def draw(axes: Axes, data: FigureData) -> Axes:
+def draw_paper(axes: Axes, data: FigureData) -> Axes:
     """Draw a figure of the paper: by ``figure_<number>`` if defined, else by ``curves``."""
     drawn: Axes = globals().get(f"figure_{data.number}", curves)(axes, data)
     return drawn
@@ -42,15 +44,18 @@ def curves(axes: Axes, data: FigureData) -> Axes:
 
 def figure_1(axes: Axes, data: FigureData) -> Axes:
     """Draw the forces over the contact at several angles of incidence."""
-    _forces(axes, data)
-    axes.legend(title=r"$\psi_1$", **_BESIDE)
+    lines = _forces(axes, data)
     axes.text(0.02, 0.03, rf"$\chi$ = {SOLID_CHI:.4f}", transform=axes.transAxes)
+    names = [f"{curve.parameter:g}" for curve in data.curves[1:]]
+    names[0] = rf"$\psi_1$ = {names[0]}"
+    if not name_curves(axes, lines, names):
+        axes.legend(title=r"$\psi_1$", **_BESIDE)
     return axes
 
 
 def figure_2(axes: Axes, data: FigureData) -> Axes:
     """Draw psi2 against psi1 with the rigid-body theory, and name the regimes."""
-    _reflexion(axes, data)
+    lines = _reflexion(axes, data)
     axes.set_xlabel(label("psi1"))
     axes.set_xlim(0.0, data.curves[0].x[-1])
     full_slip = 4.0 * SOLID_CHI - 1.0
@@ -63,21 +68,25 @@ def figure_2(axes: Axes, data: FigureData) -> Axes:
     for place, text in words.items():
         axes.text(place, top, text, ha="center", va="top", **ASIDE)
     axes.text(0.98, 0.03, rf"$\chi$ = {SOLID_CHI:.4f}", ha="right", transform=axes.transAxes)
+    _name_reflexion(axes, lines)
     return axes
 
 
 def figure_3(axes: Axes, data: FigureData) -> Axes:
     """Draw the forces over the contact for several radii of gyration."""
-    _forces(axes, data, name=lambda ratio: f"{ratio:.3g}  ({chi_of_gyration(ratio):.2f})")
-    axes.legend(title=r"$K$  ($\chi$)", **_BESIDE)
+    lines = _forces(axes, data, name=lambda ratio: f"{ratio:.3g}  ({chi_of_gyration(ratio):.2f})")
     axes.text(0.02, 0.03, rf"$\psi_1$ = {FIXED_PSI1}", transform=axes.transAxes)
+    names = [f"{curve.parameter:.3g}" for curve in data.curves[1:]]
+    names[0] = f"$K$ = {names[0]}"
+    if not name_curves(axes, lines, names):
+        axes.legend(title=r"$K$  ($\chi$)", **_BESIDE)
     return axes
 
 
 def figure_4(axes: Axes, data: FigureData) -> Axes:
     """Draw psi2 against chi with the rigid-body theory, and the range of solid spheres."""
     axes.set_xscale("log")
-    _reflexion(axes, data)
+    lines = _reflexion(axes, data)
     axes.set_xlabel(label("chi"))
     axes.set_xlim(data.curves[0].x[0], data.curves[0].x[-1])
     ticks = [0.25, 0.5, 1, 2, 4, 8, 16]
@@ -94,6 +103,7 @@ def figure_4(axes: Axes, data: FigureData) -> Axes:
         **ASIDE,
     )
     axes.text(0.02, 0.03, rf"$\psi_1$ = {FIXED_PSI1}", transform=axes.transAxes)
+    _name_reflexion(axes, lines)
     return axes
 
 
@@ -102,25 +112,34 @@ _BESIDE: Mapping[str, Any] = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)
 
 def _forces(
     axes: Axes, data: FigureData, name: Callable[[float], str] = lambda value: f"{value:g}"
-) -> None:
-    """Draw the tangential forces of a figure with the friction limit."""
+) -> list[Line2D]:
+    """Draw the tangential forces of a figure with the friction limit; return their lines."""
     normal, *tangential = data.curves
     zero_line(axes)
     friction_limit(axes, normal.x, normal.y)
+    lines = []
     for curve, colour in zip(tangential, ordered_colours(len(tangential)), strict=True):
-        axes.plot(curve.x, curve.y, color=colour, label=name(curve.parameter))
+        lines += axes.plot(curve.x, curve.y, color=colour, label=name(curve.parameter))
     force_axes(axes)
     axes.set_ylim(-1.05, 1.05)
+    return lines
 
 
-def _reflexion(axes: Axes, data: FigureData) -> None:
-    """Draw psi2 of the elastic law, of the exact solution and of the rigid-body theory."""
+def _reflexion(axes: Axes, data: FigureData) -> list[Line2D]:
+    """Draw psi2 of the elastic law, the exact solution and the rigid-body theory; return lines."""
     zero_line(axes)
     elastic, rigid, exact = data.curves
-    axes.plot(
-        elastic.x, elastic.y, color=LAW_COLOURS[0], linewidth=3.0, label=f"{elastic.name} law"
-    )
-    axes.plot(exact.x, exact.y, color="black", linewidth=0.9, label=exact.name)
-    axes.plot(rigid.x, rigid.y, **law_style(1), label=rigid.name)
+    law = f"{elastic.name} law"
+    lines = axes.plot(elastic.x, elastic.y, color=LAW_COLOURS[0], linewidth=3.0, label=law)
+    lines += axes.plot(exact.x, exact.y, color="black", linewidth=0.9, label=exact.name)
+    lines += axes.plot(rigid.x, rigid.y, **law_style(1), label=rigid.name)
     axes.set_ylabel(label("psi2"))
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, columnspacing=1.2)
+    return lines
+
+
+def _name_reflexion(axes: Axes, lines: list[Line2D]) -> None:
+    """Name the law, on which the exact solution lies, and the rigid-body theory."""
+    law, exact, rigid = lines
+    names = [f"{law.get_label()} (thick),\n{exact.get_label()} (thin)", str(rigid.get_label())]
+    if not name_curves(axes, [law, rigid], names, alike=[[law, exact]]):
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, columnspacing=1.2)

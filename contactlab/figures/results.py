@@ -94,7 +94,7 @@ def _on(axes: Axes | None, width: Width | None) -> Iterator[Axes]:
 def _forces(axes: Axes, result: Any) -> Axes:
     """Draw the tangential force of a single impact with the friction limit."""
     history = result.history
-    if history is None or not history.time.size:
+    if not history or not history.time.size:
         raise refuse(
             "result", result, "has no history to draw", "ask for one: run(scene, history=True)"
         )

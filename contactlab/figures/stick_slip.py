@@ -26,8 +26,8 @@ def draw_stick_slip(axes: Axes, result: ImpactResult) -> Axes:
         For a batch, or without the fields ``radius``, ``stuck`` and ``slipping``.
     """
     history = result.history
-    single = history is not None and not result.scene.shape
-    if history is None or not single or not {"radius", "stuck", "slipping"} <= set(history.fields):
+    single = bool(history) and not result.scene.shape
+    if not history or not single or not {"radius", "stuck", "slipping"} <= set(history.fields):
         raise refuse(
             "result",
             result,

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
+
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.fitting import outliers, patterns, plausible
+from contactlab.fitting.fit_result import Estimate
 from contactlab.fitting.measurements import Measurements
 from contactlab.fitting.problem import Problem
 from contactlab.fitting.slips import slips, tilted
@@ -17,6 +21,12 @@ Array = NDArray[np.float64]
 CHANCE = 1e-3
 #: The same limit beside outliers, which explain the residuals better.
 POSSIBLE = 1e-5
+#: Reduced chi square above which stated errors are too small, or the law does not fit.
+LARGE_CHI_SQUARE = 2.0
+#: Share of the stated errors below which residuals suggest another unit, or limits.
+SMALL_RATIO = 0.5
+#: A value lies at the end of its range if nearer than this share of the range.
+AT_END = 1e-6
 
 
 @attrs.frozen(kw_only=True)
@@ -77,3 +87,55 @@ def _others(
     if seen.chance < CHANCE:
         sentences.append(seen.words)
     return (*sentences, *patterns.leverage(problem, values, scales))
+
+
+def moved(estimates: Mapping[str, Estimate]) -> list[str]:
+    """Return a sentence for each parameter whose robust value lies outside its interval."""
+    return [
+        f"a robust fit, which a few far numbers hardly move, gives {name} = {estimate.robust:.4g}, "
+        "outside of the interval: look at the impacts that are farthest off"
+        for name, estimate in estimates.items()
+        if estimate.robust is not None
+        and not estimate.interval[0] <= estimate.robust <= estimate.interval[1]
+    ]
+
+
+def error_notes(problem: Problem, values: Array) -> list[str]:
+    """Return a sentence for each quantity whose scatter contradicts its stated errors."""
+    from scipy.special import chdtr, chdtrc  # only a fit needs scipy
+
+    notes = []
+    for name in problem.errors.keys() & problem.measured.keys():
+        rows = problem.residuals(values[None])[name][0] / problem.errors[name]
+        freedom = problem.counts[name] - len(values)
+        if freedom < 1:
+            continue
+        square = float(np.nansum(rows**2))
+        ratio = math.sqrt(square / freedom)
+        if ratio**2 > LARGE_CHI_SQUARE and chdtrc(freedom, square) < CHANCE:
+            notes.append(
+                f"{name}: residuals are {ratio:.2g} times the errors given: these are too small, "
+                "or the law is not that of the data; intervals are widened by as much"
+            )
+        alike = np.nanmin(problem.measured[name]) == np.nanmax(problem.measured[name])
+        if ratio < SMALL_RATIO and not alike and chdtr(freedom, square) < CHANCE:
+            notes.append(
+                f"{name}: residuals are {ratio:.2g} times the errors given: these are too large; "
+                f"look at the unit of {name}_error, and whether they are standard errors"
+            )
+    return notes
+
+
+def end_notes(problem: Problem, values: Array, freedom: int) -> list[str]:
+    """Return sentences on values at the end of their range, and on missing scatter."""
+    notes = []
+    for parameter, value in zip(problem.model.parameters, values.tolist(), strict=True):
+        near = AT_END * parameter.width
+        if math.isfinite(near) and min(value - parameter.least, parameter.most - value) <= near:
+            notes.append(
+                f"{parameter.name} lies at the end of its range, {parameter.least:.4g} to "
+                f"{parameter.most:.4g}: the law may not be that of the data"
+            )
+    if freedom == 0:
+        notes.append("as many numbers as parameters: nothing is left to tell the scatter by")
+    return notes

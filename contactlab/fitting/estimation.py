@@ -1,10 +1,11 @@
-"""``fit``: parameters of scenes and laws from measured impacts."""
+"""Parameters of scenes and laws from measured impacts, and a ranking of laws by their fits."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import attrs
 import numpy as np
@@ -12,31 +13,27 @@ from numpy.typing import NDArray
 
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import determined
-from contactlab.fitting.bootstrap import bootstrapped
-from contactlab.fitting.diagnosis import CHANCE, Diagnosis, diagnosed
+from contactlab.fitting.diagnosis import Diagnosis, diagnosed, end_notes, error_notes, moved
+from contactlab.fitting.fit_result import Estimate, Fit
 from contactlab.fitting.measurements import Measurements, read_measurements
 from contactlab.fitting.model import Model, scene_of, simulation_of
-from contactlab.fitting.outcome import Estimate, Fit
 from contactlab.fitting.parameters import Setup, parameter_named
 from contactlab.fitting.plausible import unlikely_parameters
 from contactlab.fitting.problem import Problem, solved, starting
 from contactlab.fitting.slips import slips
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
+from contactlab.outcome.result import ImpactError
 from contactlab.scene_file import SceneFile
 
 Array = NDArray[np.float64]
 
 #: Share of each tail beyond a 95 % interval.
 TAIL = 0.025
-#: Reduced chi square above which stated errors are too small, or the law does not fit.
-LARGE_CHI_SQUARE = 2.0
-#: Share of the stated errors below which residuals suggest another unit, or limits.
-SMALL_RATIO = 0.5
 #: Relative and absolute distance below which two searches have reached the same minimum.
 SAME = 1e-3
-#: A value lies at the end of its range if nearer than this share of the range.
-AT_END = 1e-6
+#: An interruption keeps at least this many samples; fewer make no 95 % interval.
+FEWEST = 100
 
 
 def fit(
@@ -102,7 +99,7 @@ def fit(
     samples = whole("bootstrap", bootstrap, least=0, most=100_000)
     table = read_measurements(measurements).only(quantities)
     laws = simulation_of(simulation)
-    problem = Problem.of(_model(table, scene, parameters, laws), table)
+    problem = _problem(table, scene, parameters, laws)
     determined.check_enough(problem)
     counted = None if samples else progress
     values, *others = _solutions(problem, counted)
@@ -112,7 +109,7 @@ def fit(
         left_out = (f"{', '.join(idle)}: not met, for no parameter moves it under these laws",)
         slipped, _ = slips(problem, table.given, values, problem.measured)
         table = table.only([name for name in table.measured if name not in idle])
-        problem = Problem.of(_model(table, scene, parameters, laws), table)
+        problem = _problem(table, scene, parameters, laws)
         values, *others = _solutions(problem)
     diagnosis = diagnosed(problem, table, values)
     try:
@@ -122,7 +119,7 @@ def fit(
         determined.check_precise(problem, values, reaches)
         determined.check_single(problem, [values, *others])
     except ValueError as error:
-        causes = (*slipped, *diagnosis.sentences, *_error_notes(problem, values))
+        causes = (*slipped, *diagnosis.sentences, *error_notes(problem, values))
         if not causes:
             raise
         raise ValueError(f"{'. '.join(causes)}. As it is, {error}") from None
@@ -143,24 +140,54 @@ def _with_bootstrap(
     seed: int,
     progress: Callable[[int, int], object] | None,
 ) -> Fit:
-    """Return the fit with the intervals of the bootstrap added."""
-    intervals, done = bootstrapped(
-        problem, values, samples, seed=seed, tail=TAIL, progress=progress
-    )
+    """Return the fit with the intervals of the bootstrap added.
+
+    Notes
+    -----
+    The wild bootstrap: residuals, widened by sqrt(n/(n - p)), are added to the prediction, with
+    one random sign for all quantities of an impact. Each impact so keeps its own scatter, and
+    the quantities of an impact stay correlated: Wu, Ann. Statist. 14
+    (1986) 1261-1295, doi:10.1214/aos/1176350142.
+    """
+    generator = np.random.default_rng(seed)
+    residuals = {name: rows[0] for name, rows in problem.residuals(values[None]).items()}
+    scales = problem.scales(residuals)
+    numbers = sum(problem.counts.values())
+    wider = math.sqrt(numbers / max(numbers - len(values), 1))
+    drawn: list[Array] = []
+    try:
+        while len(drawn) < samples:
+            signs = wider * generator.choice([-1.0, 1.0], len(outcome.measurements))
+            changes = {name: (signs - 1.0) * rows for name, rows in residuals.items()}
+            drawn.append(_solved_again(problem, changes, values, scales))
+            if progress is not None:
+                progress(len(drawn), samples)
+    except KeyboardInterrupt:
+        if len(drawn) < FEWEST:
+            raise
+    ends = np.quantile(np.array(drawn), [TAIL, 1.0 - TAIL], axis=0).T.tolist()
     estimates = {
-        name: attrs.evolve(estimate, bootstrap=interval)
-        for (name, estimate), interval in zip(outcome.parameters.items(), intervals, strict=True)
+        name: attrs.evolve(estimate, bootstrap=(low, high))
+        for (name, estimate), (low, high) in zip(outcome.parameters.items(), ends, strict=True)
     }
-    notes = outcome.notes
+    notes, done = outcome.notes, len(drawn)
     if done < samples:
         notes += (f"bootstrap: interrupted, intervals are those of {done} samples of {samples}",)
     return attrs.evolve(outcome, parameters=estimates, notes=notes, samples=done)
 
 
-def _model(
+def _solved_again(
+    problem: Problem, changes: Mapping[str, Array], values: Array, scales: Mapping[str, Any]
+) -> Array:
+    """Return the best values for the measured numbers plus ``changes``."""
+    measured = {name: numbers + changes[name] for name, numbers in problem.measured.items()}
+    return solved(attrs.evolve(problem, measured=measured), values, scales)
+
+
+def _problem(
     table: Measurements, scene: object, parameters: Sequence[str], simulation: Simulation | None
-) -> Model:
-    """Return the model of the measured impacts with the named parameters."""
+) -> Problem:
+    """Return the measured numbers with the model of the impacts and the named parameters."""
     if isinstance(parameters, str) or not parameters:
         raise refuse(
             "parameters", parameters, "must be a list of names", "['friction_coefficient']"
@@ -170,7 +197,8 @@ def _model(
     names = [parameter.name for parameter in fitted]
     if len(set(names)) < len(names):
         raise refuse("parameters", list(parameters), "names one of them twice")
-    return Model(setup=setup, parameters=fitted)
+    model = Model(setup=setup, parameters=fitted)
+    return Problem(model=model, measured=table.measured, errors=table.errors)
 
 
 def _solutions(
@@ -232,61 +260,63 @@ def _outcome(
         notes=(
             *diagnosis.sentences,
             *unlikely_parameters(problem, intervals),
-            *(() if diagnosis.sentences else _moved(estimates)),
-            *_error_notes(problem, values),
-            *_notes(problem, values, freedom),
+            *(() if diagnosis.sentences else moved(estimates)),
+            *error_notes(problem, values),
+            *end_notes(problem, values, freedom),
         ),
     )
     return outcome, reaches
 
 
-def _moved(estimates: Mapping[str, Estimate]) -> list[str]:
-    """Return a sentence for each parameter whose robust value lies outside its interval."""
-    return [
-        f"a robust fit, which a few far numbers hardly move, gives {name} = {estimate.robust:.4g}, "
-        "outside of the interval: look at the impacts that are farthest off"
-        for name, estimate in estimates.items()
-        if estimate.robust is not None
-        and not estimate.interval[0] <= estimate.robust <= estimate.interval[1]
-    ]
+@attrs.frozen(kw_only=True)
+class Ranked:
+    """A law and its fit; without a fit, ``refusal`` gives the reason."""
+
+    name: str
+    fit: Fit | None
+    refusal: str = ""
 
 
-def _error_notes(problem: Problem, values: Array) -> list[str]:
-    """Return a sentence for each quantity whose scatter contradicts its stated errors."""
-    from scipy.special import chdtr, chdtrc  # only a fit needs scipy
+def rank(
+    measurements: object,
+    scene: Any,
+    simulations: Mapping[str, Simulation | None],
+    *,
+    progress: Callable[[int, int], object] | None = None,
+    parameters: Sequence[str] = ("friction_coefficient",),
+    **options: Any,
+) -> list[Ranked]:
+    """Return laws in the order of Akaike's criterion, the best first, laws without a fit last.
 
-    notes = []
-    for name in problem.errors.keys() & problem.measured.keys():
-        rows = problem.residuals(values[None])[name][0] / problem.errors[name]
-        freedom = problem.counts[name] - len(values)
-        if freedom < 1:
-            continue
-        square = float(np.nansum(rows**2))
-        ratio = math.sqrt(square / freedom)
-        if ratio**2 > LARGE_CHI_SQUARE and chdtrc(freedom, square) < CHANCE:
-            notes.append(
-                f"{name}: residuals are {ratio:.2g} times the errors given: these are too small, "
-                "or the law is not that of the data; intervals are widened by as much"
-            )
-        alike = np.nanmin(problem.measured[name]) == np.nanmax(problem.measured[name])
-        if ratio < SMALL_RATIO and not alike and chdtr(freedom, square) < CHANCE:
-            notes.append(
-                f"{name}: residuals are {ratio:.2g} times the errors given: these are too large; "
-                f"look at the unit of {name}_error, and whether they are standard errors"
-            )
-    return notes
+    Parameters
+    ----------
+    measurements, scene, parameters
+        As for ``fit``.
+    simulations : mapping of str to Simulation
+        Laws by the names to report; None stands for the exact elastic laws.
+    progress : callable, optional
+        Called as ``progress(done, total)`` after each law.
+    **options
+        As for ``fit``.
+
+    Raises
+    ------
+    ValueError
+        If the measurements cannot be read. The failure of a single law is in its ``refusal``.
+    """
+    table = read_measurements(measurements)
+    ranked = []
+    for done, (name, simulation) in enumerate(simulations.items(), start=1):
+        keywords = options | {"parameters": parameters, "simulation": simulation}
+        try:
+            ranked.append(Ranked(name=name, fit=fit(table, scene, **keywords)))
+        except (ValueError, ImpactError) as error:
+            ranked.append(Ranked(name=name, fit=None, refusal=str(error)))
+        if progress is not None:
+            progress(done, len(simulations))
+    return in_order(ranked)
 
 
-def _notes(problem: Problem, values: Array, freedom: int) -> list[str]:
-    """Return sentences on values at the end of their range, and on missing scatter."""
-    notes = []
-    for parameter, value in zip(problem.model.parameters, values.tolist(), strict=True):
-        near = AT_END * parameter.width
-        if math.isfinite(near) and min(value - parameter.least, parameter.most - value) <= near:
-            notes.append(
-                f"{parameter.name} lies at the end of its range, {parameter.least:.4g} to "
-                f"{parameter.most:.4g}: the law may not be that of the data"
-            )
-    if freedom == 0:
-        notes.append("as many numbers as parameters: nothing is left to tell the scatter by")
-    return notes
+def in_order(ranked: Iterable[Ranked]) -> list[Ranked]:
+    """Return laws with the lowest Akaike criterion first, laws without a fit last."""
+    return sorted(ranked, key=lambda law: (law.fit is None, law.fit.aic if law.fit else 0.0))

@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 
 #: A column that varies by less than this share of its mean was kept constant.
 SAME = 0.1
+#: Points of a sweep over the measured range, for a file that has none.
+SWEPT = 61
 
 
 @attrs.frozen(kw_only=True, eq=False)
@@ -219,21 +221,22 @@ def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
     """Return a scene file whose measured series are the columns of a table.
 
     The one column that varies, such as the angle, is the abscissa. The scene provides all other
-    entries, such as the speed.
+    entries, such as the speed. A file without a sweep gets one over the measured range.
 
     Raises
     ------
     ValueError
-        If the file has no sweep, if more than one column varies, or the speeds differ.
+        If more than one column varies, or the speeds differ.
     """
-    if not file.varied:
-        raise ValueError(f"{file.path}: needs a [sweep] to draw measured values beside")
     moving = [name for name, values in table.given.items() if not _constant(values)]
     if len(moving) != 1:
         varying = f"these vary by more than {SAME:.0%}: {', '.join(moving) or 'none'}"
         raise ValueError(f"{table.source}: one column must vary, such as angle_deg; {varying}")
     _check_speed(file, table)
     x = table.given[moving[0]]
+    if not file.varied:
+        varied = {moving[0]: np.linspace(float(np.min(x)), float(np.max(x)), SWEPT)}
+        file = attrs.evolve(file, varied=varied, scene=file.scene_at(**varied))
     return attrs.evolve(
         file, measured=tuple(_series(table, name, moving[0], x) for name in table.measured)
     )

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 
 #: Friction of a scene file without a friction coefficient; searches have their own starts.
 SOME_FRICTION = 0.1
+#: Points whose predictions are kept: those of a search and its diagnosis, not of a bootstrap.
+REMEMBERED = 1000
 TABULATED = "exact elastic law (tabulated rebound)"
 POLAR, CARTESIAN = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
 
@@ -34,6 +36,7 @@ class Model:
     parameters: tuple[Parameter, ...]
     tabled: bool = attrs.field(init=False)
     _repeated: dict[int, Scene] = attrs.field(factory=dict, init=False, repr=False)
+    _known: dict[bytes, dict[str, Array]] = attrs.field(factory=dict, init=False, repr=False)
 
     @tabled.default
     def _(self) -> bool:
@@ -44,18 +47,31 @@ class Model:
     def predicted(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
         """Return quantities of all impacts, shape (m, n), at points of shape (m, parameters).
 
-        Points with equal options of laws run together in one batch.
+        Points with equal options of laws run together in one batch. A point seen before
+        is not run again.
         """
+        if len(self._known) > REMEMBERED:
+            self._known.clear()
+        keys = [point.tobytes() for point in points]
+        fresh = [
+            row
+            for row, key in enumerate(keys)
+            if not self._known.setdefault(key, {}).keys() >= set(quantities)
+        ]
+        if fresh:
+            self._run(points[fresh], [keys[row] for row in fresh], quantities)
+        return {name: np.array([self._known[key][name] for key in keys]) for name in quantities}
+
+    def _run(self, points: Array, keys: Sequence[bytes], quantities: Sequence[str]) -> None:
+        """Run the impacts at some points and keep the quantities under their keys."""
         alone = [place for place, p in enumerate(self.parameters) if not p.batched]
         _, group = np.unique(points[:, alone], axis=0, return_inverse=True)
         group = np.reshape(group, -1)  # its shape depends on the version of numpy
-        shape = (len(points), self.setup.scene.shape[0])
-        predicted = {name: np.empty(shape) for name in quantities}
         for number in range(int(group.max()) + 1):
             rows = np.flatnonzero(group == number)
             for name, values in self._together(points[rows], quantities).items():
-                predicted[name][rows] = values
-        return predicted
+                for row, line in zip(rows.tolist(), values, strict=True):
+                    self._known[keys[row]][name] = line
 
     def _together(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
         """Return the quantities, shape (m, n), at points with equal laws, from one batch."""

@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.fitting.f_test import NUMERICAL
 from contactlab.fitting.problem import Problem, grid, minimum
 
 Array = NDArray[np.float64]
@@ -23,8 +24,6 @@ CUTS = (20.0, 10.0, 6.0, 4.5, 3.5)
 FEW, LEAST = 0.3, 6
 #: Chance of taking normal scatter for outliers.
 CHANCE = 1e-3
-#: Scatter below this share of the largest number is numerical error.
-NUMERICAL = 1e-4
 #: Most impacts that a sentence lists.
 LISTED = 8
 

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from contactlab.fitting.outliers import NUMERICAL
+from contactlab.fitting.f_test import NUMERICAL, SPARE, chance_of, orthonormal
 from contactlab.fitting.problem import Problem
 
 Array = NDArray[np.float64]
 
-#: Degree of the polynomial in the rank of a column, and least degrees of freedom beside it.
-DEGREE, SPARE = 3, 3
+#: Degree of the polynomial in the rank of a column.
+DEGREE = 3
 #: A column varies if its range exceeds this share of its greatest magnitude.
 VARIES = 0.1
 #: Leverage above which a single number determines the fit.
@@ -93,7 +93,7 @@ def _changes(
 def leverage(problem: Problem, values: Array, scales: Mapping[str, Any]) -> list[str]:
     """Return a sentence for each number that the fit meets at any value."""
     _, jacobian = problem.linearised(values, scales)
-    basis = _basis(jacobian)
+    basis = orthonormal(jacobian)
     shares = np.sum(basis**2, axis=1)
     sentences, first = [], 0
     for name, numbers in problem.measured.items():
@@ -124,32 +124,3 @@ def _ranked(columns: Mapping[str, Array], count: int) -> dict[str, Array]:
 def _in_order(rank: Array) -> bool:
     """Return whether a column grows or falls along the rows."""
     return abs(float(np.corrcoef(np.arange(len(rank)), rank)[0, 1])) > 0.99
-
-
-def chance_of(residuals: Array, slopes: Array, terms: Array, least: float) -> float:
-    """Return the chance that normal scatter follows ``terms``, shape (numbers, m), as closely."""
-    from scipy.special import fdtrc  # only a fit needs scipy
-
-    added = terms.shape[1]
-    freedom = len(residuals) - slopes.shape[1] - added
-    if freedom < SPARE:
-        return 1.0
-    plain, curved = (
-        _remaining_square(residuals, slopes),
-        _remaining_square(residuals, np.hstack([slopes, terms])),
-    )
-    ratio = (plain - curved) / added / (curved / freedom + least + np.finfo(float).tiny)
-    return float(fdtrc(added, freedom, max(ratio, 0.0)))
-
-
-def _remaining_square(residuals: Array, columns: Array) -> float:
-    """Return the sum of squares of residuals after projection on columns."""
-    basis = _basis(columns)
-    remaining = residuals - basis @ (basis.T @ residuals)
-    return float(remaining @ remaining)
-
-
-def _basis(columns: Array) -> Array:
-    """Return an orthonormal basis of the non-zero columns."""
-    lengths = np.linalg.norm(columns, axis=0)
-    return np.asarray(np.linalg.qr(columns[:, lengths > 0.0] / lengths[lengths > 0.0])[0])

@@ -10,7 +10,6 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.fitting.measurements import Measurements
 from contactlab.fitting.model import Model
 from contactlab.fitting.parameters import Parameter
 
@@ -49,11 +48,6 @@ class Problem:
     model: Model
     measured: Mapping[str, Array]
     errors: Mapping[str, Array]
-
-    @classmethod
-    def of(cls, model: Model, measurements: Measurements) -> Problem:
-        """Return the problem of measurements."""
-        return cls(model=model, measured=measurements.measured, errors=measurements.errors)
 
     @property
     def counts(self) -> dict[str, int]:

@@ -10,9 +10,9 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.fitting.f_test import SPARE, chance_of
 from contactlab.fitting.model import Model
 from contactlab.fitting.parameters import Parameter, Setup, parameter_named
-from contactlab.fitting.patterns import chance_of
 from contactlab.fitting.problem import Problem, grid, solved
 from contactlab.fitting.readings import Reading, readings, turned
 from contactlab.numeric.checks import Real
@@ -27,8 +27,6 @@ SMALLER, CERTAIN = 2.0, 20.0
 WORTH_FITTING = 3.0
 #: Most readings reported, and difference of scores up to which they are as good as the best.
 LISTED, ALIKE = 3, 6.0
-#: Least degrees of freedom: with fewer, chance meets the numbers.
-SPARE = 3
 #: A tilt is fitted if normal scatter follows its derivative with less than this chance.
 WORTH_TILTING = 1e-2
 #: Largest tilt, in degrees.

@@ -50,9 +50,9 @@ class Sphere:
         If a value is out of range, or neither mass nor density is given.
     """
 
-    radius: Real = quantity("m", rule=POSITIVE)
+    radius: Real = quantity("m", rule=POSITIVE, empty=True)
     material: Material = _material()
-    mass: Real = quantity("kg", rule=POSITIVE, default=None, kw_only=True)
+    mass: Real = quantity("kg", rule=POSITIVE, default=None, kw_only=True, empty=True)
     gyration_ratio: Real = quantity(
         "1", rule=GYRATION, default=SOLID_SPHERE_GYRATION_RATIO, kw_only=True
     )
@@ -69,7 +69,7 @@ class Sphere:
                 "give Sphere(mass=...) in kg or Material(density=...) in kg/m³",
             )
         solid = 4.0 / 3.0 * math.pi * self.radius * self.radius * self.radius * density
-        object.__setattr__(self, "mass", real("mass", solid, rule=POSITIVE))
+        object.__setattr__(self, "mass", real("mass", solid, rule=POSITIVE, empty=True))
 
 
 @attrs.frozen
@@ -110,12 +110,12 @@ class Pair:
         Dundurs' beta, which couples pressure and shear; 0 for bodies of one material.
     """
 
-    radius: Real = quantity("m", rule=POSITIVE)
-    effective_modulus: Real = quantity("Pa", rule=POSITIVE)
-    effective_shear_modulus: Real = quantity("Pa", rule=POSITIVE)
-    normal_mass: Real = quantity("kg", rule=POSITIVE)
-    tangential_mass: Real = quantity("kg", rule=POSITIVE)
-    dundurs_beta: Real = quantity("1", default=0.0)
+    radius: Real = quantity("m", rule=POSITIVE, empty=True)
+    effective_modulus: Real = quantity("Pa", rule=POSITIVE, empty=True)
+    effective_shear_modulus: Real = quantity("Pa", rule=POSITIVE, empty=True)
+    normal_mass: Real = quantity("kg", rule=POSITIVE, empty=True)
+    tangential_mass: Real = quantity("kg", rule=POSITIVE, empty=True)
+    dundurs_beta: Real = quantity("1", default=0.0, empty=True)
 
     @property
     def stiffness_ratio(self) -> Real:

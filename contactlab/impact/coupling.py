@@ -2,31 +2,44 @@
 
 from __future__ import annotations
 
-from typing import Any
+import itertools
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from contactlab.impact.hertz import slips_throughout_elastic
 from contactlab.impact.scene import Scene
 
-#: Shift of psi2 by elastic coupling of unlike bodies, to 0.002: the difference between
-#: three-dimensional half-space solutions with one-way coupling and the axisymmetric theory. The
-#: solutions have this chi and this effective Poisson's ratio; for other scenes the table gives
-#: a rough size only.
-COUPLING_CHI, COUPLING_NU = 49.0 / 34.0, 0.3
-COUPLING_LAMBDA = (0.0, 0.25, 0.5, 1.0, 2.0)
-COUPLING_PSI1 = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0)
-COUPLING_SHIFT = (
-    (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-    (0.0, 0.0026, 0.0150, 0.0033, 0.0007, 0.0021),
-    (0.0, 0.0117, 0.0468, 0.0125, 0.0016, 0.0060),
-    (0.0, 0.0667, 0.1266, 0.0463, 0.0062, 0.0208),
-    (0.0, 0.1681, 0.2560, 0.1428, 0.0413, 0.0598),
-)
+Array = NDArray[np.float64]
+
+#: Shift of psi2 by one-way coupling, to 0.002, by the half-space law; its builder is
+#: ``python -m table_builders coupling build``. The nodes are psi1, chi, nu, and Lambda.
+FILE = Path(__file__).with_name("coupling.csv")
 #: Smallest shift of psi2 with a caution.
 LEAST_SHIFT = 1e-3
-#: Largest difference of chi, and of Poisson's ratio, at which the table fits a scene.
-NEAR = 0.03
+
+
+class Nodes(NamedTuple):
+    """The table: its axes, and the size of the shift, shape (psi1, chi, nu, Lambda)."""
+
+    axes: tuple[Array, Array, Array, Array]
+    size: Array
+
+
+@cache
+def nodes() -> Nodes:
+    """Return the table; the shift vanishes at psi1 = 0 and at Lambda = 0."""
+    text = FILE.read_text(encoding="utf-8")
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    numbers = np.array([float(name.partition("=")[2]) for name in lines[0].split(",")[3:]])
+    rows = np.array([[float(word) for word in line.split(",")] for line in lines[1:]])
+    psi1, chi, poisson = (np.unique(column) for column in rows[:, :3].T)
+    size = np.zeros((len(psi1) + 1, len(chi), len(poisson), len(numbers) + 1))
+    at = [np.searchsorted(*pair) for pair in zip((psi1, chi, poisson), rows.T, strict=False)]
+    size[at[0] + 1, at[1], at[2], 1:] = np.abs(rows[:, 3:])
+    return Nodes((np.r_[0.0, psi1], chi, poisson, np.r_[0.0, numbers]), size)
 
 
 def coupling_number(scene: Scene) -> Any:
@@ -37,24 +50,42 @@ def coupling_number(scene: Scene) -> Any:
 
 
 def coupling_shift(scene: Scene) -> Any:
-    """Return the shift of psi2 by coupling, from the table, clipped to its range.
+    """Return the size of the shift of psi2 by one-way coupling, without unit.
 
-    In gross slip throughout the table does not hold and the shift is NaN; without friction it is 0.
+    The size is linear between the nodes of a table of half-space solutions. A shift of 0.005 or
+    more exceeds it by a factor of 4 at most. Without friction the size is 0. Beyond the last
+    psi1 of the table all of the contact slips, and the shift falls as 1/psi1². Other entries are
+    clipped to the range of the table.
+
+    Parameters
+    ----------
+    scene : Scene
+        One impact, or a batch of shape ``(...,)``.
+
+    Returns
+    -------
+    array, shape (...,)
+        Not negative; the table is known to 0.002.
     """
-    row, column = np.broadcast_arrays(
-        np.clip(coupling_number(scene), 0.0, COUPLING_LAMBDA[-1]),
-        np.clip(np.abs(scene.psi1), 0.0, COUPLING_PSI1[-1]),
-    )
-    table = np.array(COUPLING_SHIFT)
-    lines = np.stack([np.interp(column, COUPLING_PSI1, line) for line in table])
-    at = np.clip(np.searchsorted(COUPLING_LAMBDA, row, side="right") - 1, 0, len(table) - 2)
-    below, above = (np.take_along_axis(lines, (at + k)[None], axis=0)[0] for k in (0, 1))
-    edges = np.array(COUPLING_LAMBDA)
-    share = (row - edges[at]) / (edges[at + 1] - edges[at])
-    shift = below + share * (above - below)
-    slipping = slips_throughout_elastic(np.asarray(scene.psi1), np.asarray(scene.chi))
-    shift = np.where(slipping, np.nan, shift)
-    return np.where(np.asarray(scene.friction_coefficient) == 0.0, 0.0, shift)
+    (axes, size), kappa = nodes(), np.asarray(scene.pair.stiffness_ratio)
+    psi1, last = np.abs(scene.psi1), axes[0][-1]
+    nu = (2.0 - 2.0 * kappa) / (2.0 - kappa)
+    entries = np.broadcast_arrays(psi1, scene.chi, nu, coupling_number(scene))
+    found: Any = np.zeros(entries[0].shape)
+    lower, shares = zip(*(_place(*pair) for pair in zip(entries, axes, strict=True)), strict=True)
+    for corner in itertools.product((0, 1), repeat=len(axes)):
+        places = tuple(low + up for low, up in zip(lower, corner, strict=True))
+        weights = [share if up else 1.0 - share for share, up in zip(shares, corner, strict=True)]
+        found = found + np.prod(weights, axis=0) * size[places]
+    found = found * np.minimum(1.0, last / np.maximum(psi1, last)) ** 2
+    return np.where(np.asarray(scene.friction_coefficient) == 0.0, 0.0, found)
+
+
+def _place(values: Any, axis: Array) -> tuple[Any, Any]:
+    """Return the node below each value, clipped, and the share of the way on."""
+    values = np.clip(values, axis[0], axis[-1])
+    low = np.clip(np.searchsorted(axis, values, side="right") - 1, 0, len(axis) - 2)
+    return low, (values - axis[low]) / (axis[low + 1] - axis[low])
 
 
 def coupling(scene: Scene) -> tuple[str, ...]:
@@ -63,14 +94,12 @@ def coupling(scene: Scene) -> tuple[str, ...]:
     if beta == 0.0 if isinstance(beta, float) else not np.any(beta):
         return ()
     shape = np.broadcast_shapes(scene.shape, (1,))
-    number, shift, psi1, chi, kappa = (
+    number, shift, chi = (
         np.broadcast_to(each, shape).ravel()
         for each in (
             coupling_number(scene),
             coupling_shift(scene),
-            np.abs(scene.psi1),
             scene.chi,
-            scene.pair.stiffness_ratio,
         )
     )
     start = (
@@ -78,38 +107,17 @@ def coupling(scene: Scene) -> tuple[str, ...]:
         "Lambda = kappa beta/mu"
     )
     upto = "up to " if scene.shape else ""
-    cautions = []
-    if np.any(shift >= LEAST_SHIFT):
-        worst = int(np.nanargmax(shift))
-        nu = (2.0 - 2.0 * kappa[worst]) / (2.0 - kappa[worst])
-        beyond = "at least " if number[worst] > COUPLING_LAMBDA[-1] else "about "
-        cautions.append(
-            f"{start} = {number[worst]:.2g}; it moves psi2 by {upto}{beyond}{shift[worst]:.1g} "
-            f"(model, not numerical error; {_table(chi[worst], nu, psi1[worst])})"
-        )
-    with np.errstate(divide="ignore", invalid="ignore"):
-        slipping = np.where(np.isnan(shift), number / psi1, 0.0)
-    if np.any(slipping * slipping >= LEAST_SHIFT):
-        worst = int(np.argmax(slipping))
-        cautions.append(
-            f"{start} = {number[worst]:.2g}; where the whole contact slips it moves psi2 to second "
-            f"order in Lambda/psi1 = {upto}{slipping[worst]:.2g} only, by how much is not known "
-            "(model, not numerical error)"
-        )
-    return tuple(cautions)
-
-
-def _table(chi: float, nu: float, psi1: float) -> str:
-    """Return in words which scenes the table is for, and how this scene differs."""
-    off = []
-    if abs(chi - COUPLING_CHI) > NEAR:
-        off.append(f"chi = {chi:.3g}")
-    if abs(nu - COUPLING_NU) > NEAR:
-        off.append(f"nu = {nu:.2g}")
-    if psi1 > COUPLING_PSI1[-1]:
-        off.append(f"psi1 = {psi1:.3g}")
-    source = f"by a table for chi = {COUPLING_CHI:.3g}, nu = {COUPLING_NU:g}, psi1 up to 3"
-    return source + (f"; a rough guide at {', '.join(off)}" if off else "")
+    if not np.any(shift >= LEAST_SHIFT):
+        return ()
+    worst, (axes, _) = int(np.argmax(shift)), nodes()
+    beyond = "at least " if number[worst] > axes[3][-1] else "about "
+    low, high = axes[1][0], axes[1][-1]
+    rough = "" if low <= chi[worst] <= high else f"; a rough guide at chi = {chi[worst]:.3g}"
+    return (
+        f"{start} = {number[worst]:.2g}; it moves psi2 by {upto}{beyond}{shift[worst]:.1g} (model, "
+        f"not numerical error; by a table of half-space solutions, chi from {low:g} to {high:g}"
+        f"{rough})",
+    )
 
 
 def three_numbers(scene: Scene) -> tuple[str, ...]:

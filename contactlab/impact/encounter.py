@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
-from contactlab.numeric.checks import NON_NEGATIVE, Real, instance, quantity, refuse
-from contactlab.numeric.vectors import LEAST, components, difference, first_of, square_root, vector
+from contactlab.numeric.checks import NON_NEGATIVE, Real, first_of, instance, quantity, refuse
+from contactlab.numeric.vectors import LEAST, NOTHING, components, difference, square_root, vector
 
 Array = NDArray[np.float64]
 
-NOTHING = (0.0, 0.0, 0.0)
 #: Encounters computed at a time: arrays of this length stay in the processor's cache.
 TOGETHER = 1 << 14
 
@@ -39,6 +38,10 @@ class Contact(NamedTuple):
     along: tuple[Any, Any, Any]
     approach: Any
     slip: Any
+
+
+#: The bodies of the last single encounter, and their pair.
+_last: Any = (None, None, None)
 
 
 @attrs.frozen
@@ -82,7 +85,7 @@ class Encounter:
 
     sphere: Sphere = instance(Sphere, remedy="make one: Sphere(...)")
     target: Sphere | HalfSpace = instance(HalfSpace, Sphere)
-    friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE)
+    friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE, empty=True)
     normal: Array = vector("1")
     velocity: Array = vector("m/s")
     spin: Array = vector("rad/s", default=NOTHING)
@@ -94,11 +97,13 @@ class Encounter:
     def __attrs_post_init__(self) -> None:
         shapes = {name: value.shape[:-1] for name, value in self._vectors().items()}
         shapes |= {name: getattr(value, "shape", ()) for name, value in self._numbers().items()}
-        shape = batch.common_shape(
-            shapes,
-            what="Encounter: the batch shapes",
-            remedy="give one vector, or as many as there are encounters",
-        )
+        shape = ()
+        if any(shapes.values()):
+            shape = batch.common_shape(
+                shapes,
+                what="Encounter: the batch shapes",
+                remedy="give one vector, or as many as there are encounters",
+            )
         object.__setattr__(self, "shape", shape)
         if isinstance(self.target, HalfSpace) and np.any(self.target_spin):
             raise refuse(
@@ -107,8 +112,10 @@ class Encounter:
                 "must be zero: a half-space does not spin",
                 "give target_velocity, that of its surface at the contact",
             )
+        if not shape and math.hypot(*self.normal.tolist()) >= LEAST:
+            return
         length2 = np.einsum("...i,...i->...", self.normal, self.normal)
-        if not math.sqrt(length2.min()) >= LEAST:
+        if not math.sqrt(length2.min(initial=math.inf)) >= LEAST:
             where = np.argwhere(~(np.sqrt(length2) >= LEAST))
             rule = f"must be at least {LEAST:g} long, not zero{first_of(where)}"
             first = self.normal[tuple(where[0])].tolist() if where.size else self.normal.tolist()
@@ -155,7 +162,14 @@ class Encounter:
     @property
     def pair(self) -> Pair:
         """The numbers of the two bodies that laws need."""
-        return Pair.of(self.sphere, self.target)
+        global _last  # many encounters of two bodies follow one another
+        sphere, target, last = _last
+        pair: Pair = last
+        if sphere is not self.sphere or target is not self.target:
+            pair = Pair.of(self.sphere, self.target)
+            if not self.shape:
+                _last = self.sphere, self.target, pair
+        return pair
 
     @property
     def approaching(self) -> Any:

@@ -13,6 +13,14 @@ import numpy as np
 
 from contactlab.numeric.checks import POISSON, POSITIVE, Real, nearest, quantity, real, refuse
 
+#: Names in common use, with the name in the collection.
+OTHER_NAMES = {
+    "aluminum": "aluminium alloy", "aluminium": "aluminium alloy", "aluminum oxide": "alumina",
+    "aluminium oxide": "alumina", "acrylic": "pmma", "perspex": "pmma", "plexiglas": "pmma",
+    "plexiglass": "pmma", "pyrex": "borosilicate glass",
+    "phenolic": "phenolic resin", "billiard ball": "phenolic resin", "quartz glass": "fused silica",
+}  # fmt: skip
+
 
 @attrs.frozen(init=False, kw_only=True)
 class Material:
@@ -161,6 +169,9 @@ def entry(name: str) -> Entry:
     key = _key(name)
     if key in names_by_key:
         return collection[names_by_key[key]]
+    if key in OTHER_NAMES:
+        other = OTHER_NAMES[key]
+        raise refuse("name", name, f"is listed as {other!r}", "write that name")
     similar = [listed for long_key, listed in names_by_key.items() if key and key in long_key]
     hint = f"did you mean {' or '.join(map(repr, similar))}? " if similar else ""
     hint = hint or nearest(name, collection)

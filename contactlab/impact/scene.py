@@ -17,6 +17,7 @@ from contactlab.impact.material import Material
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import (
     NON_NEGATIVE,
+    POISSON,
     POSITIVE,
     Real,
     Rule,
@@ -61,6 +62,9 @@ class Scene:
     pair : Pair
         The numbers of the two bodies that laws need. They are computed from the bodies; a pair
         is given only for a scene without bodies, as in ``nondimensional``.
+    unit_friction : bool
+        True if the friction coefficient is 1 by choice of units, as in ``nondimensional`` without a
+        friction coefficient. A law that needs mu itself refuses such a scene.
 
     Raises
     ------
@@ -78,6 +82,7 @@ class Scene:
     pair: Pair = instance(
         Pair, remedy="or leave it out", optional=True, default=None, kw_only=True, repr=False
     )
+    unit_friction: bool = instance(bool, default=False, kw_only=True, repr=False)
     #: Batch shape: () for one impact.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
     #: Index of each impact in the whole batch, integers of the batch shape; 0 for one impact.
@@ -105,6 +110,8 @@ class Scene:
             what="Scene: the shapes",
             remedy="give numbers, or arrays of equal length",
         )
+        if 0 in shape:
+            raise refuse("shape", shape, "a scene must hold at least one impact")
         object.__setattr__(self, "shape", shape)
         index = batch.locked(np.arange(math.prod(shape)).reshape(shape)) if shape else 0
         object.__setattr__(self, "index", index)
@@ -202,12 +209,25 @@ class Scene:
         return cls(sphere, target, friction_coefficient, fast * ahead, fast * aside, spin)
 
     @classmethod
-    def nondimensional(cls, *, psi1: Any, chi: Any) -> Scene:
+    def nondimensional(
+        cls,
+        *,
+        psi1: Any,
+        chi: Any,
+        poisson_ratio: Any = None,
+        coupling_number: Any = None,
+        friction_coefficient: Any = None,
+    ) -> Scene:
         """Return the scene of the paper's two parameters, eqs (29) and (38).
 
-        The units are chosen so that mu = kappa = v1 = R = C = M = 1. Velocities of the results
-        are the paper's V and psi. The scene has no sphere, hence no spin and no velocity of a
+        The units are chosen so that v1 = R = C = M = 1, and mu = kappa = 1 unless they are given.
+        Velocities of the results are then the paper's V and psi; with mu and kappa the slip
+        velocity is mu/kappa times psi. The scene has no sphere, hence no spin and no velocity of a
         centre.
+
+        Axisymmetric laws need psi1 and chi only. A law of the three-dimensional half-space needs
+        the Poisson ratio too, and between unlike bodies the coupling number. Where tangential
+        traction changes the pressure it needs the friction coefficient as well.
 
         Parameters
         ----------
@@ -215,25 +235,47 @@ class Scene:
             Dimensionless angle of incidence (29).
         chi : float or array
             Inertia ratio (38), positive, without unit; 1.4412 for a solid sphere of nu = 0.3.
+        poisson_ratio : float or array, optional
+            Effective Poisson ratio, the mean of both bodies' with weights 1/G. It makes
+            kappa = 2 (1 - nu)/(2 - nu).
+        coupling_number : float or array, optional
+            Lambda = kappa beta/mu, with Dundurs' beta of the two bodies; 0 for like bodies.
+        friction_coefficient : float or array, optional
+            Coulomb's mu, positive. Axisymmetric answers in psi do not depend on mu.
 
         Raises
         ------
         ValueError
-            If psi1 is not finite, or chi is not positive and finite.
+            If psi1 or the coupling number is not finite, chi or the friction coefficient is not
+            positive and finite, or the Poisson ratio does not lie between -1 and 0.5.
         """
         incidence = real("psi1", psi1, remedy="give the non-dimensional angle of incidence (29)")
         inertia = real(
             "chi", chi, rule=POSITIVE, remedy="chi of eq. (38); 1.4412 for a solid sphere, nu = 0.3"
         )
+        kappa: Any = 1.0
+        if poisson_ratio is not None:
+            nu = real("poisson_ratio", poisson_ratio, rule=POISSON)
+            kappa = 2.0 * (1.0 - nu) / (2.0 - nu)
+        friction: Any = 1.0
+        if friction_coefficient is not None:
+            friction = real("friction_coefficient", friction_coefficient, rule=POSITIVE)
+        coupled: Any = 0.0
+        if coupling_number is not None:
+            remedy = "Lambda = kappa beta/mu; 0 for like bodies"
+            coupled = real("coupling_number", coupling_number, remedy=remedy) * friction / kappa
         modulus = 15.0 / 16.0  # makes C = 1 in eq. (9)
         pair = Pair(
             radius=1.0,
             effective_modulus=modulus,
-            effective_shear_modulus=modulus,
+            effective_shear_modulus=kappa * modulus,
             normal_mass=1.0,
-            tangential_mass=0.5 / inertia,
+            tangential_mass=0.5 * kappa / inertia,
+            dundurs_beta=coupled,
         )
-        return cls(None, None, 1.0, 1.0, incidence, pair=pair)
+        unit = friction_coefficient is None
+        slip = incidence * friction / kappa
+        return cls(None, None, friction, 1.0, slip, pair=pair, unit_friction=unit)
 
     @classmethod
     def grid(cls, *bodies: Any, **entries: Any) -> Scene:
@@ -315,6 +357,13 @@ class Scene:
                     scene,
                     "must have bodies if, and only if, scenes[0] has: else spin would be lost",
                     "give all in SI, or all by psi1 and chi",
+                )
+            if scene.unit_friction != scenes[0].unit_friction:
+                raise refuse(
+                    f"scenes[{position}]",
+                    scene,
+                    "must have a friction coefficient if, and only if, scenes[0] has",
+                    "give friction_coefficient to every Scene.nondimensional, or to none",
                 )
         stacked = batch.stacked(scenes)
         assert isinstance(stacked, cls)
@@ -416,7 +465,14 @@ UNITS: dict[str, str] = {
     for kind in (Scene, Sphere, Material)
     for field in attrs.fields(kind)
     if "unit" in field.metadata
-} | {"speed": "m/s", "angle_deg": "deg", "psi1": "1", "chi": "1", "young_modulus": "Pa"}
+} | {
+    "speed": "m/s",
+    "angle_deg": "deg",
+    "psi1": "1",
+    "chi": "1",
+    "coupling_number": "1",
+    "young_modulus": "Pa",
+}
 
 
 def entry_unit(name: str) -> str:

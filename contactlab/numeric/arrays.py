@@ -75,7 +75,11 @@ def merged(parts: Sequence[tuple[Any, Any]], shape: tuple[int, ...], kind: Any =
 
 def spread(value: Any, shape: tuple[int, ...]) -> Any:
     """Return ``value`` as a float for one impact, or as an array of ``shape`` for a batch."""
-    return np.array(np.broadcast_to(value, shape)) if shape else float(value)
+    if not shape:
+        return float(value)
+    if isinstance(value, np.ndarray) and value.shape == shape:  # broadcasting is slower
+        return value.copy()
+    return np.array(np.broadcast_to(value, shape))
 
 
 def filled(value: Any, shape: tuple[int, ...]) -> Any:

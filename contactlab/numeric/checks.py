@@ -105,10 +105,12 @@ def real(
     rule: Rule = FINITE,
     remedy: str = "",
     kept: bool = True,
+    empty: bool = False,
 ) -> Real:
     """Return ``value`` as a finite float or float64 array that obeys ``rule``, or raise ValueError.
 
-    An array that outlives the call (``kept``) is copied and made read-only.
+    An array that outlives the call (``kept``) is copied and made read-only. Arrays without
+    numbers are accepted if ``empty``.
     """
     if type(value) is float:  # the common case; numpy is slower
         if math.isfinite(value) and rule.holds(value):
@@ -124,16 +126,24 @@ def real(
         raise refuse(argument, value, "must have no masked entries", "fill or drop them")
     if array.dtype.kind not in "iuf":
         raise refuse(argument, value, "must be a real number", remedy)
-    if array.size == 0:
+    if array.size == 0 and not empty:
         raise refuse(argument, value, "must hold at least one number", remedy)
     widened = array.astype(np.float64, copy=kept)
-    if not (np.isfinite(widened) & rule.holds(widened)).all():
-        raise refuse(argument, value, rule.sentence, remedy)
+    good = np.isfinite(widened) & rule.holds(widened)
+    if not good.all():
+        where = np.argwhere(~np.asarray(good))
+        named = first_of(where) if widened.size > 1 and len(where) < widened.size else ""
+        raise refuse(argument, value, rule.sentence + named, remedy)
     if widened.ndim == 0:
         return float(widened)
     if kept:
         widened.flags.writeable = False
     return widened
+
+
+def first_of(where: Any) -> str:
+    """Return " (the first of 3 has index [0])" for indices ``where``; empty for one number."""
+    return f" (the first of {len(where)} has index {where[0].tolist()})" if where.shape[1] else ""
 
 
 def paired(first: str, second: str, values: tuple[Real, Real]) -> tuple[Any, Any]:
@@ -174,7 +184,8 @@ def _checked(value: object, owner: object, field: attrs.Attribute[Any]) -> Real 
     if value is None and field.default is None:
         return None
     meta = field.metadata
-    number = real(field.name, value, rule=meta["rule"], remedy=unit_remedy(meta["unit"]))
+    remedy = unit_remedy(meta["unit"])
+    number = real(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
     if isinstance(number, np.ndarray) and getattr(type(owner), "plain_options", False):
         rule = "must be one number: an option of a law holds for every impact"
         raise refuse(field.name, value, rule, "make a law for each value")
@@ -190,7 +201,12 @@ def key(value: Real | None) -> object:
 
 
 def quantity(
-    unit: str, *, rule: Rule = FINITE, default: Any = attrs.NOTHING, kw_only: bool = False
+    unit: str,
+    *,
+    rule: Rule = FINITE,
+    default: Any = attrs.NOTHING,
+    kw_only: bool = False,
+    empty: bool = False,
 ) -> Any:
     """Return an attrs field for a checked real quantity with its unit in the metadata.
 
@@ -207,6 +223,8 @@ def quantity(
         Value if none is given; without a default the quantity is required.
     kw_only : bool
         Whether the field is keyword-only, in a class whose other fields are not.
+    empty : bool
+        Whether an array without numbers is accepted.
     """
     keywords: Any = {"kw_only": True} if kw_only else {}  # False would override the class
     return attrs.field(
@@ -214,7 +232,7 @@ def quantity(
         **keywords,
         converter=attrs.Converter(_checked, takes_self=True, takes_field=True),
         eq=key,
-        metadata={"unit": unit, "rule": rule, "range": rule.sentence},
+        metadata={"unit": unit, "rule": rule, "range": rule.sentence, "empty": empty},
     )
 
 

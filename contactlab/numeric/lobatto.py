@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -13,6 +14,8 @@ Array = NDArray[np.float64]
 
 #: Added to distances from nodes so that none is zero; no other distance changes.
 ON_NODE = 1e-290
+#: A root is found to this part of the values around it, or to this width of tau.
+ROOT_VALUE, ROOT_WIDTH, ROOT_CAP = 1e-16, 1e-15, 60
 
 
 class Nodes(NamedTuple):
@@ -32,17 +35,11 @@ class Nodes(NamedTuple):
         Index of the first finer point at or after the second node.
     to_fine : array, shape (n, m)
         Values at nodes @ ``to_fine`` are values at the finer points.
-    slope : array, shape (n,)
-        ``slope @ f`` is f'(0).
-    legendre, tail : arrays, shape (n, n) and (2, n)
-        ``legendre @ f`` are the coefficients of Legendre's polynomials in 2 tau - 1; ``tail @ f``
-        are the two highest coefficients.
-    powers : array, shape (n, n)
-        ``powers @ (legendre @ f)`` are the coefficients of powers of 2 tau - 1, lowest first. The
-        product of the two matrices would lose digits, half of them at 20 nodes.
-    plain, rooted : tuple of two arrays
-        (x - origin)/length at the nodes and its derivative with respect to tau: linear, or with
-        nodes crowded as (1 - tau)² at the end, which makes (1 - x)^1.5 a polynomial.
+    derivative : array, shape (n, n)
+        ``derivative @ f`` is f' at the nodes.
+    tail : array, shape (2, n)
+        ``tail @ f`` are the coefficients of the two highest Legendre polynomials in 2 tau - 1.
+    ones : array, shape (n,)
     identity : array, shape (n, n)
     """
 
@@ -52,12 +49,9 @@ class Nodes(NamedTuple):
     fine: Array
     second: int
     to_fine: Array
-    slope: Array
-    legendre: Array
+    derivative: Array
     tail: Array
-    powers: Array
-    plain: tuple[Array, Array]
-    rooted: tuple[Array, Array]
+    ones: Array
     identity: Array
 
 
@@ -78,7 +72,6 @@ def lobatto(count: int) -> Nodes:
     weights /= np.abs(weights).max()
     fine = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 3 * count + 1))
     to_fine = legendre.legvander(2.0 * fine - 1.0, count - 1) @ to_coefficients
-    slopes = [legendre.legval(-1.0, legendre.legder(row)) for row in rows_of_identity]
     points = 0.5 + 0.5 * z
     return Nodes(
         points=points,
@@ -87,20 +80,20 @@ def lobatto(count: int) -> Nodes:
         fine=fine,
         second=int(np.searchsorted(fine, points[1])),
         to_fine=np.ascontiguousarray(to_fine.T),
-        slope=2.0 * np.array(slopes) @ to_coefficients,
-        legendre=np.asarray(to_coefficients),
+        derivative=_derivative(points, weights),
         tail=np.ascontiguousarray(to_coefficients[-2:]),
-        powers=np.stack([_powers(row) for row in rows_of_identity], axis=1),
-        plain=(points, np.ones(count)),
-        rooted=(points * (2.0 - points), 2.0 * (1.0 - points)),
+        ones=np.ones(count),
         identity=rows_of_identity,
     )
 
 
-def _powers(coefficients: Array) -> Array:
-    """Return coefficients of powers, shape (n,), from coefficients of Legendre's polynomials."""
-    powers = legendre.leg2poly(coefficients)
-    return np.asarray(np.pad(powers, (0, coefficients.size - powers.size)))
+def _derivative(points: Array, weights: Array) -> Array:
+    """Return the matrix of derivatives at the nodes; each row adds up to zero."""
+    distance = points[:, None] - points + np.eye(points.size)
+    matrix = weights / weights[:, None] / distance
+    np.fill_diagonal(matrix, 0.0)
+    np.fill_diagonal(matrix, -matrix.sum(axis=1))
+    return np.asarray(matrix)
 
 
 def rows(nodes: Nodes, tau: Array) -> Array:
@@ -112,33 +105,79 @@ def rows(nodes: Nodes, tau: Array) -> Array:
 def value_at(nodes: Nodes, tau: float, values: Array) -> float:
     """Return the interpolant of ``values`` at one tau; faster than ``rows``."""
     basis = nodes.weights / ((tau - nodes.points) + ON_NODE)
-    return float(basis.dot(values) / basis.dot(nodes.plain[1]))
+    return float(basis.dot(values) / basis.dot(nodes.ones))
 
 
 def row(nodes: Nodes, tau: float) -> Array:
     """Return the row of the matrix ``rows`` for one tau, shape (n,); faster than ``rows``."""
     basis = nodes.weights / ((tau - nodes.points) + ON_NODE)
-    return np.asarray(basis / basis.dot(nodes.plain[1]))
+    return np.asarray(basis / basis.dot(nodes.ones))
 
 
-def dips(nodes: Nodes, values: Array, fine: Array, least: Any) -> tuple[Any, Any, Array]:
-    """Return finer point, column and tau of each minimum of K polynomials below ``least``.
+def basis(nodes: Nodes, tau: Array) -> Array:
+    """Return barycentric weights, shape (n, K), for K places; divide by those of a table of 1."""
+    distance = nodes.points[:, None] - tau
+    distance += ON_NODE
+    return np.asarray(np.divide(nodes.weights[:, None], distance, out=distance))
 
-    A parabola through three finer points locates a candidate; the polynomial's value decides.
+
+def first_fall(nodes: Nodes, table: Array, level: float, *, fresh: bool) -> tuple[float, int]:
+    """Return tau and row of the first fall of a polynomial below ``level``; (inf, -1) if none.
+
+    Parameters
+    ----------
+    nodes : Nodes
+    table : array, shape (rows, n)
+        Values at the nodes.
+    level : float
+        Below zero by rounding.
+    fresh : bool
+        Values may begin at zero: if the second node is above ``level``, a fall before it is noise.
     """
-    step = fine[nodes.second :] - fine[nodes.second - 1 : -1]
-    index, column = ((step[:-1] < 0.0) & (step[1:] >= 0.0)).nonzero()
-    if not index.size:
-        return index, column, np.zeros(0)
-    fall, rise = step[index, column], step[index + 1, column]
-    index += nodes.second
-    bend, slope = rise - fall, 0.5 * (rise + fall)
-    least = np.broadcast_to(least, fine.shape[1:])[column]
-    low = np.flatnonzero(fine[index, column] - 0.5 * slope * (slope / bend) < least)
-    index, column = index[low], column[low]
-    if low.size:
-        angle = (index - (slope / bend)[low]) * (np.pi / (len(fine) - 1))
-        tau = 0.5 - 0.5 * np.cos(angle)
-        low = np.einsum("ij,ji->i", rows(nodes, tau), values[:, column]) < least[low]
-        return index[low], column[low], tau[low]
-    return index, column, np.zeros(0)
+    found = np.inf, -1
+    for which, (values, fine) in enumerate(zip(table, table @ nodes.to_fine, strict=True)):
+        begin = nodes.second if fresh and values[1] >= level else 0
+        k = begin + int((fine[begin:] < level).argmax())
+        if fine[k] < level:
+            ends = (nodes.fine[max(k - 1, 0)].item(), nodes.fine[k].item())
+        elif (ends := _dip(nodes, values, fine, begin, level)) == (0.0, 0.0):
+            continue
+        tau = _root(nodes, values, *ends)
+        if tau < found[0]:
+            found = tau, which
+    return found
+
+
+def _dip(nodes: Nodes, values: Array, fine: Array, begin: int, level: float) -> tuple[float, float]:
+    """Return two places around the first of two roots between finer points; zeros if none."""
+    k = begin + 1 + int(fine[begin + 1 : -1].argmin())
+    fall, rise = fine[k - 1].item() - fine[k].item(), fine[k + 1].item() - fine[k].item()
+    if not (fall > 0.0 and rise > 0.0):
+        return 0.0, 0.0
+    slope, bend = 0.5 * (rise - fall), rise + fall
+    if fine[k].item() - 0.5 * slope * slope / bend >= level:
+        return 0.0, 0.0
+    tau = 0.5 - 0.5 * math.cos((k - slope / bend) * math.pi / (len(fine) - 1))
+    if value_at(nodes, tau, values) >= level:
+        return 0.0, 0.0
+    return nodes.fine[k - 1].item(), tau
+
+
+def _root(nodes: Nodes, values: Array, a: float, b: float) -> float:
+    """Return the root between a, where values are not negative, and b, by the Illinois method."""
+    fa, fb = value_at(nodes, a, values), value_at(nodes, b, values)
+    if fa <= 0.0:
+        return a
+    scale, side, tau = ROOT_VALUE * max(fa, -fb), 0, a
+    for _ in range(ROOT_CAP):
+        tau = (fa * b - fb * a) / (fa - fb)
+        value = value_at(nodes, tau, values)
+        if abs(value) <= scale or b - a < ROOT_WIDTH:
+            break
+        if value > 0.0:
+            a, fa, fb = tau, value, 0.5 * fb if side == 1 else fb
+            side = 1
+        else:
+            b, fb, fa = tau, value, 0.5 * fa if side == -1 else fa
+            side = -1
+    return tau

@@ -9,10 +9,13 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.numeric.checks import Rule, key, real, refuse
+from contactlab.numeric.checks import Rule, first_of, key, real, refuse
 
 Array = NDArray[np.float64]
 
+NOTHING = (0.0, 0.0, 0.0)
+_ZERO = np.zeros(3)
+_ZERO.flags.writeable = False
 #: Largest number in a vector, and least length of a normal and least speed of approach. The
 #: squares of these bounds are finite and positive in floating point.
 LARGEST, LEAST = 1e100, 1e-100
@@ -32,6 +35,8 @@ def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
 
 def _checked(value: object, field: attrs.Attribute[Any]) -> Array:
     """Return vectors, shape (..., 3), as a read-only copy."""
+    if value is NOTHING:
+        return _ZERO
     vectors = _alone(value)
     if vectors is None:
         vectors = _many(value, field)
@@ -65,7 +70,7 @@ def _many(value: Any, field: attrs.Attribute[Any]) -> Array:
             where = np.argwhere(~(np.abs(value) <= LARGEST).all(axis=-1))
             first = value[tuple(where[0])].tolist()
             raise refuse(field.name, first, RANGE.sentence + first_of(where), remedy)
-        vectors = np.array(real(field.name, value, rule=RANGE, remedy=remedy))
+        vectors = np.array(real(field.name, value, rule=RANGE, remedy=remedy, empty=True))
     if vectors.shape[-1:] == (3,):
         return vectors
     if vectors.ndim < 2:
@@ -73,11 +78,6 @@ def _many(value: Any, field: attrs.Attribute[Any]) -> Array:
     if vectors.shape[0] == 3:
         remedy = "x, y and z belong on the last axis: np.moveaxis(vectors, 0, -1)"
     raise refuse(f"{field.name}.shape", vectors.shape, "must end with 3", remedy)
-
-
-def first_of(where: Any) -> str:
-    """Return " (the first of 3 has index [0])" for indices ``where``; empty for one encounter."""
-    return f" (the first of {len(where)} has index {where[0].tolist()})" if where.shape[1] else ""
 
 
 def components(vectors: Array) -> tuple[Any, Any, Any]:

@@ -1,1 +1,1 @@
-"""What comes back: motion, plan, energy books, results and the forms that they are read in."""
+"""Results: motion, plan, energy books, and their columns, files and tables."""

@@ -11,7 +11,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import some
-from contactlab.numeric.checks import Real
+from contactlab.numeric.checks import Mask, Real
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.motion import Motion
 
@@ -38,12 +38,18 @@ class EnergyLedger:
     start, end : float or array
         ½ M_n v_z² + ½ M_t v_x² before and after.
     normal_loss : float or array
-        ½ M_n v_z² before less after: loss of a dissipative normal law; zero if elastic.
+        ½ M_n v_z² before less after: loss of a dissipative normal law; zero if elastic. Where
+        friction changed the normal motion: the dissipation that the normal law declares.
     friction_work : float or array
-        Sum over the steps, computed by the law from traction and slip.
+        Sum over the steps, computed by the law from traction and slip; where ``checked`` is False
+        the energy that the velocities lose.
     imbalance : float or array
-        start - end - normal_loss - friction_work: zero in an exact solution. The losses are
-        independent: the normal force does no work in slip, friction none in approach.
+        start - end - normal_loss - friction_work: zero in an exact solution. In an axisymmetric
+        law the losses are independent: the normal force does no work in slip, friction none in
+        approach. NaN if friction changed the normal motion and the normal law declares no
+        dissipation.
+    checked : bool or array of bool
+        False where the books close by construction and the imbalance checks nothing.
     """
 
     start: Real = _energy()
@@ -51,6 +57,7 @@ class EnergyLedger:
     normal_loss: Real = _energy()
     friction_work: Real = _energy()
     imbalance: Real = _energy()
+    checked: Mask = True
 
     @property
     def relative_imbalance(self) -> Real:
@@ -59,48 +66,92 @@ class EnergyLedger:
             return self.imbalance / self.start
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the five entries and the relative imbalance as plain numbers or lists."""
+        """Return the entries and the relative imbalance as plain numbers or lists."""
         entries = attrs.asdict(self) | {"relative_imbalance": self.relative_imbalance}
         return {name: json_value(value) for name, value in entries.items()}
 
 
-def ledger(scene: Scene, motion: Motion) -> EnergyLedger:
+def ledger(scene: Scene, motion: Motion, checked: Mask = True) -> EnergyLedger:
     """Return the energy books of ``motion``, in J, from its velocities and its friction work."""
     before = (scene.normal_speed, scene.slip_velocity)
     after = (motion.normal_velocity, motion.slip_velocity_change)
-    return books(scene.pair, before, after, motion.friction_work)
+    return books(
+        scene.pair,
+        before,
+        after,
+        motion.friction_work,
+        exchange=motion.exchange,
+        checked=checked,
+    )
 
 
 def books(
-    pair: Pair, before: tuple[Real, Real], after: tuple[Real, Real], friction_work: Real
+    pair: Pair,
+    before: tuple[Real, Real],
+    after: tuple[Real, Real],
+    friction_work: Real,
+    *,
+    exchange: Real = 0.0,
+    checked: Mask = True,
 ) -> EnergyLedger:
-    """Return the energy books from (rate, slip velocity) and (rate, change of slip velocity)."""
+    """Return the energy books from (rate, slip velocity) and (rate, change of slip velocity).
+
+    ``exchange`` is the energy in J that friction moved from the normal to the tangential motion.
+    """
     (speed, slip), (rate, change) = before, after
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        # Products, not powers: a float raised to a power raises OverflowError.
-        start = 0.5 * pair.normal_mass * speed * speed
-        start = start + 0.5 * pair.tangential_mass * slip * slip
+        start, slip_loss = _start_and_slip_loss(pair, speed, slip, change)
         # The loss is formed from the changes: with a huge v_x, start - end would cancel.
         normal_loss = 0.5 * pair.normal_mass * (speed - rate) * (speed + rate)
-        slip_loss = -pair.tangential_mass * change * (slip + 0.5 * change)
         return EnergyLedger(
             start=start,
             end=start - normal_loss - slip_loss,
-            normal_loss=normal_loss,
+            normal_loss=normal_loss - exchange,
             friction_work=friction_work,
-            imbalance=slip_loss - friction_work,
+            imbalance=slip_loss - friction_work + exchange,
+            checked=checked,
         )
 
 
-@np.errstate(all="ignore")
-def balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
+def _start_and_slip_loss(pair: Pair, speed: Real, slip: Real, change: Real) -> tuple[Any, Any]:
+    """Return the energy at the start, and the energy that slip loses, in J."""
+    # Products, not powers: a float raised to a power raises OverflowError.
+    start = 0.5 * pair.normal_mass * speed * speed
+    start = start + 0.5 * pair.tangential_mass * slip * slip
+    return start, -pair.tangential_mass * change * (slip + 0.5 * change)
+
+
+def balanced(motion: Motion, scene: Scene, bound: Real) -> Motion:
     """Return ``motion`` with status ``UNBALANCED`` where the energy books do not balance.
 
     The imbalance over the energy at the start exceeds ``bound``, or the bodies separate or slip
-    faster than at first touch.
+    faster than at first touch. If friction changed the normal motion, one of the two may gain what
+    the other loses, and the sum of both energies is judged.
     """
+    if not scene.shape and motion.exchange == 0.0 and _balances(motion, scene, bound):
+        return motion
+    return _with_unbalanced(motion, scene, bound)
+
+
+def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
+    """Return whether the books of one impact balance: ``_with_unbalanced`` in a few floats."""
+    speed: Any = scene.normal_speed
+    slip: Any = scene.slip_velocity
+    change: Any = motion.slip_velocity_change
+    start, slip_loss = _start_and_slip_loss(scene.pair, speed, slip, change)
+    return not (
+        abs(motion.normal_velocity) > LARGEST_RESTITUTION * speed
+        or abs(slip_loss - motion.friction_work) > bound * start
+        or abs(slip + change) > LARGEST_SLIP * abs(slip)
+    )
+
+
+@np.errstate(all="ignore")
+def _with_unbalanced(motion: Motion, scene: Scene, bound: Real) -> Motion:
+    """Return ``motion`` with the status of each impact whose books do not balance."""
+    coupled, alone = motion.exchange != 0.0, motion.exchange == 0.0
     speed: Any = abs(motion.normal_velocity)
-    fast = speed > LARGEST_RESTITUTION * scene.normal_speed
+    fast = (speed > LARGEST_RESTITUTION * scene.normal_speed) & alone
     if some(fast):
         detail = _sentences(
             "The bodies part {:.4g} times as fast as they met.", speed / scene.normal_speed
@@ -112,23 +163,29 @@ def balanced(motion: Motion, scene: Scene, bound: float) -> Motion:
     if some(unbalanced):
         share = abs(books.relative_imbalance)
         detail = _sentences(
-            f"Off by {{:.2g}} of the energy at the start; declared: {bound:.2g}.", share
+            "Off by {:.2g} of the energy at the start; declared: {:.2g}.", share, bound
         )
         motion = motion.failing(unbalanced, Status.UNBALANCED, detail)
     before: Any = abs(scene.slip_velocity)
     after: Any = abs(scene.slip_velocity + motion.slip_velocity_change)
-    slips_fast = after > LARGEST_SLIP * before
+    slips_fast = (after > LARGEST_SLIP * before) & alone
     if some(slips_fast):
         detail = _sentences(
             "The contact slips {:.4g} times as fast as it met.", np.divide(after, before)
         )
         motion = motion.failing(slips_fast, Status.UNBALANCED, detail)
+    gaining = coupled & (books.end > LARGEST_RESTITUTION**2 * books.start)
+    if some(gaining):
+        detail = _sentences("The bodies gain {:.2g} of their energy.", books.end / books.start - 1)
+        motion = motion.failing(gaining, Status.UNBALANCED, detail)
     return motion
 
 
-def _sentences(sentence: str, numbers: Any) -> Any:
-    """Return the sentence of each impact with its number filled in, in the shape of ``numbers``."""
-    if not np.ndim(numbers):
-        return sentence.format(float(numbers))
-    sentences = [sentence.format(number) for number in np.ravel(numbers).tolist()]
-    return np.array(sentences, dtype=object).reshape(np.shape(numbers))
+def _sentences(sentence: str, *numbers: Any) -> Any:
+    """Return the sentence of each impact with its numbers filled in, in the shape of the first."""
+    shape = np.shape(numbers[0])
+    if not shape:
+        return sentence.format(*map(float, numbers))
+    columns = (np.broadcast_to(each, shape).ravel().tolist() for each in numbers)
+    sentences = [sentence.format(*row) for row in zip(*columns, strict=True)]
+    return np.array(sentences, dtype=object).reshape(shape)

@@ -34,7 +34,7 @@ def to_dict(result: ImpactResult) -> dict[str, Any]:
 def write_json(result: ImpactResult, path: str | Path) -> None:
     """Write ``to_dict``, and the history if the result has one."""
     content = to_dict(result)
-    if result.history is not None:
+    if result.history:
         course = result.history.columns() | result.history.fields
         content["history"] = {name: json_value(np.asarray(item)) for name, item in course.items()}
     text = json.dumps(content, indent=2, allow_nan=False) + "\n"
@@ -53,7 +53,7 @@ def write_csv(result: ImpactResult, path: str | Path) -> None:
 def write_history_csv(result: ImpactResult, path: str | Path) -> None:
     """Write the history of a single impact, one row for each instant."""
     history = result.history
-    if history is None or result.scene.shape:
+    if not history or result.scene.shape:
         raise ValueError("result: has no history of a single impact; run(scene, history=True)")
     course = history.columns()
     headings = [csv_heading(name, history.unit(name), result.scene) for name in course]
@@ -63,7 +63,7 @@ def write_history_csv(result: ImpactResult, path: str | Path) -> None:
 def write_npz(result: ImpactResult, path: str | Path) -> None:
     """Write every column, and the history's arrays with the prefix ``history_``."""
     arrays = {name: _flat(values, result.scene.shape) for name, _, values in columns(result)}
-    if result.history is not None:
+    if result.history:
         course = result.history.columns() | result.history.fields
         arrays |= {f"history_{name}": column for name, column in course.items()}
     with written(path, binary=True) as stream:  # numpy adds .npz to any other path

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import attrs
 import numpy as np
@@ -65,17 +65,46 @@ class History:
         return str(getattr(attrs.fields(History), name).metadata["unit"])
 
 
+class NoHistory:
+    """History of a run that kept none: False as a condition; its attributes say what to write."""
+
+    def __bool__(self) -> Literal[False]:
+        """Return False."""
+        return False
+
+    def __repr__(self) -> str:
+        """Return what to write to have a history."""
+        return "NoHistory(run(scene, history=True) keeps one)"
+
+    def __getattr__(self, name: str) -> Any:
+        """Raise an ``AttributeError`` that says what to write."""
+        if name.startswith("__"):  # copying and pickling look for methods
+            raise AttributeError(name)
+        raise AttributeError(
+            f"history.{name}: this run kept no history; write run(scene, history=True), or "
+            "history='fields' for traction, stick and slip too"
+        )
+
+
+NO_HISTORY = NoHistory()
+
+
 def _names() -> list[str]:
     """Return the names of the columns with one number for each instant, in order."""
     return [item.name for item in attrs.fields(History) if item.name != "fields"]
 
 
 class Recorder:
-    """An observer that keeps every sample, with the law's fields if ``with_fields``."""
+    """An observer that keeps every sample, with the law's fields if ``with_fields``.
 
-    def __init__(self, shape: tuple[int, ...], *, with_fields: bool) -> None:
-        self._shape = shape
-        self._with_fields = with_fields
+    ``stepwise`` asks for a march step by step, which fields need in any case.
+    """
+
+    def __init__(
+        self, shape: tuple[int, ...], *, with_fields: bool, stepwise: bool = False
+    ) -> None:
+        self._shape, self._with_fields = shape, with_fields
+        self.stepwise = stepwise or with_fields
         self._rows: list[tuple[Any, ...]] = []
         self._fields: list[dict[str, Any]] = []
 
@@ -91,8 +120,10 @@ class Recorder:
         """Return the history of the samples; its arrays have length 0 if there are none."""
         columns = {}
         for index, name in enumerate(_names()):
-            rows = [np.broadcast_to(row[index], self._shape) for row in self._rows]
-            columns[name] = np.array(rows, dtype=np.float64).reshape(len(rows), *self._shape)
+            column = np.empty((len(self._rows), *self._shape))
+            for instant, row in enumerate(self._rows):
+                column[instant] = row[index]
+            columns[name] = column
         keys = self._fields[0] if self._fields else {}
         fields = {key: np.array([entry[key] for entry in self._fields]) for key in keys}
         return History(**columns, fields=fields)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from operator import attrgetter
 from typing import Any, Self
 
 import attrs
@@ -10,9 +11,20 @@ import numpy as np
 
 from contactlab.contracts.integrator import TangentialMotion
 from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.sampled_motion import gathered
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import locked, spread
 from contactlab.numeric.checks import Real
+
+#: Entries of ``Motion`` by the name of their source in a normal motion.
+ENDS = {
+    "duration": "duration",
+    "normal_velocity": "final_rate",
+    "maximum_radius": "maximum_radius",
+    "maximum_approach": "maximum_approach",
+    "maximum_force": "maximum_force",
+}
 
 
 @attrs.frozen(kw_only=True, eq=False)
@@ -29,6 +41,10 @@ class Motion(TangentialMotion):
         Greatest contact radius and approach, in m.
     maximum_force : float or array
         Greatest normal force, in N.
+    exchange : float or array
+        Energy in J that friction moved from the normal to the tangential motion, 0 unless the
+        tangential law returned a normal motion of its own; NaN if the normal law does not declare
+        its dissipation.
     """
 
     duration: Real
@@ -36,17 +52,30 @@ class Motion(TangentialMotion):
     maximum_radius: Real
     maximum_approach: Real
     maximum_force: Real
+    exchange: Real = 0.0
 
     @classmethod
     def along(cls, normal: NormalMotion, tangential: TangentialMotion) -> Self:
         """Return the motion of one batch from its two parts; its arrays are read-only."""
         shape = normal.scene.shape
-        entries: dict[str, Any] = {
-            "duration": normal.duration,
-            "normal_velocity": normal.final_rate,
-            "maximum_radius": normal.maximum_radius,
-            "maximum_approach": normal.maximum_approach,
-            "maximum_force": normal.maximum_force,
+        if not (shape or tangential.normal is not None):
+            return cls(  # named entry by entry: a loop is slower than all else here
+                duration=float(normal.duration),
+                normal_velocity=float(normal.final_rate),
+                maximum_radius=float(normal.maximum_radius),
+                maximum_approach=float(normal.maximum_approach),
+                maximum_force=float(normal.maximum_force),
+                slip_velocity_change=float(tangential.slip_velocity_change),
+                friction_work=float(tangential.friction_work),
+                status=tangential.status,
+                detail=tangential.detail,
+                counters=tangential.counters,
+            )
+        entries: dict[str, Any] = {name: getattr(normal, source) for name, source in ENDS.items()}
+        entries["exchange"] = 0.0
+        if tangential.normal is not None:
+            entries |= _coupled(normal, tangential, entries)
+        entries |= {
             "slip_velocity_change": tangential.slip_velocity_change,
             "friction_work": tangential.friction_work,
         }
@@ -58,23 +87,48 @@ class Motion(TangentialMotion):
         )
 
 
+def _coupled(
+    normal: NormalMotion, tangential: TangentialMotion, entries: dict[str, Any]
+) -> dict[str, Any]:
+    """Return the entries of the normal motion that came of the friction, and the exchange."""
+    scene, own, law = normal.scene, tangential.normal, normal.law
+    assert isinstance(law, NormalLaw)
+    alone = np.isnan(gathered(own, lambda motion: motion.duration, scene.shape))
+    found = {
+        name: np.where(alone, entries[name], gathered(own, attrgetter(source), scene.shape))
+        for name, source in ENDS.items()
+    }
+    speed: Any = scene.normal_speed
+    lost = 0.5 * scene.pair.normal_mass * (speed * speed - found["normal_velocity"] ** 2)
+    dissipated = gathered(own, law.dissipation, scene.shape)
+    return found | {"exchange": np.where(alone, 0.0, lost - dissipated)}
+
+
+#: The numbers of a motion but the exchange, which may be undeclared.
+CHECKED = tuple(name for name in Motion.numbers() if name != "exchange")
+_numbers = attrgetter(*CHECKED)
+
+
 def sound(motion: Motion) -> Motion:
     """Return ``motion`` with status ``NON_FINITE`` where a success holds a number not finite.
 
     Integrators check the quantities that they use; this check adds overflows in the conversion
     to SI, and quantities that an integrator does not check.
     """
+    # The sum is not finite if a number is not; if finite numbers overflow, each is looked at.
     if motion.status is Status.SUCCESS:
-        if all(math.isfinite(getattr(motion, name)) for name in motion.numbers()):
+        if math.isfinite(sum(_numbers(motion))):
             return motion
     elif not np.ndim(motion.status):
         return motion
-    values = {name: np.asarray(getattr(motion, name)) for name in motion.numbers()}
+    else:
+        with np.errstate(all="ignore"):
+            if np.isfinite(sum(_numbers(motion))).all():
+                return motion
+    values = {name: np.asarray(getattr(motion, name)) for name in CHECKED}
     good = np.all([np.isfinite(value) for value in values.values()], axis=0)
     if np.all(good):
         return motion
-    names = [
-        name.replace("_", " ") for name, value in values.items() if not np.isfinite(value).all()
-    ]
-    sentence = f"Not finite at the end of contact: {', '.join(names)}."
+    bad = [name.replace("_", " ") for name, value in values.items() if not np.isfinite(value).all()]
+    sentence = f"Not finite at the end of contact: {', '.join(bad)}."
     return motion.failing(~good, Status.NON_FINITE, sentence)

@@ -6,7 +6,8 @@ import html
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import attrs
@@ -19,6 +20,14 @@ from contactlab.outcome.columns import json_value
 
 Mask = NDArray[np.bool_]
 
+#: Codes of clauses that programs look for: the march of the tangential motion, the declared or
+#: undeclared numerical error of psi2, and energy books that check nothing.
+TANGENTIAL_MOTION, PSI2_ERROR, BOOKS = "tangential_motion", "psi2_error", "unchecked_books"
+#: What is left out where the friction work is a difference of energies.
+UNCHECKED = (
+    "check of the energy books: closed by construction, not checked; the friction work is the "
+    "energy that the velocities lose"
+)
 #: A number within words: no part of a name or of another number.
 NUMBER = re.compile(r"(?<![\w.{])\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w}])")
 
@@ -56,11 +65,14 @@ class Clause(NamedTuple):
     values : tuple or None
         What ``text`` formats: an array of the batch shape, of which the largest entry among the
         impacts is shown, a ``Span``, or a law. None: ``text`` is the words.
+    code : str
+        What the statement is about, for programs: a constant of this module, or empty.
     """
 
     text: str
     where: Mask
     values: tuple[Any, ...] | None = None
+    code: str = ""
 
     @property
     def words(self) -> str:
@@ -86,7 +98,7 @@ class Clause(NamedTuple):
                 else value
                 for value in values
             )
-        return Clause(self.text, np.asarray(self.where[part]), values)
+        return self._replace(where=np.asarray(self.where[part]), values=values)
 
     @property
     def template(self) -> Clause:
@@ -97,23 +109,21 @@ class Clause(NamedTuple):
         numbers = NUMBER.findall(words)
         text = NUMBER.sub("{}", words.replace("{", "{{").replace("}", "}}"))
         spans = tuple(Span(float(number), float(number), number) for number in numbers)
-        return Clause(text, self.where, spans)
+        return Clause(text, self.where, spans, self.code)
 
 
 Clauses = tuple[Clause, ...]
 #: The attributes of a plan that hold clauses.
 KINDS = ("computed", "left_out", "cautions")
+ENTRIES = (*KINDS, "marched", "psi2_error")
 
 
-@attrs.frozen(kw_only=True, eq=False)
+@attrs.frozen(init=False, eq=False)
 class Plan:
     """What will be computed, what is left out, and what to be wary of.
 
     Attributes
     ----------
-    computed, left_out, cautions : tuple of Clause
-        ``str`` of a clause gives its words. Cautions are about the model and its numbers, and say
-        which of the two.
     marched : bool or array of bool
         Impacts whose tangential motion an integrator follows.
     psi2_error : float or array
@@ -121,11 +131,62 @@ class Plan:
         it is not declared. The errors of the model are not in it: see ``cautions``.
     """
 
-    computed: Clauses
-    left_out: Clauses
-    cautions: Clauses = ()
     marched: Mask
-    psi2_error: Real = math.nan
+    psi2_error: Real
+    _clauses: tuple[Clauses, Clauses, Clauses] | None
+    _late: Callable[[], tuple[Clauses, Clauses, Clauses]] | None
+
+    def __init__(
+        self,
+        *,
+        computed: Clauses = (),
+        left_out: Clauses = (),
+        cautions: Clauses = (),
+        marched: Mask,
+        psi2_error: Real = math.nan,
+        late: Callable[[], tuple[Clauses, Clauses, Clauses]] | None = None,
+    ) -> None:
+        # ``late`` returns the clauses when they are first read, in place of those given.
+        clauses = None if late is not None else (computed, left_out, cautions)
+        self.__attrs_init__(marched, psi2_error, clauses, late)
+
+    def _read(self) -> tuple[Clauses, Clauses, Clauses]:
+        """Return the clauses of the three kinds."""
+        if self._clauses is None:
+            assert self._late is not None
+            object.__setattr__(self, "_clauses", self._late())
+            object.__setattr__(self, "_late", None)
+            assert self._clauses is not None
+        return self._clauses
+
+    @property
+    def computed(self) -> Clauses:
+        """What is computed; ``str`` of a clause gives its words."""
+        return self._read()[0]
+
+    @property
+    def left_out(self) -> Clauses:
+        """What is left out, and why."""
+        return self._read()[1]
+
+    @property
+    def cautions(self) -> Clauses:
+        """Doubts about the model or its numbers; each says which of the two."""
+        return self._read()[2]
+
+    def changed(self, **entries: Any) -> Plan:
+        """Return the plan with other clauses of a kind, or another ``psi2_error``.
+
+        Parameters
+        ----------
+        **entries
+            New values of ``computed``, ``left_out``, ``cautions``, ``marched`` or ``psi2_error``.
+        """
+        return Plan(**{name: getattr(self, name) for name in ENTRIES} | entries)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return how a copy is made: with the clauses as they are when read."""
+        return partial(Plan, **{name: getattr(self, name) for name in ENTRIES}), ()
 
     def __str__(self) -> str:
         """Return the plan in words, a line a sentence."""
@@ -138,6 +199,15 @@ class Plan:
         """Return what a notebook shows: the words of ``str``."""
         return f"<pre>{html.escape(str(self))}</pre>"
 
+    @property
+    def unchecked(self) -> Any:
+        """True for impacts whose energy books close by construction; an array for a batch."""
+        where = np.zeros(self.marched.shape, dtype=bool)
+        for clause in self.left_out:
+            if clause.code == BOOKS:
+                where |= clause.where
+        return where if where.ndim else bool(where)
+
     def to_dict(self) -> dict[str, Any]:
         """Return the sentences as plain lists, and the declared error."""
         return {
@@ -149,7 +219,7 @@ class Plan:
 
     def __getitem__(self, index: Any) -> Plan:
         """Return the plan of some impacts of a batch: the clauses that hold for any of them."""
-        parts = {
+        parts: dict[str, Any] = {
             kind: tuple(
                 part
                 for part in (clause.take(index) for clause in getattr(self, kind))
@@ -166,7 +236,7 @@ class Plan:
         for kind in KINDS:
             clauses = [clause.template for clause in getattr(self, kind)]
             said = [
-                (c.text, [None if isinstance(v, np.ndarray) else v for v in c.values or ()])
+                (c.code, c.text, [None if isinstance(v, np.ndarray) else v for v in c.values or ()])
                 for c in clauses
             ]
             arrays[kind] = np.array(json.dumps(said))
@@ -178,12 +248,17 @@ class Plan:
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Any]) -> Plan:
         """Return the plan that ``to_arrays`` was called of."""
-        kinds = {}
+        kinds: dict[str, Any] = {}
         for kind in KINDS:
             entries = iter(arrays[f"{kind}_values"])
             kinds[kind] = tuple(
-                Clause(text, where, tuple(next(entries) if v is None else Span(*v) for v in values))
-                for (text, values), where in zip(
+                Clause(
+                    text,
+                    where,
+                    tuple(next(entries) if v is None else Span(*v) for v in values),
+                    code,
+                )
+                for (code, text, values), where in zip(
                     json.loads(str(arrays[kind])), arrays[f"{kind}_where"], strict=True
                 )
             )
@@ -203,7 +278,9 @@ class Plan:
         errors = [
             np.broadcast_to(plan.psi2_error, size) for plan, size in zip(plans, sizes, strict=True)
         ]
-        kinds = {kind: _joined([getattr(plan, kind) for plan in plans], sizes) for kind in KINDS}
+        kinds: dict[str, Any] = {
+            kind: _joined([getattr(plan, kind) for plan in plans], sizes) for kind in KINDS
+        }
         return cls(
             **kinds,
             marched=np.concatenate([np.ravel(plan.marched) for plan in plans]).reshape(shape),
@@ -213,14 +290,14 @@ class Plan:
 
 def _joined(parts: Sequence[Clauses], sizes: Sequence[int]) -> Clauses:
     """Return the clauses of all parts; clauses that differ in their numbers only are one."""
-    same: dict[str, list[tuple[int, Clause]]] = {}
+    same: dict[tuple[str, str], list[tuple[int, Clause]]] = {}
     for place, clauses in enumerate(parts):
         for clause in clauses:
             template = clause.template
-            same.setdefault(template.text, []).append((place, template))
+            same.setdefault((template.code, template.text), []).append((place, template))
     ends = np.cumsum([0, *sizes])
     joined = []
-    for text, members in same.items():
+    for (code, text), members in same.items():
         where = np.zeros(ends[-1], dtype=bool)
         columns = [
             list(column) for column in zip(*(m.values or () for _, m in members), strict=True)
@@ -229,7 +306,7 @@ def _joined(parts: Sequence[Clauses], sizes: Sequence[int]) -> Clauses:
             where[ends[place] : ends[place + 1]] |= member.where
         slices = [slice(ends[place], ends[place + 1]) for place, _ in members]
         values = tuple(_value(column, slices, ends[-1]) for column in columns)
-        joined.append(Clause(text, where, values))
+        joined.append(Clause(text, where, values, code))
     return tuple(joined)
 
 

@@ -16,7 +16,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Real
 from contactlab.outcome.energy import EnergyLedger, ledger
-from contactlab.outcome.history import History
+from contactlab.outcome.history import NO_HISTORY, History, NoHistory
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.numerical_error import error_cautions, error_words
 from contactlab.outcome.plan import Plan
@@ -59,8 +59,8 @@ class ImpactResult:
         Wall-clock time of the run, in s; of a batch, for all its impacts.
     laws : mapping of str to str
         Names of the three laws with their versions.
-    history : History or None
-        Only on request.
+    history : History or NoHistory
+        Only on request; without, it is false and its attributes say what to write.
     psi2_error_estimate : float, array or None
         Estimate of the numerical error of psi2, only on request. The plan's cautions state
         model errors.
@@ -71,7 +71,7 @@ class ImpactResult:
     motion: Motion = attrs.field(repr=False)
     run_time: float = attrs.field(metadata={"unit": "s"})
     laws: Mapping[str, str]
-    history: History | None = attrs.field(default=None, repr=False)
+    history: History | NoHistory = attrs.field(default=NO_HISTORY, repr=False)
     psi2_error_estimate: Real | None = attrs.field(default=None, repr=False)
 
     def __repr__(self) -> str:
@@ -92,9 +92,8 @@ class ImpactResult:
 
     def __str__(self) -> str:
         """Return ``repr``, the numerical error and every caution, one line each."""
-        cautions = [*error_cautions(self), *map(str, self.plan.cautions)]
         lines = [repr(self), f"numerical error of psi2: {error_words(self)}"]
-        return "\n".join([*lines, *(f"caution: {text}" for text in cautions)])
+        return "\n".join([*lines, *(f"caution: {text}" for text in self.cautions)])
 
     def _repr_html_(self) -> str:
         """Return ``str(self)`` as HTML for a notebook."""
@@ -123,19 +122,35 @@ class ImpactResult:
         """Counts of steps, evaluations, solves and rejected steps, by name."""
         return self.motion.counters
 
-    def check(self) -> ImpactResult:
-        """Return this result if every impact succeeded.
+    def check(self, *, cautions: bool = False) -> ImpactResult:
+        """Return this result if every impact succeeded; with ``cautions`` only if there is none.
+
+        Parameters
+        ----------
+        cautions : bool
+            Raise the first caution too.
 
         Raises
         ------
         ImpactError
-            With the sentence of the first impact that failed.
+            With the sentence of the first impact that failed, or of the first caution.
         """
         for index, sentence in self.failures.items():
             where = f"impact {index}: " if self.scene.shape else ""
             status = np.ravel(np.asarray(self.status, dtype=object))[index]
             raise ImpactError(where + sentence, status)
+        return self._without_cautions() if cautions else self
+
+    def _without_cautions(self) -> ImpactResult:
+        """Return this result, or raise the first of its cautions."""
+        for sentence in self.cautions:
+            raise ImpactError(f"caution: {sentence}", Status.SUCCESS)
         return self
+
+    @property
+    def cautions(self) -> list[str]:
+        """What ``str`` tells to be wary of: of the numerical error, then of the plan."""
+        return [*error_cautions(self), *map(str, self.plan.cautions)]
 
     @property
     def psi1(self) -> Real:
@@ -256,7 +271,9 @@ class ImpactResult:
     @property
     def energy(self) -> EnergyLedger:
         """Energy books in J: energy before and after, losses, imbalance."""
-        return ledger(self.scene, self.motion)
+        unchecked = self.plan.unchecked
+        checked = not unchecked if isinstance(unchecked, bool) else ~unchecked
+        return ledger(self.scene, self.motion, checked)
 
     def plot(
         self,
@@ -318,7 +335,7 @@ class ImpactResult:
             raise IndexError(f"{index}: is out of range for a batch of {shape[0]} impacts")
 
         history = self.history
-        if history is not None:
+        if history:
             columns = {name: column[:, index] for name, column in history.columns().items()}
             fields = {name: field[:, index] for name, field in history.fields.items()}
             history = History(**columns, fields=fields)

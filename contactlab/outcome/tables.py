@@ -17,6 +17,8 @@ from contactlab.outcome.result import ImpactResult
 
 #: Most sentences on failed impacts that are shown.
 SENTENCES = 3
+#: In place of an imbalance, where the friction work is what the velocities lose.
+CLOSED = "closed by construction, not checked"
 
 Row = list[Any]
 
@@ -134,8 +136,15 @@ def evenly(count: int, most: int | None) -> list[int]:
 
 def largest_imbalance(result: ImpactResult) -> str:
     """Return the largest relative imbalance of the energy books of a batch, as a line."""
-    imbalance = float(np.max(np.abs(result.energy.relative_imbalance)))
-    return f"largest energy imbalance / start: {number(imbalance, digits=3)}"
+    imbalance = np.abs(result.energy.relative_imbalance)
+    checked = np.broadcast_to(result.energy.checked, np.shape(imbalance))
+    if checked.all():
+        return f"largest energy imbalance / start: {number(float(np.max(imbalance)), digits=3)}"
+    count = f"{CLOSED}: {np.size(checked) - np.count_nonzero(checked)} of {len(result)} impacts"
+    if not checked.any():
+        return f"energy books: {count}"
+    largest = number(float(np.max(imbalance[checked])), digits=3)
+    return f"largest energy imbalance / start: {largest}; {count}"
 
 
 def closing(result: ImpactResult) -> list[tuple[str, str]]:
@@ -165,7 +174,7 @@ def _defined(result: ImpactResult, headings: list[str], rows: list[Row]) -> Sect
     shown = []
     for *cells, unit in rows:
         if None not in cells:
-            unit = "1" if result.scene.sphere is None else unit
+            unit = "1" if unit and result.scene.sphere is None else unit
             shown.append([c if isinstance(c, str) else float(c) for c in cells] + [unit])
     return Section(headings, shown)
 
@@ -210,10 +219,16 @@ def _contact(result: ImpactResult) -> list[Row]:
 def _energy(result: ImpactResult) -> list[Row]:
     """Return the energy books."""
     energy = result.energy
-    return [
+    rows: list[Row] = [
         ["start", energy.start, "J"],
         ["end", energy.end, "J"],
         ["loss of the normal motion", energy.normal_loss, "J"],
+    ]
+    if not energy.checked:
+        rows.append(["friction work, of the velocities", energy.friction_work, "J"])
+        return [*rows, ["imbalance", CLOSED, ""]]
+    return [
+        *rows,
         ["friction work, added up", energy.friction_work, "J"],
         ["imbalance", energy.imbalance, "J"],
         ["imbalance / start", energy.relative_imbalance, "1"],

@@ -1,4 +1,4 @@
-"""A page with sliders for psi1 and chi: rebound, forces, regions of stick and slip."""
+"""A page to play with: a ball is thrown at a block, with slow motion through the contact."""
 
 from __future__ import annotations
 
@@ -6,83 +6,73 @@ import json
 from importlib import resources
 from typing import Any
 
-import attrs
-import numpy as np
-from numpy.typing import NDArray
-
 import contactlab
+from contactlab.impact.material import entry, names
 from contactlab.numeric.checks import refuse
 
-#: Decimals of psi2 on the page.
-DIGITS = 4
-#: Springs and steps of the computation in the page. The map has one row for each spring. The
-#: error of psi2 of this bundle is below 2e-3: too small to see.
-SPRINGS, STEPS = 120, 600
+#: Springs and steps of the computation in the page. The error of psi2 is below 5e-4, that of the
+#: rebound angle below 0.02°.
+SPRINGS, STEPS = 100, 500
+#: Radius of the ball in mm.
+RADIUS = 10.0
+#: Ranges of the sliders: least, most.
+RANGES = {"angle": (0.0, 85.0), "speed": (0.1, 10.0), "spin": (-600.0, 600.0),
+          "friction": (0.02, 1.0)}  # fmt: skip
+#: Parts of the page and their files beside this module.
+PARTS = {"STYLE": "explore.css", "KERNEL": "springs.js", "THROW": "throw.js", "PAGE": "explore.js"}
 
 
-@attrs.frozen
-class Axis:
-    """Evenly spaced stops of a slider.
+def explore_page(
+    *,
+    angle: float = 35.0,
+    speed: float = 2.0,
+    spin: float = 100.0,
+    friction: float = 0.8,
+    material: str = "pmma",
+    predict: bool = False,
+) -> str:
+    """Return the page as HTML.
 
-    Attributes
+    Parameters
     ----------
-    start, step : float
-    count : int
-    first : float
-        Value of the slider when the page opens.
+    angle : float
+        First angle of incidence from the normal, in degrees.
+    speed : float
+        First speed, in m/s.
+    spin : float
+        First spin, in rad/s, positive where it adds to the slip.
+    friction : float
+        First friction coefficient.
+    material : str
+        First material, a name of the collection.
+    predict : bool
+        Ask for a prediction first.
+
+    Raises
+    ------
+    ValueError
+        If a number is beyond its slider, or the material unknown.
     """
-
-    start: float
-    step: float
-    count: int
-    first: float
-
-    @property
-    def stops(self) -> NDArray[np.float64]:
-        """Return the stops, shape (count,)."""
-        return self.start + self.step * np.arange(self.count, dtype=np.float64)
-
-    def nearest(self, value: float, name: str) -> int:
-        """Return the index of the stop nearest to ``value``; messages name ``name``."""
-        last = self.start + self.step * (self.count - 1)
-        if not self.start <= value <= last:
-            raise refuse(
-                name, value, f"must lie in [{self.start:g}, {last:g}], the range of the slider"
-            )
-        return round((value - self.start) / self.step)
-
-    def to_dict(self) -> dict[str, float]:
-        """Return start, step and count under the names that the page uses."""
-        return {"from": self.start, "step": self.step, "count": self.count}
-
-
-#: psi1 reaches beyond gross slip of a solid sphere; chi goes from thin shells to spheres with a
-#: denser core than any real sphere.
-PSI1 = Axis(0.0, 0.05, 181, 2.0)
-CHI = Axis(0.4, 0.02, 106, 1.44)
-
-
-def explore_page(*, psi1: float = PSI1.first, chi: float = CHI.first) -> str:
-    """Return the page as HTML; the sliders open at the stops nearest to ``psi1`` and ``chi``."""
-    first = [PSI1.nearest(psi1, "psi1"), CHI.nearest(chi, "chi")]
-    psi2 = contactlab.rebound(PSI1.stops, CHI.stops[:, np.newaxis])
-    grid: dict[str, Any] = {
-        "psi1": PSI1.to_dict(),
-        "chi": CHI.to_dict(),
-        "first": first,
-        "digits": DIGITS,
-        "psi2": np.rint(psi2 * 10**DIGITS).astype(int).tolist(),
-    }
-    page = resources.files("contactlab").joinpath("pages", "explore.html").read_text("utf-8")
+    first: dict[str, Any] = {"angle": angle, "speed": speed, "spin": spin, "friction": friction}
+    for name, value in first.items():
+        least, most = RANGES[name]
+        if not least <= value <= most:
+            raise refuse(name, value, f"must lie in [{least:g}, {most:g}], the range of the slider")
+    first |= {"material": entry(material).name, "predict": predict, "guess": 0, "radius": RADIUS}
+    folder = resources.files("contactlab").joinpath("pages")
+    page = folder.joinpath("explore.html").read_text("utf-8")
+    for part, file in PARTS.items():
+        page = page.replace(f"/*{part}*/", folder.joinpath(file).read_text("utf-8").strip())
     entries = {
-        "/*GRID*/null": json.dumps(grid, separators=(",", ":")),
+        "/*MATERIALS*/null": json.dumps({name: entry(name).numbers() for name in names()}),
+        "/*FIRST*/null": json.dumps(first),
         "/*SPRINGS*/0": str(SPRINGS),
         "/*STEPS*/0": str(STEPS),
-        "DIGITS digits": f"{DIGITS} digits",
+        "RADIUS mm": f"{RADIUS:g} mm",
         "VERSION": contactlab.__version__,
         "SPRINGS springs": f"{SPRINGS} springs",
         "STEPS steps": f"{STEPS} steps",
     }
-    for place, entry in entries.items():
-        page = page.replace(place, entry)
+    for place, text in entries.items():
+        page = page.replace(place, text)
     return page

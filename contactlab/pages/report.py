@@ -17,13 +17,12 @@ from contactlab.compose.simulation import Simulation
 from contactlab.figures.comparison import differences, forces_over_contact, laws_over_sweep
 from contactlab.figures.files import as_svg
 from contactlab.impact.scene import Scene, entry_unit
-from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import closing, largest_imbalance, scene_section, sweep_section, time
 from contactlab.pages import html
 from contactlab.pages.drawing import scene_drawing
 from contactlab.scene_file import SceneFile
-from contactlab.study.compare import Agreement, Comparison
+from contactlab.study.comparison import Agreement, Comparison
 
 #: Rows of a sweep on the page; ``contactlab sweep --out`` writes all of them.
 ROWS = 25
@@ -83,7 +82,7 @@ def _comparison(comparison: Comparison) -> list[str]:
     """Return pictures and tables of the laws, and their distance from measured values."""
     parts = []
     if not comparison.scene.shape:
-        if any(run.result.history is not None for run in comparison.runs):
+        if any(run.result.history for run in comparison.runs):
             picture = as_svg(lambda axes: forces_over_contact(axes, comparison))
             words = "Tangential force over the contact, inside friction's limit."
             parts.append(html.figure(picture, words))
@@ -115,7 +114,7 @@ def _measured(comparison: Comparison, agreement: Agreement) -> str:
         axes[0, 0].set_xlabel("")
 
     picture = as_svg(draw, rows=2, heights=(2.4, 1.0))
-    unit = QUANTITIES[name].unit
+    unit = agreement.unit
     rows = [[law, agreement.rms(law), agreement.largest(law)] for law in agreement.predicted]
     table = html.table(["law", f"rms difference ({unit})", "largest"], rows, digits=3)
     return html.figure(picture, f"{name}, measured: {agreement.measured.source}") + table

@@ -12,14 +12,14 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, unit_remedy
 from contactlab.scene_file.entries import (
     BODY_SECTIONS,
+    GROUP_KEYS,
     IMPACT_KEYS,
-    MATERIAL_KEYS,
     NONDIMENSIONAL_KEYS,
     SPHERE_KEYS,
     UNITS,
     VECTOR_KEYS,
 )
-from contactlab.scene_file.table import Table
+from contactlab.scene_file.table import MATERIAL_KEYS, Table
 
 
 def build_scene(document: Mapping[str, Any]) -> tuple[Scene, Encounter | None]:
@@ -31,8 +31,10 @@ def build_scene(document: Mapping[str, Any]) -> tuple[Scene, Encounter | None]:
                 f"nondimensional: cannot stand beside [{sections[0]}]; psi1 and chi define "
                 "the scene, leave out one or the other"
             )
-        table = Table(document["nondimensional"], "nondimensional", known=NONDIMENSIONAL_KEYS)
-        return table.make(Scene.nondimensional, **_numbers(table, NONDIMENSIONAL_KEYS)), None
+        known = (*NONDIMENSIONAL_KEYS, *GROUP_KEYS)
+        table = Table(document["nondimensional"], "nondimensional", known=known)
+        groups = _numbers(table, NONDIMENSIONAL_KEYS) | _present(table, GROUP_KEYS)
+        return table.make(Scene.nondimensional, **groups), None
     root = Table({name: document[name] for name in sections}, "", known=BODY_SECTIONS)
     sphere = _sphere(root.table("sphere", known=SPHERE_KEYS))
     target = _target(root)

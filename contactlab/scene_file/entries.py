@@ -8,8 +8,8 @@ from typing import Any
 from contactlab.impact import material as materials
 from contactlab.impact.scene import UNITS as SCENE_UNITS
 from contactlab.numeric.checks import nearest
+from contactlab.scene_file.table import MATERIAL_KEYS
 
-MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density", "yield_stress")
 SPHERE_KEYS = ("radius", "mass", "gyration_ratio", "material")
 IMPACT_KEYS = (
     "friction_coefficient", "speed", "angle_deg", "normal_speed", "tangential_velocity", "spin",
@@ -17,6 +17,8 @@ IMPACT_KEYS = (
 #: Keys of an encounter in space; ``spin`` is a vector if ``velocity`` is given.
 VECTOR_KEYS = ("velocity", "normal", "spin", "target_velocity", "target_spin")
 NONDIMENSIONAL_KEYS = ("psi1", "chi")
+#: Further groups of a scene without bodies, which may be left out.
+GROUP_KEYS = ("poisson_ratio", "coupling_number", "friction_coefficient")
 BODY_SECTIONS = ("sphere", "target", "impact")
 
 #: Units for the remedies in messages; the classes of bodies and scenes check the values.
@@ -28,8 +30,8 @@ UNITS = SCENE_UNITS | {
 def _entries() -> dict[str, str]:
     """Return the dotted path of every entry that may vary, by short and by dotted name."""
     names = {key: f"impact.{key}" for key in IMPACT_KEYS}
-    names |= {key: f"nondimensional.{key}" for key in NONDIMENSIONAL_KEYS}
-    dotted = list(names.values())
+    names |= {key: f"nondimensional.{key}" for key in (*NONDIMENSIONAL_KEYS, "coupling_number")}
+    dotted = [*names.values(), *(f"nondimensional.{key}" for key in GROUP_KEYS)]
     for body in ("sphere", "target"):
         dotted += [f"{body}.{key}" for key in SPHERE_KEYS if key != "material"]
         dotted += [f"{body}.material.{key}" for key in MATERIAL_KEYS]

@@ -11,6 +11,9 @@ from contactlab.numeric.checks import FINITE, Real, Rule, nearest, real, refuse
 
 Made = TypeVar("Made")
 
+#: Numbers of a material in a scene file.
+MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density", "yield_stress")
+
 
 class Table:
     """A table, its dotted ``path`` for messages, and the keys it may have.
@@ -85,7 +88,10 @@ class Table:
 
     def _unknown(self, key: str) -> ValueError:
         """Return the error of an unknown key."""
-        return ValueError(f"{self.at(key)}: is not a known key; {nearest_of(key, self.known)}")
+        remedy = nearest_of(key, self.known)
+        if "material" in self.known and key in MATERIAL_KEYS:
+            remedy = f"a number of the material: write it under [{self.at('material')}]"
+        return ValueError(f"{self.at(key)}: is not a known key; {remedy}")
 
 
 def nearest_of(name: str, known: Iterable[str]) -> str:

@@ -16,25 +16,31 @@ from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
-from contactlab.testing.bench import scene as ball
+from contactlab.testing.load_paths import scene as ball
 
 #: psi1 and chi of the scenes: every regime of theory §2 but slip throughout, which every law
-#: answers in closed form.
+#: answers in closed form. Solid spheres have chi from 1.17 to 1.75.
 NONDIMENSIONAL = (
-    (0.1, 1.0), (0.5, 1.0), (1.0, 1.0), (1.2, 1.0), (2.0, 1.0),
+    (0.1, 1.17), (0.5, 1.17), (1.0, 1.17), (1.2, 1.17), (2.0, 1.17), (3.0, 1.17),
     (0.1, 49 / 34), (0.5, 49 / 34), (1.0, 49 / 34), (1.2, 49 / 34), (2.0, 49 / 34),
     (3.0, 49 / 34), (4.0, 49 / 34),
-    (0.1, 3.0), (0.5, 3.0), (1.0, 3.0), (1.2, 3.0), (2.0, 3.0), (3.0, 3.0), (4.0, 3.0),
+    (0.1, 1.75), (0.5, 1.75), (1.0, 1.75), (1.2, 1.75), (2.0, 1.75), (3.0, 1.75), (4.0, 1.75),
 )  # fmt: skip
-#: psi1 and chi of a quick benchmark.
-QUICK = ((0.5, 49 / 34), (1.2, 49 / 34), (3.0, 49 / 34), (1.2, 3.0))
+#: psi1 and chi beyond solid spheres: a thin shell, a dense core. Their errors are named apart.
+ELSEWHERE = (
+    (0.5, 0.83), (1.2, 0.83), (2.0, 0.83), (0.5, 3.0), (1.2, 3.0), (2.0, 3.0), (4.0, 3.0),
+)  # fmt: skip
+#: psi1 and chi of a quick benchmark, in the same two sets.
+QUICK, QUICK_ELSEWHERE = ((0.5, 49 / 34), (1.2, 49 / 34), (3.0, 49 / 34)), ((1.2, 3.0),)
 
-#: Ladders of resolution. A tangential law's resolution is the number of steps over the ratio of the
-#: two defaults (ten for the paper's steps and annuli), or over ``STEPS_PER_PART``.
+#: Ladders of resolution: of parts (springs, annuli) if a law has them, else of steps. A part has as
+#: many steps as the ratio of the two defaults (ten for the paper's steps and annuli), else
+#: ``STEPS_PER_PART``, and all parts together ``LEAST_STEPS`` at least.
 STEPS = (25, 50, 100, 200, 400)
+PARTS = (2, 3, 4, 8, 12, 25, 50, 100)
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
-QUICK_RESOLUTIONS = 3
-STEPS_PER_PART = 4
+QUICK_RESOLUTIONS, QUICK_PARTS = 3, (8, 25, 50)
+STEPS_PER_PART, LEAST_STEPS = 4, 25
 #: Least number of parts under a tolerance.
 LEAST_PARTS = 10
 
@@ -71,7 +77,9 @@ class Method:
         values: Sequence[Any] = (None,)
         if "tolerance" in (law, steps):
             values = TOLERANCES
-        elif law or steps:
+        elif law:
+            values = PARTS
+        elif steps:
             values = STEPS
         per_part = self._steps_per_part(law, steps)
         ladder: list[dict[str, dict[str, Any]]] = []
@@ -79,14 +87,20 @@ class Method:
             options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {}}
             if steps is not None:
                 options["integrator"][steps] = value
-            if law is not None:
-                count = value if isinstance(value, int) else round(value**-0.5)
-                least = 2 if isinstance(value, int) else LEAST_PARTS
-                options["tangential"][law] = max(count // per_part, least)
-            if _accepted(full_name("integrator", self.integrator), options["integrator"]):
+            if values is PARTS:
+                options["tangential"][law] = value
+                if steps is not None:
+                    options["integrator"][steps] = max(per_part * value, LEAST_STEPS)
+            elif law is not None:
+                options["tangential"][law] = max(round(value**-0.5) // per_part, LEAST_PARTS)
+            if all(
+                _accepted(full_name(kind, getattr(self, kind)), options[kind]) for kind in options
+            ):
                 ladder.append(options)
         if not quick:
             return ladder
+        if values is PARTS:
+            return [each for each in ladder if each["tangential"][law] in QUICK_PARTS]
         # A tolerance of 1e-6 would take minutes, because the annuli grow with it.
         return ladder[:: 1 if values is TOLERANCES else 2][:QUICK_RESOLUTIONS]
 
@@ -115,7 +129,7 @@ class Method:
         )
 
 
-def scenes(*, quick: bool = False, sized: bool = False) -> list[Scene]:
+def scenes(*, quick: bool = False, sized: bool = False, elsewhere: bool = False) -> list[Scene]:
     """Return the scenes: dimensionless ones by psi1 and chi, and a steel ball with spin.
 
     Parameters
@@ -124,12 +138,19 @@ def scenes(*, quick: bool = False, sized: bool = False) -> list[Scene]:
         Fewer scenes.
     sized : bool
         Scenes of a ball in SI instead of dimensionless ones, for normal laws with options in SI.
+    elsewhere : bool
+        Scenes beyond solid spheres instead, without the steel ball.
     """
-    pairs = QUICK if quick else NONDIMENSIONAL
+    if elsewhere:
+        pairs: tuple[tuple[float, float], ...] = QUICK_ELSEWHERE if quick else ELSEWHERE
+    else:
+        pairs = QUICK if quick else NONDIMENSIONAL
     if sized:
         fixed = [ball(psi1, chi) for psi1, chi in pairs]
     else:
         fixed = [Scene.nondimensional(psi1=psi1, chi=chi) for psi1, chi in pairs]
+    if elsewhere:
+        return fixed
     steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
     return [*fixed, Scene(Sphere(6.35e-3, steel), HalfSpace(steel), 0.15, 1.93, 0.9, -40.0)]
 
@@ -218,7 +239,7 @@ def _makes_no_force(tangential: str) -> bool:
 
 
 def _accepted(name: str, options: dict[str, Any]) -> bool:
-    """Return whether the integrator accepts the options; a tolerance may be too coarse."""
+    """Return whether a law accepts the options; a resolution may be too coarse."""
     try:
         REGISTRY.create(name, **options)
     except ValueError:

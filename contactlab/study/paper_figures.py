@@ -111,7 +111,7 @@ def figure_4(simulation: Simulation) -> FigureData:
     return _reflexion(4, simulation, psi1=FIXED_PSI1, chi=FIGURE_4_CHI)
 
 
-def figures() -> dict[int, Callable[[Simulation], FigureData]]:
+def paper_data() -> dict[int, Callable[[Simulation], FigureData]]:
     """Return the functions ``figure_1``, ``figure_2``, ... of this module by figure number."""
     prefix = "figure_"
     by_number = {

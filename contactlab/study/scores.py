@@ -1,9 +1,11 @@
-"""Every law that fits a scene under its preferred integrator, and its scores."""
+"""Every law that fits a scene, its scores, and a comparison as JSON and CSV."""
 
 from __future__ import annotations
 
+import csv
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TextIO
 
 import attrs
 import numpy as np
@@ -13,11 +15,16 @@ from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import SteppedTangentialLaw, TangentialLaw, WholeImpactTangentialLaw
+from contactlab.impact.scene import entry_unit
+from contactlab.outcome.columns import QUANTITIES, csv_heading, json_value
 from contactlab.scene_file import LawChoice
-from contactlab.study.compare import Comparison
+from contactlab.study.comparison import Comparison
 
 #: Default scene: psi2 over psi1 of a solid sphere, with the values of other codes.
 DEFAULT_SCENE = Path(__file__).with_name("compiled_codes.toml")
+CSV_HEADINGS = (
+    "table", "quantity", "unit", "against", "x", "law", "value", "reference", "difference",
+)  # fmt: skip
 
 
 class Candidates(NamedTuple):
@@ -130,7 +137,7 @@ def pressed_force(law: TangentialLaw) -> float:
     """Return the force that a growing load adds to a sheared contact, over mu P_max."""
     if not isinstance(law, SteppedTangentialLaw):
         return np.nan
-    from contactlab.testing.bench import Bench, drive, straight
+    from contactlab.testing.load_paths import Bench, drive, straight
 
     path = straight((0.0, 0.4), (0.3, 0.4), (0.3, 1.0))
     force = drive(law, Bench.of(), path).force
@@ -141,3 +148,85 @@ def pressed_force(law: TangentialLaw) -> float:
 def _largest(values: Any) -> float:
     values = np.ravel(values)
     return float(np.max(values[np.isfinite(values)])) if np.isfinite(values).any() else np.nan
+
+
+def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]:
+    """Return the comparison as numbers, lists and text, ready for JSON."""
+    return {
+        "laws": {
+            run.name: {
+                "versions": dict(run.result.laws),
+                "run_time_per_impact_s": run.run_time_per_impact,
+                "status": json_value(np.array(run.result.status, dtype=object))
+                if comparison.scene.shape
+                else json_value(run.result.status),
+                "cautions": [str(sentence) for sentence in run.result.plan.cautions],
+                "psi2_numerical_error": _list(comparison.numerical_error(run.name)),
+                "values": {name: _list(comparison.values(name, run.name)) for name in quantities},
+                "differences": {
+                    name: _list(comparison.difference(name, run.name)) for name in quantities
+                },
+            }
+            for run in comparison.runs
+        },
+        "varied": {name: _list(values) for name, values in comparison.varied.items()},
+        "measured": [
+            {
+                "quantity": agreement.measured.quantity,
+                "unit": agreement.unit,
+                "against": agreement.measured.against,
+                "source": agreement.measured.source,
+                "x": _list(agreement.measured.x),
+                "values": _list(agreement.measured.values),
+                "error": _list(agreement.measured.error),
+                "laws": {
+                    law: {
+                        "values": _list(values),
+                        "rms": json_value(agreement.rms(law)),
+                        "largest": json_value(agreement.largest(law)),
+                    }
+                    for law, values in agreement.predicted.items()
+                },
+            }
+            for agreement in comparison.agreements
+        ],
+    }
+
+
+def plain_score(score: Score) -> dict[str, Any]:
+    """Return a score as numbers and text, ready for JSON; None for NaN."""
+    return {name: json_value(value) for name, value in attrs.asdict(score).items()}
+
+
+def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO) -> None:
+    """Write one row per value to ``stream``; the reference is the first law, or the measured value.
+
+    The second and further varied entries have columns of their own at the end.
+    """
+    writer = csv.writer(stream, lineterminator="\n")
+    others = dict(list(comparison.varied.items())[1:])
+    headings = [csv_heading(name, entry_unit(name), comparison.scene) for name in others]
+    writer.writerow([*CSV_HEADINGS, *headings])
+    for name in quantities:
+        unit = QUANTITIES[name].unit_in(comparison.scene)
+        against, x = next(iter(comparison.varied.items()), ("", np.nan))
+        for law in comparison.names:
+            values, difference = comparison.values(name, law), comparison.difference(name, law)
+            for row in _rows(x, values, values - difference, difference, *others.values()):
+                writer.writerow(["scene", name, unit, against, row[0], law, *row[1:]])
+    for agreement in comparison.agreements:
+        measured, unit = agreement.measured, agreement.unit
+        for law, values in agreement.predicted.items():
+            columns = (measured.x, values, measured.values, agreement.difference(law))
+            for row in _rows(*columns):
+                start = ["measured", measured.quantity, unit, measured.against]
+                writer.writerow([*start, row[0], law, *row[1:], *("" for _ in others)])
+
+
+def _rows(*columns: Any) -> Iterator[list[Any]]:
+    for row in np.broadcast(*columns):
+        yield ["" if np.isnan(item) else float(item) for item in row]
+
+
+def _list(values: Any) -> Any:
+    return json_value(np.asarray(values)) if np.ndim(values) else json_value(float(values))

@@ -7,6 +7,8 @@ import math
 import time
 from collections import Counter
 from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
 
 import attrs
 import numpy as np
@@ -16,8 +18,7 @@ from contactlab.contracts.error_model import COARSE
 from contactlab.study.bench_methods import Method
 from contactlab.study.model_error import ModelError, model_error
 from contactlab.study.stability_cases import Case, cases
-from contactlab.study.stability_map import INCIDENCES, Region, map_chis, region, region_cells
-from contactlab.study.stability_outcome import (
+from contactlab.study.stability_judge import (
     ANSWERED,
     RAISED,
     SKIPPED,
@@ -25,6 +26,7 @@ from contactlab.study.stability_outcome import (
     Outcome,
     judge,
 )
+from contactlab.study.stability_map import INCIDENCES, Region, map_chis, region, region_cells
 
 #: A case of more work than this, in steps of one part, is skipped. Work is not time: which cases
 #: are tried does not depend on the machine.
@@ -76,11 +78,10 @@ class Stability:
         errors = [
             item.error
             for item in self.outcomes
-            if (item.method, item.family) == (method, family)
-            and item.outcome == ANSWERED
+            if (item.method, item.family, item.outcome) == (method, family, ANSWERED)
             and item.bound <= COARSE
         ]
-        return float(np.nanmax(errors)) if not np.all(np.isnan(errors)) else np.nan
+        return float(np.fmax.reduce(errors, initial=np.nan))
 
 
 def stability(
@@ -105,45 +106,38 @@ def stability(
     judged : callable
         Runs one case and returns its outcome, for the map too.
     """
-    started = time.perf_counter()
-    listed = [list(cases(method, quick=quick)) for method in methods]
-    cells = [region_cells(method, quick=quick) for method in methods]
+    until = time.perf_counter() + budget
+    listed = [case for method in methods for case in cases(method, quick=quick)]
     elastic = [method for method in methods if method.normal == DEFAULT_NORMAL]
-    laws = list(dict.fromkeys(method.tangential for method in elastic))
-    total = sum(map(len, listed)) + sum(map(len, cells)) + len(laws)
-    outcomes: list[Outcome] = []
-    regions: list[Region] = []
-    models: list[ModelError] = []
     largest = QUICK_LARGEST if quick else LARGEST
-    done = 0
-    # A budget cuts all methods alike: family by family, and within a family by work.
-    ordered = sorted((case for mine in listed for case in mine), key=lambda c: (c.family, work(c)))
-    for case in ordered:
-        if time.perf_counter() - started > budget:
+    # A budget cuts all methods alike: family by family, and within a family by work. Model errors
+    # come after the map, which has cached the costly exact answers.
+    jobs: list[tuple[int, Callable[[], Outcome | Region | ModelError | None]]] = [
+        (1, partial(judged if work(case) <= largest else _skipped, case))
+        for case in sorted(listed, key=lambda case: (case.family, work(case)))
+    ]
+    jobs += [
+        (len(cells), partial(region, method, cells, until=until, judged=judged))
+        for method in methods
+        if (cells := region_cells(method, quick=quick))
+    ]
+    jobs += [
+        (1, partial(model_error, law, map_chis(quick=quick), INCIDENCES))
+        for law in dict.fromkeys(method.tangential for method in elastic)
+    ]
+    total, done = sum(count for count, _ in jobs), 0
+    items: list[Any] = []
+    for count, job in jobs:
+        if time.perf_counter() > until:
             break
-        outcomes.append(judged(case) if work(case) <= largest else _skipped(case))
-        done += 1
-        if progress is not None:
-            progress(done, total)
-    for method, mine in zip(methods, cells, strict=True):
-        if not mine or time.perf_counter() - started > budget:
-            continue
-        regions.append(region(method, mine, until=started + budget, judged=judged))
-        done += len(mine) if regions[-1].complete else 0
-        if progress is not None:
-            progress(done, total)
-    for law in laws:  # after the map, which has cached the costly exact answers
-        if time.perf_counter() - started > budget:
-            break
-        model = model_error(law, map_chis(quick=quick), INCIDENCES)
-        models += [] if model is None else [model]
-        done += 1
+        items.append(job())
+        done += count if getattr(items[-1], "complete", True) else 0
         if progress is not None:
             progress(done, total)
     return Stability(
-        outcomes=tuple(outcomes),
-        regions=tuple(regions),
-        models=tuple(models),
+        outcomes=tuple(item for item in items if isinstance(item, Outcome)),
+        regions=tuple(item for item in items if isinstance(item, Region)),
+        models=tuple(item for item in items if isinstance(item, ModelError)),
         complete=done == total,
     )
 
@@ -154,24 +148,17 @@ def work(case: Case) -> float:
     Under a tolerance the number of steps grows with the root of chi, and falls with the root of
     the tolerance.
     """
-    options = case.options["integrator"]
+    options, parts = case.options["integrator"], dict(case.options["tangential"])
+    parts.pop("tolerance", None)
     steps = float(options.get("steps", DEFAULT_STEPS))
     if "steps" not in options:
         tolerance = float(options.get("tolerance", DEFAULT_TOLERANCE))
         with contextlib.suppress(ValueError):  # a refused scene is an outcome
             steps *= math.sqrt(1.0 + min(float(np.max(case.scene.make().chi)), 1e12))
         steps *= math.sqrt(DEFAULT_TOLERANCE / tolerance)
-    parts = [
-        float(value) for name, value in case.options["tangential"].items() if name != "tolerance"
-    ]
-    return steps * (1.0 + max([0.0, *parts]) ** 2 / 1e4)
+    return steps * (1.0 + float(max(parts.values(), default=0.0)) ** 2 / 1e4)
 
 
 def _skipped(case: Case) -> Outcome:
-    return Outcome(
-        method=case.method.name,
-        family=case.family,
-        case=case.label,
-        outcome=SKIPPED,
-        note="too much work",
-    )
+    """Return the outcome of a case that is too much work."""
+    return Outcome.of(case, SKIPPED, note="too much work")

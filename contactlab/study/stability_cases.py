@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import attrs
@@ -26,6 +27,7 @@ QUICK_STEPS = (1, 2, 3, 4, 5, 10, 50)
 PARTS = (1, 2, 3, 5, 10, 100, 1000)
 QUICK_PARTS = (1, 2)
 TOLERANCES = (1.0, 0.1, 1e-2, 1e-3, 1e-5, 1e-8, 1e-12)
+FRICTIONS = (0.0, 1e-300, 1e-12, 1e3, 1e12, 1e300)
 #: (psi1, chi) of the scenes on which resolutions are varied.
 LADDER = ((0.3, 0.3), (0.5, CHI), (1.2, CHI), (3.0, CHI), (1.2, 30.0), (0.3, 1e3))
 QUICK_LADDER = ((1.2, CHI), (1.2, 30.0))
@@ -161,9 +163,16 @@ class Extreme(NamedTuple):
 
 def extreme_scenes(*, quick: bool = False) -> list[Extreme]:
     """Return the scenes tried under the default normal law; ``quick`` takes about a third."""
-    scenes = [*_incidence(quick), *_inertia(quick), *_friction(), *_materials()]
-    scenes += [*_sizes(quick), *_masses(quick), *_types()]
-    return scenes
+    incidences = (0.0, 1e-300, 1e-12, 1e-3, 0.5, -1.2, 1e6, 1e15, 1e16)
+    scenes = [_plain("psi1", f"psi1={psi1:g}", psi1, CHI) for psi1 in incidences[:: 1 + quick]]
+    for chi in (0.5, CHI) if quick else REGIME_CHI:
+        scenes += _regimes(chi, (-1e-9, 0.0, 1e-9) if quick else (-1e-3, -1e-9, 0.0, 1e-9, 1e-3))
+    for chi in QUICK_CHIS if quick else CHIS:
+        for psi1 in (0.3, 1.2) if quick else (0.3, 0.98, 1.2, 2.5):
+            scenes.append(_plain("chi", f"chi={chi:g} psi1={psi1:g}", psi1, chi))
+    scenes += _balls("friction", "mu={:g}", "friction", FRICTIONS)
+    scenes += _balls("poisson", "nu={:g}", "poisson", (-1.0, 0.0, 0.5))
+    return [*scenes, *_sizes(quick=quick), *_types()]
 
 
 def normal_scenes(*, quick: bool = False) -> list[Extreme]:
@@ -178,11 +187,8 @@ def normal_scenes(*, quick: bool = False) -> list[Extreme]:
     incidences = (0.0, 1e-12, 0.5, 1.2, 20.0, 1e15)
     scenes += [_plain("normal", f"psi1={psi1:g}", psi1, CHI) for psi1 in incidences]
     scenes += [_plain("normal", f"chi={chi:g}", 0.3, chi) for chi in (0.05, 0.5, 30.0, 1e3)]
-    scenes += [
-        extreme._replace(family="normal")
-        for extreme in (*_friction(), *_sizes(quick=True), *_masses(quick=True), *_types())
-    ]
-    return scenes
+    others = [*_balls("", "mu={:g}", "friction", FRICTIONS), *_sizes(quick=True), *_types()]
+    return scenes + [extreme._replace(family="normal") for extreme in others]
 
 
 def _plain(family: str, label: str, psi1: Any, chi: Any) -> Extreme:
@@ -190,22 +196,12 @@ def _plain(family: str, label: str, psi1: Any, chi: Any) -> Extreme:
     return Extreme(family, label, lambda: Scene.nondimensional(psi1=psi1, chi=chi))
 
 
-def _incidence(quick: bool) -> Iterator[Extreme]:
-    incidences = (0.0, 1e-300, 1e-12, 1e-3, 0.5, -1.2, 1e6, 1e15, 1e16)
-    for psi1 in incidences[:: 2 if quick else 1]:
-        yield _plain("psi1", f"psi1={psi1:g}", psi1, CHI)
-    for chi in (0.5, CHI) if quick else REGIME_CHI:
-        for name, edge in (("1", 1.0), ("4chi-1", 4.0 * chi - 1.0)):
-            for side in (-1e-3, -1e-9, 0.0, 1e-9, 1e-3):
-                if edge > 0.0 and not (quick and abs(side) == 1e-3):
-                    label = f"psi1={name}{side:+g} chi={chi:.4g}"
-                    yield _plain("regimes", label, edge + side, chi)
-
-
-def _inertia(quick: bool) -> Iterator[Extreme]:
-    for chi in QUICK_CHIS if quick else CHIS:
-        for psi1 in (0.3, 1.2) if quick else (0.3, 0.98, 1.2, 2.5):
-            yield _plain("chi", f"chi={chi:g} psi1={psi1:g}", psi1, chi)
+def _regimes(chi: float, sides: tuple[float, ...]) -> Iterator[Extreme]:
+    """Yield scenes at and beside psi1 = 1 and psi1 = 4 chi - 1, where the regime changes."""
+    for name, edge in (("1", 1.0), ("4chi-1", 4.0 * chi - 1.0)):
+        for side in sides:
+            if edge > 0.0:
+                yield _plain("regimes", f"psi1={name}{side:+g} chi={chi:.4g}", edge + side, chi)
 
 
 def _ball(
@@ -226,41 +222,36 @@ def _ball(
     return Scene(sphere, target, friction, speed, slip * speed, 0.0)
 
 
-def _friction() -> Iterator[Extreme]:
-    for friction in (0.0, 1e-300, 1e-12, 1e3, 1e12, 1e300):
-        yield Extreme("friction", f"mu={friction:g}", lambda mu=friction: _ball(friction=mu))  # type: ignore[misc]
+def _balls(family: str, label: str, argument: str, values: Sequence[float]) -> list[Extreme]:
+    """Return steel balls that differ in one argument of ``_ball``."""
+    return [
+        Extreme(family, label.format(value), partial(_ball, **{argument: value}))
+        for value in values
+    ]
 
 
-def _materials() -> Iterator[Extreme]:
-    for ratio in (-1.0, 0.0, 0.5):
-        yield Extreme("poisson", f"nu={ratio:g}", lambda nu=ratio: _ball(poisson=nu))  # type: ignore[misc]
-
-
-def _sizes(quick: bool) -> Iterator[Extreme]:
+def _sizes(*, quick: bool) -> Iterator[Extreme]:
+    """Yield scenes over speed, radius (at the least and the greatest speed too), and mass."""
     speeds = (1e-12, 1e4) if quick else (1e-165, 1e-12, 1e-6, 1e-2, 1e2, 1e4)
     radii = (1e-9, 1e9) if quick else (1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e9)
-    for v1 in speeds:
-        yield Extreme("speed", f"v1={v1:g} m/s", lambda v=v1: _ball(speed=v))  # type: ignore[misc]
-    for size in radii:
-        yield Extreme("radius", f"R={size:g} m", lambda r=size: _ball(radius=r))  # type: ignore[misc]
-        for v1 in speeds[:: len(speeds) - 1]:
-            label = f"R={size:g} m, v1={v1:g} m/s"
-            yield Extreme("radius", label, lambda r=size, v=v1: _ball(radius=r, speed=v))  # type: ignore[misc]
+    masses = (1e-12, 1e12) if quick else (1e-12, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e12)
+    yield from _balls("speed", "v1={:g} m/s", "speed", speeds)
+    for radius in radii:
+        yield from _balls("radius", "R={:g} m", "radius", [radius])
+        for speed in (speeds[0], speeds[-1]):
+            label = f"R={radius:g} m, v1={speed:g} m/s"
+            yield Extreme("radius", label, partial(_ball, radius=radius, speed=speed))
+    yield from _balls("mass", "m2/m1={:g}", "mass_ratio", masses)
 
 
-def _masses(quick: bool) -> Iterator[Extreme]:
-    for ratio in (1e-12, 1e12) if quick else (1e-12, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e12):
-        yield Extreme("mass", f"m2/m1={ratio:g}", lambda m=ratio: _ball(mass_ratio=m))  # type: ignore[misc]
-
-
-def _types() -> Iterator[Extreme]:
+def _types() -> list[Extreme]:
+    """Return scenes of single-precision numbers and of integers."""
     single = np.float32
-    yield _plain("types", "float32", single(1.2), single(CHI))
-    yield _plain("types", "int", 1, 3)
-    yield _plain("types", "int64", np.int64(2), np.int64(3))
-    yield Extreme(
-        "types",
-        "float32, SI",
-        lambda: _ball(friction=single(0.2), slip=single(0.3), poisson=single(0.3)),
-    )
-    yield Extreme("types", "int, SI", lambda: _ball(friction=1, slip=1, poisson=0))
+    singles: Any = {"friction": single(0.2), "slip": single(0.3), "poisson": single(0.3)}
+    return [
+        _plain("types", "float32", single(1.2), single(CHI)),
+        _plain("types", "int", 1, 3),
+        _plain("types", "int64", np.int64(2), np.int64(3)),
+        Extreme("types", "float32, SI", partial(_ball, **singles)),
+        Extreme("types", "int, SI", partial(_ball, friction=1, slip=1, poisson=0)),
+    ]

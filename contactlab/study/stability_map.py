@@ -16,7 +16,7 @@ from contactlab.compose.registry import REGISTRY
 from contactlab.impact.scene import Scene
 from contactlab.study.bench_methods import Method
 from contactlab.study.stability_cases import Case, Extreme
-from contactlab.study.stability_outcome import ANSWERED, RAISED, WRONG, Outcome, judge
+from contactlab.study.stability_judge import ANSWERED, RAISED, WRONG, Outcome, judge
 from contactlab.study.stability_references import converges
 
 Array = NDArray[np.float64]

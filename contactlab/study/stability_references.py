@@ -8,7 +8,7 @@ has no partial slip) is therefore not counted as numerical error.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,6 @@ from contactlab.contracts.error_model import range_of
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
 
-KIND = "tangential"
 #: Tolerances of the exact solution, the finer first; both finer than the default, which they judge.
 REFERENCE_TOLERANCES = (1e-11, 1e-9)
 #: First number of steps of a law's own reference, over the stability limit; the least and the
@@ -60,35 +59,64 @@ def reference_for(law: TangentialLaw, normal: NormalLaw) -> Reference:
     """
     elastic = "elastic_hertz" in normal.offers
     if "no_friction" in law.offers:
-        return none
+        return lambda *_: 0.0
     if "rigid" in law.offers:
-        return rigid if elastic else _rigid_under(normal)
+        return rigid if elastic else partial(_rigid_under, normal)
     if converges(law):
-        return continuum if elastic else _another(normal, law)
-    return itself if elastic else nothing
+        return continuum if elastic else partial(_other_law, normal, judging_laws(normal, law))
+    return itself if elastic else lambda *_: None
 
 
-def none(scene: Scene, law: TangentialLaw) -> float:  # noqa: ARG001
-    """Return 0, the change without friction."""
-    return 0.0
+def rigid(scene: Scene, _: TangentialLaw) -> float:
+    """Return the change by the rigid-body theory, min(|psi1|, 4 chi) in psi, as m/s."""
+    unit, width, speed = range_of(scene)
+    if speed * 1e-6 > width:  # psi1 >> 4 chi: psi2 - psi1 would cancel
+        return -float(np.copysign(width, scene.slip_velocity))
+    chi = float(scene.chi) if unit * float(scene.chi) else 0.0
+    scale = float(unit if chi else speed)
+    if scale == 0.0:
+        return 0.0
+    psi1 = float(scene.slip_velocity) / scale
+    return (float(rigid_body_rebound(psi1, chi)) - psi1) * scale
 
 
-def nothing(scene: Scene, law: TangentialLaw) -> None:
-    """Return None: there is no reference."""
+def _rigid_under(normal: NormalLaw, scene: Scene, _: TangentialLaw) -> float:
+    """Return the change of a rigid body by the impulse of the friction load, in m/s."""
+    impulse = load_impulse(scene, normal)
+    sliding = float(scene.friction_coefficient * impulse / scene.pair.tangential_mass)
+    slip = float(scene.slip_velocity)
+    return -float(np.copysign(min(sliding, abs(slip)), slip))
 
 
-def _another(normal: NormalLaw, judged: TangentialLaw) -> Reference:
-    """Return the reference by the first law of ``laws_of_the_continuum`` that settles."""
-    candidates = laws_of_the_continuum(normal, judged)
-
-    def change(scene: Scene, _: TangentialLaw) -> float | None:
-        answers = (fine_under(scene, normal, law) for law in candidates)
-        return next((answer for answer in answers if answer is not None), None)
-
-    return change
+@lru_cache(maxsize=4096)
+def load_impulse(scene: Scene, normal: NormalLaw) -> float:
+    """Return the impulse of the friction load under ``normal``, in N s."""
+    return float(normal_motion(normal, scene).total_load_impulse)
 
 
-def laws_of_the_continuum(normal: NormalLaw, judged: TangentialLaw) -> list[type[TangentialLaw]]:
+def continuum(scene: Scene, _: TangentialLaw) -> float | None:
+    """Return the change by the exact solution, in m/s; None if it fails."""
+    return _exact(scene)
+
+
+@lru_cache(maxsize=4096)
+def _exact(scene: Scene) -> float | None:
+    for tolerance in REFERENCE_TOLERANCES:
+        result = Simulation(**exact(tolerance)).run(scene)
+        if result.status:
+            return float(result.motion.slip_velocity_change)
+    return None
+
+
+def _other_law(
+    normal: NormalLaw, candidates: list[type[TangentialLaw]], scene: Scene, _: TangentialLaw
+) -> float | None:
+    """Return the change by the first candidate that settles, in m/s; None if none does."""
+    answers = (fine_under(scene, normal, candidate) for candidate in candidates)
+    return next((answer for answer in answers if answer is not None), None)
+
+
+def judging_laws(normal: NormalLaw, judged: TangentialLaw) -> list[type[TangentialLaw]]:
     """Return the classes of stepped laws that ``judged`` may be judged by, the best first.
 
     A law fits ``normal``, and needs only the contact radius. First come other laws with the limit
@@ -98,9 +126,10 @@ def laws_of_the_continuum(normal: NormalLaw, judged: TangentialLaw) -> list[type
     ours = [info.name for info in REGISTRY.installed() if info.distribution == PROJECT]
     same_limit: list[type[TangentialLaw]] = []
     other_limit: list[type[TangentialLaw]] = []
-    for name in (*PREFERRED["elastic"], *(name for name in ours if kind_of(name) == KIND)):
+    names = (name for name in ours if kind_of(name) == "tangential")
+    for name in (*PREFERRED["elastic"], *names):
         try:
-            law = REGISTRY.create(full_name(KIND, name))
+            law = REGISTRY.create(full_name("tangential", name))
         except (ValueError, PluginError):  # blocked, broken, or an option has no default
             continue
         suits = converges(law) and law.needs <= {"radius"} and misfit(normal, law) is None
@@ -134,49 +163,6 @@ def fine_under(scene: Scene, normal: NormalLaw, law: Any) -> float | None:
     return None
 
 
-@lru_cache(maxsize=4096)
-def load_impulse(scene: Scene, normal: NormalLaw) -> float:
-    """Return the impulse of the friction load under ``normal``, in N s."""
-    return float(normal_motion(normal, scene).total_load_impulse)
-
-
-def _rigid_under(normal: NormalLaw) -> Reference:
-    def change(scene: Scene, _: TangentialLaw) -> float:
-        load = load_impulse(scene, normal)
-        sliding = float(scene.friction_coefficient * load / scene.pair.tangential_mass)
-        slip = float(scene.slip_velocity)
-        return -float(np.copysign(min(sliding, abs(slip)), slip))
-
-    return change
-
-
-def rigid(scene: Scene, law: TangentialLaw) -> float:  # noqa: ARG001
-    """Return the change by the rigid-body theory, min(|psi1|, 4 chi) in psi, as m/s."""
-    unit, width, speed = range_of(scene)
-    if speed * 1e-6 > width:  # psi1 >> 4 chi: psi2 - psi1 would cancel
-        return -float(np.copysign(width, scene.slip_velocity))
-    scale: float = speed if unit * float(scene.chi) == 0.0 else unit
-    if scale == 0.0:
-        return 0.0
-    psi1 = float(scene.slip_velocity) / scale
-    ratio = 0.0 if scale != unit else float(scene.chi)
-    return (float(rigid_body_rebound(psi1, ratio)) - psi1) * scale
-
-
-def continuum(scene: Scene, law: TangentialLaw) -> float | None:  # noqa: ARG001
-    """Return the change by the exact solution, in m/s; None if it fails."""
-    return _exact(scene)
-
-
-@lru_cache(maxsize=4096)
-def _exact(scene: Scene) -> float | None:
-    for tolerance in REFERENCE_TOLERANCES:
-        result = Simulation(**exact(tolerance)).run(scene)
-        if result.status:
-            return float(result.motion.slip_velocity_change)
-    return None
-
-
 def itself(scene: Scene, law: TangentialLaw) -> float | None:
     """Return the change by the law itself at many more steps, in m/s; None if not settled."""
     return _fine(scene, law) if isinstance(law, SteppedTangentialLaw) else None
@@ -190,16 +176,15 @@ def _fine(scene: Scene, law: SteppedTangentialLaw) -> float | None:
     frequency = np.sqrt(law.stiffness(scene, normal) / scene.pair.tangential_mass)
     steps = max(FINE * (int(0.5 * frequency * normal.duration) + 1), FEWEST)
     width = range_of(scene).width
-    answers: list[float] = []
-    limits: list[float] = []
+    before = limit = np.nan
     while steps <= MOST:
         fine = Simulation(tangential=law, integrator=fixed_steps(steps)).run(scene)
         if not fine.status:
             return None
-        answers.append(float(fine.motion.slip_velocity_change))
-        if len(answers) > 1:
-            limits.append(answers[-1] + (answers[-1] - answers[-2]) / 3.0)
-        if len(limits) > 1 and abs(limits[-1] - limits[-2]) <= SETTLED * width:
-            return limits[-1]
+        change = float(fine.motion.slip_velocity_change)
+        last, limit = limit, change + (change - before) / 3.0
+        if abs(limit - last) <= SETTLED * width:
+            return limit
+        before = change
         steps = 2 * int(fine.counters.get("steps", steps))  # the integrator may have refined them
     return None

@@ -8,7 +8,8 @@ dropped.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import attrs
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose import composition
+from contactlab.compose.rebound import rebound
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.outcome.result import ImpactResult
@@ -29,9 +31,13 @@ Array = NDArray[np.float64]
 EXACT_TOLERANCE = 1e-12
 #: Repeats of a timed run; fewer after ``LONG`` seconds at one resolution of a method.
 REPEATS, LONG = 5, 1.0
-#: Impacts in the sweep whose time per impact is measured, if the sweep should take less than
-#: ``SWEEP_BUDGET`` seconds.
-SWEEP, SWEEP_BUDGET = 500, 2.0
+#: Impacts in the sweep whose time per impact is measured: fewer, but ``FEWEST``, if they would take
+#: longer one by one than ``SWEEP_BUDGET`` seconds.
+SWEEP, FEWEST, SWEEP_BUDGET = 1000, 50, 2.0
+#: Multiples of this number spread evenly over [0, 1].
+GOLDEN = 0.6180339887498949
+#: Name of the row of ``contactlab.rebound``, and its calls for one time.
+REBOUND, CALLS = "rebound()", 20
 #: A method with a longer run time per impact, in s, is not refined further.
 SLOW, SLOW_QUICK = 0.1, 0.05
 #: Errors below this are rounding; orders are fitted to errors above it.
@@ -56,10 +62,14 @@ class Row:
     force_error_rms : float
         Rms error of F over mu P_max along the impact, against the exact history; NaN if a run
         failed.
+    elsewhere_rms : float
+        Rms error of psi2 over the scenes beyond solid spheres; NaN if a run failed.
     books_worst : float
         Largest imbalance over the energy at the start; NaN if a run failed.
     time_s, sweep_time_s : float
         Run time per impact, by itself and in a sweep, in s.
+    converges : bool
+        Whether the law converges to the continuum; if not, no finer step helps.
     failed : int
         Number of scenes without an answer.
     status : str
@@ -76,6 +86,8 @@ class Row:
     sweep_time_s: float
     failed: int
     status: str
+    elsewhere_rms: float = np.nan
+    converges: bool = True
 
     @property
     def ok(self) -> bool:
@@ -130,6 +142,7 @@ def bench(
     methods: Sequence[Method],
     *,
     quick: bool = False,
+    with_rebound: bool = False,
     budget: float = np.inf,
     progress: Callable[[int, int], object] | None = None,
 ) -> Benchmark:
@@ -140,6 +153,8 @@ def bench(
     methods : sequence of Method
     quick : bool
         Fewer scenes and resolutions.
+    with_rebound : bool
+        Whether ``contactlab.rebound`` is measured too, before the methods.
     budget : float
         Seconds after which no further resolution is begun; ``complete`` then is False.
     progress : callable, optional
@@ -158,13 +173,15 @@ def bench(
     limit = SLOW_QUICK if quick else SLOW
     interrupted = False
     try:
+        if with_rebound:
+            rows.append(_rebound_row(quick=quick))
         for done, (method, resolution) in enumerate(resolutions, start=1):
             if time.perf_counter() - started > budget:
                 break
             rows.append(
                 _left_out(method, resolution)
                 if method.name in slow
-                else _row(method, resolution, truths[_judged(method)])
+                else _row(method, resolution, truths[_judged(method)], quick=quick)
             )
             if rows[-1].time_s > limit:
                 slow.add(method.name)
@@ -179,7 +196,7 @@ def bench(
     return Benchmark(
         rows=tuple(rows),
         orders=orders,
-        complete=len(rows) == len(resolutions),
+        complete=len(rows) == len(resolutions) + with_rebound,
         interrupted=interrupted,
     )
 
@@ -205,12 +222,13 @@ def _judged(method: Method) -> tuple[str, str]:
     return method.normal, method.tangential if own else composition.preferred("tangential", normal)
 
 
-def _truths(normal: str, tangential: str, *, quick: bool) -> list[Truth]:
+def _truths(normal: str, tangential: str, *, quick: bool, elsewhere: bool = False) -> list[Truth]:
     """Return scenes with true answers: exact, or by a fine law of the same limit."""
     law = composition.law("normal", normal)
     truths = []
     elastic = "elastic_hertz" in law.offers
-    for scene in scenes(quick=quick, sized=normal != composition.DEFAULT_NORMAL):
+    sized = normal != composition.DEFAULT_NORMAL
+    for scene in scenes(quick=quick, sized=sized, elsewhere=elsewhere):
         if elastic:
             exact = Simulation(normal=law, **composition.exact(EXACT_TOLERANCE))
             result = exact.run(scene, history=True).check()
@@ -223,34 +241,107 @@ def _truths(normal: str, tangential: str, *, quick: bool) -> list[Truth]:
     return truths
 
 
-def _row(method: Method, resolution: dict[str, dict[str, Any]], truths: list[Truth]) -> Row:
+@lru_cache(maxsize=2)
+def _elsewhere(*, quick: bool) -> list[Truth]:
+    """Return the scenes beyond solid spheres under elastic Hertz contact, with exact answers."""
+    return _truths(composition.DEFAULT_NORMAL, "", quick=quick, elsewhere=True)
+
+
+def _elsewhere_rms(simulation: Simulation, method: Method, *, quick: bool) -> float:
+    """Return the rms error beyond solid spheres; NaN under other normal laws than the default."""
+    if method.normal != composition.DEFAULT_NORMAL:
+        return np.nan
+    truths = _elsewhere(quick=quick)
+    results = [simulation.run(truth.scene) for truth in truths]
+    if not all(result.status for result in results):
+        return np.nan
+    return _rms(
+        result.psi_change - truth.psi_change for result, truth in zip(results, truths, strict=True)
+    )
+
+
+def _rms(errors: Iterable[Any]) -> float:
+    """Return the root of the mean square."""
+    return float(np.sqrt(np.mean(np.square(list(errors)))))
+
+
+def _rebound_row(*, quick: bool) -> Row:
+    """Return error and run time of ``contactlab.rebound``, which no simulation runs."""
+    truths = _truths(composition.DEFAULT_NORMAL, "", quick=quick)
+    pairs = [(float(truth.scene.psi1), float(truth.scene.chi)) for truth in truths]
+    exact = [psi1 + truth.psi_change for (psi1, _), truth in zip(pairs, truths, strict=True)]
+    errors: Any = [rebound(*pair) - psi2 for pair, psi2 in zip(pairs, exact, strict=True)]
+    rest = _elsewhere(quick=quick)
+    off = [
+        rebound(float(one.scene.psi1), float(one.scene.chi)) - one.scene.psi1 - one.psi_change
+        for one in rest
+    ]
+    batch = _swept_scenes()
+    psi1, chi = np.asarray(batch.psi1), np.asarray(batch.chi)
+    least = np.inf
+    for _ in range(REPEATS):
+        before = time.perf_counter()
+        for pair in pairs:
+            for _ in range(CALLS):
+                rebound(*pair)
+        least = min(least, (time.perf_counter() - before) / (CALLS * len(pairs)))
+    together = np.inf
+    for _ in range(CALLS):
+        before = time.perf_counter()
+        rebound(psi1, chi)
+        together = min(together, (time.perf_counter() - before) / SWEEP)
+    return Row(
+        method=REBOUND,
+        options="",
+        error_rms=_rms(errors),
+        error_worst=float(np.max(np.abs(errors))),
+        force_error_rms=np.nan,
+        books_worst=np.nan,
+        time_s=least,
+        sweep_time_s=together,
+        failed=0,
+        status="SUCCESS",
+        elsewhere_rms=_rms(off),
+    )
+
+
+def _row(
+    method: Method, resolution: dict[str, dict[str, Any]], truths: list[Truth], *, quick: bool
+) -> Row:
     """Return error and run time of a method at one resolution."""
     simulation = method.simulation(resolution)
     impacts = [truth.scene for truth in truths]
-    results = [simulation.run(scene, history=True) for scene in impacts]
-    failed = [result for result in results if not result.status]
+    # Timed are runs without history: a law may answer those in another way than it follows one.
+    results = [simulation.run(scene) for scene in impacts]
+    followed = [simulation.run(scene, history=True) for scene in impacts]
+    failed = [result for result in (*results, *followed) if not result.status]
     good = not failed
     errors: Any = np.array(
         [result.psi_change - true.psi_change for result, true in zip(results, truths, strict=True)]
     )
     forces = (
-        [_force_error(result, true.result) for result, true in zip(results, truths, strict=True)]
+        [_force_error(result, true.result) for result, true in zip(followed, truths, strict=True)]
         if good
         else [np.nan]
     )
-    books: list[Any] = [abs(result.energy.relative_imbalance) for result in results]
+    books: list[Any] = [
+        abs(result.energy.relative_imbalance) if np.all(result.energy.checked) else np.nan
+        for result in results
+    ]
     least = _least_time(simulation, impacts) if good else np.nan
     return Row(
         method=method.name,
         options=_words(resolution),
-        error_rms=float(np.sqrt(np.mean(errors**2))) if good else np.nan,
+        error_rms=_rms(errors) if good else np.nan,
         error_worst=float(np.max(np.abs(errors))) if good else np.nan,
         force_error_rms=float(np.sqrt(np.mean(np.square(forces)))),
         books_worst=float(np.max(books)) if good else np.nan,
         time_s=least,
-        sweep_time_s=_sweep_time(simulation) if good and least * SWEEP < SWEEP_BUDGET else np.nan,
+        sweep_time_s=_sweep_time(simulation, least) if good and least < SLOW else np.nan,
         failed=len(failed),
         status=failed[0].status.name if failed else "SUCCESS",
+        elsewhere_rms=_elsewhere_rms(simulation, method, quick=quick) if good else np.nan,
+        converges=converges(simulation.tangential),
     )
 
 
@@ -265,6 +356,7 @@ def _left_out(method: Method, resolution: dict[str, dict[str, Any]]) -> Row:
         sweep_time_s=np.nan,
         failed=1,
         status="NOT_RUN",
+        converges=converges(composition.law("tangential", method.tangential)),
     )
 
 
@@ -278,7 +370,7 @@ def _force_error(result: ImpactResult, exact: ImpactResult | None) -> float:
     if exact is None:
         return np.nan
     history, true = result.history, exact.history
-    assert history is not None
+    assert history
     assert true is not None
     scene = exact.scene
     from scipy.interpolate import PchipInterpolator  # a few 1e-7 of the peak at 200 instants
@@ -307,16 +399,23 @@ def _least_time(simulation: Simulation, impacts: list[Scene]) -> float:
     return total / len(impacts)
 
 
-def _sweep_time(simulation: Simulation) -> float:
-    """Return the least time per impact of a sweep over psi1 without slip throughout, in s."""
-    chi = 49 / 34
-    batch = Scene.nondimensional(psi1=np.linspace(0.01, 4 * chi - 1.01, SWEEP), chi=chi)
+def _swept_scenes(size: int = SWEEP) -> Scene:
+    """Return impacts of solid spheres without slip throughout, one batch."""
+    chi = 1.17 + 0.58 * (np.arange(size) * GOLDEN % 1.0)  # all chi beside all psi1
+    psi1 = 0.01 + np.linspace(0.0, 1.0, size) * (4.0 * chi - 1.02)
+    return Scene.nondimensional(psi1=psi1, chi=chi)
+
+
+def _sweep_time(simulation: Simulation, alone: float) -> float:
+    """Return the least time per impact of a sweep of solid spheres; ``alone`` is one's, in s."""
+    size = int(np.clip(SWEEP_BUDGET / alone, FEWEST, SWEEP))
+    batch = _swept_scenes(size)
     least = np.inf
     for _ in range(2):
         before = time.perf_counter()
         uninterrupted(simulation.sweep(batch))
         least = min(least, time.perf_counter() - before)
-    return least / SWEEP
+    return least / size
 
 
 def _order(rows: list[Row]) -> float:
@@ -325,7 +424,7 @@ def _order(rows: list[Row]) -> float:
     for row in rows:
         sizes = [float(word.partition("=")[2]) for word in row.options.split(", ") if "=" in word]
         if row.ok and sizes and row.error_rms > ROUNDING and "tolerance" not in row.options:
-            points.append((np.log(sizes[-1]), np.log(row.error_rms)))
+            points.append((np.log(sizes[0]), np.log(row.error_rms)))
     if len(points) < 3 or points[0][1] - points[-1][1] < LEAST_GAIN:
         return float("nan")
     x, y = np.array(points).T

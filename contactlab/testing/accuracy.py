@@ -10,10 +10,10 @@ import numpy as np
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import ClosedFormNormalLaw, Integrator
-from contactlab.testing.bench import scene
 from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.integrators import CHI, fitting, marched, marched_impact
 from contactlab.testing.laws import DampedHertz, PressedSpring, Slider, SlidingForEver, Yielding
+from contactlab.testing.load_paths import scene
 
 #: Numbers of steps over which the order is regressed.
 LADDER = (40, 80, 160, 320)
@@ -110,7 +110,7 @@ def books_by(integrator: Any) -> None:
             imbalance = _imbalance(simulation, psi1)
             hold(
                 imbalance <= BOOKS,
-                f"psi1 = {psi1}: {imbalance:.1%} of the energy is in no book. Bound: {BOOKS:.2g}.",
+                f"psi1 = {psi1}: {imbalance:.1%} of the energy is unaccounted. Bound: {BOOKS:.2g}.",
             )
         if isinstance(getattr(integrator, integrator.resolution or "", None), int):
             worst = max(_imbalance(simulation, psi1) for psi1 in (0.5, 1.2, 2.0))
@@ -119,8 +119,8 @@ def books_by(integrator: Any) -> None:
             finer_worst = max(_imbalance(finer, psi1) for psi1 in (0.5, 1.2, 2.0))
             hold(
                 finer_worst <= max(0.5 * worst, 1e-9),
-                f"With 8 times the steps {finer_worst:.2g} of the energy is in no book, not less "
-                f"than half the {worst:.2g} before."
+                f"With 8 times the steps {finer_worst:.2g} of the energy is unaccounted, not "
+                f"less than half the {worst:.2g} before."
                 f" Bound: {max(0.5 * worst, 1e-9):.2g}.",
             )
 

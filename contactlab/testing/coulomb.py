@@ -10,10 +10,10 @@ from contactlab.compose.answers import answers
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import SteppedTangentialLaw, TangentialLaw
 from contactlab.numeric.arrays import spread
-from contactlab.testing.bench import Bench, continue_from, drive, scene, slack, straight
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold
 from contactlab.testing.impacts import CHI
 from contactlab.testing.laws import PullingHertz
+from contactlab.testing.load_paths import Bench, continue_from, drive, scene, slack, straight
 from contactlab.testing.ways import INTEGRATION, ways
 from contactlab.testing.whole_impacts import GRAZING
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab.testing.bench import (
+from contactlab.testing.check import check, hold
+from contactlab.testing.load_paths import (
     Bench,
     Path,
     continue_from,
@@ -16,7 +17,6 @@ from contactlab.testing.bench import (
     straight,
     wandering,
 )
-from contactlab.testing.check import check, hold
 
 #: Error of the trapezium rule on these paths, over mu P_max times the unit of slip.
 QUADRATURE = 2e-3

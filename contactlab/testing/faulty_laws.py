@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Iterator
 from typing import Any, ClassVar
 
 import attrs
@@ -18,12 +19,10 @@ from contactlab.contracts import (
     NormalContact,
     NormalMotion,
     NormalSample,
-    Phase,
-    PhasedTangentialLaw,
-    PhaseResponse,
-    PhaseSample,
+    PathTangentialLaw,
     ScaledContact,
     SteppedTangentialLaw,
+    Stretch,
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
@@ -121,38 +120,34 @@ class Unyielding(SteppedTangentialLaw):
         return TangentialResponse(nothing, nothing), state
 
 
-@attrs.frozen(kw_only=True)
-class Recurring(Phase):
-    """A phase that ends where it begins, and is followed by itself."""
+@attrs.frozen
+class Nowhere(Stretch):
+    """A stretch that ends where it begins."""
 
-    calls: Counter[str] = attrs.field(factory=Counter, eq=False, repr=False)
-    begun: float = 0.0
-    singular_events: tuple[bool, ...] = (False,)
+    start: float = 0.0
+    stop: float = 0.0
+    change: float = 0.0
+    work: float = 0.0
 
-    def respond(self, contact: ScaledContact, slip: Any, memo: Any) -> PhaseResponse:
-        """Return no force."""
-        _count(self.calls)
-        return PhaseResponse(0.0 * contact.force, None, None, ())
-
-    def margin(self, event: int, sample: PhaseSample) -> Any:
-        """Return zero where the phase began, and negative values after."""
-        return self.begun - sample.contact.phase + 0.0 * sample.slip
-
-    def after_event(self, event: int, state: Any, contact: Any, output: Any) -> Phase:
-        """Return the same phase, begun at the event."""
-        _count(self.calls)
-        return attrs.evolve(self, begun=state.x)
+    def states(self, contact: ScaledContact) -> tuple[Any, Any]:
+        """Return no change and no force."""
+        return 0.0 * contact.force, 0.0 * contact.force
 
 
 @attrs.frozen(kw_only=True)
-class Endless(PhasedTangentialLaw):
-    """A phased law with endless events at first touch."""
+class Endless(PathTangentialLaw):
+    """A law with endless events at first touch."""
 
     api_version: ClassVar[int] = 2
+    calls: Counter[str] = attrs.field(factory=Counter, eq=False, repr=False)
 
-    def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
-        """Return the first phase."""
-        return Recurring()
+    def path(
+        self, velocity: float, inertia: float, motion: ClosedFormMotion, tolerance: float
+    ) -> Iterator[Stretch]:
+        """Yield stretches of no length."""
+        while True:
+            _count(self.calls)
+            yield Nowhere()
 
 
 class SpoiledMotion(ClosedFormMotion):

@@ -9,8 +9,16 @@ import numpy as np
 
 from contactlab.contracts import NormalContact, SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
-from contactlab.testing.bench import STEPS_TO_KNOT, Bench, Path, drive, slack, straight, wandering
 from contactlab.testing.check import check, hold
+from contactlab.testing.load_paths import (
+    STEPS_TO_KNOT,
+    Bench,
+    Path,
+    drive,
+    slack,
+    straight,
+    wandering,
+)
 from contactlab.testing.units import ODD_UNITS, in_units
 
 #: Rounding of forces, over mu P_max.

@@ -10,9 +10,9 @@ import numpy as np
 
 from contactlab.contracts import AllStepsTangentialLaw, TangentialLaw
 from contactlab.outcome.history import Recorder
-from contactlab.testing.bench import FRICTION, bodies, scene
 from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.compare import same
+from contactlab.testing.load_paths import FRICTION, bodies, scene
 from contactlab.testing.units import ODD_UNITS, in_units
 from contactlab.testing.ways import allowed, course, meet, ways
 
@@ -96,7 +96,7 @@ def impact_books(law: Any) -> None:
             missing = abs(loss - work) / (0.5 * max(psi1, 1.0) ** 2)
             hold(
                 missing <= (1e-6 if way.exact else BOOKS),
-                f"psi1 = {psi1}, chi = {chi}: {missing:.1%} of the energy is in no book ({way})."
+                f"psi1 = {psi1}, chi = {chi}: {missing:.1%} of the energy is unaccounted ({way})."
                 f" Bound: {1e-6 if way.exact else BOOKS:.2g}.",
             )
 
@@ -211,13 +211,13 @@ def all_steps(law: Any) -> None:
     for chi, psi1 in itertools.product(CHI, PSI1):
         _, motion, _ = meet(way, psi1, chi)
         _, watched = course(way, psi1, chi)
-        # With an observer an integrator goes step by step.
         gap = abs(float(watched.slip_velocity_change / motion.slip_velocity_change) - 1.0)
         hold(gap <= 1e-8, f"psi1 = {psi1}, chi = {chi}: differs by {gap:.1e}. Bound: 1e-8.")
     for chis in (CHI[1], np.linspace(CHI[0], CHI[-1], len(PSI1))):
         impacts = scene(np.array(PSI1), chis)
         at_once = way.run(impacts)
-        stepped = way.run(impacts, Recorder(impacts.shape, with_fields=False))
+        recorder = Recorder(impacts.shape, with_fields=False, stepwise=True)
+        stepped = way.run(impacts, recorder)
         for together, single in ((at_once.change, stepped.change), (at_once.work, stepped.work)):
             gap = float(np.max(np.abs(together - single) / np.maximum(1.0, PSI1)))
             hold(

@@ -6,7 +6,6 @@ from typing import Any
 
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import Integrator
-from contactlab.testing.bench import scene
 from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.faulty_laws import (
     Endless,
@@ -18,6 +17,7 @@ from contactlab.testing.faulty_laws import (
 )
 from contactlab.testing.integrators import CHI, fitting, marched_impact
 from contactlab.testing.laws import PressedSpring, Slider, SlidingForEver
+from contactlab.testing.load_paths import scene
 
 NONE_FIT = "None of the faulty laws of the kit fits it."
 
@@ -82,5 +82,5 @@ def _reported(simulations: list[Simulation], *, least: int) -> None:
         who = f"{type(simulation.normal).__name__} and {type(simulation.tangential).__name__}"
         hold(not result.status, f"A fault in {who} reads as success.")
         hold(result.motion.detail, f"{result.status.name} says nothing of what and where: {who}.")
-        instants = len(result.history.time) if result.history is not None else 0
+        instants = len(result.history.time) if result.history else 0
         hold(instants >= least, f"{instants} instants of the history are left ({who}).")

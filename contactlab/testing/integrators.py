@@ -17,10 +17,10 @@ from contactlab.contracts import Integrator, TangentialMotion
 from contactlab.contracts.status import Status
 from contactlab.outcome.history import Recorder
 from contactlab.testing import limits
-from contactlab.testing.bench import bodies, scene
 from contactlab.testing.check import check, hold
 from contactlab.testing.compare import same
 from contactlab.testing.laws import PressedSpring, Slider, SlidingForEver, Yielding
+from contactlab.testing.load_paths import bodies, scene
 
 ENTRIES = (*TangentialMotion.numbers(), "status", "detail")
 CHI = 1.4411764706

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any, ClassVar, NamedTuple
 
 import attrs
@@ -14,12 +15,10 @@ from contactlab.contracts import (
     NormalContact,
     NormalLaw,
     NormalMotion,
-    Phase,
-    PhasedTangentialLaw,
-    PhaseResponse,
-    PhaseSample,
+    PathTangentialLaw,
     ScaledContact,
     SteppedTangentialLaw,
+    Stretch,
     TangentialResponse,
 )
 from contactlab.impact.hertz import hertz_scales
@@ -27,7 +26,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 
 
-class Stretch(NamedTuple):
+class Stretched(NamedTuple):
     """Stiffness over normal force, in 1/m, and the displacement so far, in m."""
 
     stiffness: Real
@@ -50,22 +49,22 @@ class PressedSpring(SteppedTangentialLaw):
         unit = normal.maximum_approach / scene.normal_speed
         return self.strength * scene.pair.tangential_mass / np.square(unit)
 
-    def start(self, scene: Scene, normal: NormalMotion) -> Stretch:
+    def start(self, scene: Scene, normal: NormalMotion) -> Stretched:
         """Return the spring without displacement."""
         nothing: Real = np.zeros(scene.shape) if scene.shape else 0.0
-        return Stretch(self.stiffness(scene, normal) / normal.maximum_force, nothing)
+        return Stretched(self.stiffness(scene, normal) / normal.maximum_force, nothing)
 
     def advance(
         self,
-        state: Stretch,
+        state: Stretched,
         increment: Increment,
         before: NormalContact,
         after: NormalContact,
-    ) -> tuple[TangentialResponse, Stretch]:
+    ) -> tuple[TangentialResponse, Stretched]:
         """Return the force of the stretched spring."""
         displacement = state.displacement + increment.displacement
         force = state.stiffness * after.force * displacement
-        return TangentialResponse(force, 0.0 * force), Stretch(state.stiffness, displacement)
+        return TangentialResponse(force, 0.0 * force), Stretched(state.stiffness, displacement)
 
     @classmethod
     def rebound(cls, motion: ClosedFormMotion) -> float:
@@ -162,38 +161,45 @@ class Yielding(SteppedTangentialLaw):
         return TangentialResponse(force, work), state._replace(force=force)
 
 
+@attrs.frozen
+class Slide(Stretch):
+    """Slip in one direction under the force P, scaled, from ``start`` to ``stop``."""
+
+    start: float
+    stop: float
+    change: float
+    work: float
+    ratio: float
+
+    def states(self, contact: ScaledContact) -> tuple[Any, Any]:
+        """Return the change of velocity, from ratio · (V - 1), and the force."""
+        return self.ratio * (contact.rate - 1.0), contact.force
+
+
 @attrs.frozen(kw_only=True)
-class Sliding(Phase):
-    """F = P, or NaN from the phase ``fails_at`` on."""
-
-    fails_at: float = math.inf
-
-    def respond(self, contact: ScaledContact, slip: Any, memo: Any) -> PhaseResponse:
-        """Return the force P, scaled."""
-        force = np.where(contact.phase < self.fails_at, contact.force, math.nan)
-        return PhaseResponse(force, None, None, ())
-
-    def friction_power(self, sample: PhaseSample) -> Any:
-        """Return force times velocity."""
-        return sample.contact.force * sample.velocity
-
-
-@attrs.frozen(kw_only=True)
-class SlidingForEver(PhasedTangentialLaw):
+class SlidingForEver(PathTangentialLaw):
     """Slip in one direction from first touch to separation.
 
-    With ``fails`` the force is NaN from x = 1 on; with ``at_once`` the law raises at first touch.
+    With ``fails`` the path is NaN from x = 1 on; with ``at_once`` the law raises at first touch.
     """
 
     api_version: ClassVar[int] = 2
     fails: bool = False
     at_once: bool = False
 
-    def begin(self, velocity: float, inertia: float, motion: ClosedFormMotion) -> Phase:
-        """Return the only phase."""
+    def path(
+        self, velocity: float, inertia: float, motion: ClosedFormMotion, tolerance: float
+    ) -> Iterator[Stretch]:
+        """Yield one stretch, or one to x = 1 and one of NaN."""
         if self.at_once:
             raise ArithmeticError("as it was asked to")
-        return Sliding(fails_at=1.0 if self.fails else math.inf)
+        start = 0.0
+        for stop in (1.0, math.pi):
+            fall = motion.scaled_mass * (1.0 - motion.scaled_at(stop).rate)
+            change = -inertia * fall * (math.nan if self.fails and start else 1.0)
+            work = fall * (velocity + 0.5 * change)
+            yield Slide(start, stop, change, work, inertia * motion.scaled_mass)
+            start = stop
 
 
 @attrs.frozen(kw_only=True)

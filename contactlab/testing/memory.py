@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab.testing.bench import Bench, Path, continue_from, drive, slack, straight
 from contactlab.testing.check import check, hold
+from contactlab.testing.load_paths import Bench, Path, continue_from, drive, slack, straight
 
 LEVEL = 0.8
 STEPS = 40

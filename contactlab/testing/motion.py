@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import ClosedFormNormalLaw
-from contactlab.testing.bench import scene
 from contactlab.testing.check import check, hold
+from contactlab.testing.load_paths import scene
 from contactlab.testing.normal import STEPS, respond
 
 #: Number of phases over which derivatives are integrated by the trapezium rule.

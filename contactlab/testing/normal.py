@@ -13,9 +13,9 @@ from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.testing import limits
-from contactlab.testing.bench import bodies, scene, varied
 from contactlab.testing.check import check, hold
 from contactlab.testing.compare import same, well_formed
+from contactlab.testing.load_paths import bodies, scene, varied
 from contactlab.testing.units import ODD_UNITS, Units, in_units
 
 #: Steps to the largest approach, which is that of a Hertz impact.

@@ -12,8 +12,8 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.testing import limits
-from contactlab.testing.bench import bodies, scene
 from contactlab.testing.check import apply_if, check, hold
+from contactlab.testing.load_paths import bodies, scene
 from contactlab.testing.normal import respond, strokes
 
 #: Normal speeds of the impacts, over the speed of the kit's other impacts.

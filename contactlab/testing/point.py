@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalLaw, SteppedTangentialLaw
 from contactlab.outcome.history import Recorder
-from contactlab.testing.bench import FRICTION, scene
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold
 from contactlab.testing.laws import StronglyDampedHertz
+from contactlab.testing.load_paths import FRICTION, scene
 from contactlab.testing.ways import meet, ways
 
 Array = NDArray[np.float64]

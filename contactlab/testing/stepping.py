@@ -11,7 +11,9 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
-from contactlab.testing.bench import (
+from contactlab.testing.check import check, hold
+from contactlab.testing.compare import same, well_formed
+from contactlab.testing.load_paths import (
     QUANTITIES,
     Bench,
     Path,
@@ -21,8 +23,6 @@ from contactlab.testing.bench import (
     varied,
     wandering,
 )
-from contactlab.testing.check import check, hold
-from contactlab.testing.compare import same, well_formed
 
 #: Rounding of forces, over mu P_max: a batch may sum in another order.
 ROUNDING = 1e-9

@@ -10,7 +10,9 @@ import numpy as np
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab.testing.bench import (
+from contactlab.testing.check import check, hold
+from contactlab.testing.laws import SoftHertz
+from contactlab.testing.load_paths import (
     HEAVY,
     Bench,
     Path,
@@ -20,8 +22,6 @@ from contactlab.testing.bench import (
     slack,
     straight,
 )
-from contactlab.testing.check import check, hold
-from contactlab.testing.laws import SoftHertz
 
 #: Normal loads zeta at which dF/dD is measured, up to the largest contact.
 LEVELS = (0.05, 0.3, 0.7, 1.0)

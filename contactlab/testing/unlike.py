@@ -15,9 +15,9 @@ from contactlab.impact.bodies import Sphere
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
-from contactlab.testing.bench import FRICTION
 from contactlab.testing.check import check, hold
 from contactlab.testing.integrators import marched, sound
+from contactlab.testing.load_paths import FRICTION
 from contactlab.testing.normal import STEPS, respond
 from contactlab.testing.ways import Way, ways
 

@@ -14,7 +14,7 @@ from contactlab.contracts import (
     NormalLaw,
     NormalMotion,
     Observer,
-    PhasedTangentialLaw,
+    PathTangentialLaw,
     SteppedTangentialLaw,
     TangentialLaw,
     TangentialMotion,
@@ -24,8 +24,8 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.outcome.history import History, Recorder
 from contactlab.testing import limits
-from contactlab.testing.bench import scene, slack
 from contactlab.testing.check import apply_if, hold
+from contactlab.testing.load_paths import scene, slack
 from contactlab.testing.units import Units
 
 #: Steps of an impact; the integrator takes more if the stiffness of the law needs more.
@@ -59,8 +59,10 @@ class Way(NamedTuple):
 
     @property
     def exact(self) -> bool:
-        """Whether the way adds no error of steps."""
-        return self.integrator is None or bool(self.integrator.accuracy)
+        """Whether the way adds no error of steps; a law with a resolution has steps of its own."""
+        if self.integrator is None:
+            return self.law.resolution is None
+        return bool(self.integrator.accuracy)
 
     def run(self, impact: Scene, recorder: Observer | None = None) -> Answer:
         """Return the answer for the impacts of a scene.
@@ -124,7 +126,7 @@ def ways(law: TangentialLaw, normal: NormalLaw | None = None) -> list[Way]:
     listed = []
     if isinstance(law, SteppedTangentialLaw):
         listed.append(Way(law, normal_law, REGISTRY.create("integrator.symplectic", steps=STEPS)))
-    if isinstance(law, PhasedTangentialLaw):
+    if isinstance(law, PathTangentialLaw):
         events: Integrator = REGISTRY.create("integrator.events")
         if isinstance(normal_law, events.normal_contract):
             listed.append(Way(law, normal_law, events))
@@ -154,13 +156,13 @@ def meet(
 
 
 def course(way: Way, psi1: float, chi: float) -> tuple[History, TangentialMotion]:
-    """Return history and motion of an impact."""
+    """Return history and motion of an impact, marched step by step."""
     if way.integrator is None:
         simulation = Simulation(normal=way.normal, tangential=way.law)
         result = simulation.run(scene(psi1, chi), history=True)
-        assert result.history is not None
+        assert result.history
         return result.history, result.motion
-    recorder = Recorder((), with_fields=False)
+    recorder = Recorder((), with_fields=False, stepwise=True)
     motion = meet(way, psi1, chi, recorder=recorder).motion
     return recorder.history(), motion
 

@@ -15,11 +15,11 @@ from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalLaw, NormalMotion, TangentialLaw, WholeImpact
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import spread
-from contactlab.testing.bench import scene, slack
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold
 from contactlab.testing.compare import well_formed
 from contactlab.testing.impacts import CHI, PSI1
 from contactlab.testing.laws import DampedHertz
+from contactlab.testing.load_paths import scene, slack
 from contactlab.testing.ways import INTEGRATION, ROUNDING, Way, allowed, course, ways
 
 #: psi1 of these checks: ``PSI1``, the onset of slip throughout (46), and negative angles.

@@ -1,117 +1,227 @@
-"""The explorer in a browser: what it shows as its sliders move."""
+"""The explorer in a browser: what it draws and tells is what the laws say."""
 
 from __future__ import annotations
 
+import math
+import re
+
 import pytest
 
-import contactlab
-from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab.pages.explore import CHI, PSI1, explore_page
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, rebound
+from contactlab.pages.explore import RADIUS, explore_page
 
 pytestmark = pytest.mark.browser
 
 #: Selenium's words, written out: without the extra these tests are still collected.
-ID = "id"
-
-
-class Keys:
-    END, HOME, ARROW_LEFT, ARROW_RIGHT = "\ue010", "\ue011", "\ue012", "\ue014"
+ID, CSS = "id", "css selector"
+SPACE, RIGHT, LEFT, HOME, TAB = "\ue00d", "\ue014", "\ue012", "\ue011", "\ue004"
+LAWS = {"exact": "fronts", "spring": "mindlin_cap", "rigid": "coulomb"}
+THROWS = (
+    {"angle": 20, "speed": 3, "spin": 0, "friction": 0.2, "material": "steel"},
+    {"angle": 35, "speed": 2, "spin": 100, "friction": 0.8, "material": "pmma"},
+    {"angle": 5, "speed": 1, "spin": -200, "friction": 0.5, "material": "rubber"},
+    {"angle": 80, "speed": 6, "spin": 0, "friction": 0.1, "material": "alumina"},
+    {"angle": 0, "speed": 2, "spin": 60, "friction": 0.15, "material": "brass"},
+)
 
 
 @pytest.fixture
 def page(opened, tmp_path):
     path = tmp_path / "explore.html"
     path.write_text(explore_page(), encoding="utf-8")
-    return opened(path)
+    browser = opened(path)
+    browser.execute_script("location.hash = ''")
+    yield browser
+    browser.execute_script("location.hash = ''")
 
 
-def shown(page, name):
-    return float(page.find_element(ID, name).text.replace("\u2212", "-"))
+def link(page, **values):
+    """Follow a link to a state of the page."""
+    words = "&".join(f"{key}={value}" for key, value in values.items())
+    page.execute_async_script(
+        "const done = arguments[1]; location.hash = arguments[0]; setTimeout(done, 50)", words
+    )
 
 
-def move(page, name, keys):
-    page.find_element(ID, name).send_keys(*keys)
+def to(page, moment):
+    page.execute_script(
+        "const box = document.getElementById('time'); box.value = arguments[0];"
+        "box.dispatchEvent(new Event('input'))",
+        moment,
+    )
 
 
-def test_the_values_shown_are_those_of_rebound(page):
-    assert shown(page, "psi2") == pytest.approx(contactlab.rebound(2.0, 1.44), abs=0.51e-4)
-    for name, keys in (
-        ("psi1", [Keys.ARROW_RIGHT] * 7),
-        ("chi", [Keys.ARROW_LEFT] * 22),
-        ("psi1", [Keys.END]),
-        ("chi", [Keys.END]),
-        ("psi1", [Keys.HOME, *[Keys.ARROW_RIGHT] * 5]),
-    ):
-        before = shown(page, "psi2")
-        move(page, name, keys)
-        psi1, chi = shown(page, "psi1-shown"), shown(page, "chi-shown")
-        assert shown(page, "psi2") == pytest.approx(contactlab.rebound(psi1, chi), abs=0.51e-4)
-        assert shown(page, "psi2") != before
-    assert psi1 == pytest.approx(PSI1.start + 5 * PSI1.step)
-    assert chi == pytest.approx(CHI.stops[-1])
+def scene(throw):
+    body = Material.named(throw["material"])
+    return Scene.at_angle(
+        Sphere(RADIUS / 1000.0, body), HalfSpace(body), throw["friction"],
+        speed=throw["speed"], angle_deg=throw["angle"], spin=throw["spin"],
+    )  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("psi1", "chi"), [(0.3, 1.44), (1.2, 1.0), (2.0, 1.44), (3.5, 2.4), (8, 1.0)]
-)
-def test_force_and_map_belong_to_the_same_impact(page, psi1, chi):
-    found = page.execute_script("return impact(arguments[0], arguments[1])", psi1, chi)
-    assert found["psi2"] == pytest.approx(contactlab.rebound(psi1, chi), abs=2e-3)
+def results(throw):
+    return {
+        name: Simulation(tangential=law).run(scene(throw)).check() for name, law in LAWS.items()
+    }
+
+
+def number(text):
+    return float(re.sub("[^0-9.-]", "", text.replace("\u2212", "-")))
+
+
+@pytest.mark.parametrize("throw", THROWS, ids=lambda throw: throw["material"])
+def test_the_answers_are_those_of_the_laws(page, throw):
+    link(page, **throw)
+    for name, result in results(throw).items():
+        told = page.execute_script("return found[arguments[0]]", name)
+        assert told["psi2"] == pytest.approx(result.psi2, abs=5e-4 * max(1.0, abs(result.psi1)))
+        assert told["angle"] == pytest.approx(math.degrees(result.rebound_angle), abs=0.03)
+        assert told["spin"] == pytest.approx(result.rebound_spin, abs=0.5)
+        assert told["speed"] == pytest.approx(result.rebound_speed, rel=1e-3)
+    met = page.execute_script("return found.met")
+    result = results(throw)["exact"]
+    assert met["psi1"] == pytest.approx(result.psi1, rel=1e-12)
+    assert met["chi"] == pytest.approx(result.scene.chi, rel=1e-12)
+    assert met["duration"] == pytest.approx(result.motion.duration, rel=1e-9)
+    rows = page.find_elements(CSS, "#answers tr")
+    shown = [number(cell.text) for cell in rows[0].find_elements(CSS, "td")]
+    angle, spin = math.degrees(result.rebound_angle), result.rebound_spin
+    assert shown == [pytest.approx(angle, abs=0.09), pytest.approx(spin, abs=1.0)]
+
+
+@pytest.mark.parametrize("chi", [7 / 6, 1.44, 1.75])
+@pytest.mark.parametrize("psi1", [0.3, 1.2, 2.0, 3.5, 8.0])
+def test_the_springs_of_the_page_converge_to_rebound(page, psi1, chi):
+    impact = "return impact(arguments[0], arguments[1], SPRINGS, STEPS)"
+    found = page.execute_script(impact, psi1, chi)
+    assert found["psi2"] == pytest.approx(rebound(psi1, chi), abs=5e-4)
     assert found["time"][-1] == pytest.approx(1.0)
     limits = zip(found["force"], found["limit"], strict=True)
     assert all(abs(force) <= limit + 1e-9 for force, limit in limits)
 
 
-def test_the_point_and_the_curves_move_with_the_sliders(page):
-    def drawn():
-        return [
-            page.find_element(ID, name).get_attribute("innerHTML") for name in ("rebound", "force")
-        ]
+def test_the_balls_fly_where_the_laws_send_them(page):
+    """After contact the drawn centres lie on the rebound paths, in the same time."""
+    throw = THROWS[1]
+    link(page, **throw)
+    places = {}
+    for moment in (800, 1000):
+        to(page, moment)
+        for name in LAWS:
+            circle = page.find_element(CSS, f"#stage g[data-law={name}] circle")
+            places[name, moment] = [float(circle.get_attribute(key)) for key in ("cx", "cy")]
+    for name, result in results(throw).items():
+        (x1, y1), (x2, y2) = places[name, 800], places[name, 1000]
+        drawn = math.degrees(math.atan2(x2 - x1, y1 - y2))
+        assert drawn == pytest.approx(math.degrees(result.rebound_angle), abs=0.05)
+    arrival = []
+    for moment in (0, 100):
+        to(page, moment)
+        assert len(page.find_elements(CSS, "#stage g")) == 1  # ghosts part after the contact
+        circle = page.find_element(CSS, "#stage g circle")
+        arrival.append([float(circle.get_attribute(key)) for key in ("cx", "cy")])
+    (x1, y1), (x2, y2) = arrival
+    assert math.degrees(math.atan2(x2 - x1, y2 - y1)) == pytest.approx(throw["angle"], abs=0.05)
 
-    def picture():
-        return page.execute_script("return document.getElementById('map').toDataURL()")
 
-    before = [*drawn(), picture()]
-    move(page, "psi1", [Keys.ARROW_RIGHT] * 10)
-    assert all(new != old for new, old in zip([*drawn(), picture()], before, strict=True))
-
-
-def test_the_words_tell_the_regime(page):
-    move(page, "psi1", [Keys.END])
-    assert "slips throughout" in page.find_element(ID, "words").text
-    move(page, "psi1", [Keys.HOME])
-    assert "central impact" in page.find_element(ID, "words").text
-
-
-@pytest.mark.parametrize("nu", [0.3, 0.1])
-def test_the_spin_is_that_of_a_ball_thrown_without(page, nu):
-    """The page knows psi1, psi2 and chi; the simulation the whole ball."""
-    material = Material(young_modulus=1e9, poisson_ratio=nu, density=1e3)
-    ball = Scene(Sphere(0.01, material), HalfSpace(material), 0.3, 1.0, 1.0)
-    result = Simulation().run(ball).check()
-    spin = result.rebound_spin * 0.01 / ball.tangential_velocity
-    words = page.execute_script(
-        "return spin(arguments[0], arguments[1], arguments[2])", ball.psi1, result.psi2, ball.chi
+def test_the_annulus_of_slip_grows_as_the_law_says(page):
+    """The stuck radius over the contact's, at instants of a contact that sticks first."""
+    throw = {"angle": 12, "speed": 2, "spin": 0, "friction": 0.5, "material": "pmma"}
+    link(page, **throw)
+    result = Simulation(tangential="springs", integrator="symplectic").run(
+        scene(throw), history="fields"
     )
-    assert f"{spin:.2f} <i>v</i>; rolling is -0.71 <i>v</i>" in words.replace("\u2212", "-")
+    assert result.psi1 < 1.0
+    history, duration = result.history, result.motion.duration
+    radii = history.fields["radius"][0] / result.motion.maximum_radius
+    for share in (0.5, 0.65, 0.8):
+        to(page, round(1000 * (0.22 + 0.52 * share)))
+        circles = page.find_elements(CSS, "#contact circle[data-state]")
+        stuck = [
+            float(c.get_attribute("r")) for c in circles if "1" in c.get_attribute("data-state")
+        ]
+        row = int(abs(history.time / duration - share).argmin())
+        held = history.fields["stuck"][row]
+        expected = radii[held].max() if held.any() else 0.0
+        assert (stuck[0] / 104.0 if stuck else 0.0) == pytest.approx(expected, abs=0.04)
 
 
-def test_of_other_bodies_no_spin_is_said(page):
-    assert "without spin" in page.find_element(ID, "spin").text
-    move(page, "chi", [Keys.HOME])
-    assert page.find_element(ID, "spin").text == ""
+def test_a_prediction_is_asked_for_before_the_answer_is_shown(page):
+    link(page, predict=1, guess=10)
+    assert not page.find_element(ID, "answers").is_displayed()
+    assert not page.find_element(ID, "rebound").is_displayed()
+    assert "prediction" in page.find_element(ID, "said").text
+    button = page.find_element(ID, "throw")
+    button.send_keys(SPACE)
+    assert button.text == "Skip"
+    button.send_keys(SPACE)
+    angle = math.degrees(results(THROWS[1])["exact"].rebound_angle)
+    told = page.find_element(ID, "said").text
+    assert f"You said 10°: {abs(10 - angle):.1f}° off." in told
+    assert page.find_element(ID, "answers").is_displayed()
 
 
-@pytest.mark.parametrize(("width", "height"), [(1920, 1080), (1366, 768), (1024, 768)])
-def test_all_but_the_small_print_is_seen_at_once(page, width, height):
-    size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+def test_the_state_is_in_the_link_and_back(page):
+    page.find_element(ID, "angle").send_keys(RIGHT * 3)
+    page.find_element(ID, "friction").send_keys(LEFT * 10)
+    hash_ = page.execute_script("return location.hash")
+    assert hash_ == "#angle=38&friction=0.7"
+    link(page, angle=61, material="steel", speed="nonsense", spin=1e9)
+    state = page.execute_script("return state")
+    assert (state["angle"], state["material"], state["speed"]) == (61, "steel", 2)
+    assert state["spin"] == 600  # the end of the slider
+
+
+def test_every_control_has_a_name_and_is_reached_by_keyboard(page):
+    page.execute_script("document.getElementById('angle').focus()")
+    names = []
+    for _ in range(9):
+        if names:
+            page.switch_to.active_element.send_keys(TAB)
+        active = page.switch_to.active_element
+        names.append((active.get_attribute("id"), active.accessible_name))
+    ids = [name for name, _ in names]
+    order = ["angle", "speed", "spin", "friction", "material", "predict", "throw", "time"]
+    assert ids[: len(order)] == order
+    assert all(name for _, name in names[: len(order)])
+    spin = page.find_element(ID, "spin")
+    assert spin.get_attribute("aria-valuetext") == "backspin 100 rad/s"
+    assert page.find_element(ID, "said").get_attribute("aria-live") == "polite"
+    for name in ("stage", "contact", "force", "rebound"):
+        picture = page.find_element(ID, name)
+        assert picture.get_attribute("role") == "img"
+        assert picture.accessible_name
+
+
+def test_cautions_are_those_of_the_plan(page):
+    link(page, material="rubber", speed=8)
+    assert "Hertz's theory is doubtful" in page.find_element(ID, "caution").text
+    throw = {"angle": 10, "speed": 5, "spin": 0, "friction": 0.2, "material": "steel"}
+    link(page, **throw)
+    told = page.find_element(ID, "caution").text
+    plan = str(Simulation().plan(scene(throw)))
+    assert ("yield" in told) == ("yield" in plan)
+    link(page, angle=10, speed=0.1, material="tungsten carbide", friction=0.2)
+    assert page.find_element(ID, "caution").text == ""
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "mobile"),
+    [(1920, 1080, False), (1366, 768, False), (1024, 768, False), (375, 812, True)],
+)
+def test_it_fits_the_width_and_the_throw_is_seen_at_once(page, width, height, mobile):
+    size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": mobile}
     page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     try:
         bottom = page.execute_script(
-            "return document.querySelector('.panels').getBoundingClientRect().bottom"
+            "return document.getElementById('throw').getBoundingClientRect().bottom"
         )
         across = page.execute_script("return document.documentElement.scrollWidth")
+        letters = page.execute_script(
+            "const t = document.querySelector('#stage text'), b = t.getScreenCTM();return 17 * b.a"
+        )
     finally:
         page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
     assert bottom <= height
     assert across <= width
+    assert letters >= 11.0  # pixels

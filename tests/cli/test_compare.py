@@ -16,8 +16,8 @@ from contactlab.cli import compare as command
 from contactlab.cli import progress
 from contactlab.figures.comparison import differences, laws_over_sweep
 from contactlab.figures.files import save_figure
-from contactlab.study.compare import compare
-from tests.tangential_laws import Creator
+from contactlab.study.comparison import compare
+from tests.laws.tangential_laws import Creator
 
 BOTH = ("--tangential", "coulomb,frictionless")
 UNITS = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}
@@ -338,3 +338,14 @@ def test_numbers_beside_a_file_are_refused(run, short_sweep):
     ran = run("compare", short_sweep, "--psi1", 1, "--chi", 1)
     assert ran.status == 2
     assert "leave out one of them" in ran.err
+
+
+def test_loops_of_laws_that_have_steps(run, ball, tmp_path):
+    picture = tmp_path / "loops.svg"
+    laws = "springs,mindlin_cap,coulomb"
+    done = run("compare", ball, "--tangential", laws, "--loops", str(picture))
+    text = picture.read_text()
+    assert "mindlin_cap" in text
+    assert "oscillating load" in text
+    assert "coulomb" not in text
+    assert "coulomb is left out" in done.err

@@ -12,9 +12,9 @@ from contactlab import Scene, Simulation, read_scene
 from contactlab.compose.registry import REGISTRY
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.scene_file import LawChoice
-from contactlab.study.compare import compare
+from contactlab.study.comparison import compare
 from contactlab.study.scores import DEFAULT_SCENE, candidates, pressed_force
-from tests.normal_laws import Damped
+from tests.laws.normal_laws import Damped
 
 pytestmark = pytest.mark.slow
 

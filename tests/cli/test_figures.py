@@ -40,7 +40,7 @@ def test_every_figure_as_png_and_csv(run, tmp_path):
     ran = run("figures", "--out", tmp_path / "new" / "folder", *FEW)
     assert ran.status == 0
     assert len(ran.out.splitlines()) == 8
-    for number in paper_figures.figures():
+    for number in paper_figures.paper_data():
         picture = tmp_path / "new" / "folder" / f"figure-{number}.png"
         assert picture.read_bytes().startswith(b"\x89PNG")
         text = picture.with_suffix(".csv").read_text(encoding="utf-8")
@@ -53,7 +53,7 @@ def test_every_drawing_has_its_numbers():
     from contactlab.figures import paper
 
     drawn = {name for name in vars(paper) if name.startswith("figure_")}
-    assert drawn == {f"figure_{number}" for number in paper_figures.figures()}
+    assert drawn == {f"figure_{number}" for number in paper_figures.paper_data()}
 
 
 def test_a_new_figure_is_one_function(run, monkeypatch, tmp_path):

@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from contactlab.fitting import bootstrap
+from contactlab.fitting import estimation
 from tests.cli.conftest import EXAMPLES
 
 pytestmark = pytest.mark.slow
@@ -155,7 +155,7 @@ def test_an_interruption_keeps_what_is_done(run, impacts, monkeypatch, tmp_path)
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(bootstrap, "solved", interrupted)
+    monkeypatch.setattr(estimation, "_solved_again", interrupted)
     ran = run("fit", impacts, KHARAZ, "--csv", tmp_path / "r.csv")
     assert ran.status == 130
     assert "friction_coefficient" in ran.out

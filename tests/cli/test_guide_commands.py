@@ -50,17 +50,15 @@ def test_the_first_commands_of_a_newcomer_run(run, tmp_path, monkeypatch):
         assert run(*line.split()).status == 0, line
 
 
-#: Commands of the README that other tests run, for they are long.
+#: Commands that other tests run, for they are long.
 LONG = ("bench", "stability", "compare --all")
 
 
 @pytest.mark.slow
-def test_the_commands_of_the_readme_run(run, tmp_path, monkeypatch):
+def test_the_commands_told_at_once_run(run, tmp_path, monkeypatch):
     shutil.copytree(EXAMPLES, tmp_path / "examples", ignore=shutil.ignore_patterns("*_plugin"))
     monkeypatch.chdir(tmp_path)
-    readme = (EXAMPLES.parent / "README.md").read_text(encoding="utf-8")
-    block = readme.partition("## The command line")[2].partition("```\n")[2].partition("```")[0]
-    commands = [line.removeprefix("contactlab ") for line in block.splitlines()]
+    commands = lines(PAGE.partition("## A tour in fifteen lines")[2].partition("\n## ")[0])
     assert len(commands) == 15
     for line in commands:
         if not line.startswith(LONG):

@@ -11,8 +11,8 @@ from PIL import Image
 
 from contactlab.cli import fit as fit_command
 from contactlab.figures import animation
-from contactlab.fitting import bootstrap
-from contactlab.study import compare, evidence, validation
+from contactlab.fitting import estimation
+from contactlab.study import comparison, validation
 from tests.cli.conftest import EXAMPLES, interrupting
 
 KHARAZ = EXAMPLES / "kharaz2001.toml"
@@ -23,29 +23,31 @@ def test_compare_keeps_the_laws_that_are_done(run, monkeypatch, measured, tmp_pa
     """Of the second law the sweep is done, the measured points are not: it is left out."""
     picture = tmp_path / "c.png"
     words = ("compare", measured, "--tangential", "coulomb,frictionless,stronge")
-    runs = compare._run
-    monkeypatch.setattr(compare, "REPEATS", 1)
-    monkeypatch.setattr(compare, "LONG_RUN", np.inf)  # of each law two sweeps, and measured points
-    monkeypatch.setattr(compare, "_run", interrupting(runs, 5))
+    runs = comparison._run
+    monkeypatch.setattr(comparison, "REPEATS", 1)
+    monkeypatch.setattr(
+        comparison, "LONG_RUN", np.inf
+    )  # of each law two sweeps, and measured points
+    monkeypatch.setattr(comparison, "_run", interrupting(runs, 5))
     ran = run(*words, "--figure", picture)
     assert ran.status == 130
     assert "coulomb" in ran.out
     assert "frictionless" not in ran.out
     assert "interrupted: not compared: frictionless, stronge" in ran.err
     assert picture.read_bytes().startswith(b"\x89PNG")
-    monkeypatch.setattr(compare, "_run", interrupting(runs, 7))
+    monkeypatch.setattr(comparison, "_run", interrupting(runs, 7))
     ran = run(*words, "--json")
     content = json.loads(ran.out)
     assert (ran.status, content["complete"]) == (130, False)
     assert list(content["laws"]) == ["coulomb", "frictionless"]
     assert list(content["measured"][0]["laws"]) == ["coulomb", "frictionless"]
-    monkeypatch.setattr(compare, "_run", interrupting(runs, 2))
+    monkeypatch.setattr(comparison, "_run", interrupting(runs, 2))
     ran = run(*words)
     assert (ran.status, ran.out) == (130, "")
 
 
 def test_all_laws_keep_those_that_are_done(run, monkeypatch, short_sweep):
-    monkeypatch.setattr(compare, "_timed", interrupting(compare._timed, 2))
+    monkeypatch.setattr(comparison, "_timed", interrupting(comparison._timed, 2))
     ran = run("compare", short_sweep, "--all", "--json")
     assert ran.status == 130
     content = json.loads(ran.out)
@@ -54,7 +56,7 @@ def test_all_laws_keep_those_that_are_done(run, monkeypatch, short_sweep):
 
 def test_a_report_of_the_laws_that_are_done(run, monkeypatch, ball, tmp_path):
     page = tmp_path / "r.html"
-    monkeypatch.setattr(compare, "_timed", interrupting(compare._timed, 1))
+    monkeypatch.setattr(comparison, "_timed", interrupting(comparison._timed, 1))
     ran = run("report", ball, "--tangential", "coulomb,stronge", "--out", page)
     assert (ran.status, ran.out) == (130, f"{page}\n")
     assert "Interrupted before all laws were compared" in page.read_text(encoding="utf-8")
@@ -64,7 +66,7 @@ def test_a_report_of_the_laws_that_are_done(run, monkeypatch, ball, tmp_path):
 def test_validate_keeps_checks_and_sources(run, monkeypatch, done, sources):
     checks = [validation._rigid] * done + [interrupting(None, 0)] * (sources == 0)
     monkeypatch.setattr(validation, "_checks", lambda: iter(checks))
-    monkeypatch.setattr(evidence, "_evidence", interrupting(evidence._evidence, sources))
+    monkeypatch.setattr(validation, "_evidence", interrupting(validation._evidence, sources))
     ran = run("validate")
     assert ran.status == 130
     assert ran.out.endswith("not complete: interrupted\n")
@@ -83,8 +85,9 @@ def test_a_fit_keeps_the_laws_that_are_done(run, monkeypatch, tmp_path):
 
 @pytest.mark.parametrize(("after", "kept"), [(10, True), (9, False)])
 def test_a_bootstrap_keeps_its_samples_if_they_are_enough(run, monkeypatch, after, kept):
-    monkeypatch.setattr(bootstrap, "FEWEST", 10)
-    monkeypatch.setattr(bootstrap, "solved", interrupting(bootstrap.solved, after))
+    monkeypatch.setattr(estimation, "FEWEST", 10)
+    again = interrupting(estimation._solved_again, after)
+    monkeypatch.setattr(estimation, "_solved_again", again)
     words = ("fit", KHARAZ, *E_T[:2], "--bootstrap", 150)
     ran = run(*words, "--json")
     assert ran.status == 130
@@ -97,7 +100,8 @@ def test_a_bootstrap_keeps_its_samples_if_they_are_enough(run, monkeypatch, afte
 
 
 def test_an_animation_keeps_its_frames(run, monkeypatch, ball, tmp_path):
-    monkeypatch.setattr(animation.Forces, "show", interrupting(animation.Forces.show, 3))
+    shown = 3 + len(animation.SAMPLES)  # the palette is of some frames, before all are drawn
+    monkeypatch.setattr(animation.Forces, "show", interrupting(animation.Forces.show, shown))
     picture = tmp_path / "a.gif"
     ran = run("animate", ball, "--out", picture)
     assert (ran.status, ran.out) == (130, "")

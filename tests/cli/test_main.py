@@ -121,7 +121,7 @@ def test_interrupted_sweep_reports_what_is_done(tmp_path):
         "import signal, sys; from contactlab.cli import main, progress; progress.QUIET = 1e6; "
         "usual = progress.Progress.__call__; progress.Progress.__call__ = "
         "lambda self, *counts: usual(self, *counts) or self._what == 'impacts' and "
-        "(self._put(self.line()), signal.pause()); "
+        "(self._put(self._share), signal.pause()); "
     )
     command = [sys.executable, "-c", talkative + "sys.exit(main.main())", "run", path,
                "--progress", "--out", tmp_path / "part.npz", "--json"]  # fmt: skip
@@ -136,7 +136,7 @@ def test_interrupted_sweep_reports_what_is_done(tmp_path):
         first = running.stderr.readline()
         running.send_signal(signal.SIGINT)
         out, err = running.communicate()
-    assert first.startswith(f"impacts: 5 % ({CHUNK}/20000), ")
+    assert first == f"impacts: 5 % ({CHUNK}/20000)\n"
     assert running.returncode == module.INTERRUPTED
     assert "interrupted" in err.splitlines()[-1]
     assert '"SUCCESS"' in out

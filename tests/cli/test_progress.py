@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import io
 import sys
-import threading
 
 import pytest
 
@@ -58,103 +57,59 @@ def test_nothing_is_shown_unasked_elsewhere_and_where_it_is_not_wanted(begin):
             assert show is None
 
 
-def test_the_time_left_goes_on_while_one_thing_takes_long(begin):
-    _, clock = begin(terminal=True)
-    with progress(None, "things") as show:
-        for passed, done, expected in (
-            (6.0, None, "things: 6 s so far"),
-            (2.0, 1, "things: 33 % (1/3), 16 s left"),
-            (3.0, None, "things: 33 % (1/3), 13 s left"),
-            (9.0, None, "things: 33 % (1/3), 8 s left"),  # it takes longer than the first
-            (4.0, 2, "things: 66 % (2/3), 12 s left"),
-            (13.0, None, "things: 66 % (2/3), 37 s so far"),  # longer than was to be expected
-            (4.0, 3, "things: 100 % (3/3), 41 s so far"),
-        ):
-            clock[0] += passed
-            if done is not None:
-                show(done, 3)
-            assert show.line() == expected
-
-
-@pytest.fixture
-def shown(monkeypatch):
-    """Return an event that is set whenever the thread has shown a state; none of it waits."""
-    event = threading.Event()
-    put = module.Progress._put
-
-    def tell(self, text):
-        put(self, text)
-        if text:
-            event.set()
-
-    monkeypatch.setattr(module.Progress, "_put", tell)
-    for name in ("QUIET", "OFTEN", "SELDOM"):
-        monkeypatch.setattr(module, name, 0.001)
-    return event
-
-
-def wait_for(event):
-    event.clear()
-    assert event.wait(60.0)
-
-
-def test_one_line_on_a_terminal_wiped_out_at_the_end(begin, shown):
+def test_the_line_on_a_terminal_is_overwritten_and_cleared_at_the_end(begin):
     screen, clock = begin(terminal=True)
     with fitted(), progress(None, "things") as show:
-        clock[0] += 5.0
-        show(1, 3)
-        wait_for(shown)
-        wait_for(shown)
-        print("done")
-        wait_for(shown)
-    states = screen.getvalue().split("\r\x1b[K")
-    assert states[-1] == ""
-    assert set(states) <= {"", *PLAIN, *(f"done\n{text}" for text in PLAIN)}
-    assert any(state.startswith("done\n") for state in states)
+        for passed, done in ((1.0, 1), (8.0, 3), (0.4, 4), (0.2, 5), (0.4, 10)):
+            clock[0] += passed
+            show(done, 10)
+    states = ["things: 30 % (3/10), 21 s left", "things: 50 % (5/10), 10 s left", ""]
+    assert screen.getvalue().split("\r\x1b[K") == states
 
 
-#: States of the line of one thing of three, done after 5 s; before it was done too.
-PLAIN = ("things: 33 % (1/3), 10 s left", "things: 0 s so far", "things: 5 s so far")
-
-
-def test_elsewhere_a_line_now_and_then_and_one_at_the_end(begin, shown):
+def test_elsewhere_there_is_a_line_now_and_then_and_one_at_the_end(begin):
     screen, clock = begin(terminal=False)
     with fitted(), progress(True, "things") as show:
-        clock[0] += 5.0
-        show(1, 3)
-        wait_for(shown)
-        wait_for(shown)
-        show(3, 3)
-    lines = screen.getvalue().splitlines()
-    assert PLAIN[0] in lines
-    assert lines[-1] == "things: 100 % (3/3), took 5 s"
+        for done in range(1, 101):
+            clock[0] += 0.5
+            show(done, 100)
+    assert screen.getvalue().splitlines() == [
+        "things: 4 % (4/100), 48 s left",
+        "things: 24 % (24/100), 38 s left",
+        "things: 44 % (44/100), 28 s left",
+        "things: 64 % (64/100), 18 s left",
+        "things: 84 % (84/100), 8 s left",
+        "things: 100 % (100/100), took 50 s",
+    ]
 
 
-def test_the_line_ends_with_an_interruption(begin, shown):
+def test_the_line_ends_with_an_interruption(begin):
     screen, clock = begin(terminal=True)
     with fitted():
         with contextlib.suppress(KeyboardInterrupt), progress(None, "things") as show:
             clock[0] += 5.0
             show(1, 3)
-            wait_for(shown)
             raise KeyboardInterrupt
         print("what is done", file=sys.stderr)
-    assert screen.getvalue().endswith("left\r\x1b[Kwhat is done\n")
+    assert screen.getvalue() == "things: 33 % (1/3), 10 s left\r\x1b[Kwhat is done\n"
 
 
-@pytest.mark.parametrize("stream", ["stdout", "stderr"])
-def test_a_line_that_is_being_printed_is_left_alone(begin, stream):
-    screen, _ = begin(terminal=True)
-    with fitted():
-        printed = getattr(sys, stream)
-        print("half a", end="", file=printed)
-        sys.stderr.overwrite("10 %")
-        print(" line", file=printed)
-        assert screen.getvalue() == "half a line\n"
-        sys.stderr.overwrite("20 %")
-        sys.stderr.overwrite("30 %")
-        print("next", file=printed)
-    assert screen.getvalue() == "half a line\n20 %\r\x1b[K30 %\r\x1b[Knext\n"
+def test_an_interruption_elsewhere_is_not_called_100_percent(begin):
+    screen, clock = begin(terminal=False)
+    with fitted(), contextlib.suppress(KeyboardInterrupt), progress(True, "things") as show:
+        clock[0] += 5.0
+        show(1, 3)
+        raise KeyboardInterrupt
+    assert screen.getvalue() == "things: 33 % (1/3), 10 s left\n"
+
+
+def test_a_warning_clears_the_line(begin):
+    screen, clock = begin(terminal=True)
+    with fitted(), progress(None, "things") as show:
+        clock[0] += 5.0
+        show(1, 3)
+        print("a warning", file=sys.stderr)
+    assert screen.getvalue() == "things: 33 % (1/3), 10 s left\r\x1b[Ka warning\n"
 
 
 def test_times():

@@ -1,5 +1,6 @@
 """`contactlab stability`: its table, its files, and that a law that is wrong makes it fail."""
 
+import argparse
 import csv
 import json
 import re
@@ -7,26 +8,22 @@ import re
 import attrs
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from contactlab.cli import stability
 from contactlab.compose.registry import REGISTRY
-from contactlab.figures import stability as drawing
 from contactlab.study import stability_map
 from contactlab.study.bench_methods import Method
 from contactlab.study.stability import Stability
+from contactlab.study.stability_judge import RAISED, WRONG, Outcome
 from contactlab.study.stability_map import (
     ALL_ANSWERED,
-    NOT_TRIED,
     ONE_RAISED,
     ONE_REFUSED,
     ONE_WRONG,
     Region,
     region,
 )
-from contactlab.study.stability_outcome import RAISED, WRONG, Outcome
 
 pytestmark = pytest.mark.slow
 
@@ -57,8 +54,14 @@ def test_a_law_without_steps_has_a_model_error_and_a_picture(run, tmp_path):
     assert ran.status == 0
     assert float(re.search(r"^coulomb +(0\.\d+) +\S+$", ran.out, re.MULTILINE)[1]) > 0.3
     assert (tmp_path / "s.png").stat().st_size > 10_000
-    ran = run("stability", "--quick", "--law", "tabulated", "--figure", tmp_path / "t.png")
-    assert "nothing to map" in ran.err
+
+
+@pytest.mark.parametrize(("complete", "why"), [(True, "there is nothing"), (False, "interrupted")])
+def test_no_picture_is_drawn_of_nothing(complete, why, tmp_path, capsys):
+    nothing = Stability(outcomes=(), regions=(), complete=complete)
+    stability._draw(tmp_path / "t.png", argparse.Namespace(quick=True), [], nothing, "interrupted")
+    assert f"no map drawn: {why}" in capsys.readouterr().err
+    assert not (tmp_path / "t.png").exists()
 
 
 def test_table_csv_and_figure_of_a_law(run, tmp_path):
@@ -138,42 +141,10 @@ def test_what_raises_on_the_map_is_not_called_silently_wrong():
     assert (found.count(RAISED), found.count(WRONG), found.tried) == (impacts, impacts, 4 * impacts)
 
 
-@pytest.mark.parametrize("word", ["steps", "tolerance"])
-def test_each_state_has_its_colour_on_the_map(word):
-    figure = Figure(figsize=(8.0, 4.0))
-    canvas = FigureCanvasAgg(figure)
-    axes = figure.subplots()
-    found = area([ALL_ANSWERED, ONE_REFUSED, ONE_RAISED, ONE_WRONG, NOT_TRIED], word=word)
-    assert drawing.usable_region(axes, found) is axes
-    canvas.draw()
-    picture = np.asarray(canvas.buffer_rgba())[:, :, :3] / 255.0
-
-    def share(column, colour):
-        """The share of a cell, its edges left out, in which a colour is seen."""
-        edges = drawing._edges(np.array(found.chis))
-        corners = [(edges[column], found.resolutions[1]), (edges[column + 1], found.resolutions[0])]
-        (left, one), (right, other) = axes.transData.transform(corners)
-        low, high = sorted((picture.shape[0] - one, picture.shape[0] - other))
-        cell = picture[int(low) + 4 : int(high) - 4, int(left) + 4 : int(right) - 4]
-        return np.mean(np.all(np.abs(cell - to_rgb(colour)) < 0.02, axis=-1))
-
-    colours, norm = drawing.error_colours(found.converges)
-    answered = colours(norm(3e-3))
-    assert share(0, answered) > 0.9
-    assert share(1, drawing.REFUSED_COLOUR) > 0.3  # between the hatching
-    assert share(2, drawing.RAISED_COLOUR) > 0.9
-    assert share(3, drawing.WRONG_COLOUR) > 0.9
-    assert share(4, drawing.UNTRIED_COLOUR) > 0.9
-    bottom, top = axes.get_ylim()
-    assert (bottom > top) == (word == "tolerance")  # finer is higher up
-
-
-def test_the_map_has_a_panel_a_method_and_says_which_do_not_fit(tmp_path, monkeypatch):
+def test_the_map_has_a_panel_a_law_under_its_usual_integrator(run, tmp_path, monkeypatch):
     drawn = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
-    regions = [area([ALL_ANSWERED] * 2), area([ONE_RAISED] * 2, method="b / symplectic")]
-    found = Stability(outcomes=(), regions=tuple(regions), complete=True)
-    drawing.draw_stability(tmp_path / "m.png", found)
-    texts = [[text.get_text() for text in axes.texts] for axes in drawn[0].axes[:4]]
-    assert ["does not fit" in text for text in texts] == [False, True, True, False]
-    assert "raised" in [text.get_text() for text in drawn[0].legends[0].get_texts()]
+    ran = run(*COMMAND, "--law", "linear_spring", "--figure", tmp_path / "m.png")
+    assert ran.status == 0
+    titles = [axes.get_title() for axes in drawn[0].axes if axes.get_title()]
+    assert titles == ["springs / symplectic", "linear spring / symplectic"]

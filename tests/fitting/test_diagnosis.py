@@ -20,9 +20,8 @@ SLOPE = 2.0 / np.tan(np.radians(SLIPPING))
 def problem_of(measurements):
     read = read_measurements(measurements)
     setup = Setup(scene_of(BODIES, read.given, len(read)), None)
-    return Problem.of(
-        Model(setup=setup, parameters=(parameter_named("friction_coefficient", setup),)), read
-    )
+    model = Model(setup=setup, parameters=(parameter_named("friction_coefficient", setup),))
+    return Problem(model=model, measured=read.measured, errors=read.errors)
 
 
 def square(columns, numbers):

@@ -11,7 +11,7 @@ from contactlab.fitting.model import Model, scene_of
 from contactlab.fitting.parameters import Setup, parameter_named
 from contactlab.numeric.checks import POSITIVE, quantity
 from tests.fitting.impacts import ANGLES, BODIES, STEEL, restitution, scene, table
-from tests.outside_laws import Walton
+from tests.laws.outside_laws import Walton
 
 SLIPPING = np.array([45.0, 50.0, 55.0, 60.0, 65.0, 70.0])
 BOTH = ("friction_coefficient", "stiffness_ratio")

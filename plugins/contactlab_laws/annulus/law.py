@@ -72,8 +72,7 @@ class Annulus(AllStepsTangentialLaw):
     annuli: int = count(default=50, most=2000)
     displacement: str = choice("midpoint", "mean", default="midpoint")
 
-    @property
-    def books_bound(self) -> float:
+    def books_bound(self, scene: Scene) -> Real:
         """Return 1/n for midpoints, which are not reciprocal and leave about 0.3/n; else 0.01.
 
         With means only the error of the steps is left: 0.01 is generous.

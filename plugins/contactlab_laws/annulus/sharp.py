@@ -8,7 +8,8 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
-from contactlab.numeric.checks import count
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real, count
 from contactlab_laws.jaeger.bundle import Array, Bundle
 from contactlab_laws.jaeger.law import ProfileLaw
 
@@ -97,8 +98,7 @@ class SharpAnnulus(ProfileLaw):
 
     annuli: int = count(default=50, most=100_000)
 
-    @property
-    def books_bound(self) -> float:
+    def books_bound(self, scene: Scene) -> Real:
         """Return 0.05 + 0.2/n: the fewest steps leave 0.03, and with one annulus 0.2.
 
         Both fall as the squares of steps and annuli; with 50 and 200 it is 3e-4.

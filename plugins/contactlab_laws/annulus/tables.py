@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: Most annuli for which the responses of all leading divisions are kept (8 n³ bytes: 8 MB at 100).
-LARGEST_TABLE = 100
+#: Most annuli for which the responses of all leading divisions are kept (8 n³ bytes: 64 MB at 200).
+LARGEST_TABLE = 200
 
 
 class Tables(NamedTuple):
@@ -101,7 +101,7 @@ def exchange(response: Array, annulus: int) -> Array:
     return np.asarray(result)
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=4)
 def tables(annuli: int, mean: bool = False) -> Tables:
     """Return the tables for ``annuli`` annuli, cached."""
     inverse_shape = np.asarray(np.linalg.inv(traction_shape(annuli)), dtype=np.float64)
@@ -139,7 +139,8 @@ def tables(annuli: int, mean: bool = False) -> Tables:
 def response(annuli: int, mean: bool, sticks: bytes) -> Array:
     """Return the response of any division; ``sticks`` holds a boolean an annulus."""
     # One exchange an annulus leads here from the nearest division with leading annuli stuck.
-    # Responses are cached (20 kB each at 50 annuli): divisions recur in steps and impacts.
+    # Responses are cached (20 kB each at 50 annuli, 320 kB at 200): divisions recur in steps and
+    # impacts.
     stuck = np.frombuffer(sticks, dtype=bool)
     before = np.concatenate([[0], np.cumsum(stuck)])
     nearest = int((np.arange(annuli + 1) - 2 * before).argmin())

@@ -15,6 +15,7 @@ from contactlab.contracts import (
     sliding,
 )
 from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
 
 #: Bound of the imbalance of the energy books, over the energy at the start.
 ROUNDING = 1e-9
@@ -39,8 +40,7 @@ class Coulomb(WholeImpactTangentialLaw):
         "impact_reference": "the exact solution is that of bodies which deform tangentially",
     }
 
-    @property
-    def books_bound(self) -> float:
+    def books_bound(self, scene: Scene) -> Real:
         """Return the bound of rounding: the friction work follows from the force."""
         return ROUNDING
 
@@ -62,7 +62,7 @@ class Coulomb(WholeImpactTangentialLaw):
 
 @attrs.frozen(kw_only=True)
 class Frictionless(WholeImpactTangentialLaw):
-    """No tangential force at all: the null object, and the yardstick for cost."""
+    """No tangential force; the reference for the cost of a run."""
 
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"no_friction"})
@@ -71,8 +71,7 @@ class Frictionless(WholeImpactTangentialLaw):
         "sliding_impulse": "there is no friction, however large the slip",
     }
 
-    @property
-    def books_bound(self) -> float:
+    def books_bound(self, scene: Scene) -> Real:
         """Return the bound of rounding: there is no friction work."""
         return ROUNDING
 

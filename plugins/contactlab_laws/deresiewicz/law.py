@@ -64,7 +64,7 @@ class MindlinDeresiewicz(SteppedTangentialLaw):
     api_version: ClassVar[int] = 2
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
     expected_failures: ClassVar[Mapping[str, str]] = {
-        "impact_books": "a contact that stuck as it grew is given a traction in proportion to p",
+        "impact_books": "the traction of a contact that stuck as it grew is proportional to p",
         "impact_reference": "the memory is the force and two turning points, not the traction",
     }
 
@@ -76,8 +76,7 @@ class MindlinDeresiewicz(SteppedTangentialLaw):
         """Return 2 G* a in N/m, of the largest contact."""
         return scene.pair.tangential_stiffness(normal.maximum_radius)
 
-    @property
-    def books_bound(self) -> float:
+    def books_bound(self, scene: Scene) -> Real:
         """Return the bound of the imbalance that the short memory causes."""
         return LARGEST_IMBALANCE
 

@@ -1,4 +1,4 @@
-"""Cautions with sizes from ``differences.csv``, which ``damped_table.differences`` measures."""
+"""Cautions with sizes from ``differences.csv``, which ``table_builders.damped`` measures."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def rows() -> dict[str, tuple[Row, ...]]:
 
 
 def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-    """Return the caution that springs cut alone are not Coulomb's law, with its size in psi2."""
+    """Return the caution that separately limited springs are not Coulomb's law, with its size."""
     if "elastic_hertz" in normal.offers or not _rubs(scene):
         return ()
     measured = rows()
@@ -70,8 +70,8 @@ def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         return ()
     scope = ", of other normal laws of this restitution" if own is None else ""
     return (
-        "springs that are cut each alone are not Coulomb's law at every point under this normal "
-        f"law: psi2 is off by up to {_above(size)} ({MEASURED}{scope}; model, not numerical "
+        "each spring is limited separately, which is not Coulomb's law at every point under this "
+        f"normal law: psi2 is off by up to {_above(size)} ({MEASURED}{scope}; model, not numerical "
         "error); tangential.annulus has the right limit",
     )
 

@@ -71,6 +71,10 @@ class DerjaguinMullerToporov(NormalLaw):
         )
         return contact, state
 
+    def dissipation(self, motion: NormalMotion) -> Real:
+        """Return 0: the force is elastic."""
+        return 0.0 * motion.scene.normal_speed
+
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, and one if the contact is too soft for this theory."""
         soft = tabor_caution(scene, self.work_of_adhesion, most=STIFF, other="normal.jkr")

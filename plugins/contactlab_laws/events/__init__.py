@@ -1,4 +1,4 @@
-"""Integration along smooth phases, with the events between them located."""
+"""Paths from event to event, in scaled units, of laws that know theirs."""
 
 import contactlab
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, TypeGuard
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
@@ -11,19 +11,16 @@ from contactlab.contracts import (
     ClosedFormMotion,
     ClosedFormNormalLaw,
     Integrator,
-    ManyPhasedTangentialLaw,
     NormalMotion,
     Observer,
-    PhasedTangentialLaw,
+    PathTangentialLaw,
     TangentialLaw,
     TangentialMotion,
-    faults,
 )
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule, quantity
-from contactlab_laws.events.history import show
-from contactlab_laws.events.scaled import FEWEST, scaled, together
+from contactlab_laws.events.scaled import show, solve
 
 #: Rounding allows no more than the first; with the second the answer still has three digits.
 TOLERANCES = Rule(
@@ -31,31 +28,27 @@ TOLERANCES = Rule(
     "must be one number between 1e-12 and 1e-3",
 )
 
-#: Impacts of a sweep at a time: together they gain until some thousands, one by one nothing.
-TOGETHER, ONE_BY_ONE = 4000, 20
+#: Impacts of a sweep at a time. Below this tolerance none has an answer from a table, and so few
+#: are passed at a time that an interruption loses little.
+TABULATED, FEW = 1e-9, 20
 
 
 @attrs.frozen(kw_only=True)
 class Events(Integrator):
-    """Collocation panels of high order within smooth phases, and events found between them.
+    """Impacts one by one along the paths that their law knows, in scaled units.
 
     The normal motion is taken in closed form along its phase x, in which everything is
-    analytic; a panel that holds an event is cut there, so that the order is never lost.
+    analytic between events.
 
     Parameters
     ----------
     tolerance : float
         Error of psi2 over max(1, |psi1|) that is aimed at.
-
-    References
-    ----------
-    Hairer & Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), §§IV.5 and
-    IV.8: collocation at Lobatto points.
     """
 
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "tolerance"
-    tangential_contract: ClassVar[Any] = PhasedTangentialLaw
+    tangential_contract: ClassVar[Any] = PathTangentialLaw
     normal_contract: ClassVar[Any] = ClosedFormNormalLaw
     own_statuses: ClassVar[bool] = True
 
@@ -67,12 +60,8 @@ class Events(Integrator):
         return self.tolerance
 
     def chunk(self, tangential: TangentialLaw) -> int:
-        """Return many impacts if they are solved together."""
-        return TOGETHER if self._together(tangential) else ONE_BY_ONE
-
-    def _together(self, law: TangentialLaw) -> TypeGuard[ManyPhasedTangentialLaw]:
-        """Return whether the law solves many impacts in one call, as accurately as is asked."""
-        return isinstance(law, ManyPhasedTangentialLaw) and law.finest_together <= self.tolerance
+        """Return few impacts if each is followed, which is slow."""
+        return super().chunk(tangential) if self.tolerance >= TABULATED else FEW
 
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return the tolerance, and what the law declares for itself."""
@@ -89,26 +78,17 @@ class Events(Integrator):
     ) -> TangentialMotion:
         """Return the motion, impact by impact."""
         law, shape = tangential, scene.shape
-        assert isinstance(law, PhasedTangentialLaw)
+        assert isinstance(law, PathTangentialLaw)
         assert isinstance(normal, ClosedFormMotion)
-        left, parts = np.ones(shape, dtype=bool), []
-        if left.size >= FEWEST and observer is None and self._together(law):
-            known, motion = together(law, normal, self.tolerance)
-            left, parts = ~known, [(known, motion)]
-        solved, motions = [], []
-        for place in map(tuple, np.argwhere(left).tolist() if shape else [()]):
+        solved = []
+        for place in np.ndindex(shape):
             one = normal.take(place) if shape else normal
             assert isinstance(one, ClosedFormMotion)
-            with faults.blaming(one.law):
-                impact = scaled(one)
-            one_solved = impact.solve(law, self.tolerance)
-            motions.append(one_solved.motion)
-            if observer is not None:  # trajectories are long
-                solved.append(one_solved)
+            one_solved = solve(law, one, self.tolerance)
+            if observer is None:  # paths are long
+                one_solved = one_solved._replace(stretches=())
+            solved.append(one_solved)
         if observer is not None:
             show(shape, solved, observer)
-        if not shape:
-            return motions[0]
-        if motions:
-            parts.append((left, TangentialMotion.joined(motions, (len(motions),))))
-        return TangentialMotion.merged(parts, shape)
+        motions = [each.motion for each in solved]
+        return TangentialMotion.joined(motions, shape) if shape else motions[0]

@@ -1,142 +1,204 @@
-"""Impacts in the scaled units of theory §1, and their answers in SI."""
+"""One impact in the scaled units of theory §1, its path, and its motion in SI."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.contracts import (
     ClosedFormMotion,
-    ManyPhasedTangentialLaw,
-    PhasedTangentialLaw,
-    PhaseState,
+    LostPathError,
+    NormalContact,
+    Observer,
+    PathTangentialLaw,
+    Sample,
+    ScaledContact,
+    Stretch,
     TangentialMotion,
+    faults,
 )
 from contactlab.contracts.status import Status
-from contactlab.numeric.arrays import chosen
-from contactlab.numeric.checks import Real
-from contactlab_laws.events.trajectory import Trajectory, books_miss, trajectory
+from contactlab.numeric.lobatto import Array
 
 #: Below this friction may stop no slip at all, however slow, and nothing is scaled.
 LEAST_INERTIA = 1e-99
-#: Fewer impacts take longer together than one by one: a call of some hundred panels costs what it
-#: costs, however many impacts are in it.
-FEWEST = 64
-#: Books that miss by more, over the tangential energy, are not taken: an event was misplaced, or
-#: the law is not as exact here as it is one by one.
-BOOKS = 3e-7
+#: Friction work and loss of energy may differ by this part of the tangential energy, taken at
+#: LEAST_AUDITED if psi1 is less: an event missed shows at 1e-2 and above.
+BOOKS, LEAST_AUDITED = 1e-3, 0.1
+#: Even phases shown; the events of a single impact are shown besides.
+INSTANTS = 201
+#: Stretches of no length in a row, and stretches of an impact.
+STILL_CAP, STRETCH_CAP = 100, 20_000
 
 
-class SolvedImpact(NamedTuple):
-    """One impact, its scaled trajectory, and its motion in SI.
+class Solved(NamedTuple):
+    """One impact solved; ``factor`` and its units lead from the scaled path to SI."""
 
-    ``factor`` is what the trajectory is multiplied with, see ``ScaledImpact.posed``.
-    """
-
-    impact: ScaledImpact
-    law: PhasedTangentialLaw
-    trajectory: Trajectory
+    law: PathTangentialLaw
+    normal: ClosedFormMotion
+    stretches: Sequence[Stretch]
+    reached: float
     factor: float
+    velocity_unit: float
+    force_unit: float
     motion: TangentialMotion
 
 
-class ScaledImpact(NamedTuple):
-    """One impact in scaled units, or a batch, and what leads back to SI.
+class _Followed(NamedTuple):
+    """A path as far as it was followed; ``failure`` is empty on success."""
 
-    ``velocity_unit`` is mu v1/kappa (29), ``force_unit`` mu P_max; both 0 without friction.
+    stretches: Sequence[Stretch]
+    reached: float = math.pi
+    change: float = 0.0
+    work: float = 0.0
+    solves: int = 0
+    failure: str = ""
+    status: Status = Status.SUCCESS
+
+
+def solve(law: PathTangentialLaw, normal: ClosedFormMotion, tolerance: float) -> Solved:
+    """Return one impact solved; its motion is NaN where that failed.
+
+    A law is odd, and may be linear for small velocities.
     """
-
-    motion: ClosedFormMotion
-    velocity: Any
-    inertia: Any
-    slip_velocity: Any
-    velocity_unit: Any
-    force_unit: Any
-    time_unit: Any
-
-    def posed(self, law: PhasedTangentialLaw) -> tuple[Real, Real]:
-        """Return the velocity >= 0 to solve for, and the factor that leads back from it.
-
-        A law is odd, and linear for small velocities.
-        """
-        speed, factor = abs(self.velocity), chosen(self.velocity < 0.0, -1.0, 1.0)
-        slow = (speed > 0.0) & (speed < law.linear_below) & (self.inertia > LEAST_INERTIA)
-        part = chosen(slow, speed / (law.linear_below or 1.0), 1.0)
-        return chosen(slow, law.linear_below, speed), factor * part
-
-    def answer(self, factor: Real, change: Real, work: Real) -> tuple[Real, Real]:
-        """Return change of slip velocity and friction work in SI."""
-        # A tiny factor stands for a huge friction coefficient: each unit takes its own.
-        velocity_unit, force_unit = factor * self.velocity_unit, factor * self.force_unit
-        with np.errstate(invalid="ignore", over="ignore"):
-            done = velocity_unit * self.time_unit * force_unit * work
-        # Without work there is none, however large its unit.
-        return velocity_unit * change, chosen(work == 0.0, 0.0, done)
-
-    def solve(self, law: PhasedTangentialLaw, tolerance: float) -> SolvedImpact:
-        """Return one impact solved; its motion is NaN where that failed."""
-        speed, factor = map(float, self.posed(law))
-        found = Trajectory(PhaseState(math.pi, 0.0, 0.0, speed, 0.0, 0.0, 0.0))
-        if not (math.isfinite(speed) and math.isfinite(self.inertia) and self.inertia > 0.0):
-            nowhere = found.state._replace(x=0.0, change=math.nan)
-            failure = "psi1 or chi is not finite and positive."
-            found = Trajectory(nowhere, failure, status=Status.NON_FINITE)
-        elif speed != 0.0 and self.force_unit != 0.0:  # something moves, and something resists
-            found = trajectory(law, self.motion, self.inertia, speed, tolerance)
-        usable = 1.0 if found.status is Status.SUCCESS else math.nan
-        change, work = self.answer(factor, found.state.change, found.state.work)
-        motion = TangentialMotion(
-            slip_velocity_change=usable * change,
-            friction_work=usable * work,
-            status=found.status,
-            detail=found.failure,
-            counters={"panels": len(found.segments), "solves": found.solves},
+    with faults.blaming(normal.law):
+        scene: Any = normal.scene
+        speed, kappa, friction = (
+            scene.normal_speed,
+            scene.pair.stiffness_ratio,
+            scene.friction_coefficient,
         )
-        return SolvedImpact(self, law, found, factor, motion)
-
-
-def scaled(motion: ClosedFormMotion) -> ScaledImpact:
-    """Return one impact in scaled units, or a batch of them."""
-    scene = motion.scene
-    speed, kappa = scene.normal_speed, scene.pair.stiffness_ratio
-    friction, slip_velocity = scene.friction_coefficient, scene.slip_velocity
-    force, approach = motion.maximum_force, motion.maximum_approach
-    unit = friction * speed / kappa
-    none = unit == 0.0
-    return ScaledImpact(
-        motion=motion,
-        velocity=slip_velocity / (unit + none) * (1.0 - none),
-        inertia=kappa * (force / speed) * (approach / speed) / scene.pair.tangential_mass,
-        slip_velocity=slip_velocity,
-        velocity_unit=unit,
-        force_unit=friction * force,
-        time_unit=approach / speed,
-    )
-
-
-def together(
-    law: ManyPhasedTangentialLaw, normal: ClosedFormMotion, tolerance: float
-) -> tuple[NDArray[np.bool_], TangentialMotion]:
-    """Return which impacts of a batch were solved in one call, and the motion of those."""
-    shape = normal.scene.shape
+        force: Any = normal.maximum_force
+        approach: Any = normal.maximum_approach
+        unit, limit = friction * speed / kappa, friction * force
+        velocity = abs(scene.slip_velocity) / unit if unit else 0.0
+        inertia = kappa * (force / speed) * (approach / speed) / scene.pair.tangential_mass
+    factor = math.copysign(1.0, scene.slip_velocity)
+    if 0.0 < velocity < law.linear_below and inertia > LEAST_INERTIA:
+        factor, velocity = factor * velocity / law.linear_below, law.linear_below
+    if not (math.isfinite(velocity) and math.isfinite(inertia) and inertia > 0.0):
+        failure = "psi1 or chi is not finite and positive."
+        found = _Followed((), 0.0, math.nan, failure=failure, status=Status.NON_FINITE)
+    elif velocity == 0.0 or limit == 0.0:  # nothing moves, or nothing resists
+        found = _Followed(())
+    else:
+        found = _follow(law, normal, velocity, inertia, tolerance)
+    # A tiny factor stands for a huge friction coefficient: each unit takes its own.
+    units = factor * unit, factor * limit
+    usable = math.nan if found.failure else 1.0
     with np.errstate(all="ignore"):
-        impact = scaled(normal)
-        speed, factor = (np.broadcast_to(part, shape) for part in impact.posed(law))
-        inertia = np.broadcast_to(impact.inertia, shape)
-        known = (speed > 0.0) & np.isfinite(speed) & (inertia > 0.0) & np.isfinite(inertia)
-        known &= np.greater(impact.force_unit, 0.0)
-        change, work = np.zeros(shape), np.zeros(shape)
-        found = law.impacts_together(speed[known], inertia[known], normal, tolerance)
-        change[known], work[known] = found.change, found.work
-        known[known] = found.solved
-        known &= books_miss(speed, inertia, change, work) < BOOKS
-        gained, lost = np.broadcast_arrays(*impact.answer(factor, change, work))
-    return known, TangentialMotion(
-        slip_velocity_change=gained[known],
-        friction_work=lost[known],
-        status=np.full(np.count_nonzero(known), Status.SUCCESS, dtype=object),
-        counters={"panels": found.panels, "solves": found.panels},
+        done = units[0] * (approach / speed) * units[1] * found.work if found.work else 0.0
+    motion = TangentialMotion(
+        slip_velocity_change=usable * units[0] * found.change,
+        friction_work=usable * done,
+        status=found.status,
+        detail=found.failure,
+        counters={"panels": len(found.stretches), "solves": found.solves},
     )
+    return Solved(law, normal, found.stretches, found.reached, factor, *units, motion)
+
+
+def _follow(
+    law: PathTangentialLaw,
+    normal: ClosedFormMotion,
+    velocity: float,
+    inertia: float,
+    tolerance: float,
+) -> _Followed:
+    """Return the path of a law, and whether it may be believed."""
+    stretches: list[Stretch] = []
+    x = change = work = 0.0
+    still, status, failure = 0, Status.UNRESOLVED, ""
+    try:
+        with np.errstate(all="ignore"):
+            for stretch in law.path(velocity, inertia, normal, tolerance):
+                if not math.isfinite(stretch.change + stretch.work + stretch.stop):
+                    status, failure = Status.NON_FINITE, "velocity, work or x is not finite"
+                    break
+                still = 0 if stretch.stop > x else still + 1
+                if still > STILL_CAP or len(stretches) >= STRETCH_CAP:
+                    failure = "events follow one another without end"
+                    break
+                stretches.append(stretch)
+                x, change, work = stretch.stop, stretch.change, stretch.work
+    except LostPathError as error:
+        failure = str(error)
+    except Exception as error:
+        status, failure = Status.LAW_RAISED, faults.raised(error)
+    if not failure and x < math.pi:
+        failure = "the path ends before contact does"
+    missing = books_miss(velocity, inertia, change, work)
+    if not failure and not missing <= BOOKS:
+        failure = f"the energy books miss {missing:.1e} of the tangential energy"
+    if failure:
+        failure = faults.sentence(law, f"{failure}, at x = {x:.6g}", len(stretches) + 1)
+    solves = stretches[-1].solves if stretches else 0
+    return _Followed(
+        stretches, x, change, work, solves, failure, status if failure else Status.SUCCESS
+    )
+
+
+def books_miss(velocity: float, inertia: float, change: float, work: float) -> float:
+    """Return by what part of the tangential energy friction work is not the loss of energy."""
+    # Over the velocity, as its square may be too large for a number.
+    scale = max(velocity, LEAST_AUDITED)
+    lost = change * ((velocity + 0.5 * change) / scale)
+    return abs(lost + inertia * (work / scale)) / (0.5 * scale)
+
+
+def show(batch: tuple[int, ...], solved: Sequence[Solved], observer: Observer) -> None:
+    """Call ``observer`` at phases common to all impacts, as far as every one of them came."""
+    x = np.linspace(0.0, math.pi, INSTANTS)
+    if not batch:
+        x = np.union1d(x, [stretch.stop for stretch in solved[0].stretches])
+    x = x[x <= min(one.reached for one in solved)]
+    table = np.stack([_history(one, x) for one in solved], axis=-1)
+    columns = table.reshape(len(table), len(x), *batch) if batch else table[..., 0].tolist()
+    for k, row in enumerate(zip(*columns, strict=True)):
+        time, approach, rate, force, radius, velocity, friction = row
+        observer(
+            Sample(
+                time=time,
+                approach=approach,
+                normal_velocity=rate,
+                contact=NormalContact(force, radius, approach, force),
+                slip_velocity=velocity,
+                tangential_force=friction,
+                fields=partial(_fields, batch, float(x[k]), solved),
+            )
+        )
+
+
+def _history(one: Solved, x: Array) -> Array:
+    """Return one impact's history at ascending x: rows of what a ``Sample`` holds, in SI."""
+    time, approach, rate, contact, _ = one.normal.at(x)
+    change, friction = np.zeros_like(x), np.zeros_like(x)
+    normal = one.normal.scaled(x)
+    with faults.blaming(one.law):
+        for stretch in one.stretches:
+            inside = (x >= stretch.start) & (x <= stretch.stop)
+            if inside.any():
+                part = ScaledContact(*(column[inside] for column in normal))
+                change[inside], friction[inside] = stretch.states(part)
+    velocity = one.normal.scene.slip_velocity + one.velocity_unit * change
+    friction *= one.force_unit
+    return np.array([time, approach, rate, contact.force, contact.radius, velocity, friction])
+
+
+def _fields(batch: tuple[int, ...], x: float, solved: Sequence[Solved]) -> Mapping[str, Any]:
+    """Return the law's fields at one phase ``x``."""
+    answers = []
+    for one in solved:
+        stretch = next((each for each in one.stretches if x <= each.stop), None)
+        if stretch is None:
+            return {}
+        at = one.normal.scaled_at(x)
+        answers.append(stretch.fields(one.normal, at, one.factor))
+    return {
+        name: np.array([answer[name] for answer in answers]).reshape(batch + np.shape(first))
+        for name, first in answers[0].items()
+    }

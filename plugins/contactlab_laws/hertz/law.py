@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 import attrs
 
-from contactlab.contracts import ClosedFormNormalLaw, NormalContact
+from contactlab.contracts import ClosedFormNormalLaw, NormalContact, NormalMotion
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
@@ -39,6 +39,10 @@ class Hertz(ClosedFormNormalLaw):
         radius = (state.radius * compression) ** 0.5
         force = (4.0 / 3.0) * state.effective_modulus * radius * compression
         return NormalContact(force, radius, approach, force), state
+
+    def dissipation(self, motion: NormalMotion) -> Real:
+        """Return 0: the force is elastic."""
+        return 0.0 * motion.scene.normal_speed
 
     def motion(self, scene: Scene) -> HertzMotion:
         """Return the motion in closed form."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import lru_cache
+from typing import Any
 
 import attrs
 import numpy as np
@@ -80,6 +81,12 @@ def _cached(function: Callable[[Array], tuple[Array, ...]], at: bytes) -> tuple[
     return columns
 
 
+@lru_cache(maxsize=16)
+def _shared(*_: float) -> dict[Any, Any]:
+    """Return the dict that motions share whose batches have as many axes and the same numbers."""
+    return {}
+
+
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class HertzMotion(ClosedFormMotion):
     """Elastic impact: V² + zeta^2.5 = 1 in scaled variables, theory §§1 and 3.
@@ -95,12 +102,15 @@ class HertzMotion(ClosedFormMotion):
     maximum_force: Real
     final_rate: Real
     total_load_impulse: Real
+    shared: dict[Any, Any] | None = None
     accuracy = 1e-14  # rounding: the impulse is a closed form
 
     @classmethod
     def of(cls, law: NormalLaw, scene: Scene) -> HertzMotion:
         """Return the motion of ``scene``, eqs (7)-(9); the final rate is minus the first."""
-        scales, speed = hertz_scales(scene), scene.normal_speed
+        scales, speed, pair = hertz_scales(scene), scene.normal_speed, scene.pair
+        # All that the motion depends on; arrays are compared with difficulty, and not shared.
+        numbers: Any = (pair.radius, pair.effective_modulus, pair.normal_mass, speed)
         return cls(
             law=law,
             scene=scene,
@@ -109,7 +119,8 @@ class HertzMotion(ClosedFormMotion):
             maximum_approach=scales.approach,
             maximum_force=scales.force,
             final_rate=-speed,
-            total_load_impulse=2.0 * scene.pair.normal_mass * speed,
+            total_load_impulse=2.0 * pair.normal_mass * speed,
+            shared=_shared(len(scene.shape), *numbers) if isinstance(scales.force, float) else None,
         )
 
     def take(self, part: object) -> HertzMotion:

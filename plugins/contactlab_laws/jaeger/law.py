@@ -84,8 +84,8 @@ class ProfileLaw(AllStepsTangentialLaw):
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
     expected_failures: ClassVar[Mapping[str, str]] = {
-        "coulomb_at_a_point_damped": "each spring is cut alone, which is Coulomb's law at a point "
-        "only while the stuck part is a disc: in elastic Hertz impacts, not in damped ones",
+        "coulomb_at_a_point_damped": "each spring is limited separately: that is Coulomb's law "
+        "at a point only while the stuck part is a disc, as in elastic Hertz impacts",
     }
 
     @abstractmethod
@@ -97,7 +97,7 @@ class ProfileLaw(AllStepsTangentialLaw):
         return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return the cautions of every law, of springs that are cut alone, and of the pressure."""
+        """Return the cautions of every law, of separately limited springs, and of the pressure."""
         own = (*springs(scene, normal), *hemisphere(normal))
         return (*super().cautions(scene, normal), *own)
 

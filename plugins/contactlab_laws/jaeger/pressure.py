@@ -1,4 +1,4 @@
-"""The caution of a pressure that a friction law takes for a hemisphere."""
+"""The caution of an assumed hemispherical pressure."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ CLOSE = 1e-6
 
 
 def hemisphere(normal: NormalMotion) -> tuple[str, ...]:
-    """Return the caution of an assumed hemisphere of pressure, if there is one."""
+    """Return the caution of an assumed hemispherical pressure, empty if none is assumed."""
     # Without the claim ``hertzian_pressure`` the friction law makes the assumption. With the claim
     # the normal law makes it, unless the friction load is Hertz's at the contact radius.
     if "hertzian_pressure" not in normal.offers:
         return (
-            "the friction law takes the pressure for a hemisphere over the contact radius that "
-            "carries the friction load; the normal law does not say that it is one (model error)",
+            "the friction law assumes a hemispherical pressure over the contact radius, with the "
+            "friction load as its sum; the normal law does not declare one (model error)",
         )
     if "elastic_hertz" in normal.offers or _hertzian(normal):
         return ()
     return (
-        "the normal law assumes a hemisphere of pressure that carries its damped force; what the "
-        "pressure of the damping is no theory says (model error)",
+        "the normal law assumes a hemispherical pressure for its damped force; no theory gives "
+        "the pressure of the damping (model error)",
     )
 
 

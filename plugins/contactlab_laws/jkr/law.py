@@ -17,8 +17,8 @@ from contactlab.numeric.checks import POSITIVE, Real, quantity
 SOFT = 5.0
 #: The books miss 0.045 of the energy at the start at e = 0.95 by adhesion, 0.001 at e = 0.99.
 SNAP = (
-    "contact breaks while friction holds it: the elastic energy of that shear is lost, and the "
-    "energy books, which know only friction work, miss it (model, not numerical error)"
+    "contact breaks while it is sheared: the elastic energy of the shear is lost, and the energy "
+    "books do not contain it (model, not numerical error)"
 )
 #: s and s⁴ - s at the least scaled approach of a contact, where the derivative of s⁴ - s is zero.
 LAST = 4.0 ** (-1.0 / 3.0)

@@ -26,13 +26,13 @@ COARSEST_BOOKS = 0.05
 
 #: Checks that a law with a dashpot fails by its nature.
 DAMPED: Mapping[str, str] = {
-    "turning_points": "the force of a dashpot depends on the velocity, which a path has not",
-    "stiffness": "the force of a dashpot is no force of displacement",
+    "turning_points": "the force of a dashpot depends on the velocity, not on the path alone",
+    "stiffness": "the force of a dashpot does not depend on the displacement",
 }
 
 PARTIAL_SLIP = (
-    "one spring: no part of the contact slips before the whole does, which moves psi2 of "
-    "solid spheres by up to about 0.7 (model, not numerical error)"
+    "one spring: the whole contact slips at once, which moves psi2 of solid spheres by "
+    "up to about 0.7 (model, not numerical error)"
 )
 
 
@@ -73,8 +73,7 @@ class LinearSpring(SteppedTangentialLaw):
     stiffness_ratio: float | None = quantity("1", rule=POSITIVE, default=None)
     damping: float = quantity("1", rule=NON_NEGATIVE, default=0.0)
 
-    @property
-    def books_bound(self) -> float:
+    def books_bound(self, scene: Scene) -> Real:
         """Return the bound at the fewest steps; without a dashpot the books close to rounding."""
         return COARSEST_BOOKS
 

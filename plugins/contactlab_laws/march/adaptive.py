@@ -24,6 +24,7 @@ from contactlab.numeric.checks import Rule, quantity
 from contactlab_laws.march.division import midpoints
 from contactlab_laws.march.fixed import MOST_STEPS, in_groups, needed_steps, refined
 from contactlab_laws.march.march import march
+from contactlab_laws.march.tied import march_tied
 
 TOLERANCE = Rule(
     lambda value: np.ndim(value) == 0 and 1e-12 <= value <= 1.0,
@@ -65,6 +66,7 @@ class Adaptive(Integrator):
     """
 
     api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"marks", "normal_motion"})
     resolution: ClassVar[str | None] = "tolerance"
     tangential_contract: ClassVar[Any] = SteppedTangentialLaw
 
@@ -156,7 +158,9 @@ def _succeeded(motion: TangentialMotion) -> bool:
 def _march(
     normal: NormalMotion, law: SteppedTangentialLaw, count: int, observer: Observer | None = None
 ) -> TangentialMotion:
-    """Return the motion in ``count`` steps, each sampled in its middle."""
+    """Return the motion in ``count`` steps: even and sampled in their middles, or tied to marks."""
+    if (tied := march_tied(normal, law, count, observer, least=FIRST)) is not None:
+        return tied
     with faults.blaming(normal.law):
         steps = midpoints(normal, count)
     return march(normal, law, steps, observer)

@@ -16,21 +16,35 @@ from contactlab.contracts import NormalContact, NormalMotion, Steps
 MOST_STRETCH = 1.0
 #: Steps converted to plain numbers at a time: two million would fill 700 MB.
 BLOCK = 4096
+#: More steps are made anew for each impact: these take half a megabyte.
+LONGEST_KEPT = 4000
 
 
 def midpoints(normal: NormalMotion, count: int) -> Steps:
     """Return ``count`` steps of the contact's duration, each sampled in its middle."""
+    if count > LONGEST_KEPT:
+        return _midpoints(normal, count)
+    return normal.once(("midpoints", count), lambda: _midpoints(normal, count))
+
+
+def endpoints(normal: NormalMotion, count: int) -> Steps:
+    """Return ``count`` steps of the contact's duration, each sampled at its end."""
+    if count > LONGEST_KEPT:
+        return _endpoints(normal, count)
+    return normal.once(("endpoints", count), lambda: _endpoints(normal, count))
+
+
+def _midpoints(normal: NormalMotion, count: int) -> Steps:
     halves = np.array(normal.phase(np.linspace(0.0, 1.0, 2 * count + 1)))
     halves[-1] = np.pi  # exactly, as the inverse is not
     ends = normal.at(_column(halves[::2], normal))
     times = np.asarray(ends.time)
     kick = times[1:] - times[:-1]
     impulse = np.asarray(ends.load_impulse)
-    return _steps(normal, halves[1::2], kick, impulse[1:] - impulse[:-1])
+    return sampled(normal, halves[1::2], kick, impulse[1:] - impulse[:-1])
 
 
-def endpoints(normal: NormalMotion, count: int) -> Steps:
-    """Return ``count`` steps of the contact's duration, each sampled at its end."""
+def _endpoints(normal: NormalMotion, count: int) -> Steps:
     # The half steps after first touch and before separation have the force of their neighbours.
     fractions = np.linspace(0.0, 1.0, count + 1)
     edges = np.concatenate(([0.0], fractions[1:-1] + 0.5 / count, [1.0]))  # count + 1 of them
@@ -40,11 +54,11 @@ def endpoints(normal: NormalMotion, count: int) -> Steps:
     loads = impulse[1:] - impulse[:-1]
     kick = np.asarray(normal.duration) / count
     shape = (count,) + (1,) * len(normal.scene.shape)
-    return _steps(normal, phases[:count], np.ones(shape) * kick, loads)
+    return sampled(normal, phases[:count], np.ones(shape) * kick, loads)
 
 
-def _steps(normal: NormalMotion, phases: Any, kick: Any, load_impulse: Any) -> Steps:
-    """Return steps that sample the contact at ``phases``, shape (K,), as read-only arrays."""
+def sampled(normal: NormalMotion, phases: Any, kick: Any, load_impulse: Any) -> Steps:
+    """Return steps that sample the contact at ``phases``, shape (K,) or (K, ...), read-only."""
     # ``kick`` is the time in s for which each force acts, ``load_impulse`` the exact integral of
     # the friction load over it in N s, both of shape (K, ...).
     time, approach, rate, contact, _ = normal.at(_column(phases, normal))
@@ -85,4 +99,5 @@ def one_by_one(steps: Steps) -> Iterator[Steps]:
 
 
 def _column(phases: Any, normal: NormalMotion) -> Any:
-    return phases.reshape((-1,) + (1,) * len(normal.scene.shape))
+    """Return phases of shape (K,) in a shape that broadcasts with the batch; others unchanged."""
+    return phases if phases.ndim > 1 else phases.reshape((-1,) + (1,) * len(normal.scene.shape))

@@ -25,6 +25,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import for_share
 from contactlab.numeric.checks import Real, count, flag
 from contactlab_laws.march.march import march
+from contactlab_laws.march.tied import march_tied
 
 #: Largest omega dt of the fastest tangential oscillation. From 2 on the leapfrog is unstable
 #: (theory §4) and wrong by any amount. Below 2 it is stable, but at 1/2 the phase is off by 1 % a
@@ -49,7 +50,14 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw) -> Any:
     """Return the least steps an impact that resolve omega = sqrt(stiffness/mass), batch shape."""
     assert isinstance(law, SteppedTangentialLaw)
     scene = normal.scene
-    omega = np.sqrt(law.stiffness(scene, normal) / scene.pair.tangential_mass)
+    stiffness: Any = law.stiffness(scene, normal)
+    if not scene.shape and isinstance(stiffness, float) and stiffness >= 0.0:
+        single = math.sqrt(stiffness / scene.pair.tangential_mass) * float(normal.duration)
+        least = single / LARGEST_PHASE_STEP
+        if "partial_slip" not in law.offers:
+            least = max(least, single * math.sqrt(single / (24.0 * LARGEST_LEAD)))
+        return float(max(math.ceil(least), LEAST_STEPS)) if math.isfinite(least) else least
+    omega = np.sqrt(stiffness / scene.pair.tangential_mass)
     radians = omega * normal.duration
     steps = radians / LARGEST_PHASE_STEP
     if "partial_slip" not in law.offers:
@@ -79,6 +87,8 @@ def in_groups(
 ) -> TangentialMotion:
     """Return the motion of impacts, each marched by ``even`` in the steps ``taken`` alone."""
     shape = normal.scene.shape
+    if isinstance(needed, float) and isinstance(taken, float) and needed <= taken <= MOST_STEPS:
+        return even(normal, int(taken))
     possible = (needed <= taken) & (taken <= MOST_STEPS)
     if np.all(possible) and np.min(taken) == np.max(taken):
         return even(normal, int(np.max(taken)))
@@ -102,6 +112,9 @@ def in_groups(
 class FixedSteps(Integrator):
     """Even steps over the contact's duration, under any normal law; a subclass samples them.
 
+    Under a law with marks a step ends at each mark, steps are even between marks, and the contact
+    is sampled at their ends.
+
     Parameters
     ----------
     steps : int
@@ -111,6 +124,7 @@ class FixedSteps(Integrator):
         or refuse with the status ``TOO_FEW_STEPS`` and the number needed.
     """
 
+    offers: ClassVar[frozenset[str]] = frozenset({"marks", "normal_motion"})
     resolution: ClassVar[str | None] = "steps"
     order: ClassVar[int | None] = 2
     tangential_contract: ClassVar[Any] = SteppedTangentialLaw
@@ -141,7 +155,7 @@ class FixedSteps(Integrator):
     ) -> tuple[str, ...]:
         """Return a sentence if the steps are too few: the steps taken instead, or needed."""
         needed = needed_steps(normal, tangential)
-        most = float(np.nanmax(needed))
+        most = needed if isinstance(needed, float) else float(np.nanmax(needed))
         if most <= self.steps:
             return ()
         share = for_share(np.broadcast_to(needed > self.steps, scene.shape))
@@ -166,6 +180,8 @@ class FixedSteps(Integrator):
         assert isinstance(law, SteppedTangentialLaw)
 
         def even(normal: NormalMotion, number: int) -> TangentialMotion:
+            if (tied := march_tied(normal, law, number, observer)) is not None:
+                return tied
             with faults.blaming(normal.law):
                 steps = self.divide(normal, number)
             return march(normal, law, steps, observer)

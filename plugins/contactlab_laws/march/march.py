@@ -35,15 +35,18 @@ def march(
     """Return the tangential motion along ``steps``: all at once if the law can, else one by one."""
     if (complaint := _unsound(normal, steps)) is not None:
         return TangentialMotion.nothing(normal.scene.shape, Status.NON_FINITE, complaint)
-    if observer is None and isinstance(law, AllStepsTangentialLaw):
-        motion = _all_at_once(normal, law, steps)
+    stepwise = observer is not None and getattr(observer, "stepwise", True)
+    # A law that changes the normal motion is asked for it at its last state.
+    together = not stepwise and not _moves(law)
+    if together and isinstance(law, AllStepsTangentialLaw):
+        motion = _all_at_once(normal, law, steps, observer)
         if motion is not None:
             return motion
     return _one_by_one(normal, law, steps, observer)
 
 
 def _all_at_once(
-    normal: NormalMotion, law: AllStepsTangentialLaw, steps: Steps
+    normal: NormalMotion, law: AllStepsTangentialLaw, steps: Steps, observer: Observer | None
 ) -> TangentialMotion | None:
     """Return the tangential motion of a law that takes all steps in one call, or None."""
     scene = normal.scene
@@ -63,11 +66,30 @@ def _all_at_once(
     if response.settled is not True and not np.all(response.settled):
         detail = faults.sentence(law, "no division found", count + 1)
         fault = faults.LawFaultError(Status.UNSETTLED, detail)
-    elif not np.isfinite(change).all():
+    elif not _finite(change):
         step = int((~np.isfinite(force)).reshape(count, -1).any(axis=1).argmax())
         detail = faults.sentence(law, f"force {shown(force[step])}", step + 1)
         fault = faults.LawFaultError(Status.NON_FINITE, detail)
+    if observer is not None:
+        if fault is not None:
+            return None  # step by step the observer sees all instants up to the fault
+        _show(normal, steps, force, observer)
     return _ended(normal, law, change, response.friction_work, count, fault)
+
+
+def _show(normal: NormalMotion, steps: Steps, force: Any, observer: Observer) -> None:
+    """Show an observer the instants of a march whose forces are known."""
+    scene = normal.scene
+    slowed = force * (steps.kick / scene.pair.tangential_mass)
+    middle = scene.slip_velocity - (np.cumsum(slowed, axis=0) - 0.5 * slowed)
+    for step, velocity, acting in zip(
+        one_by_one(steps),
+        middle if scene.shape else middle.tolist(),
+        force if scene.shape else force.tolist(),
+        strict=True,
+    ):
+        moment = step.time, step.approach, step.rate
+        observer(Sample(*moment, step.contact, velocity, acting, dict))
 
 
 def _malformed(response: AllStepsResponse, scene: Scene, steps: int) -> str | None:
@@ -107,7 +129,7 @@ def _one_by_one(
             displacement = velocity * step.drift
             if not single:
                 locked(velocity), locked(displacement)
-            increment = Increment(displacement, velocity, step.friction_load, step.kick)
+            increment = Increment(displacement, velocity, step.friction_load, step.kick, step.drift)
             response, state = law.advance(state, increment, before, contact)
             force, lost = response.force, response.friction_work
             if not (single and isinstance(force, float) and isinstance(lost, float)):
@@ -120,13 +142,16 @@ def _one_by_one(
             before = contact
             if observer is not None:
                 middle, fields = velocity - 0.5 * slowed, partial(law.fields, state)
-                moment = step.time, step.approach, step.rate
-                observer(Sample(*moment, contact, middle, force, fields))
+                moment = step.time, step.approach, step.rate, contact
+                if (own := law.normal_motion(state)) is not None:
+                    moment = own.at(math.pi)[:4]
+                observer(Sample(*moment, middle, force, fields))
             velocity = initial + change
             if response.settled is not True and not np.all(response.settled):
                 raise faults.LawFaultError(Status.UNSETTLED, "no division found")
             if not (math.isfinite(force) if single else np.isfinite(force).all()):
                 raise faults.LawFaultError(Status.NON_FINITE, f"force {shown(force)}")
+        own = law.normal_motion(state)
     except KeyboardInterrupt:
         raise
     except faults.LawFaultError as raised:
@@ -135,7 +160,12 @@ def _one_by_one(
     except BaseException as error:  # a plug-in may not end the process
         sentence = faults.sentence(law, faults.raised(error), count, time)
         fault = faults.LawFaultError(Status.LAW_RAISED, sentence)
-    return _ended(normal, law, change, work, count, fault)
+    return _ended(normal, law, change, work, count, fault, None if fault else own)
+
+
+def _moves(law: SteppedTangentialLaw) -> bool:
+    """Return whether the law may change the normal motion."""
+    return type(law).normal_motion is not SteppedTangentialLaw.normal_motion
 
 
 def _ended(
@@ -145,9 +175,10 @@ def _ended(
     work: Real,
     count: int,
     fault: faults.LawFaultError | None,
+    own: NormalMotion | None = None,
 ) -> TangentialMotion:
     """Return the motion up to ``fault``; friction work that is not finite is a failure too."""
-    if fault is None and not np.all(np.isfinite(work)):
+    if fault is None and not _finite(work):
         detail = faults.sentence(law, f"friction work {shown(work)}", count)
         fault = faults.LawFaultError(Status.NON_FINITE, detail)
     shape = normal.scene.shape
@@ -157,14 +188,24 @@ def _ended(
         status=filled(Status.SUCCESS if fault is None else fault.status, shape),
         detail="" if fault is None else fault.detail,
         counters={"steps": count},
+        normal=own,
     )
+
+
+def _finite(value: Any) -> bool:
+    """Return whether all numbers are finite."""
+    return math.isfinite(value) if isinstance(value, float) else bool(np.isfinite(value).all())
 
 
 def _unsound(normal: NormalMotion, steps: Steps) -> str | None:
     """Return a sentence on a normal motion that is not finite, or None; then no march begins."""
     # The tangential law cannot tell: where the load is infinite Coulomb's cap is no cap, and the
     # answer would look right.
-    for column in (*steps.contact, *steps[1:4]):
+    columns = (*steps.contact, *steps[1:4])
+    with np.errstate(all="ignore"):
+        if np.isfinite(sum(columns)).all():
+            return None  # a sum is finite only if all its terms are
+    for column in columns:
         if not np.isfinite(column).all():
             bad = ~np.isfinite(column).reshape(len(column), -1).all(axis=1)
             count: int = int(bad.argmax())

@@ -23,28 +23,28 @@ from contactlab_laws.mindlin.dashpot import critical_share, cut, with_dashpot
 
 FORMS = ("displacement", "displacement_rescaled", "increment", "increment_rescaled")
 
-_NO_BOOK = "what the changing stiffness makes or loses is in no book"
+_NO_BOOK = "the energy books leave out what the changing stiffness adds or removes"
 #: The checks that each form fails by its nature, with the factors 1 and 2/3.
 FAILURES: Mapping[str, Mapping[str, str]] = {
     "displacement": {
         "normal_load_alone": "F = 2 G* b u: the force on a sheared contact grows with its radius",
-        "random_paths": "energy in the spring grows with the radius, and is given back",
-        "partial_unloading": "sheared and then pressed more, the stiffer spring gives more back",
+        "random_paths": "energy in the spring grows with the radius, and is returned",
+        "partial_unloading": "sheared, then pressed more, the stiffer spring returns more energy",
         "books": _NO_BOOK,
         "impact_bounds": "bodies may slip faster than they met, by up to 6.4 %",
         "impact_books": _NO_BOOK,
     },
     "displacement_rescaled": {
         "normal_load_alone": "F = 2 G* b u: the force on a sheared contact grows with its radius",
-        "closed_cycles": "pressed between, the spring gives back more than it took",
-        "random_paths": "energy in the spring grows with the radius, and is given back",
-        "partial_unloading": "sheared and then pressed more, the stiffer spring gives more back",
+        "closed_cycles": "pressed before unloading, the spring returns more than it took",
+        "random_paths": "energy in the spring grows with the radius, and is returned",
+        "partial_unloading": "sheared, then pressed more, the stiffer spring returns more energy",
         "books": _NO_BOOK,
         "impact_books": _NO_BOOK,
     },
     "increment": {
-        "last_step": "the force is kept as the spring softens: letting go, it has far to slip",
-        "partial_unloading": "sheared and then pressed less, the softer spring gives more back",
+        "last_step": "the force is kept as the spring softens: the contact slips far at the end",
+        "partial_unloading": "sheared, then pressed less, the softer spring returns more energy",
         "books": _NO_BOOK,
         "impact_books": _NO_BOOK,
     },
@@ -57,15 +57,15 @@ SOFTER = frozenset({"impact_bounds"})
 TAKEN = frozenset({"closed_cycles", "random_paths", "partial_unloading", "impact_bounds"})
 #: Further checks that a law with a dashpot fails.
 DAMPED = {
-    "turning_points": "the force of a dashpot depends on the velocity, which a path has not",
-    "stiffness": "the force of a dashpot is no force of displacement",
+    "turning_points": "the force of a dashpot depends on the velocity, not on the path alone",
+    "stiffness": "the force of a dashpot does not depend on the displacement",
 }
 PARTIAL_SLIP = (
-    "one spring: no part of the contact slips before the whole does, which moves psi2 of "
-    "solid spheres by up to about 0.7 (model, not numerical error)"
+    "one spring: the whole contact slips at once, which moves psi2 of solid spheres by "
+    "up to about 0.7 (model, not numerical error)"
 )
 _MADE = (
-    "energy from nothing: as the contact grows and shrinks, this form of the spring may give back "
+    "energy from nothing: as the contact grows and shrinks, this form of the spring may return "
     "more than it took, {} (model, not numerical error)"
 )
 #: Cautions of the forms that make energy, with its size at any stiffness factor: between elastic

@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlab.contracts import NormalMotion, WholeImpact, WholeImpactTangentialLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import POSITIVE, quantity, refuse
+from contactlab.numeric.checks import POSITIVE, Real, quantity, refuse
 from contactlab_laws.stronge.lumped import Rebound, rebound
 
 #: Bound of the imbalance of the energy books, over the energy at the start.
@@ -50,8 +50,7 @@ class Stronge(WholeImpactTangentialLaw):
 
     stiffness_ratio: float | None = quantity("1", rule=POSITIVE, default=None)
 
-    @property
-    def books_bound(self) -> float:
+    def books_bound(self, scene: Scene) -> Real:
         """Return the bound of rounding: slip and stick are closed forms."""
         return ROUNDING
 
@@ -78,7 +77,7 @@ class Stronge(WholeImpactTangentialLaw):
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of a lumped contact and of a normal spring that does not pull."""
         lumped = (
-            "lumped contact: springs that do not know the contact's area, and no partial slip, "
+            "lumped contact: springs independent of the contact's area, without partial slip, "
             "which moves psi2 of solid spheres by up to about 0.4 (model, not numerical error)"
         )
         return (lumped, *_pull(scene, normal))

@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlab.contracts import NormalMotion, WholeImpact, WholeImpactTangentialLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Rule, quantity
+from contactlab.numeric.checks import Real, Rule, quantity
 
 #: Bound of the imbalance of the energy books, over the energy at the start.
 ROUNDING = 1e-9
@@ -47,8 +47,7 @@ class Walton(WholeImpactTangentialLaw):
 
     slip_restitution: float = quantity("1", rule=SHARE, default=0.4)
 
-    @property
-    def books_bound(self) -> float:
+    def books_bound(self, scene: Scene) -> Real:
         """Return the bound of rounding: the friction work follows from the impulse."""
         return ROUNDING
 

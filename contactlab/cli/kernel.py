@@ -1,0 +1,40 @@
+"""Write the friction law as a kernel in C and in JavaScript, with notes, for codes of your own.
+
+Examples
+--------
+  contactlab kernel --out kernel
+"""
+
+from __future__ import annotations
+
+import argparse
+from importlib import resources
+from pathlib import Path
+
+from contactlab.cli import arguments as shared
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.files import written
+
+#: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), and notes.
+FILES = ("contactlab_springs.h", "contactlab_springs.mjs", "README.md")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the folder."""
+    parser.add_argument(
+        "--out", type=Path, required=True, metavar="DIR", help="folder; made if it is not there"
+    )
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Write the files and print their paths."""
+    folder: Path = arguments.out
+    if folder.exists() and not folder.is_dir():
+        raise refuse("--out", str(folder), "is a file", "give a folder")
+    folder.mkdir(parents=True, exist_ok=True)
+    source = resources.files("contactlab").joinpath("kernels")
+    for name in FILES:
+        with written(folder / name) as stream:
+            stream.write(source.joinpath(name).read_text("utf-8"))
+        print(folder / name)
+    return shared.OK

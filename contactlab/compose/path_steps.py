@@ -1,0 +1,221 @@
+"""Steps of laws along a path that does not heed their forces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.contracts import faults
+from contactlab.contracts.contact import NormalContact
+from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.sampled_motion import SampledMotion
+from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import Increment, SteppedTangentialLaw
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import locked
+from contactlab.numeric.checks import shown
+
+Array = NDArray[np.float64]
+
+
+class Points(NamedTuple):
+    """Points of a path in SI, arrays of shape (K, ...): times since first touch, and the path."""
+
+    time: Array
+    approach: Array
+    displacement: Array
+
+
+class Followed(NamedTuple):
+    """Columns of a path by name, arrays of shape (K, ...), and the states of the tangential law."""
+
+    columns: dict[str, Array]
+    states: tuple[Any, ...]
+    status: Any
+    detail: str
+
+
+def advanced(
+    law: SteppedTangentialLaw,
+    state: Any,
+    before: NormalContact,
+    steps: Iterable[tuple[Increment, NormalContact]],
+) -> tuple[list[tuple[Any, Any, Any]], tuple[Any, ...]]:
+    """Return force (N), friction work (J) and settled of each step, and the state after it.
+
+    Parameters
+    ----------
+    law : SteppedTangentialLaw
+    state : object
+        State of the law at the beginning.
+    before : NormalContact
+        Normal contact at the beginning.
+    steps : iterable of (Increment, NormalContact)
+        Each step, and the normal contact at its end.
+    """
+    answers, states = [], []
+    for increment, after in steps:
+        response, state = law.advance(state, increment, before, after)
+        answers.append((response.force, response.friction_work, response.settled))
+        states.append(state)
+        before = after
+    return answers, tuple(states)
+
+
+def followed(
+    normal: NormalLaw, tangential: SteppedTangentialLaw, scene: Scene, points: Points
+) -> Followed:
+    """Return what the laws answer at the points of a path.
+
+    Raises
+    ------
+    LawFaultError
+        If a law raises, or its answer is malformed.
+    """
+    contacts = _pressed(normal, scene, points)
+    motion = _motion(normal, scene, points, contacts)
+    with faults.blaming(tangential):
+        marks = tangential.marks(scene, motion)
+    wanted: Any = None
+    if marks is not None:
+        points, wanted = _with_marks(points, motion, marks)
+        contacts = _pressed(normal, scene, points)
+        motion = _motion(normal, scene, points, contacts)
+    with faults.blaming(tangential):
+        nothing = NormalContact(*(locked(0.0 * entry) for entry in contacts[0]))
+        state = tangential.start(scene, motion)
+        answers, states = advanced(tangential, state, nothing, _steps(points, contacts))
+    for number, answer in enumerate(answers, 1):
+        for entry in answer[:2]:
+            if faults.malformed(entry, scene.shape):
+                sentence = faults.sentence(tangential, f"the answer {shown(entry)}", number)
+                raise faults.LawFaultError(Status.MALFORMED, sentence)
+    columns = {
+        "normal_force": [each.force for each in contacts],
+        "friction_load": [each.friction_load for each in contacts],
+        "contact_radius": [each.radius for each in contacts],
+        "friction_force": [force for force, _, _ in answers],
+        "friction_work": [work for _, work, _ in answers],
+        "settled": [settled for _, _, settled in answers],
+    }
+    full = {name: _column(rows, scene.shape) for name, rows in columns.items()}
+    full["friction_work"] = np.cumsum(full["friction_work"], axis=0)
+    status, detail = _judged((normal, tangential), full, points)
+    del full["settled"]
+    if wanted is None:
+        return Followed(full, states, status, detail)
+    at_points = {name: np.take_along_axis(rows, wanted, axis=0) for name, rows in full.items()}
+    last = wanted.reshape(len(wanted), -1).max(axis=1).tolist()
+    return Followed(at_points, tuple(states[index] for index in last), status, detail)
+
+
+def _pressed(normal: NormalLaw, scene: Scene, points: Points) -> list[NormalContact]:
+    """Return the normal contact at each point."""
+    drift = np.diff(points.time, axis=0, prepend=0.0)
+    moved = np.diff(points.approach, axis=0, prepend=0.0)
+    rates = np.divide(moved, drift, out=np.zeros_like(moved), where=drift > 0.0)
+    contacts = []
+    with faults.blaming(normal):
+        state = normal.start(scene)
+        for approach, rate in zip(_rows(points.approach), _rows(rates), strict=True):
+            contact, state = normal.respond(state, locked(approach), locked(rate))
+            complete = contact.complete
+            contacts.append(NormalContact(*(_plain(entry) for entry in complete)))
+    return contacts
+
+
+def _motion(
+    normal: NormalLaw, scene: Scene, points: Points, contacts: list[NormalContact]
+) -> SampledMotion:
+    """Return the normal motion along a path."""
+    drift = np.diff(points.time, axis=0, prepend=0.0)
+    moved = np.diff(points.approach, axis=0, prepend=0.0)
+    columns = (_column(rows, scene.shape) for rows in zip(*contacts, strict=True))
+    return SampledMotion(
+        normal,
+        scene,
+        time=points.time,
+        approach=points.approach,
+        rate=np.divide(moved, drift, out=np.zeros_like(moved), where=drift > 0.0),
+        contact=NormalContact(*columns),
+    )
+
+
+def _steps(
+    points: Points, contacts: list[NormalContact]
+) -> Iterable[tuple[Increment, NormalContact]]:
+    """Iterate over the steps; the first one presses only."""
+    drift = np.diff(points.time, axis=0, prepend=0.0)
+    moved = np.diff(points.displacement, axis=0, prepend=points.displacement[:1])
+    velocity = np.divide(moved, drift, out=np.zeros_like(moved), where=drift > 0.0)
+    rows = (_rows(each) for each in (moved, velocity, drift))
+    for by, speed, time, after in zip(*rows, contacts, strict=True):
+        # The force acts on no body: the path is prescribed.
+        yield Increment(locked(by), locked(speed), after.friction_load, 0.0 * time, time), after
+
+
+def _with_marks(points: Points, motion: SampledMotion, marks: Any) -> tuple[Points, Any]:
+    """Return points with the marks of a law among them, and the index of each former point."""
+    shape = motion.scene.shape
+    phases = np.asarray(marks, dtype=np.float64)
+    if phases.ndim == 1:
+        phases = phases.reshape(-1, *(1,) * len(shape))
+    count = len(points.time)
+    between = np.broadcast_to(motion.at(phases).time, (len(phases), *shape))
+    times = np.concatenate((points.time, between))
+    order = np.argsort(times, axis=0, kind="stable")
+    finer = np.take_along_axis(times, order, axis=0)
+    flat = [each.reshape(len(each), -1) for each in (*points, finer)]
+    lines = []
+    for column in flat[1:3]:
+        line = np.empty(flat[3].shape)
+        for item in range(line.shape[1]):
+            first = np.append(0.0, flat[0][:, item])
+            path = np.append(0.0 if column is flat[1] else column[0, item], column[:, item])
+            line[:, item] = np.interp(flat[3][:, item], first, path)
+        lines.append(line.reshape(finer.shape))
+    wanted = np.argsort(order, axis=0, kind="stable")[:count]
+    return Points(finer, *lines), wanted
+
+
+def _judged(laws: Any, columns: dict[str, Array], points: Points) -> tuple[Any, str]:
+    """Return statuses and the sentence of the first failure; what follows a failure is NaN."""
+    normal, tangential = laws
+    shape = points.time.shape[1:]
+    status = np.full(shape, Status.SUCCESS, dtype=object)
+    detail = ""
+    bad_load = ~np.isfinite(columns["normal_force"] + columns["contact_radius"])
+    bad_force = ~np.isfinite(columns["friction_force"] + columns["friction_work"])
+    unsettled = columns["settled"] == 0.0
+    for law, bad, kind, what in (
+        (normal, bad_load, Status.NON_FINITE, "a contact that is not finite"),
+        (tangential, unsettled, Status.UNSETTLED, "no division found"),
+        (tangential, bad_force, Status.NON_FINITE, "a force that is not finite"),
+    ):
+        failing = bad.any(axis=0) & (status == Status.SUCCESS)
+        if failing.any():
+            status[failing] = kind
+            step = int(bad.reshape(len(bad), -1).any(axis=1).argmax())
+            detail = detail or faults.sentence(law, what, step + 1)
+            lost = np.maximum.accumulate(bad, axis=0) & failing
+            for rows in columns.values():
+                rows[lost] = np.nan
+    return (status if shape else status.item()), detail
+
+
+def _column(rows: Any, shape: tuple[int, ...]) -> Array:
+    """Return rows that broadcast to ``shape`` as an array of shape (K, ...)."""
+    return np.array([np.broadcast_to(row, shape) for row in rows], dtype=np.float64)
+
+
+def _rows(column: Array) -> Any:
+    """Return the rows of a column: floats of one path, arrays of a batch."""
+    return column.tolist() if column.ndim == 1 else np.array(column)
+
+
+def _plain(value: Any) -> Any:
+    """Return a number as a float, and an array read-only."""
+    return locked(value) if np.ndim(value) else float(value)

@@ -1,0 +1,111 @@
+"""The contract of a tangential law that knows its path: an impact in, stretches of it out.
+
+All quantities are scaled, theory §1, so that a law reads like the paper and a change of units
+changes no digit. The normal motion is a ``ScaledContact``; besides it:
+
+============  ==================================================================
+``velocity``  psi = kappa v_x/(mu v1), eq. (29)
+``force``     F/(mu P_max), positive where it opposes positive slip velocity
+``inertia``   d psi/dT = -inertia · force; 2.5 chi for elastic Hertz contact
+``work``      friction work, in units of force times the integral of psi over T
+============  ==================================================================
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.contracts.motion import ClosedFormMotion, ScaledContact
+from contactlab.contracts.tangential import TangentialLaw
+
+Array = NDArray[np.float64]
+
+
+class LostPathError(ArithmeticError):
+    """The path cannot be followed any further, for the reason that its message says."""
+
+
+class Stretch(ABC):
+    """The motion between two events.
+
+    Attributes
+    ----------
+    start, stop : float
+        Phases x of the normal motion between which it holds.
+    change, work : float
+        Change of velocity and friction work from first touch to ``stop``. The change is not added
+        to the velocity, which may be so large that it would swallow digits of the change. Work is
+        added up from tractions and slip, not from the balance of energy.
+    solves : int
+        Systems of equations solved from first touch on.
+    """
+
+    start: float
+    stop: float
+    change: float
+    work: float
+    solves: int = 0
+
+    @abstractmethod
+    def states(self, contact: ScaledContact) -> tuple[Array, Array]:
+        """Return (change of velocity since first touch, force) at the contact's x.
+
+        Parameters
+        ----------
+        contact : ScaledContact
+            At phases within the stretch, shape (K,).
+        """
+
+    def fields(
+        self, normal: ClosedFormMotion, contact: ScaledContact, factor: float
+    ) -> Mapping[str, NDArray[Any]]:
+        """Return named arrays in SI (traction, stuck, ...) at one instant.
+
+        Parameters
+        ----------
+        normal : ClosedFormMotion
+            Of the impact, for its scales.
+        contact : ScaledContact
+            At the instant, of floats.
+        factor : float
+            What the scaled solution is multiplied with: -1 for a negative slip velocity, and see
+            clause 4 of ``PathTangentialLaw``.
+        """
+        return {}
+
+
+class PathTangentialLaw(TangentialLaw):
+    """A tangential law that knows the path of its state from event to event.
+
+    Contract
+    --------
+    1. ``path`` yields the stretches of one impact, one after another without gaps, to x = pi. It
+       is given a velocity > 0, as a law is odd.
+    2. A path that cannot be followed further raises ``LostPathError``.
+    3. Stretches of no length are allowed, a hundred in a row.
+    4. Below the velocity ``linear_below`` the response is proportional to the velocity, to 1e-8 of
+       itself; an integrator may then ask for the path of ``linear_below`` and scale.
+    """
+
+    linear_below: ClassVar[float] = 0.0
+
+    @abstractmethod
+    def path(
+        self, velocity: float, inertia: float, motion: ClosedFormMotion, tolerance: float
+    ) -> Iterator[Stretch]:
+        """Yield the stretches of one impact.
+
+        Parameters
+        ----------
+        velocity, inertia : float
+            Of the module's table, at first touch; positive and finite.
+        motion : ClosedFormMotion
+            The normal motion, of one impact.
+        tolerance : float
+            Error of psi2 over max(1, psi1) that is aimed at.
+        """

@@ -1,0 +1,151 @@
+"""Normal motions made of samples, and of the motions of parts of a batch."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.contracts.contact import NormalContact
+from contactlab.contracts.law import Law
+from contactlab.contracts.motion import NormalMotion, NormalSample
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import merged, spread
+from contactlab.numeric.checks import Real
+
+Array = NDArray[np.float64]
+
+
+class SampledMotion(NormalMotion):
+    """A normal motion through samples, linear between them; its phase is proportional to time.
+
+    Maxima are those of the samples; the load impulse is their sum by the trapezium rule.
+
+    Parameters
+    ----------
+    law : NormalLaw
+        The normal law.
+    scene : Scene
+        One impact or a batch.
+    time : array, shape (K, ...)
+        Times of the samples in s, growing. The sample at first touch is added.
+    approach, rate : array, shape (K, ...)
+        Approach in m and its rate in m/s.
+    contact : NormalContact
+        The normal contact; arrays of shape (K, ...).
+    """
+
+    def __init__(
+        self, law: Law, scene: Scene, *, time: Any, approach: Any, rate: Any, contact: NormalContact
+    ) -> None:
+        self.law, self.scene = law, scene
+        shape = scene.shape
+        touch: Any = np.broadcast_to(scene.normal_speed, (1, *shape))
+        zero = np.zeros((1, *shape))
+        column = (len(np.asarray(time)), *shape)
+
+        def all_of(first: Any, rest: Any) -> Array:
+            return np.concatenate((first, np.broadcast_to(rest, column)))
+
+        self._time = all_of(zero, time)
+        sampled = contact.complete
+        entries = (sampled.force, sampled.radius, sampled.overlap, sampled.friction_load)
+        force, radius, overlap, load = (all_of(zero, entry) for entry in entries)
+        moved = np.diff(self._time, axis=0) * 0.5 * (load[1:] + load[:-1])
+        impulse = np.concatenate((zero, np.cumsum(moved, axis=0)))
+        depth, speed = all_of(zero, approach), all_of(touch, rate)
+        self._columns = np.stack((depth, speed, force, radius, overlap, load, impulse))
+        self.duration = spread(self._time[-1], shape)
+        self.final_rate, self.total_load_impulse = (
+            spread(column[-1], shape) for column in (speed, impulse)
+        )
+        self.maximum_radius, self.maximum_approach, self.maximum_force = (
+            spread(column.max(axis=0), shape) for column in (radius, depth, force)
+        )
+
+    def at(self, phase: Real) -> NormalSample:
+        """Return the motion at ``phase``, by linear interpolation.
+
+        Parameters
+        ----------
+        phase : float or array
+            Phase from 0 at first touch to pi at the last sample.
+        """
+        fraction = np.asarray(phase, dtype=np.float64) / math.pi
+        outer = np.broadcast_shapes(fraction.shape, self.scene.shape)
+        time = np.broadcast_to(fraction * self.duration, outer)
+        count = len(self._time)
+        items = self._time.reshape(count, -1)
+        wanted = time.reshape(-1, items.shape[1])
+        shares = np.empty((7, *wanted.shape))
+        for item in range(items.shape[1]):
+            for k, column in enumerate(self._columns.reshape(7, count, -1)[..., item]):
+                shares[k, :, item] = np.interp(wanted[:, item], items[:, item], column)
+        depth, rate, force, radius, overlap, load, impulse = (
+            column.reshape(outer) if outer else float(column.item()) for column in shares
+        )
+        when = np.array(time) if outer else float(time)
+        return NormalSample(when, depth, rate, NormalContact(force, radius, overlap, load), impulse)
+
+    def phase(self, fraction: Real) -> Real:
+        """Return pi times the fraction.
+
+        Parameters
+        ----------
+        fraction : float or array
+            Fraction of the duration, from 0 to 1.
+        """
+        return math.pi * np.asarray(fraction)
+
+    def take(self, part: Any) -> SampledMotion:
+        """Return the motion of some impacts.
+
+        Parameters
+        ----------
+        part : slice, array of bool or int, int or tuple of int
+            Index of an array of the batch shape.
+        """
+        index = (slice(1, None), *(part if isinstance(part, tuple) else (part,)))
+        time = self._time[index]
+        depth, rate, *contact, _ = (column[index] for column in self._columns)
+        return SampledMotion(
+            self.law,
+            self.scene.take(part),
+            time=time,
+            approach=depth,
+            rate=rate,
+            contact=NormalContact(*contact),
+        )
+
+
+@attrs.frozen(eq=False, repr=False)
+class NormalMotions:
+    """The normal motions of parts of a batch, as ``TangentialMotion.merged`` makes them.
+
+    Attributes
+    ----------
+    shape : tuple of int
+        Shape of the whole batch.
+    parts : tuple of (array of bool, NormalMotion or None)
+        Masks of the batch, each with the motion of the impacts that it marks; None for impacts
+        whose normal motion friction does not change.
+    """
+
+    shape: tuple[int, ...]
+    parts: tuple[tuple[Any, NormalMotion | NormalMotions | None], ...]
+
+
+def gathered(
+    normal: NormalMotion | NormalMotions | None, of: Callable[[NormalMotion], Any], shape: Any
+) -> Any:
+    """Return a number of each motion, of the batch shape; NaN where there is no motion."""
+    if normal is None:
+        return spread(math.nan, shape)
+    if isinstance(normal, NormalMotion):
+        return of(normal)
+    each = [(mask, gathered(part, of, (int(np.sum(mask)),))) for mask, part in normal.parts]
+    return merged(each, normal.shape)

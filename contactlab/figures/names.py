@@ -1,0 +1,236 @@
+"""Names beside curves, in place of a legend."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: Points along a curve beside which its name may stand, and points that stand for a curve.
+PLACES, POINTS = 48, 1500
+#: Boxes that are compared with all points of a curve at once: some megabytes.
+BOXES = 64
+#: Distances in points: least between two names, least between a name and any curve, and those
+#: that are tried between a name and its own curve.
+BETWEEN, LEAST, GAPS = 2.5, 1.5, (2.5, 5.0, 9.0)
+#: Distances at which a thin line leads from the name to its curve, where there is room only there.
+LED = (12.0, 18.0, 26.0, 38.0, 54.0, 72.0)
+#: Least distance in points from other curves where such a line begins, and the length that it may
+#: be longer to cross one curve less.
+APART, CROSSED = 2.5, 25.0
+#: A name is nearer to its own curve than to any other by this factor.
+NEARER = 1.35
+
+
+def name_curves(
+    axes: Axes,
+    lines: Sequence[Line2D],
+    names: Sequence[str],
+    *,
+    alike: Sequence[Sequence[Line2D]] = (),
+) -> bool:
+    """Write each name beside its curve in the colour of the curve; return False if one has no room.
+
+    A name touches no curve and no other text, and is nearest to its own curve. Where one name
+    finds no such place, none is written: a legend is left to the caller. Labels, limits and all
+    other text should be there before.
+
+    Parameters
+    ----------
+    axes : Axes
+    lines : sequence of Line2D
+        Curves of the axes to be named.
+    names : sequence of str
+        A name for each curve.
+    alike : sequence of sequences of Line2D
+        Groups of curves that share a name: a name may be as near to another of its group.
+    """
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    figure.draw_without_rendering()  # limits and layout come first
+    unit = figure.dpi / 72.0
+    dots = {line: _dots(line) for line in axes.lines if len(np.atleast_1d(line.get_xdata())) > 2}
+    rules = [_dots(line) for line in axes.lines if line not in dots]
+    taken = [_box(text.get_window_extent()) for text in axes.texts if text.get_text()]
+    if (legend := axes.get_legend()) is not None:
+        taken.append(_box(legend.get_window_extent()))
+    frame = _box(axes.get_window_extent())
+    written: list[Text] = []
+    leaders: list[Line2D] = []
+    texts = []
+    for line, name in zip(lines, names, strict=True):
+        text = axes.text(0.0, 0.0, name, color=line.get_color(), fontsize="small", zorder=6)
+        text.set_in_layout(False)
+        box = text.get_window_extent()
+        texts.append((line, text, np.array([box.width, box.height])))
+        written.append(text)
+    # Curves that lie among others find fewer places, and choose first.
+    order = sorted(texts, key=lambda item: -_crowd(dots, item[0]))
+    for line, text, size in order:
+        group = next((group for group in alike if line in group), (line,))
+        others = [points for other, points in dots.items() if other not in group]
+        curves = [*dots.values(), *rules]
+        found = _place(dots[line], others, curves, taken, frame, size, unit)
+        if found is None:
+            found = _led(dots[line], others, curves, taken, frame, size, unit)
+        if found is None:
+            for leader in leaders:
+                leader.remove()
+            for one in written:
+                one.remove()
+            return False
+        place, start = found
+        if start is not None:
+            ends = axes.transData.inverted().transform(
+                [start, place - [0.0, np.sign((place - start)[1]) * 0.5 * size[1]]]
+            )
+            rules.append(np.linspace(start, place, 40))
+            leaders += axes.plot(
+                *ends.T, color=line.get_color(), linewidth=0.6, scalex=False, scaley=False
+            )
+        low = place - 0.5 * size
+        taken.append(np.array([low, low + size]))
+        text.set_position(tuple(axes.transData.inverted().transform(place)))
+        text.set(ha="center", va="center")
+    return True
+
+
+def _dots(line: Line2D) -> Array:
+    """Return many points along a line, shape (n, 2), in dots."""
+    xy = np.asarray(line.get_transform().transform(line.get_xydata()), dtype=np.float64)
+    xy = xy[np.isfinite(xy).all(axis=1)]
+    if len(xy) < 2:
+        return xy
+    along = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(xy, axis=0).T))))
+    fine = np.linspace(0.0, along[-1], POINTS)
+    return np.column_stack([np.interp(fine, along, column) for column in xy.T])
+
+
+def _box(extent: Any) -> Array:
+    """Return lower left and upper right corner of an extent, shape (2, 2)."""
+    return np.array([extent.min, extent.max])
+
+
+def _crowd(dots: dict[Line2D, Array], line: Line2D) -> float:
+    """Return how near the other curves are: minus the greatest distance to the nearest."""
+    places = dots[line][:: POINTS // PLACES]
+    others = [points for other, points in dots.items() if other is not line]
+    if not others:
+        return 0.0
+    near = np.min([_distances(places, points) for points in others], axis=0)
+    return -float(np.max(near))
+
+
+def _distances(places: Array, points: Array) -> Array:
+    """Return the distance of each place from the nearest point."""
+    return np.asarray(np.sqrt(((places[:, None] - points[None, ::4]) ** 2).sum(axis=2)).min(axis=1))
+
+
+def _off(boxes: Array, points: Array) -> Array:
+    """Return the distances of boxes, shape (n, 2, 2), from their nearest points; 0 inside."""
+    if not len(points):
+        return np.full(len(boxes), np.inf)
+    least = np.empty(len(boxes))
+    for first in range(0, len(boxes), BOXES):
+        low, high = np.moveaxis(boxes[first : first + BOXES, :, None], 1, 0)
+        beyond = np.maximum(np.maximum(low - points, points - high), 0.0)
+        least[first : first + BOXES] = (beyond[..., 0] ** 2 + beyond[..., 1] ** 2).min(axis=1)
+    return np.sqrt(least)
+
+
+def _place(
+    own: Array,
+    others: Sequence[Array],
+    curves: Sequence[Array],
+    taken: Sequence[Array],
+    frame: Array,
+    size: Array,
+    unit: float,
+) -> tuple[Array, Array | None] | None:
+    """Return the best centre of a name beside its curve, in dots, or None."""
+    offsets = [
+        (shift * size[0], side * (0.5 * size[1] + gap * unit))
+        for gap in GAPS
+        for side in (-1.0, 1.0)
+        for shift in (-0.5, 0.0, 0.5)
+    ]
+    centres = (own[:: POINTS // PLACES, None] + np.array(offsets)).reshape(-1, 2)
+    centres = centres[_free(_boxes(centres, size), curves, taken, frame, unit)]
+    if not len(centres):
+        return None
+    boxes = _boxes(centres, size)
+    near = _off(boxes, own)
+    far = np.full(len(boxes), 60.0 * unit)
+    if others:
+        far = np.min([_off(boxes, points) for points in others], axis=0)
+    score = np.where(far < NEARER * near, -np.inf, np.minimum(far, 30.0 * unit) - 1.5 * near)
+    best = int(np.argmax(score))
+    return (centres[best], None) if score[best] > -np.inf else None
+
+
+def _boxes(centres: Array, size: Array) -> Array:
+    """Return the boxes of a size around centres, shape (n, 2, 2)."""
+    return np.stack([centres - 0.5 * size, centres + 0.5 * size], axis=1)
+
+
+def _led(
+    own: Array,
+    others: Sequence[Array],
+    curves: Sequence[Array],
+    taken: Sequence[Array],
+    frame: Array,
+    size: Array,
+    unit: float,
+) -> tuple[Array, Array] | None:
+    """Return the best centre of a name away from its curve, and where its line begins, or None."""
+    best, found, pad = np.inf, None, LEAST * unit
+    for point in own[:: POINTS // PLACES]:
+        if (
+            min((_distances(point[None], points)[0] for points in others), default=9e9)
+            < APART * unit
+        ):
+            continue
+        for gap in LED:
+            for side in (-1.0, 1.0):
+                for shift in (-1.2, -0.8, -0.4, 0.0, 0.4, 0.8, 1.2):
+                    reach = side * gap * unit
+                    offset = np.array([shift * size[0], reach + side * 0.5 * size[1]])
+                    centre = point + offset
+                    if not _free(_boxes(centre[None], size), curves, taken, frame, unit)[0]:
+                        continue
+                    end = centre - np.array([0.0, side * 0.5 * size[1]])
+                    path = point + np.linspace(0.1, 1.0, 16)[:, None] * (end - point)
+                    crossed = sum(
+                        _distances(path, points).min() < LEAST * unit for points in others
+                    )
+                    crossed += sum(
+                        bool(((path > other[0] - pad) & (path < other[1] + pad)).all(axis=1).any())
+                        for other in taken
+                    )
+                    length = float(np.hypot(*(end - point))) + CROSSED * unit * crossed
+                    if length < best:
+                        best, found = length, (centre, point)
+    return found
+
+
+def _free(
+    boxes: Array, curves: Sequence[Array], taken: Sequence[Array], frame: Array, unit: float
+) -> NDArray[np.bool_]:
+    """Return which boxes lie in the axes and touch neither a curve nor other text."""
+    low, high = boxes[:, 0], boxes[:, 1]
+    free: NDArray[np.bool_] = (low >= frame[0] + unit).all(axis=1) & (high <= frame[1] - unit).all(
+        axis=1
+    )
+    pad = BETWEEN * unit
+    for other in taken:
+        free &= ~((low < other[1] + pad).all(axis=1) & (high > other[0] - pad).all(axis=1))
+    for points in curves:
+        free[free] = _off(boxes[free], points) >= LEAST * unit
+    return free

@@ -1,0 +1,144 @@
+/* Friction of two elastic spheres with partial slip: springs on a doubling grid.
+ *
+ * Mindlin's partial slip along any path of load and displacement, with N springs in 2 + 3 N numbers a
+ * contact, from nothing but the present contact. No path gains energy. Theory, accuracy and measurements:
+ * section 13 of `contactlab guide theory`.
+ *
+ *     double state[CONTACTLAB_SPRINGS_STATE(8)] = {0};             // no contact: all zero
+ *     work = contactlab_springs_step(state, 8, moved, normal, radius, limit, unit, modulus, force);
+ *
+ * C99 and C++, no allocation, no global. Define CONTACTLAB_REAL as float before the include for single
+ * precision. Do not compile with -ffast-math: NaN would not be seen.
+ *
+ * SPDX-License-Identifier: MIT
+ * Copyright (c) the authors of contactlab
+ */
+#ifndef CONTACTLAB_SPRINGS_H
+#define CONTACTLAB_SPRINGS_H
+
+#include <math.h>
+
+#ifndef CONTACTLAB_REAL
+#define CONTACTLAB_REAL double
+#endif
+
+/* Length of the state of a contact with n springs: A and b in m, then w of each spring, three numbers
+ * in m. Where the two bodies change places, A and b keep their signs and every w changes its own. */
+#define CONTACTLAB_SPRINGS_STATE(n) (2 + 3 * (n))
+
+/* Contacts whose radius is below this times the unit just touch: no friction. */
+#define CONTACTLAB_SPRINGS_TOUCH ((CONTACTLAB_REAL) 1e-30)
+
+/* Returns how many of n springs, at 1/2, 3/2, ... cells, are within u cells of the axis. */
+static inline int contactlab_springs_within(CONTACTLAB_REAL u, int n)
+{
+  return u < n ? (int) (u + (CONTACTLAB_REAL) 0.5) : n;
+}
+
+/* Fits the grid to the contact radius b, so that A/4 < b <= A. Returns the energy lost over 2 G*, in m^3:
+ * merged springs lose some, springs beyond a halved grid all of theirs. */
+static inline CONTACTLAB_REAL contactlab_springs_fit(CONTACTLAB_REAL *state, int n, CONTACTLAB_REAL b,
+                                                     CONTACTLAB_REAL unit)
+{
+  CONTACTLAB_REAL *w = state + 2, lost = 0, sum;
+  int i, exponent;
+  if (!(state[0] > 0)) {
+    const double fraction = frexp((double) (b / unit), &exponent);
+    state[0] = unit * (CONTACTLAB_REAL) ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
+  }
+  for (; b > state[0]; state[0] *= 2) { /* neighbours merge, the outer half starts from zero */
+    for (sum = 0, i = 0; i < 3 * (n / 2); ++i) {
+      const CONTACTLAB_REAL inner = w[i / 3 * 6 + i % 3], outer = w[i / 3 * 6 + 3 + i % 3];
+      sum += (inner - outer) * (inner - outer);
+      w[i] = (inner + outer) / 2;
+    }
+    for (; i < 3 * n; ++i) w[i] = 0;
+    lost += sum * state[0] / (4 * n);
+  }
+  for (; b <= state[0] / 4; state[0] /= 2) { /* cells split into equal halves */
+    for (sum = 0, i = 3 * (n / 2); i < 3 * n; ++i) sum += w[i] * w[i];
+    lost += sum * state[0] / (2 * n);
+    for (i = 3 * n - 1; i >= 0; --i) w[i] = w[i / 6 * 3 + i % 3];
+  }
+  return lost;
+}
+
+/* Takes one step of a contact. Returns the friction work in J.
+ *
+ * state    numbers of the contact, CONTACTLAB_SPRINGS_STATE(n) of them; changed
+ * n        springs, even
+ * moved    displacement of the first body relative to the second in this step, at the contact, in m
+ * normal   unit normal of the contact at the end of the step; either sense
+ * radius   contact radius b at the end of the step, in m; 0 out of contact
+ * limit    mu times the normal force at the end of the step, in N, at least 0
+ * unit     any fixed length of the pair, in m, such as its radius: A is a power of two times it
+ * modulus  2 G*, 1/G* = sum (2 - nu)/(4 G), in Pa; 8 G* with the G* of discrete-element codes
+ * force    friction on the first body, in N; the second has the opposite; set
+ *
+ * What is not finite makes force and work NaN, until the contact ends. */
+static inline CONTACTLAB_REAL contactlab_springs_step(CONTACTLAB_REAL *state, int n, const CONTACTLAB_REAL *moved,
+    const CONTACTLAB_REAL *normal, CONTACTLAB_REAL radius, CONTACTLAB_REAL limit, CONTACTLAB_REAL unit,
+    CONTACTLAB_REAL modulus, CONTACTLAB_REAL *force)
+{
+  CONTACTLAB_REAL *w = state + 2, work = 0, lost = 0, most = 0, cell, u, v, growth, along;
+  CONTACTLAB_REAL d[3], held[3], total[3] = {0, 0, 0};
+  int i, k, touching, touched;
+  const CONTACTLAB_REAL size = state[0];
+  const CONTACTLAB_REAL all = moved[0] + moved[1] + moved[2] + normal[0] + normal[1] + normal[2] + radius + limit;
+  if (!(all - all == 0)) {
+    for (i = 0; i < 3 * n; ++i) w[i] = NAN;
+    force[0] = force[1] = force[2] = NAN;
+    if (!(state[0] > 0)) state[0] = unit;
+    state[1] = state[0];
+    return NAN;
+  }
+  if (radius > unit * CONTACTLAB_SPRINGS_TOUCH) lost = contactlab_springs_fit(state, n, radius, unit);
+  else radius = 0;
+  force[0] = force[1] = force[2] = 0;
+  if (!(state[0] > 0)) return 0;
+
+  cell = state[0] / n;
+  u = radius * (n / state[0]); /* b after and before the step, in cells */
+  v = state[1] * (n / state[0]);
+  growth = u - v;
+  touching = contactlab_springs_within(u, n);
+  touched = state[0] == size ? contactlab_springs_within(v, n) : n; /* springs that may hold something */
+  if (touching > 0) { /* limits in proportion to b^2 - r^2, together the limit of the contact */
+    const CONTACTLAB_REAL m = (CONTACTLAB_REAL) touching;
+    most = limit / (modulus * cell * (m * u * u - m * (4 * m * m - 1) / 12));
+  }
+  along = moved[0] * normal[0] + moved[1] * normal[1] + moved[2] * normal[2];
+  for (k = 0; k < 3; ++k) d[k] = moved[k] - along * normal[k];
+
+  for (i = 0; i < touching || i < touched; ++i, w += 3) {
+    const CONTACTLAB_REAL r = i + (CONTACTLAB_REAL) 0.5;
+    const CONTACTLAB_REAL l = i < touching ? most * (u * u - r * r) : 0;
+    /* A spring that the contact reaches in the step moves from then on only. */
+    const CONTACTLAB_REAL part = growth > 0 && r > v ? (u - r) / growth : 1;
+    CONTACTLAB_REAL square = 0, share = 1;
+    along = w[0] * normal[0] + w[1] * normal[1] + w[2] * normal[2];
+    for (k = 0; k < 3; ++k) {
+      held[k] = w[k] - along * normal[k];
+      w[k] = held[k] + part * d[k];
+      square += w[k] * w[k];
+    }
+    if (square > l * l) share = l / (CONTACTLAB_REAL) sqrt((double) square);
+    for (k = 0; k < 3; ++k) { /* the work of a spring: its mean w times its slip */
+      const CONTACTLAB_REAL kept = share * w[k];
+      work += (w[k] - kept) * (held[k] + kept);
+      total[k] += kept;
+      w[k] = kept;
+    }
+  }
+  for (k = 0; k < 3; ++k) force[k] = -modulus * cell * total[k];
+  state[1] = radius;
+  if (radius == 0) { /* nothing is left of the contact, NaN neither */
+    for (i = 0; i < 2 + 3 * n; ++i) state[i] = 0;
+    force[0] = force[1] = force[2] = 0;
+  }
+  work *= modulus * cell / 2;
+  if (work < 0) work = 0;
+  return work + modulus * lost;
+}
+
+#endif

@@ -1,0 +1,221 @@
+/* The page: what one sets, the moving picture, and the words. */
+
+const $ = id => document.getElementById(id);
+const NUMBERS = ["angle", "speed", "spin", "friction", "guess"];
+const SHOW = 7000;             // length of the whole show in ms
+const ARRIVAL = .22, DEPARTURE = .74; // parts of the show at which contact begins and ends
+const FLIGHT = 3.4;            // path shown before contact, in radii
+const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+
+const minus = (value, digits) => (+value.toFixed(digits) + 0).toFixed(digits).replace("-", "\u2212");
+const LAWS = [["exact", "elastic"], ["spring", "capped spring"], ["rigid", "rigid"]];
+const spinWords = spin => (Math.abs(spin) < .5 ? "none" : `${spin > 0 ? "back" : "top"}spin ${Math.abs(spin).toFixed(0)} rad/s`);
+
+let state = {...FIRST}, found, curves, moment = 0, playing = 0, seen = true;
+
+/* ---- state in the link ---- */
+function fromLink() {
+  const given = new URLSearchParams(location.hash.slice(1));
+  for (const [key, first] of Object.entries(FIRST)) {
+    if (!given.has(key)) continue;
+    const text = given.get(key);
+    if (typeof first === "number") {
+      const box = $(key), number = Number(text);
+      if (text !== "" && Number.isFinite(number)) state[key] = box ? Math.min(Math.max(number, +box.min), +box.max) : state[key];
+    } else if (typeof first === "boolean") state[key] = text === "1";
+    else if (text in MATERIALS) state[key] = text;
+  }
+}
+function toLink() {
+  const parts = Object.entries(state).filter(([key, value]) => value !== FIRST[key] && key !== "radius");
+  const hash = new URLSearchParams(parts.map(([key, value]) => [key, value === true ? "1" : value === false ? "0" : value]));
+  try { history.replaceState(null, "", "#" + hash); } catch { /* a viewer without links */ }
+}
+
+/* ---- drawing ---- */
+const path = (xs, ys) => xs.map((x, k) => (k ? "L" : "M") + x.toFixed(1) + " " + ys[k].toFixed(1)).join("");
+const line = (x1, y1, x2, y2, kind) => `<line class="${kind}" x1="${x1.toFixed(1)}" y1="${y1.toFixed(1)}" x2="${x2.toFixed(1)}" y2="${y2.toFixed(1)}"/>`;
+const text = (x, y, what, anchor, kind) => `<text class="${kind || ""}" x="${x.toFixed(1)}" y="${y.toFixed(1)}" text-anchor="${anchor || "middle"}">${what}</text>`;
+
+/* Return each ball's centre in radii from the point of contact, and its turn in rad. */
+function balls() {
+  const {met} = found, before = Math.min(moment / ARRIVAL, 1), after = Math.max((moment - DEPARTURE) / (1 - DEPARTURE), 0);
+  const inside = Math.min(Math.max((moment - ARRIVAL) / (DEPARTURE - ARRIVAL), 0), 1);
+  const reach = FLIGHT / state.speed, touching = met.duration / met.R;
+  return Object.fromEntries(LAWS.map(([law]) => {
+    const left = found[law], away = after * reach, come = (before - 1) * reach;
+    return [law, {
+      x: met.along * come + (met.along + left.along) / 2 * touching * inside + left.along * away,
+      y: 1 - met.normal * come + left.normal * away - met.C ** 2 * Math.sin(Math.PI * inside),
+      turn: met.R * (state.spin * come + left.spin * away),
+    }];
+  }));
+}
+
+function drawStage() {
+  const size = 42, x = place => 250 + size * place, y = place => 262 - size * place;
+  const {met, exact} = found, drawn = balls();
+  let svg = `<rect class="ground" x="0" y="${y(0)}" width="500" height="40"/>`;
+  svg += line(x(0), y(1), x(0), y(6), "rule");
+  const from = FLIGHT / state.speed;
+  svg += line(x(-met.along * from), y(1 + met.normal * from), x(0), y(1), "rule");
+  if (state.predict) {
+    const a = state.guess * Math.PI / 180;
+    svg += line(x(0), y(1), x(4.6 * Math.sin(a)), y(1 + 4.6 * Math.cos(a)), "guess");
+    svg += text(x(4.9 * Math.sin(a)), y(1 + 4.9 * Math.cos(a)) + 4, "you", "middle");
+  }
+  if (seen) svg += line(x(0), y(1), x(exact.along * from), y(1 + exact.normal * from), "rule");
+  const marks = moment > DEPARTURE ? LAWS.slice().reverse() : LAWS.slice(0, 1);
+  for (const [law] of marks) {
+    const ball = drawn[law], c = [x(ball.x), y(ball.y)];
+    const spoke = k => { const a = -ball.turn + k * Math.PI / 2; return line(c[0], c[1], c[0] + .93 * size * Math.cos(a), c[1] + .93 * size * Math.sin(a), law); };
+    svg += `<g data-law="${law}"><circle class="${law} ${law === "exact" ? "ball" : "ghost"}" cx="${c[0].toFixed(2)}" cy="${c[1].toFixed(2)}" r="${size}"/>`;
+    svg += (law === "exact" ? [0, 1, 2, 3] : [0]).map(spoke).join("") + "</g>";
+  }
+  const inside = (moment - ARRIVAL) / (DEPARTURE - ARRIVAL);
+  const clock = inside < 0 ? "arrives" : inside > 1 ? "leaves" : `in contact: ${seconds(inside * met.duration)} of ${seconds(met.duration)}`;
+  svg += text(12, 24, clock, "start");
+  if (moment > DEPARTURE) svg += text(12, 48, "elastic", "start", "named-exact") + text(12, 70, "ghost: capped spring", "start", "named-spring") + text(12, 92, "ghost: rigid", "start", "named-rigid");
+  $("stage").innerHTML = svg;
+}
+
+function seconds(value) {
+  for (const [factor, unit] of [[1, "s"], [1e3, "ms"], [1e6, "\u00b5s"]]) if (value * factor >= 1) return `${(value * factor).toPrecision(3)} ${unit}`;
+  return `${(value * 1e6).toFixed(1)} \u00b5s`;
+}
+
+const row = () => {
+  const inside = Math.min(Math.max((moment - ARRIVAL) / (DEPARTURE - ARRIVAL), 0), 1), times = found.contact.time;
+  let low = 0, high = times.length - 1;
+  while (high - low > 1) { const middle = (low + high) >> 1; if (times[middle] <= inside) low = middle; else high = middle; }
+  return inside >= 1 ? high : low;
+};
+
+/* Return the rings of equal state from the rim inwards: outer radius over a, and state. */
+function rings(states) {
+  const list = [];
+  for (let i = states.length - 1; i >= 0; i--) if (states[i] && states[i] !== (list.at(-1) || {}).state) list.push({outer: (i + 1) / states.length, state: states[i]});
+  return list;
+}
+
+function drawContact() {
+  const colours = ["", "var(--grey)", "var(--blue)", "var(--red)"], k = row(), list = rings(found.contact.states[k]);
+  const size = 104, cx = 125, cy = 112;
+  let svg = `<circle class="rule" fill="none" cx="${cx}" cy="${cy}" r="${size}"/>`;
+  for (const ring of list) svg += `<circle cx="${cx}" cy="${cy}" r="${(size * ring.outer).toFixed(2)}" fill="${colours[ring.state]}" data-state="${ring.state}"/>`;
+  const share = found.contact.force[k];
+  if (list.length && Math.abs(share) > .01) {
+    const tip = cx - 90 * share, back = tip + 10 * Math.sign(share);
+    svg += `<path d="M${cx} ${cy}H${tip}M${back} ${cy - 6}L${tip} ${cy}L${back} ${cy + 6}" stroke="var(--ink)" stroke-width="2.5" fill="none"/>`;
+  }
+  const words = !list.length ? "no contact" : list.length === 1 ? (list[0].state === 1 ? "sticks" : "slips all over") : "slips at the rim, sticks within";
+  svg += text(cx, 232, words);
+  $("contact").innerHTML = svg;
+  $("contact").setAttribute("aria-label", `the contact from above: ${words}`);
+}
+
+function frame(left, right, top, bottom, xs, ys, toX, toY, name) {
+  let svg = line(left, bottom, right, bottom, "axis") + line(left, top, left, bottom, "axis");
+  for (const value of xs) svg += line(toX(value), bottom, toX(value), bottom + 5, "axis") + text(toX(value), bottom + 21, value);
+  for (const value of ys) svg += line(left - 5, toY(value), left, toY(value), "axis") + text(left - 8, toY(value) + 6, String(value).replace("-", "\u2212"), "end");
+  return svg + line(left, toY(0), right, toY(0), "rule") + text((left + right) / 2, bottom + 41, name);
+}
+
+function drawForce() {
+  const left = 40, right = 392, top = 8, bottom = 212, {contact, capped} = found, k = row();
+  const x = t => left + (right - left) * t, y = f => (top + bottom) / 2 - (bottom - top) / 2.1 * f;
+  let svg = frame(left, right, top, bottom, [0, .5, 1], [-1, 0, 1], x, y, "time over duration");
+  for (const sign of [1, -1]) svg += `<path class="limit" d="${path(contact.time.map(x), contact.limit.map(f => y(sign * f)))}"/>`;
+  if (seen) svg += `<path class="curve spring" d="${path(capped.time.map(x), capped.force.map(y))}"/>`;
+  const shown = seen ? contact.time.length : k + 1;
+  svg += `<path class="curve exact" d="${path(contact.time.slice(0, shown).map(x), contact.force.slice(0, shown).map(y))}"/>`;
+  svg += `<circle cx="${x(contact.time[k]).toFixed(1)}" cy="${y(contact.force[k]).toFixed(1)}" r="6" fill="var(--blue)" stroke="white" stroke-width="2"/>`;
+  $("force").innerHTML = svg;
+  $("force").setAttribute("aria-label", `tangential force over friction's largest: ${minus(contact.force[k], 2)}, friction's limit ${minus(contact.limit[k], 2)}`);
+}
+
+function drawRebound() {
+  const left = 52, right = 392, top = 8, bottom = 212, low = Math.min(-20, ...curves.map(r => Math.min(r[1], r[2]))) - 2;
+  const x = a => left + (right - left) * a / 86, y = a => bottom - (bottom - top) * (a - low) / (88 - low);
+  let svg = frame(left, right, top, bottom, [0, 30, 60], [-30, 0, 30, 60].filter(a => a > low), x, y, "angle of incidence (\u00b0)");
+  LAWS.forEach(([law], k) => { svg += `<path class="curve ${law}" d="${path(curves.map(r => x(r[0])), curves.map(r => y(r[k + 1])))}"/>`; });
+  svg += `<circle cx="${x(state.angle)}" cy="${y(found.exact.angle)}" r="6" fill="var(--blue)" stroke="white" stroke-width="2"/>`;
+  svg += text(left + 8, top + 14, "rebound angle (\u00b0)", "start") + text(left + 8, top + 34, "elastic", "start", "named-exact") + text(left + 8, top + 53, "capped spring", "start", "named-spring") + text(left + 8, top + 72, "rigid", "start", "named-rigid");
+  $("rebound").innerHTML = svg;
+  $("rebound").setAttribute("aria-label", `rebound angle over angle of incidence; at ${state.angle}\u00b0 the ball leaves at ${minus(found.exact.angle, 1)}\u00b0`);
+}
+
+/* ---- words ---- */
+function told() {
+  const {exact, rigid, spring} = found, angle = `${minus(exact.angle, 1)}\u00b0`;
+  const way = exact.angle < -.05 ? "back the way it came, at " : "on at ";
+  let words = `It goes ${way}${angle} with ${spinWords(exact.spin).replace("none", "no spin")}; a rigid ball at ${minus(rigid.angle, 1)}\u00b0, the capped spring at ${minus(spring.angle, 1)}\u00b0.`;
+  if (state.predict) {
+    const off = Math.abs(exact.angle - state.guess);
+    words = `You said ${minus(state.guess, 0)}\u00b0: ${off < 1.5 ? "right, " : `${off.toFixed(1)}\u00b0 off. `}` + words;
+  }
+  return words;
+}
+function cautions() {
+  const {met} = found, list = [];
+  if (met.C > LARGE_CONTACT) list.push(`the contact is ${met.C.toFixed(2)} of the radius, not small: Hertz's theory is doubtful`);
+  if (met.pressure > met.yields) list.push(`the pressure reaches ${(met.pressure / 1e9).toPrecision(2)} GPa, above ${(met.yields / 1e9).toPrecision(2)} GPa this material yields`);
+  return list.length ? `Caution: ${list.join("; ")}.` : "";
+}
+
+/* ---- what happens when ---- */
+function showMoment() {
+  $("time").value = Math.round(1000 * moment);
+  const inside = (moment - ARRIVAL) / (DEPARTURE - ARRIVAL);
+  $("time").setAttribute("aria-valuetext", inside < 0 ? "arrives" : inside > 1 ? "leaves" : `in contact, ${Math.round(100 * inside)} % of its duration`);
+  drawStage(); drawContact(); drawForce();
+}
+function showAnswer() {
+  for (const part of document.querySelectorAll(".outcome")) part.hidden = !seen;
+  $("said").textContent = seen ? told() : "Set the dotted line to your prediction, then throw.";
+  $("answers").innerHTML = LAWS.map(([law, name], k) => { const one = found[law];
+    return `<tr class="${k ? "" : "first"}"><th scope="row">${name}</th><td>${minus(one.angle, 1)}\u00b0</td><td>${minus(one.spin, 0)}</td></tr>`; }).join("");
+  $("stage").setAttribute("aria-label", seen ? told() : "the ball before the throw");
+  $("psi1").textContent = minus(found.met.psi1, 3); $("chi").textContent = found.met.chi.toFixed(3);
+  for (const [id, law] of [["psi2", "exact"], ["psi2-spring", "spring"], ["psi2-rigid", "rigid"]]) $(id).textContent = minus(found[law].psi2, 3);
+}
+function changed() {
+  cancelAnimationFrame(playing); playing = 0;
+  found = thrown(state); curves = rebounds(state);
+  seen = !state.predict; moment = seen ? 1 : 0;
+  for (const key of NUMBERS) $(key).value = state[key];
+  const shown = {angle: `${state.angle}\u00b0`, speed: `${state.speed.toFixed(1)} m/s`, spin: spinWords(state.spin), friction: state.friction.toFixed(2), guess: `${minus(state.guess, 0)}\u00b0`};
+  for (const [key, words] of Object.entries(shown)) { $(`${key}-shown`).textContent = words; $(key).setAttribute("aria-valuetext", words); }
+  $("material").value = state.material; $("predict").checked = state.predict;
+  for (const part of document.querySelectorAll(".guessing")) part.hidden = !state.predict;
+  $("caution").textContent = cautions();
+  $("throw").textContent = "Throw";
+  drawRebound(); showMoment(); showAnswer(); toLink();
+}
+function finish() { playing = 0; moment = 1; seen = true; $("throw").textContent = "Throw again"; drawRebound(); showMoment(); showAnswer(); }
+function play() {
+  if (playing) { cancelAnimationFrame(playing); finish(); return; }
+  if (calm) { finish(); return; }
+  seen = !state.predict; moment = 0; showAnswer();
+  $("throw").textContent = "Skip";
+  let started;
+  const step = now => {
+    started ??= now; moment = (now - started) / SHOW;
+    if (moment >= 1) { finish(); return; }
+    showMoment(); playing = requestAnimationFrame(step);
+  };
+  playing = requestAnimationFrame(step);
+}
+
+for (const name of Object.keys(MATERIALS)) $("material").append(new Option(name, name));
+for (const key of NUMBERS) $(key).addEventListener("input", () => { state[key] = Number($(key).value); changed(); });
+$("material").addEventListener("change", () => { state.material = $("material").value; changed(); });
+$("predict").addEventListener("change", () => { state.predict = $("predict").checked; changed(); });
+$("throw").addEventListener("click", play);
+$("set").addEventListener("submit", event => event.preventDefault());
+$("time").addEventListener("input", () => {
+  cancelAnimationFrame(playing); playing = 0; moment = $("time").value / 1000;
+  if (moment === 1 && !seen) finish(); else { $("throw").textContent = "Throw"; showMoment(); }
+});
+addEventListener("hashchange", () => { state = {...FIRST}; fromLink(); changed(); });
+fromLink(); changed();

@@ -1,0 +1,294 @@
+"""Several laws on one scene or sweep: differences, cost, and distance from measured values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.compose.error_estimate import estimated
+from contactlab.compose.simulation import Simulation
+from contactlab.contracts.status import Status
+from contactlab.impact.grid import product
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.columns import QUANTITIES, quantity_named
+from contactlab.outcome.result import ImpactResult
+from contactlab.scene_file import Measured, SceneFile
+from contactlab.study.interrupts import uninterrupted
+
+Array = NDArray[np.float64]
+
+#: Repeats of a short run. The least time counts, which other load of the machine disturbs least.
+REPEATS = 3
+#: A run longer than this, in s, is not repeated: warming up takes little of its time.
+LONG_RUN = 2.0
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class LawRun:
+    """One law's answer to the scene or sweep.
+
+    Attributes
+    ----------
+    name : str
+    result : ImpactResult
+    run_time_per_impact : float
+        Least wall-clock time of the repeats, over the number of impacts, in s.
+    """
+
+    name: str
+    result: ImpactResult
+    run_time_per_impact: float = attrs.field(metadata={"unit": "s"})
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class Agreement:
+    """One measured series, and the results of each law at the measured points.
+
+    Attributes
+    ----------
+    measured : Measured
+    results : mapping of str to ImpactResult
+        By law, batches of n impacts.
+    """
+
+    measured: Measured
+    results: Mapping[str, ImpactResult]
+
+    @property
+    def unit(self) -> str:
+        """Unit of the quantity; "1" if the scene has no units."""
+        scene = next(iter(self.results.values())).scene
+        return QUANTITIES[self.measured.quantity].unit_in(scene)
+
+    @property
+    def predicted(self) -> dict[str, Array]:
+        """Values by law, shape (n,), in the quantity's unit; NaN where an impact failed."""
+        quantity = self.measured.quantity
+        return {law: _values(quantity, result) for law, result in self.results.items()}
+
+    def difference(self, law: str) -> Array:
+        """Return predicted less measured values, shape (n,)."""
+        return self.predicted[law] - self.measured.values
+
+    def rms(self, law: str) -> float:
+        """Return the root mean square difference."""
+        return float(np.sqrt(np.mean(self.difference(law) ** 2)))
+
+    def largest(self, law: str) -> float:
+        """Return the largest absolute difference."""
+        return float(np.max(np.abs(self.difference(law))))
+
+    def where_largest(self, law: str) -> float:
+        """Return the x of the largest absolute difference; NaN if a value is missing."""
+        difference = np.abs(self.difference(law))
+        if np.isnan(difference).any():
+            return float("nan")
+        return float(self.measured.x[np.argmax(difference)])
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class Comparison:
+    """Laws side by side; the first law is the reference of the others.
+
+    ``interrupted`` is True if Ctrl-C left laws out.
+    """
+
+    scene: Scene
+    varied: Mapping[str, Any]
+    runs: tuple[LawRun, ...]
+    agreements: tuple[Agreement, ...]
+    interrupted: bool = False
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the laws, the reference first."""
+        return [run.name for run in self.runs]
+
+    def only(self, laws: Iterable[str]) -> Comparison:
+        """Return the comparison of the laws named; names that it does not have are ignored."""
+        names = set(laws)
+        agreements = tuple(
+            attrs.evolve(
+                agreement,
+                results={law: run for law, run in agreement.results.items() if law in names},
+            )
+            for agreement in self.agreements
+        )
+        runs = tuple(run for run in self.runs if run.name in names)
+        return attrs.evolve(self, runs=runs, agreements=agreements)
+
+    def values(self, quantity: str, law: str) -> Array:
+        """Return a quantity of one law over the scene or sweep; NaN where an impact failed."""
+        return _values(quantity, next(run.result for run in self.runs if run.name == law))
+
+    def difference(self, quantity: str, law: str) -> Array:
+        """Return a quantity of one law less that of the first law."""
+        return self.values(quantity, law) - self.values(quantity, self.names[0])
+
+    def numerical_error(self, law: str) -> Array:
+        """Return the estimated numerical error of psi2, else the declared one; NaN if neither."""
+        result = next(run.result for run in self.runs if run.name == law)
+        estimate = np.nan if result.psi2_error_estimate is None else result.psi2_error_estimate
+        error = np.where(np.isfinite(estimate), estimate, result.plan.psi2_error)
+        return np.array(np.broadcast_to(error, result.scene.shape))
+
+    def band(self, quantity: str, law: str) -> Array:
+        """Return the error of a quantity that follows from the numerical error of psi2, or NaN."""
+        result = next(run.result for run in self.runs if run.name == law)
+        with np.errstate(all="ignore"):
+            error = self.numerical_error(law) / result.scene.psi_scale
+            change = np.asarray(result.motion.slip_velocity_change)
+        ends = [_values(quantity, _shifted(result, change + sign * error)) for sign in (1.0, -1.0)]
+        return np.array(0.5 * np.abs(ends[0] - ends[1]))
+
+    def failures(self) -> list[str]:
+        """Return one sentence for each run with failed impacts, at measured points too."""
+        sentences = [_failure(run.name, run.result) for run in self.runs]
+        for agreement in self.agreements:
+            where = f"at the measured values of {agreement.measured.quantity}"
+            sentences += [
+                _failure(f"{law}, {where}", result) for law, result in agreement.results.items()
+            ]
+        return [sentence for sentence in sentences if sentence]
+
+
+def compare(
+    scene: Scene | SceneFile,
+    simulations: Mapping[str, Simulation],
+    *,
+    history: bool = False,
+    estimate_error: bool = False,
+    progress: Callable[[int, int], object] | None = None,
+) -> Comparison:
+    """Return the results of each simulation on ``scene``, and at the measured points of a file.
+
+    Parameters
+    ----------
+    scene : Scene or SceneFile
+        One impact or a one-dimensional batch.
+    simulations : mapping of str to Simulation
+        Simulations by the names shown in the comparison.
+    history : bool
+        Keep the history of a single impact; a sweep has none.
+    estimate_error : bool
+        Estimate the numerical error of psi2 of each law, from runs at finer resolutions.
+    progress : callable, optional
+        Called as ``progress(done, total)`` after each run.
+
+    Returns
+    -------
+    Comparison
+        Failed impacts are NaN; ``failures()`` says why. Ctrl-C keeps the laws that are done, if
+        there is one.
+
+    Raises
+    ------
+    ValueError
+        If ``scene`` is neither a scene nor a scene file.
+    """
+    file = scene if isinstance(scene, SceneFile) else None
+    single = file.scene if file else scene
+    if not isinstance(single, Scene):
+        raise refuse("scene", scene, "must be a Scene or a SceneFile")
+    series = file.measured if file else ()
+    total, done = len(simulations) * (1 + len(series)), 0
+    runs: list[LawRun] = []
+    predicted: list[dict[str, ImpactResult]] = [{} for _ in series]
+    interrupted = False
+    try:
+        for name, simulation in simulations.items():
+            answers: list[ImpactResult] = []
+            for job in (None, *series):
+                if job is None:
+                    run = _timed(name, simulation, single, history=history and not single.shape)
+                    run = _estimated(run, simulation) if estimate_error else run
+                else:
+                    assert file is not None
+                    answers.append(_run(simulation, file.scene_at(**{job.against: job.x})))
+                done += 1
+                if progress is not None:
+                    progress(done, total)
+            runs.append(run)
+            for results, answer in zip(predicted, answers, strict=True):
+                results[name] = answer
+    except KeyboardInterrupt:
+        if not runs:
+            raise
+        interrupted = True
+    agreements = tuple(
+        Agreement(measured=measured, results=results)
+        for measured, results in zip(series, predicted, strict=True)
+    )
+    return Comparison(
+        scene=single,
+        varied=file.varied if file else _varied(single),
+        runs=tuple(runs),
+        agreements=agreements,
+        interrupted=interrupted,
+    )
+
+
+def _varied(scene: Scene) -> dict[str, Array]:
+    """Return the entries of a scene file that vary over a batch: one entry, or a grid's axes."""
+    if not scene.shape:
+        return {}
+    if scene.axes:
+        return product(scene.axes)
+    # Of several entries that vary together the first counts.
+    entries: dict[str, Any] = {"psi1": scene.psi1, "chi": scene.chi}
+    if scene.sphere is not None:
+        angle = np.degrees(np.arctan2(scene.tangential_velocity, scene.normal_speed))
+        entries = {
+            "angle_deg": angle, "normal_speed": scene.normal_speed, "spin": scene.spin,
+            "friction_coefficient": scene.friction_coefficient, **entries,
+        }  # fmt: skip
+    for name, values in entries.items():
+        if np.unique(values).size > 1:
+            return {name: np.array(values)}
+    return {"psi1": np.array(np.broadcast_to(scene.psi1, scene.shape))}
+
+
+def _values(quantity: str, result: ImpactResult) -> Array:
+    """Return a quantity of a result, with NaN for impacts that failed."""
+    good = np.asarray(result.status, dtype=object) == Status.SUCCESS
+    return np.where(good, quantity_named(quantity).of(result), np.nan)
+
+
+def _shifted(result: ImpactResult, change: Array) -> ImpactResult:
+    """Return a result with another change of slip velocity."""
+    return attrs.evolve(result, motion=attrs.evolve(result.motion, slip_velocity_change=change))
+
+
+def _estimated(run: LawRun, simulation: Simulation) -> LawRun:
+    result = attrs.evolve(run.result, psi2_error_estimate=estimated(simulation.laws, run.result))
+    return attrs.evolve(run, result=result)
+
+
+def _failure(name: str, result: ImpactResult) -> str:
+    """Return a sentence on the failed impacts of a result; empty if none failed."""
+    bad, shape = result.failures, result.scene.shape
+    if not bad:
+        return ""
+    share = f" ({len(bad)} of {shape[0]})" if shape else ""
+    return f"{name}{share}: {next(iter(bad.values()))}"
+
+
+def _run(simulation: Simulation, scene: Scene) -> ImpactResult:
+    return uninterrupted(simulation.sweep(scene)) if scene.shape else simulation.run(scene)
+
+
+def _timed(name: str, simulation: Simulation, scene: Scene, *, history: bool) -> LawRun:
+    """Return the result of one simulation, and its least run time per impact."""
+    result = _run(simulation, scene)  # the first run also imports, compiles and fills caches
+    times = [result.run_time]
+    if result.run_time < LONG_RUN:
+        times = [_run(simulation, scene).run_time for _ in range(REPEATS)]
+    if history:  # after the timing, because keeping the history takes time
+        result = simulation.run(scene, history=True)
+    impacts = scene.shape[0] if scene.shape else 1
+    return LawRun(name=name, result=result, run_time_per_impact=min(times) / impacts)

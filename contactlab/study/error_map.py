@@ -1,0 +1,117 @@
+"""Error of psi2 over steps and chi, of a law under its usual integrator: a batch for each step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.compose.composition import DEFAULT_NORMAL, STEPPED, exact, fixed_steps
+from contactlab.compose.names import full_name
+from contactlab.compose.registry import REGISTRY
+from contactlab.compose.simulation import Simulation
+from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.study.bench_methods import Method
+from contactlab.study.stability_map import INCIDENCES
+from contactlab.study.stability_references import REFERENCE_TOLERANCES, converges
+
+Array = NDArray[np.float64]
+
+#: Columns, chi from light shells to heavy cores, and rows, steps of one contact.
+CHIS = tuple(np.geomspace(0.05, 30.0, 36).tolist())
+STEPS = (2, 3, 4, 5, 6, 7, 9, 11, 14, 18, 23, 30, 39, 50, 64, 83, 107, 138, 178, 230, 296, 400)
+#: The same of a quick map.
+QUICK_CHIS, QUICK_STEPS = tuple(np.geomspace(0.05, 30.0, 9).tolist()), (3, 9, 30, 100)
+#: Steps of the limit of a law with another limit than the continuum: ten times the most mapped.
+LIMIT_STEPS = 4000
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class ErrorMap:
+    """Largest error of psi2 over ``INCIDENCES`` at each number of steps and each chi.
+
+    Attributes
+    ----------
+    law, integrator : str
+    steps : tuple of int
+    chis : tuple of float
+    error : array, shape (steps, chis)
+        Distance from the law's own limit; NaN where an impact was refused or failed.
+    converges : bool
+        Whether the limit is the elastic continuum; if not, the model error is not in ``error``.
+    """
+
+    law: str
+    integrator: str
+    steps: tuple[int, ...]
+    chis: tuple[float, ...]
+    error: Array
+    converges: bool
+
+
+def error_maps(methods: Sequence[Method], *, quick: bool = False) -> list[ErrorMap]:
+    """Return the map of each law that is marched in steps, under its usual integrator.
+
+    Parameters
+    ----------
+    methods : sequence of Method
+        Laws and integrators to choose from; those under other normal laws are left out.
+    quick : bool
+        Fewer cells.
+    """
+    chosen: dict[str, Method] = {}
+    for usual in reversed(STEPPED):
+        for method in methods:
+            named = method.integrator == usual and method.normal == DEFAULT_NORMAL
+            if named and not method.whole:
+                chosen[method.tangential] = method
+    laws = dict.fromkeys(method.tangential for method in methods)
+    return [error_map(chosen[law], quick=quick) for law in laws if law in chosen]
+
+
+def error_map(method: Method, *, quick: bool = False) -> ErrorMap:
+    """Return the map of a law under an integrator of fixed steps that refuses too few.
+
+    Parameters
+    ----------
+    method : Method
+    quick : bool
+        Fewer cells.
+    """
+    steps, chis = (QUICK_STEPS, QUICK_CHIS) if quick else (STEPS, CHIS)
+    psi1, chi = (each.ravel() for each in np.meshgrid(INCIDENCES, chis, indexing="ij"))
+    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    law = REGISTRY.create(full_name("tangential", method.tangential))
+    limit = _psi2(_limit(law), scene)
+    rows = []
+    for count in steps:
+        march = REGISTRY.create(
+            full_name("integrator", method.integrator), steps=count, refine=False
+        )
+        errors = np.abs(_psi2(Simulation(tangential=law, integrator=march), scene) - limit)
+        rows.append(errors.reshape(len(INCIDENCES), -1).max(axis=0))  # NaN if one is NaN
+    return ErrorMap(
+        law=method.tangential,
+        integrator=method.integrator,
+        steps=steps,
+        chis=chis,
+        error=np.array(rows),
+        converges=converges(law),
+    )
+
+
+def _limit(law: Any) -> Simulation:
+    """Return what a law is judged by: the exact solution, or itself in very many steps."""
+    if converges(law):
+        return Simulation(**exact(REFERENCE_TOLERANCES[-1]))
+    return Simulation(tangential=law, integrator=fixed_steps(LIMIT_STEPS))
+
+
+def _psi2(simulation: Simulation, scene: Scene) -> Array:
+    """Return psi2 of each impact, NaN where it was refused or failed."""
+    result = simulation.sweep(scene)
+    return np.where(np.asarray(result.status) == Status.SUCCESS, result.psi2, np.nan)

@@ -1,0 +1,238 @@
+"""Outcome of one case: answered, refused, raised or silently wrong."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.compose.error_estimate import estimated
+from contactlab.compose.older import books_bound as bound_of
+from contactlab.compose.registry import PluginError
+from contactlab.compose.simulation import Simulation
+from contactlab.compose.solved_motion import ACCURACY
+from contactlab.contracts import ClosedFormNormalLaw
+from contactlab.contracts.error_model import LARGEST_SHARE, range_of
+from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.outcome.motion import Motion, sound
+from contactlab.outcome.result import ImpactResult
+from contactlab.study.stability_cases import Case
+from contactlab.study.stability_references import (
+    SETTLED,
+    Reference,
+    itself,
+    load_impulse,
+    reference_for,
+)
+
+#: Outcomes. Only the last two are failures of the program.
+ANSWERED, REFUSED, SKIPPED = "answered", "refused", "skipped"
+WRONG, RAISED = "silently wrong", "raised"
+#: Rounding, over the range of psi2.
+ROUNDING = 1e-9
+#: Bound, over the range, for a law that declares no error: its error, and broken invariants.
+UNDECLARED = 0.01
+#: Bound over the estimated error, where that exceeds ``UNDECLARED``: estimates are mostly within
+#: a factor of three of the error.
+ESTIMATED = 3.0
+#: Bound of the imbalance of the energy books, over the energy at the start: an integrator that
+#: controls its error adds up friction work less accurately than velocities.
+BOOKS = 1e-5
+#: Bound of energy from nothing, over the energy at the start, however coarse the method.
+LARGEST_GAIN = 0.1
+#: Bound of e - 1 under a law with a closed-form motion, and of 1 - e if elastic, however few steps.
+LARGEST_NORMAL = 1e-9
+
+
+@attrs.frozen(kw_only=True)
+class Outcome:
+    """One cell of the report.
+
+    Attributes
+    ----------
+    error, bound : float
+        Error of the change of slip velocity and its bound, over the range; NaN without an answer.
+        The bound of a law that declares no error is ``UNDECLARED``, or ``ESTIMATED`` times the
+        estimated error where that is larger.
+    note : str
+        The status, or the sentences on what is wrong.
+    """
+
+    method: str
+    family: str
+    case: str
+    outcome: str
+    error: float = np.nan
+    bound: float = np.nan
+    note: str = ""
+    run_time_s: float = 0.0
+
+    @classmethod
+    def of(cls, case: Case, outcome: str, **entries: Any) -> Outcome:
+        """Return the outcome of a case."""
+        names: Any = {"method": case.method.name, "family": case.family, "case": case.label}
+        return cls(**names, outcome=outcome, **entries)
+
+
+def judge(case: Case) -> Outcome:
+    """Return the outcome of one case."""
+    try:
+        scene = case.scene.make()
+        simulation = case.method.simulation(case.options, normal=case.normal)
+    except (ValueError, PluginError) as error:
+        return Outcome.of(case, REFUSED, note=f"bad input: {error}")
+    reference = reference_for(simulation.tangential, simulation.normal)
+    return judge_run(case, simulation, scene, reference)
+
+
+def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Reference) -> Outcome:
+    """Return the outcome of one scene, its answer judged against ``reference``.
+
+    Parameters
+    ----------
+    case : Case
+        Names the outcome; without ``planned`` the integrator marches the impact.
+    simulation : Simulation
+    scene : Scene
+    reference : callable
+        Returns the exact change of slip velocity in m/s, or None if there is none.
+    """
+    before = time.perf_counter()
+    try:
+        with np.errstate(all="ignore"):
+            result = simulation.run(scene) if case.planned else marched(simulation, scene)
+    except Exception as error:
+        # Any exception is an outcome, and the report goes on. A planned run turns an exception of
+        # the integrator into a status; a march does not.
+        note = f"{type(error).__name__}: {error}"
+        if case.planned:
+            return Outcome.of(case, RAISED, note=note)
+        return Outcome.of(case, REFUSED, note=f"LAW_RAISED {note}")
+    run_time = time.perf_counter() - before
+    if result.status is not Status.SUCCESS:
+        note = f"{result.status.name} {result.motion.detail}"
+        return Outcome.of(case, REFUSED, note=note, run_time_s=run_time)
+    try:
+        with np.errstate(all="ignore"):
+            outcome = _judged(case, simulation, result, reference)
+    except Exception as error:
+        outcome = Outcome.of(case, RAISED, note=f"its reference: {type(error).__name__}: {error}")
+    return attrs.evolve(outcome, run_time_s=run_time)
+
+
+def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
+    """Return the result of an impact marched by the integrator, without whole-impact answers."""
+    law, integrator = simulation.tangential, simulation.integrator
+    normal = simulation.normal_motion(scene)
+    tangential = integrator.integrate(normal, law, scene, None)
+    plan = simulation.plan(scene).changed(
+        marched=np.ones(scene.shape, dtype=bool),
+        psi2_error=integrator.psi2_error(normal, law, scene),
+    )
+    motion = sound(Motion.along(normal, tangential))
+    return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
+
+
+def _judged(
+    case: Case, simulation: Simulation, result: ImpactResult, reference: Reference
+) -> Outcome:
+    """Return the outcome of a success."""
+    scene = result.scene
+    unit, width, _ = range_of(scene)
+    expected, error = reference(scene, simulation.tangential), np.nan
+    if expected is not None:
+        difference = abs(float(result.motion.slip_velocity_change) - expected)
+        error = difference / width if width > 0.0 else (0.0 if difference == 0.0 else np.inf)
+    excess = error - (SETTLED if reference is itself else 0.0)
+    declared = float(result.plan.psi2_error) * unit
+    bound = min(declared / width + ROUNDING, LARGEST_SHARE) if width > 0.0 else ROUNDING
+    undeclared = np.isnan(bound)
+    wrong = _wrong(simulation, result, excess, bound := UNDECLARED if undeclared else bound)
+    if wrong and undeclared:
+        estimate = float(np.asarray(estimated(simulation.laws, result))) * unit / width
+        bound = min(max(bound, ESTIMATED * estimate), LARGEST_SHARE)
+        wrong = _wrong(simulation, result, excess, bound)
+    note = "; ".join(wrong) if wrong else "" if expected is not None else "no reference"
+    outcome = WRONG if wrong else ANSWERED
+    return Outcome.of(case, outcome, error=float(error), bound=bound, note=note)
+
+
+def _wrong(simulation: Simulation, result: ImpactResult, error: float, bound: float) -> list[str]:
+    """Return sentences on what exceeds ``bound``; ``error`` is without its uncertainty."""
+    normal, tangential = simulation.normal, simulation.tangential
+    elastic = "elastic_hertz" in normal.offers
+    wrong = broken_invariants(
+        result,
+        bound,
+        passive="books" not in tangential.expected_failures,
+        books_bound=float(np.max(bound_of(tangential, result.scene))),
+        load_impulse=None if elastic else load_impulse(result.scene, normal),
+    )
+    if error > bound:
+        wrong.append(
+            f"error {error:.2g} of the range, at most {bound:.2g} is declared or estimated"
+        )
+    excess = float(np.asarray(result.normal_restitution)) - 1.0
+    allowed = LARGEST_NORMAL if isinstance(normal, ClosedFormNormalLaw) else ACCURACY
+    if not excess <= allowed or (elastic and not excess >= -allowed):
+        wrong.append(f"e is off by {excess:.2g}")
+    return wrong
+
+
+def broken_invariants(
+    result: ImpactResult,
+    bound: float,
+    *,
+    passive: bool = True,
+    books_bound: float = 0.0,
+    load_impulse: float | None = None,
+) -> list[str]:
+    """Return sentences on the invariants of theory §7 that a result breaks.
+
+    Parameters
+    ----------
+    result : ImpactResult
+    bound : float
+        Declared or estimated error of psi2, over its range.
+    passive : bool
+        False for a law that expects its energy books not to close, because its model makes energy.
+    books_bound : float
+        Declared imbalance of the books, over the energy at the start.
+    load_impulse : float, optional
+        Impulse of the friction load, in N s; by default that of an elastic impact.
+    """
+    scene, motion = result.scene, result.motion
+    _, width, speed = range_of(scene)
+    if load_impulse is not None:
+        sliding = scene.friction_coefficient * load_impulse / scene.pair.tangential_mass
+        width = min(float(sliding), 2.0 * speed)
+    change, rate = float(motion.slip_velocity_change), float(motion.normal_velocity)
+    numbers = (change, rate, float(motion.duration), float(motion.friction_work))
+    if not np.all(np.isfinite(numbers)):
+        return ["a number that is not finite"]
+    if width == 0.0:
+        return [] if change == 0.0 else ["a change of velocity where nothing can act"]
+    broken = []
+    allowed = min(bound, LARGEST_GAIN)
+    slowed = -change * np.sign(float(scene.slip_velocity))
+    if slowed < -allowed * width and passive:
+        broken.append("friction speeds the slip up")
+    slides = width < 2.0 * speed  # the range is the change by slip throughout, 4 chi
+    if slowed > (1.0 + allowed) * width and (passive or slides):
+        broken.append(
+            "|psi2 - psi1| beyond what mu times the load can do" if slides else "|psi2| > |psi1|"
+        )
+    if not passive:
+        return broken
+    books = result.energy
+    scale = 0.5 * float(scene.pair.normal_mass * scene.normal_speed**2)
+    scale += float(scene.pair.tangential_mass) * width * speed
+    allowed_books = max(bound, BOOKS, min(books_bound, LARGEST_GAIN))
+    if not abs(float(books.imbalance)) <= allowed_books * scale:
+        broken.append("energy books do not close")
+    if float(books.friction_work) < -allowed * scale:
+        broken.append("friction does work on the bodies")
+    return broken

@@ -1,0 +1,161 @@
+"""Checks of ``mindlin_springs`` in LAMMPS: restart in mid-contact, newton, swapped grains, touch.
+
+Each check prints the largest difference of two runs that must agree, over the largest speed.
+
+Examples
+--------
+  python checks.py --lmp build/lmp --two "mpirun -np 2 build/lmp"
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from engine import DUMP, Array, Engine, Grains, arguments, engine, folder, friction, read, write
+
+YOUNG, POISSON, MU, RADIUS = 1e8, 0.3, 0.4, 0.01
+MODEL = f"hertz/material {YOUNG:g} 0.8 {POISSON} {{}} damping tsuji"
+
+
+def cluster(count: int = 60, seed: int = 5) -> tuple[Grains, Array, Array]:
+    """Return grains of two kinds that fly to the middle of a box, so that all collide for long."""
+    random = np.random.default_rng(seed)
+    side = int(np.ceil(count ** (1 / 3)))
+    place = np.stack(np.meshgrid(*[np.arange(side)] * 3), axis=-1).reshape(-1, 3)[:count]
+    position = place * 2.3 * RADIUS + random.uniform(-0.1, 0.1, (count, 3)) * RADIUS
+    position -= position.mean(axis=0)
+    position[:, 2] -= position[:, 2].min() - 1.3 * RADIUS
+    velocity = random.normal(size=(count, 3)) * 0.5 - 25.0 * (position - position.mean(axis=0))
+    spin = random.normal(size=(count, 3)) * 30.0
+    diameter = 2.0 * RADIUS * random.uniform(0.8, 1.1, count)
+    kind = random.integers(1, 3, count)
+    grains = Grains(kind, diameter, np.full(count, 2500.0), position, velocity, spin)
+    return grains, position.min(axis=0) - 0.2, position.max(axis=0) + 0.2
+
+
+def script(
+    lammps: Engine,
+    *,
+    newton: str = "off",
+    law: str = "springs8",
+    coefficients: str = "",
+    sort: bool = True,
+    wall: bool = True,
+) -> str:
+    """Return the settings of a run, without its steps."""
+    model = MODEL.format(friction(law, MU))
+    fix = f"fix w all {lammps.wall} granular {model} zplane 0 NULL" if wall else ""
+    pairs = coefficients or f"pair_coeff * * {model}"
+    return f"""
+units si
+atom_style sphere
+boundary f f f
+newton {newton}
+comm_modify vel yes
+{"" if sort else "atom_modify sort 0 0.0"}
+{{begin}}
+pair_style {lammps.pair}
+{pairs}
+{fix}
+fix n all nve/sphere
+timestep 4e-6
+neigh_modify delay 0 every 1 check yes
+thermo 100000
+"""
+
+
+STEPS = 8000
+
+
+def run(lammps: Engine, text: str, grains: Grains, low: Array, high: Array) -> Array:
+    """Return velocities and spins after STEPS steps."""
+    low = np.array([low[0], low[1], 0.0])
+    with folder() as name:
+        write(grains, Path(name) / "data", low, high, kinds=2)
+        lammps.run(text.replace("{begin}", "read_data data"), Path(name))
+        return read(Path(name) / "out")
+
+
+def whole(lammps: Engine, **options: object) -> Array:
+    """Return the answers of one run of STEPS steps."""
+    grains, low, high = cluster()
+    text = script(lammps, **options) + DUMP.format(every=STEPS) + f"run {STEPS}\n"
+    return run(lammps, text, grains, low, high)
+
+
+def restarted(lammps: Engine, at: int) -> Array:
+    """Return the answers of a run that is stopped while grains touch, and begun again."""
+    grains, low, high = cluster()
+    low = np.array([low[0], low[1], 0.0])
+    text = script(lammps)
+    with folder() as name:
+        write(grains, Path(name) / "data", low, high, kinds=2)
+        first = text.replace("{begin}", "read_data data") + f"run {at}\nwrite_restart kept\n"
+        lammps.run(first, Path(name))
+        second = text.replace("{begin}", "read_restart kept")
+        lammps.run(second + DUMP.format(every=STEPS) + f"run {STEPS - at}\n", Path(name))
+        return read(Path(name) / "out")
+
+
+def swapped(lammps: Engine) -> Array:
+    """Return the answers of the same grains numbered backwards, in the order of the first run."""
+    grains, low, high = cluster()
+    backwards = Grains(*(column[::-1] for column in grains))
+    text = script(lammps, sort=False) + DUMP.format(every=STEPS) + f"run {STEPS}\n"
+    return run(lammps, text, backwards, low, high)[::-1]
+
+
+def touching(lammps: Engine) -> Array:
+    """Return velocities of two grains at exact touch that slide on each other: no force, no NaN."""
+    place = np.array([[0.0, 0.0, 0.1], [2.0 * RADIUS, 0.0, 0.1]])
+    velocity = np.array([[0.0, 0.3, 0.0], [0.0, -0.3, 0.0]])
+    numbers = np.full(2, 2.0 * RADIUS), np.full(2, 2500.0)
+    grains = Grains(np.ones(2, int), *numbers, place, velocity, np.zeros((2, 3)))
+    text = script(lammps, wall=False) + DUMP.format(every=1) + "run 0\n"
+    return run(lammps, text, grains, np.full(3, -0.1), np.full(3, 0.2))
+
+
+def main() -> int:
+    """Print each check; return 1 if one fails."""
+    parser = arguments(__doc__.splitlines()[0])
+    parser.add_argument("--two", help="the command with two processes")
+    given = parser.parse_args()
+    lammps = engine(given)
+    base = whole(lammps)
+    scale = np.abs(base[:, :3]).max()
+    other = whole(lammps, law="mindlin/force")
+    unlike = np.abs(other[:, :3] - base[:, :3]).max() / scale
+    print(
+        f"mindlin/force instead moves velocities by {unlike:.2g} of the largest: so checks can tell"
+    )
+    failed = unlike < 1e-3
+
+    def hold(what: str, answers: Array, bound: float) -> None:
+        nonlocal failed
+        gap = np.abs(answers[:, :3] - base[:, :3]).max() / scale
+        failed |= not gap <= bound
+        print(f"{what:50} {gap:9.1e}  {'ok' if gap <= bound else f'above {bound:g}'}")
+
+    hold("restart in mid-contact (damping at whole steps)", restarted(lammps, STEPS // 8), 1e-3)
+    hold("newton on", whole(lammps, newton="on"), 1e-9)
+    hold("grains numbered backwards", swapped(lammps), 1e-9)
+    model = MODEL.format(friction("springs8", MU))
+    pairs = "\n".join(f"pair_coeff {pair} {model}" for pair in ("1 1", "1 2", "2 2"))
+    mixed = "\n".join(f"pair_coeff {pair} {model}" for pair in ("1 1", "2 2"))
+    hold("unlike types left to mixing, like materials", whole(lammps, coefficients=mixed), 1e-9)
+    hold("a line of coefficients for every pair of types", whole(lammps, coefficients=pairs), 1e-12)
+    if given.two:
+        two = Engine(given.two, lammps.plugin)
+        hold("two processes, newton off", whole(two), 1e-9)
+        hold("two processes, newton on", whole(two, newton="on"), 1e-9)
+    kept = touching(lammps)
+    still = np.isfinite(kept).all() and np.allclose(np.abs(kept[:, 1]), 0.3)
+    failed |= not still
+    print(f"{'grains that just touch':50} {'ok' if still else kept}")
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

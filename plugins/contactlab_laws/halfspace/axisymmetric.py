@@ -1,0 +1,122 @@
+"""Many impacts with tractions along one direction, functions of the radius alone: mode 0.
+
+This is the paper's axisymmetric problem with Coulomb's law at every point. Scaled as in ``march``.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from contactlab_laws.halfspace.basis import basis
+from contactlab_laws.halfspace.course import Course
+from contactlab_laws.halfspace.hemispheres import Array
+from contactlab_laws.halfspace.rest import begun, moved, rest
+from contactlab_laws.rings.rings import Rings, rings, settle
+
+#: Solutions of a step: the share of Coulomb's limit at its end is taken from the one before.
+PASSES = 2
+
+
+class Axisymmetric(NamedTuple):
+    """Impacts followed to their end, at first touch and at K instants after it.
+
+    Attributes
+    ----------
+    change, share : array, shape (K + 1, impacts)
+        Change of slip velocity; F over mu times the friction load.
+    work : array, shape (impacts,)
+        Friction work over M_t times the square of the unit of velocity.
+    fields : list of (array, array, array)
+        Tractions, slips and pressures at the K instants, shape (impacts, rings); empty unless
+        asked for.
+    """
+
+    change: Array
+    share: Array
+    work: Array
+    fields: list[tuple[Array, Array, Array]]
+
+
+@lru_cache(maxsize=16)
+def table_of(count: int) -> Rings:
+    """Return the matrices of ``count`` rings, cached."""
+    return rings(basis(count, 1).edges)
+
+
+def follow_all(
+    count: int, course: Course, psi1: Array, chi: Array, stiffness: Array, *, fields: bool = False
+) -> Axisymmetric:
+    """Return the motion of impacts over ``count`` rings.
+
+    Parameters
+    ----------
+    count : int
+        Rings within the largest contact.
+    course : Course
+        Of all impacts.
+    psi1, chi, stiffness : array, shape (impacts,)
+        Dimensionless angles of incidence, inertia ratios, and units of force times those of time
+        over M_n v1.
+    fields : bool
+        Whether to keep tractions and slips.
+
+    Raises
+    ------
+    RuntimeError
+        If no division of the contact into stick and slip is found.
+    """
+    # In every step the share of Coulomb's limit that acts is linear in the impulse of the friction
+    # load, so that gross slip is exact. The first step has one share throughout.
+    table, moments, edges = table_of(count), basis(count, 1).work[0], basis(count, 1).edges
+    impacts = len(psi1)
+    change, shares = np.zeros((2, len(course.inside), impacts))
+    zero = np.zeros((impacts, count))
+    slips, traction, displaced, work = begun(zero), zero, np.zeros(impacts), np.zeros(impacts)
+    stuck, sense = np.ones(zero.shape, dtype=bool), zero.copy()
+    touched, kept, places = np.zeros(impacts, dtype=bool), [], np.arange(count)
+    gains = 2.0 * chi * np.diff(course.impulse, axis=0)
+    durations = np.diff(course.time, axis=0) + np.zeros(impacts)
+    smaller = [table.within(number) for number in range(count + 1)]
+    for k, number in enumerate(course.inside[1:].tolist(), start=1):
+        duration, gain, share = durations[k - 1], gains[k - 1], shares[k - 1]
+        after = 2.0 * share - shares[k - 2] if k > 2 else share
+        new, limits = np.zeros((2, impacts, count))
+        fixed, swept = displaced + duration * (psi1 + change[k - 1]), duration * gain
+        live = course.pressure[k] > 0.0
+        if number and live.any():
+            ours, chosen = smaller[number], slice(None) if live.all() else live
+            part = chosen, slice(number)
+            limit, load = _pressure(edges, number, float(course.share[k]))
+            scale = (course.pressure[k] + np.zeros(impacts))[chosen, None]
+            resting = rest(slips, duration[:, None], vectors=False)[part] / scale
+            guess, begins = (stuck[part], sense[part]), live & ~touched
+            for _ in range(PASSES):
+                share = np.where(begins, after, shares[k - 1])
+                total = (fixed - swept * (share / 3.0 + after / 6.0))[chosen, None]
+                found = settle(ours, total / scale - resting, limit, *guess)
+                after = shares[k - 1].copy()
+                after[chosen] = found @ ours.weights / load
+            stuck[part], sense[part] = guess
+            new[part], limits[part] = found * scale, limit * scale
+            shares[k - 1] = share = np.where(begins, after, shares[k - 1])
+            touched = touched | live
+        displaced = fixed - swept * (share / 3.0 + after / 6.0)
+        slip = displaced[:, None] - new[:, :number] @ table.compliance[:, :number].T
+        work += (((slip - slips.last) @ moments) * (0.5 * (traction + new))).sum(axis=1)
+        slips = moved(slips, slip, duration[:, None], places < number)
+        change[k] = change[k - 1] - 0.5 * gain * (share + after)
+        shares[k], traction = after, new
+        if fields:
+            kept.append((new, slip, limits))
+    return Axisymmetric(change, shares, 6.0 * chi * stiffness * work, kept)
+
+
+def _pressure(edges: Array, number: int, share: float) -> tuple[Array, float]:
+    """Return the pressure of Hertz's contact within ``number`` rings, and its force."""
+    points, outer, inner = edges[:number], edges[number], edges[number - 1]
+    pressure = share * np.sqrt(outer**2 - points**2)
+    pressure += (1.0 - share) * np.sqrt(np.maximum(inner**2 - points**2, 0.0))
+    return pressure, float(share * outer**3 + (1.0 - share) * inner**3)

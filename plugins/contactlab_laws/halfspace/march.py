@@ -1,0 +1,107 @@
+"""One impact on rings and angles: tractions as vectors, with coupling of unlike bodies.
+
+Scaled as in ``course``: lengths by the largest contact radius a, slip by mu a²/(kappa R), forces by
+(4/3) E* a³/R, tangential ones by mu times this, velocities of slip by mu v1/kappa.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from contactlab_laws.halfspace.hemispheres import Array
+from contactlab_laws.halfspace.pressure import Prescribed
+from contactlab_laws.halfspace.rest import begun, moved, rest
+from contactlab_laws.halfspace.splitting import Step, settle
+
+
+class Followed(NamedTuple):
+    """An impact followed to its end, at first touch and at K instants after it.
+
+    Attributes
+    ----------
+    change, share, force, impulse : array, shape (K + 1,)
+        Change of slip velocity; F over mu times the friction load; friction load; its integral
+        over M_n v1.
+    work : float
+        Friction work over M_t times the square of the unit of velocity.
+    residual : float
+        Largest residual of all steps.
+    applications : int
+        Applications of the splitting.
+    fields : list of (array, array)
+        Tractions, shape (parts, angles, rings), and slips, shape (2, angles, rings), at the K
+        instants; empty unless asked for.
+    """
+
+    change: Array
+    share: Array
+    force: Array
+    impulse: Array
+    work: float
+    residual: float
+    applications: int
+    fields: list[tuple[Array, Array]]
+
+
+def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = False) -> Followed:
+    """Return the impact with slip velocity ``psi1`` at first touch.
+
+    Parameters
+    ----------
+    pressure : Prescribed
+        Pressure of the impact, prescribed or answering.
+    psi1, chi : float
+        Dimensionless angle of incidence, and inertia ratio.
+    fields : bool
+        Whether to keep tractions and slips.
+    """
+    # In every step the share of Coulomb's limit that acts is linear in the impulse of the friction
+    # load, so that gross slip is exact. The first step has one share throughout.
+    table, course = pressure.table, pressure.course
+    count, along = len(course.inside), table.along
+    change, shares, forces, impulse = np.zeros((4, count))
+    zero = np.zeros((table.parts, table.angles, table.count))
+    slips, traction, memory = begun(zero[:2]), zero, zero
+    displaced, work, residual, applications = 0.0, 0.0, 0.0, 0
+    touched, kept = False, []
+    for k in range(1, count):
+        duration, gain = float(pressure.duration[k - 1]), 2.0 * chi * pressure.impulse(k)
+        early, late = (1.0 / 3.0, 1.0 / 6.0) if touched else (0.0, 0.5)
+        contact, new = pressure.contact(k), np.zeros(zero.shape)
+        fixed = displaced + duration * (psi1 + change[k - 1] - gain * shares[k - 1] * early)
+        slowing, share, force, surface = duration * gain * late, shares[k - 1], 0.0, zero[:2]
+        if contact is not None:
+            number = contact.rings
+            resting = rest(slips, duration, vectors=True)
+            target = np.empty((*zero.shape[:2], number))
+            target[:2] = (along * fixed - contact.dragged - resting)[:, :, :number]
+            target[2:] = contact.depth
+            start = np.zeros(target.shape)
+            known = min(number, memory.shape[2])
+            start[:, :, :known] = memory[:, :, :known]
+            step = Step(target, contact.limit, contact.load, slowing, contact.yielding)
+            found = settle(table, step, start)
+            new[:, :, :number], memory = found.traction, found.memory
+            share, force = found.share, found.force
+            residual = max(residual, found.residual)
+            applications += found.applications
+            surface = table.displaced(found.traction)[:2] + contact.dragged
+            if not touched:
+                shares[k - 1], touched = share, True
+        displaced = fixed - slowing * share
+        slip = along * displaced - surface
+        work += table.work(0.5 * (traction + new)[:2], slip - slips.last)
+        touching = np.arange(table.count) < (0 if contact is None else contact.rings)
+        if table.parts == 3:
+            touching &= (new[2] > 0.0).any(axis=0)
+        slips = moved(slips, slip, duration, touching)
+        passed = pressure.advance(k, force)
+        impulse[k] = impulse[k - 1] + passed
+        change[k] = change[k - 1] - chi * passed * (shares[k - 1] + share)
+        shares[k], forces[k], traction = share, force, new
+        if fields:
+            kept.append((new, slip))
+    scale = 6.0 * chi * pressure.stiffness
+    return Followed(change, shares, forces, impulse, scale * work, residual, applications, kept)

@@ -1,0 +1,82 @@
+"""Where the slip of a point comes to rest: what decides between stick and slip in a step."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab_laws.halfspace.hemispheres import Array
+
+
+class Slips(NamedTuple):
+    """Slips at the last three instants; the last axis is that of the rings.
+
+    Attributes
+    ----------
+    last, before, first : array
+        Slips, the latest first.
+    steps : tuple of array or float
+        Durations of the last two steps, the latest first; 0 if there was none.
+    inside : array of int, shape (rings,)
+        Instants since which each ring has been in contact.
+    """
+
+    last: Array
+    before: Array
+    first: Array
+    steps: tuple[Any, Any]
+    inside: NDArray[Any]
+
+
+def begun(slip: Array) -> Slips:
+    """Return the slips at first touch."""
+    return Slips(slip, slip, slip, (0.0, 0.0), np.zeros(slip.shape[-1]))
+
+
+def moved(slips: Slips, slip: Array, duration: Any, touching: NDArray[np.bool_]) -> Slips:
+    """Return the slips after a step; ``touching`` marks the rings in contact at its end."""
+    # A ring out of contact forgets how fast it slipped.
+    return Slips(
+        last=slip,
+        before=np.where(touching, slips.last, slip),
+        first=slips.before,
+        steps=(duration, slips.steps[0]),
+        inside=np.where(touching, slips.inside + 1, 0),
+    )
+
+
+def rest(slips: Slips, duration: Any, *, vectors: bool) -> Array:
+    """Return the slip at the end of the next step of a point whose slip rate is zero there.
+
+    The traction of a point that slips is along its slip less this slip. The slip rate is
+    extrapolated with constant deceleration: as in backward differences of second order, or up to
+    where the point comes to rest within the step. So the direction of slip does not lag.
+
+    Parameters
+    ----------
+    slips : Slips
+        Past slips; vectors along the first axis if ``vectors`` is True, else numbers.
+    duration : float or array
+        Duration of the next step.
+    vectors : bool
+        Whether slips are vectors.
+    """
+    increment, prior = slips.last - slips.before, slips.before - slips.first
+    latest, earlier = slips.steps
+    with np.errstate(all="ignore"):
+        if vectors:
+            size = np.sqrt((increment * increment).sum(axis=0))
+            along = (increment * prior).sum(axis=0) / size
+        else:
+            size, along = np.abs(increment), np.sign(increment) * prior
+        ratio = np.divide(duration, latest)
+        weight = ratio * ratio / (1.0 + 2.0 * ratio)
+        speed = size / latest
+        slowing = 2.0 * (along / earlier - speed) / (latest + earlier)
+        final = np.maximum(speed - 0.5 * slowing * latest, 0.0)
+        until_rest = np.where(slowing > 0.0, 0.5 * final * final / (slowing * size), np.inf)
+        weight = np.minimum(weight, until_rest)
+        known = (slips.inside > 1) & (np.asarray(earlier) > 0.0) & (size > 0.0)
+    return np.asarray(slips.last + np.where(known, weight, 0.0) * increment)

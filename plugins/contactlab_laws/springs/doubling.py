@@ -1,0 +1,198 @@
+"""Springs on a doubling grid: partial slip that needs nothing of the future (theory §13).
+
+N springs stand in the middle of equal cells of [0, A], where A is a power of two times the radius
+of the pair. A contact that outgrows A merges neighbours to their mean and doubles A. A contact
+below A/4 splits each cell into equal halves and halves A. So between N/4 and N springs carry the
+contact, however large it is. The contact radius and the friction load of each instant suffice.
+
+Merging keeps the force and loses energy, (w1 - w2)²/4 of each pair times the stiffness of one
+spring; the loss counts as friction work. Splitting changes neither.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlab.contracts import Increment, NormalContact, TangentialResponse
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
+from contactlab_laws.jaeger.bundle import Array
+
+#: Contacts whose radius is below this times that of the pair just touch: no friction. The cells of
+#: a smaller contact could underflow.
+TOUCH = 1e-30
+
+
+class Memory(NamedTuple):
+    """The springs of a batch of contacts, the batch in one axis; never changed once made.
+
+    Attributes
+    ----------
+    size : array, shape (items,)
+        A in m; 0 out of contact.
+    radius : array, shape (items,)
+        b in m, the contact radius.
+    deflection, limit : array, shape (springs, items)
+        w and its limit l in m; springs lead, so that a row is contiguous over the batch.
+    """
+
+    size: Array
+    radius: Array
+    deflection: Array
+    limit: Array
+
+
+class State(NamedTuple):
+    """Shape of a batch; radius of the pair, 2 G* and mu, shape (items,); the springs."""
+
+    shape: tuple[int, ...]
+    unit: Array
+    modulus: Array
+    friction_coefficient: Array
+    memory: Memory
+
+
+def start(scene: Scene, springs: int) -> State:
+    """Return contacts without traction."""
+    items, pair = math.prod(scene.shape), scene.pair
+
+    def flat(value: Real) -> Array:
+        return np.broadcast_to(value, scene.shape).reshape(-1)
+
+    none, rows = np.zeros(items), np.zeros((springs, items))
+    return State(
+        scene.shape,
+        flat(pair.radius),
+        flat(2.0 * pair.effective_shear_modulus),
+        flat(scene.friction_coefficient),
+        Memory(none, none, rows, rows),
+    )
+
+
+def advance(
+    state: State, increment: Increment, after: NormalContact
+) -> tuple[TangentialResponse, State]:
+    """Return force and friction work after the step, and the springs."""
+
+    def flat(value: Real) -> Array:
+        return np.broadcast_to(value, state.shape).reshape(-1)
+
+    limit = state.friction_coefficient * flat(after.friction_load)
+    force, work, memory = moved(
+        state.memory,
+        flat(increment.displacement),
+        flat(after.radius),
+        limit,
+        unit=state.unit,
+        modulus=state.modulus,
+    )
+    state = state._replace(memory=memory)
+    if not state.shape:
+        return TangentialResponse(force.item(), work.item()), state
+    return TangentialResponse(force.reshape(state.shape), work.reshape(state.shape)), state
+
+
+def moved(
+    before: Memory, displacement: Array, radius: Array, limit: Array, *, unit: Array, modulus: Array
+) -> tuple[Array, Array, Memory]:
+    """Return force (N), friction work (J), both of shape (items,), and the springs after a step.
+
+    Parameters
+    ----------
+    before : Memory
+    displacement, radius : array, shape (items,)
+        Displacement in the step, and contact radius at its end, in m.
+    limit : array, shape (items,)
+        mu times the friction load at the end of the step, in N.
+    unit : array, shape (items,)
+        Length in m of which A is a power of two: the radius of the pair.
+    modulus : array, shape (items,)
+        2 G* in Pa: stiffness of the contact over its radius.
+    """
+    radius = radius + 0.0 * (displacement + limit)  # NaN where any of the three is not finite
+    radius = radius * (1.0 - (radius <= TOUCH * unit)) + 0.0 * radius
+    size, held, merged = fitted(before, radius, unit)
+    cell = size / len(held)
+    places = np.multiply.outer(np.arange(len(held)) + 0.5, cell)
+    compression = np.maximum(radius * radius - places * places, 0.0)
+    trial = held + _part(places, before.radius, radius) * displacement
+    stiffness = modulus * cell  # of one spring, the same for all
+    total = stiffness * compression.sum(axis=0)
+    most = compression * (limit / (total + (total == 0.0)))
+    deflection = np.minimum(np.maximum(trial, -most), most)
+    force = stiffness * deflection.sum(axis=0)
+    # The work of a spring is the mean of w before and after times its slip.
+    trial -= deflection
+    trial *= held + deflection
+    work = np.maximum(0.5 * stiffness * trial.sum(axis=0), 0.0) + modulus * merged
+    if (apart := radius <= 0.0).any():  # NaN stays until then
+        touching = ~apart
+        force, size = np.where(touching, force, 0.0), np.where(touching, size, 0.0)
+        deflection = np.where(touching, deflection, 0.0)
+    return force, work, Memory(size, radius, deflection, most)
+
+
+def fitted(before: Memory, radius: Array, unit: Array) -> tuple[Array, Array, Real]:
+    """Return A and w with A/4 < b <= A, and the energy lost in merging over 2 G*, in m³."""
+    size, held = before.size, before.deflection
+    if not size.all():
+        size = np.where(size > 0.0, size, _least_size(radius, unit))
+    outgrown, small = radius > size, (radius > 0.0) & (radius <= 0.25 * size)
+    if not (outgrown.any() or small.any()):
+        return size, held, 0.0
+    size, held, lost = size.copy(), held.copy(), np.zeros_like(size)
+    while outgrown.any():
+        inner, outer = held[::2, outgrown], held[1::2, outgrown]
+        cell = size[outgrown] / len(held)
+        lost[outgrown] += 0.25 * cell * ((inner - outer) ** 2).sum(axis=0)
+        held[:, outgrown] = np.concatenate((0.5 * (inner + outer), 0.0 * inner))
+        size[outgrown] *= 2.0
+        outgrown = radius > size
+    while small.any():
+        outside = held[len(held) // 2 :, small]  # springs that have left the contact
+        lost[small] += 0.5 * size[small] / len(held) * (outside * outside).sum(axis=0)
+        held[:, small] = np.repeat(held[: len(held) // 2, small], 2, axis=0)
+        size[small] *= 0.5
+        small = (radius > 0.0) & (radius <= 0.25 * size)
+    return size, held, lost
+
+
+def _part(places: Array, before: Array, after: Array) -> Any:
+    """Return the part of the step in which each spring moves with the surfaces."""
+    # A spring that the growing contact meets moves from then on only.
+    growth = after - before
+    grows = growth > 0.0
+    if not grows.any():
+        return 1.0
+    part = (after - places) / np.where(grows, growth, 1.0)
+    np.minimum(np.maximum(part, 0.0, out=part), 1.0, out=part)
+    return part if grows.all() else np.where(grows, part, 1.0)
+
+
+def fields(state: State) -> dict[str, Any]:
+    """Return radius, displacement and limit (m), stuck and slipping, shape (*shape, springs)."""
+    size, _, deflection, limit = state.memory
+    springs = len(deflection)
+    places = np.multiply.outer(np.arange(springs) + 0.5, size / springs)
+    slips = (limit > 0.0) & (np.abs(deflection) >= limit)
+
+    def of_all(rows: Any) -> Any:
+        return rows.T.reshape(*state.shape, springs)
+
+    return {
+        "radius": of_all(places),
+        "displacement": of_all(deflection),
+        "limit": of_all(limit),
+        "stuck": of_all((limit > 0.0) & ~slips),
+        "slipping": of_all((slips * np.sign(deflection)).astype(np.int8)),
+    }
+
+
+def _least_size(radius: Array, unit: Array) -> Array:
+    """Return the least power of two times ``unit`` that is at least ``radius``."""
+    fraction, exponent = np.frexp(radius / unit)
+    least: Array = unit * np.ldexp(1.0, exponent - (fraction == 0.5))
+    return least

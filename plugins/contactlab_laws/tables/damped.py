@@ -1,0 +1,188 @@
+"""psi2 of spheres with a restitution, by Tsuji's law with Coulomb's law at every point.
+
+Coordinates in which psi2(psi1, chi, e) is smooth: theory §11, "As a table". At one restitution
+the table is four patches in psi1 and chi.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache, cached_property, lru_cache
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.polynomial.chebyshev import chebvander
+from numpy.typing import NDArray
+
+from contactlab.compose.rebound import DAMPED_CHI, DAMPED_RESTITUTION
+from contactlab_laws.tables.file import Stored, read
+from contactlab_laws.tables.patches import (
+    Patches,
+    compiled_polynomial,
+    needed,
+    polynomial,
+    powers_of_chebyshev,
+)
+
+Array = NDArray[np.float64]
+
+SHIPPED = Path(__file__).with_name("damped.npz")
+CHI = DAMPED_CHI
+#: Pieces of t = (1 - e)^(1/3), in which psi2 is smooth down to e = 1; the border is e = 0.9.
+BORDERS = (0.0, 0.1 ** (1.0 / 3.0), 0.5 ** (1.0 / 3.0))
+#: Pieces in psi1: the centre sticks until the end; it slips while a ring around it sticks; all of
+#: the contact slips and sticks again; the centre slips for good.
+STICKS, RINGS, TURNS, SLIPS = range(4)
+#: Impacts computed together: fewer cost more calls, more leave the processor's cache.
+CHUNK = 8192
+#: Fewer impacts than this are computed one by one.
+FEW = 12
+#: The last terms along psi1 are left out that together are no more than this: less than the
+#: rings are off that the table is made of.
+SMALL = 1e-5
+
+
+def depth(restitution: Any) -> Any:
+    """Return t = (1 - e)^(1/3)."""
+    return np.cbrt(1.0 - restitution)
+
+
+def inner(value: Any, low: float, high: float) -> Any:
+    """Return ``value`` between ``low`` and ``high`` as a number in [-1, 1]."""
+    return (2.0 * value - (low + high)) / (high - low)
+
+
+def place(piece: int, psi1: Any, cuts: Any) -> Any:
+    """Return the coordinate of ``psi1`` in a piece, in [-1, 1]."""
+    if piece == STICKS:
+        return 2.0 * psi1 / cuts[0] - 1.0
+    if piece == SLIPS:
+        return 2.0 * (cuts[-1] - 1.0) / (psi1 - 1.0) - 1.0
+    low, high = cuts[piece - 1], cuts[piece]  # psi2 is smooth in the root of psi1 - low
+    share = (psi1 - low) / (high - low)
+    return 2.0 * (math.sqrt(share) if isinstance(share, float) else np.sqrt(share)) - 1.0
+
+
+def rough(piece: int, psi1: Any, value: Any, chi: Any, e: Any) -> Any:
+    """Return psi2 from the tabulated quantity: psi2/psi1, psi2, or psi2 less gross slip's."""
+    if piece == STICKS:
+        return value * psi1
+    return value if piece != SLIPS else value + (psi1 - 2.0 * chi * (1.0 + e))
+
+
+@attrs.frozen(eq=False, slots=False)
+class Section:
+    """The table at one restitution.
+
+    Attributes
+    ----------
+    cuts : array, shape (3, terms)
+        The three psi1 at which it is cut, by powers of chi in [-1, 1].
+    patches : Patches
+        One for each piece in psi1, by powers of ``place`` and of chi in [-1, 1].
+    """
+
+    cuts: Array
+    patches: Patches
+
+    @cached_property
+    def single_cuts(self) -> list[Callable[[float], float]]:
+        """The cuts as functions of plain floats."""
+        return list(map(compiled_polynomial, self.cuts))
+
+    @classmethod
+    def of(cls, stored: Stored, restitution: float) -> Section:
+        """Return the section of a table, whose terms are those of Chebyshev's polynomials."""
+        t = float(depth(restitution))
+        piece = int(t > BORDERS[1])
+        cuts, terms = (stored.arrays[name][piece] for name in ("cuts", "terms"))
+        basis = chebvander(inner(t, *BORDERS[piece : piece + 2]), terms.shape[-1] - 1)[0]
+        cuts, terms = cuts @ basis, terms @ basis
+        rows, columns = terms.shape[1:]
+        along, across = (
+            powers_of_chebyshev(count, stretch=1.0, shift=0.0) for count in (rows, columns)
+        )
+        count = np.maximum(needed(np.abs(terms).sum(axis=2), SMALL), 2)
+        terms = np.where(np.arange(rows)[:, None] < count[:, None, None], terms, 0.0)
+        counts = [count.tolist(), [columns] * len(terms)]
+        patches = Patches(np.zeros((2, len(terms))), along @ terms @ across.T, counts)
+        return cls(cuts @ across.T, patches)
+
+
+@cache
+def shipped() -> Stored:
+    """Return the file that came with the package."""
+    return read(SHIPPED)
+
+
+@lru_cache(maxsize=64)
+def section(restitution: float) -> Section:
+    """Return the table at a restitution."""
+    return Section.of(shipped(), restitution)
+
+
+@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
+def rebound(psi1: Array, chi: Array, restitution: float) -> Array:
+    """Return psi2, shape (impacts,), by the table or by rings; odd in psi1 to the last bit.
+
+    Parameters
+    ----------
+    psi1 : array, shape (impacts,)
+    chi : array, shape (impacts,)
+        Up to 10, as far as the rings were tried.
+    restitution : float
+        e.
+    """
+    speed = np.abs(psi1)
+    known = (chi >= CHI[0]) & (chi <= CHI[1]) & (restitution >= DAMPED_RESTITUTION)
+    if known.all():
+        psi2 = tabulated(speed, chi, restitution)
+    else:
+        from contactlab_laws.rings.courses import by_rings  # a table needs no normal motion
+
+        psi2 = np.empty(psi1.shape)
+        psi2[known] = tabulated(speed[known], chi[known], restitution)
+        psi2[~known] = by_rings(speed[~known], chi[~known], restitution)
+    return np.copysign(psi2, psi2 * np.where(psi1 < 0.0, -1.0, 1.0))
+
+
+def tabulated(speed: Array, chi: Array, restitution: float) -> Array:
+    """Return psi2 of psi1 = speed >= 0 from the table, shape (impacts,)."""
+    if not speed.size:
+        return speed
+    ours = section(restitution)
+    if speed.size < FEW:
+        pairs = zip(speed.tolist(), chi.tolist(), strict=True)
+        return np.array([single(*pair, restitution, ours) for pair in pairs])
+    psi2 = np.empty(speed.shape)
+    for first in range(0, speed.size, CHUNK):
+        part = slice(first, first + CHUNK)
+        psi2[part] = _together(speed[part], chi[part], restitution, ours)
+    return psi2
+
+
+def single(speed: float, chi: float, e: float, ours: Section) -> float:
+    """Return psi2 of one impact, in plain floats."""
+    y = inner(chi, *CHI)
+    cuts = [cut(y) for cut in ours.single_cuts]
+    piece = sum(speed > cut for cut in cuts)
+    value = ours.patches.single[piece](place(piece, speed, cuts), y)
+    return float(rough(piece, speed, value, chi, e))
+
+
+def _together(speed: Array, chi: Array, e: float, ours: Section) -> Array:
+    """Return psi2 of many impacts."""
+    y = inner(chi, *CHI)
+    cuts = np.array([polynomial(terms, y) for terms in ours.cuts])
+    piece = (speed > cuts).sum(axis=0).astype(np.int16)
+    at = np.empty_like(speed)
+    parts = [(number, np.flatnonzero(piece == number)) for number in range(SLIPS + 1)]
+    for number, rows in parts:
+        at[rows] = place(number, speed[rows], cuts[:, rows])
+    psi2 = ours.patches.values(piece, at, y)
+    for number, rows in parts:
+        psi2[rows] = rough(number, speed[rows], psi2[rows], chi[rows], e)
+    return psi2

@@ -1,0 +1,288 @@
+"""psi2 of elastic spheres, tabulated for chi up to 2.5 (theory §10)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab_laws.tables.file import Stored, read
+from contactlab_laws.tables.patches import (
+    Patches,
+    Slopes,
+    chebyshev_of_values,
+    compiled_polynomial,
+    needed,
+    nodes,
+    polynomial,
+    powers_of_chebyshev,
+)
+from contactlab_laws.tables.regions import (
+    CUT_END,
+    CUT_TOP,
+    LARGEST_CHI,
+    REGIONS,
+    SLIP_BACK,
+    SLIP_LATE,
+    SLIP_LONG,
+    SMALL_FAR,
+    SMALL_NEAR,
+    STUCK_BACK,
+    STUCK_ON,
+    Cuts,
+    Places,
+    SingleCuts,
+    place,
+    places,
+)
+
+Array = NDArray[np.float64]
+
+SHIPPED = Path(__file__).with_name("elastic.npz")
+#: Error of psi2 over max(1, |psi1|): what the builder's ``verify`` holds the table to.
+ERROR = 1e-9
+#: Powers of each coordinate in a patch; cells are found in a grid of 2^DEEPEST by 2^DEEPEST.
+NODES, DEEPEST = 12, 6
+SIZE = 1 << DEEPEST
+#: What is left out along each coordinate changes g by less; half of 12 terms by 12 are left.
+SMALL = 1e-11
+#: Fewer impacts than this are computed one by one; so many are taken together at most.
+FEW, BLOCK = 40, 1 << 16
+#: A place nearer to a cut than this, in its region's root, is taken to be this far: the limit.
+NEAREST = 1e-9
+#: Least t beside psi1 = 1, where the derivative by psi1 is a limit: delta is 1e-15 epsilon there.
+LEAST_T = 1e-3
+
+
+@attrs.frozen(eq=False)
+class Table:
+    """The table as it is evaluated.
+
+    Attributes
+    ----------
+    cuts : Cuts
+    grid : array of int16, shape (regions * 64 * 64,)
+        The patch at each place of the fine grid of each region.
+    patches : Patches
+        Numbered by how many powers they need, so that those that are sorted need as many as their
+        neighbours.
+    """
+
+    cuts: Cuts
+    grid: NDArray[np.int16]
+    patches: Patches
+
+    @classmethod
+    def of(cls, stored: Stored) -> Table:
+        """Return the table of a file.
+
+        ``cells`` are region, levels and indices along a and b of dyadic cells; ``terms`` those of
+        g by powers of the local coordinates in [0, 1].
+        """
+        cells, terms = stored.arrays["cells"], stored.arrays["terms"]
+        cuts = Cuts(stored.arrays["stuck"], stored.arrays["slip"])
+        forth = chebyshev_of_values(NODES) @ nodes(NODES)[:, None] ** np.arange(NODES)
+        back = powers_of_chebyshev(NODES, stretch=2.0, shift=1.0)
+        found = forth @ terms @ forth.T
+        sizes = np.abs(found)
+        count = np.array([needed(sizes.sum(axis=axis), SMALL) for axis in (2, 1)])
+        kept = np.arange(NODES) < count[..., None]
+        found *= kept[0, :, :, None] & kept[1, :, None, :]
+        scales = np.exp2(cells[:, 1:3].T.astype(np.float64))  # int16 would give float32
+        origins = cells[:, 3:].T / scales
+        power_a, power_b = scales[..., None] ** np.arange(NODES)  # of two: nothing is rounded
+        scale = power_a[:, :, None] * power_b[:, None, :]
+        order = np.lexsort(count[::-1])
+        rank = np.empty(order.size, dtype=np.int16)
+        rank[order] = np.arange(order.size)
+        grid = rank[_grid(cells).ravel()]
+        return cls(
+            cuts,
+            grid,
+            Patches(
+                origins[:, order],
+                (back @ found @ back.T * scale)[order],
+                count[:, order].tolist(),
+                (terms * scale)[order],
+            ),
+        )
+
+    def found(self, here: Places) -> NDArray[np.int16]:
+        """Return the patches of places."""
+        i, j = (here.a * SIZE).astype(np.int32), (here.b * SIZE).astype(np.int32)
+        np.minimum(i, SIZE - 1, out=i)
+        np.minimum(j, SIZE - 1, out=j)
+        i += here.region * SIZE
+        i *= SIZE
+        i += j
+        return self.grid.take(i)
+
+
+def _grid(cells: NDArray[np.int16]) -> NDArray[np.int16]:
+    """Return the cell at each place of the fine grid, shape (regions, 64, 64)."""
+    grid = np.full((REGIONS, SIZE, SIZE), -1, dtype=np.int16)
+    for number, (region, level_a, level_b, i, j) in enumerate(cells.tolist()):
+        wide, high = SIZE >> level_a, SIZE >> level_b
+        grid[region, i * wide : (i + 1) * wide, j * high : (j + 1) * high] = number
+    return grid
+
+
+@cache
+def shipped() -> Table:
+    """Return the table that came with the package."""
+    return Table.of(read(SHIPPED))
+
+
+def rebound(psi1: Any, chi: Any, *, derivatives: bool = False) -> Any:
+    """Return psi2, odd in psi1 to the last bit, |psi2| <= |psi1|.
+
+    Parameters
+    ----------
+    psi1 : float or array
+        Finite.
+    chi : float or array of the shape of ``psi1``
+        Positive, up to 2.5.
+    derivatives : bool
+        Whether to return (psi2, d psi2/d psi1, d psi2/d chi); arrays only.
+    """
+    if psi1.__class__ is float and not derivatives:
+        single = _single()
+        return single(psi1, chi) if psi1 >= 0.0 else -single(-psi1, chi)
+    speed, shape = np.abs(psi1).ravel(), psi1.shape
+    psi2 = values(shipped(), speed, chi.ravel()).reshape(shape)
+    np.negative(psi2, out=psi2, where=psi1 < 0.0)
+    if not derivatives:
+        return psi2
+    by_psi1, by_chi = (each.reshape(shape) for each in gradient(shipped(), speed, chi.ravel()))
+    return psi2, by_psi1, by_chi * np.copysign(1.0, psi1)
+
+
+@cache
+def _single() -> Callable[[float, float], float]:
+    """Return the function of psi1 >= 0 and chi that gives psi2 of one impact in plain floats."""
+    table = shipped()
+    cuts = SingleCuts(*map(compiled_polynomial, table.cuts))
+    grid, patches, last = table.grid.tolist(), table.patches.single, SIZE - 1
+
+    def single(speed: float, chi: float) -> float:
+        full = speed - 4.0 * chi
+        here = place(speed, chi, cuts)
+        if here is None:
+            return full
+        region, a, b, measure = here
+        i, j = int(a * SIZE), int(b * SIZE)
+        i, j = i if i < SIZE else last, j if j < SIZE else last
+        patch = grid[(region * SIZE + i) * SIZE + j]
+        psi2 = speed * (measure * patches[patch](a, b) - 1.0)
+        # no impact gains energy, nor more impulse than full slip gives: not even by an error
+        psi2 = psi2 if psi2 > full else full
+        psi2 = psi2 if psi2 < speed else speed
+        return psi2 if psi2 >= -speed else -speed
+
+    return single
+
+
+@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
+def values(table: Table, speed: Array, chi: Array) -> Array:
+    """Return psi2 for psi1 = speed >= 0 and 0 < chi <= LARGEST_CHI, shape (impacts,)."""
+    if speed.size < FEW and table is shipped():
+        return np.array(list(map(_single(), speed.tolist(), chi.tolist())))
+    psi2 = np.empty_like(speed)
+    for first in range(0, speed.size, BLOCK):
+        part = slice(first, first + BLOCK)
+        p, x = speed[part], chi[part]
+        psi2[part] = _full_slip(p, x)
+        here = places(p, x, table.cuts)
+        if here.who.size:
+            psi2[part][here.who] = _partial_slip(table, here)
+    return psi2
+
+
+def _full_slip(speed: Array, chi: Array) -> Array:
+    """Return psi2 of slip throughout, eq. (45)."""
+    psi2 = -4.0 * chi
+    psi2 += speed
+    return psi2
+
+
+def _partial_slip(table: Table, here: Places) -> Array:
+    """Return psi2 of these places, within the bounds of ``single``."""
+    g = table.patches.values(table.found(here), here.a, here.b)
+    g *= here.measure
+    g -= 1.0
+    np.maximum(g, -1.0, out=g)
+    np.minimum(g, 1.0, out=g)
+    g *= here.speed
+    return np.maximum(g, _full_slip(here.speed, here.chi), out=g)
+
+
+@np.errstate(under="ignore")  # as of ``values``
+def gradient(table: Table, speed: Array, chi: Array) -> tuple[Array, Array]:
+    """Return (d psi2/d psi1, d psi2/d chi) for psi1 = speed >= 0 and 0 < chi <= LARGEST_CHI."""
+    # Distances from psi1 = 1 and from a cut enter as roots, whose slopes are infinite; there g has
+    # no low powers, exactly none, so that the products keep their digits.
+    by_psi1, by_chi = np.ones_like(speed), np.full_like(speed, -4.0)  # eq. (45)
+    for first in range(0, speed.size, BLOCK):
+        block = slice(first, first + BLOCK)
+        here = places(speed[block], chi[block], table.cuts)
+        if not here.who.size:
+            continue
+        np.maximum(here.b, NEAREST, out=here.b)
+        for region, part in here.parts():
+            if region == SMALL_NEAR:
+                here.a[part] = np.maximum(here.a[part], LEAST_T)
+        slopes = table.patches.slopes(table.found(here), here.a, here.b)
+        for region, part in here.parts():
+            who = first + here.who[part]
+            local = Slopes(*(column[part] for column in slopes))
+            by_psi1[who], by_chi[who] = _of_psi2(region, here.taken(part), local, table.cuts)
+    return by_psi1, by_chi
+
+
+def _of_psi2(region: int, here: Places, slopes: Slopes, cuts: Cuts) -> tuple[Array, Array]:
+    """Return both derivatives of psi2 = psi1 (-1 + measure g) in one region."""
+    a, b, speed, measure = here.a, here.b, here.speed, here.measure
+    g, by_a, by_b = slopes
+    value = measure * g - 1.0
+    if region == SMALL_FAR:  # measure delta; a = epsilon/delta, b = delta
+        return value - speed * (g + measure * by_b - a * by_a), -2.0 * speed * by_a
+    side = -1.0 if region == SMALL_NEAR else 1.0  # of epsilon in chi, and of delta in psi1
+    by_main, by_chi = _main(region, a, b, by_a, by_b, cuts)
+    if region in (STUCK_BACK, STUCK_ON):
+        return value + speed * measure * by_main, speed * (2.0 * g + measure * by_chi)
+    # the main coordinate depends on delta/epsilon = t^5: epsilon times its derivatives
+    if region == SLIP_LATE:
+        by_delta, by_epsilon = by_main, -(1.0 + a) * by_main
+    else:
+        t = a if region == SMALL_NEAR else a * CUT_END
+        t = CUT_END + a * (1.0 - CUT_END) if region == SLIP_LONG else t
+        by_delta, by_epsilon = 0.2 * by_main / t**4, -0.2 * t * by_main
+    by_chi = 2.0 * side * (g + by_epsilon) + measure * by_chi
+    return value + side * speed * by_delta, speed * by_chi
+
+
+def _main(
+    region: int, a: Array, b: Array, by_a: Array, by_b: Array, cuts: Cuts
+) -> tuple[Array, Array]:
+    """Return the derivatives of g by the main coordinate (psi1, t or delta/epsilon) and by chi."""
+    if region == SMALL_NEAR:
+        return by_a, -2.0 * by_b
+    if region in (SLIP_LONG, SLIP_LATE):
+        stretch = 1.0 / (1.0 - CUT_END) if region == SLIP_LONG else 1.0
+        return stretch * by_a, by_b / (LARGEST_CHI - 0.5)
+    stuck = region in (STUCK_BACK, STUCK_ON)
+    terms = cuts.stuck if stuck else cuts.slip
+    main = a if stuck else a * CUT_END
+    cut, moves = polynomial(terms, main), polynomial(terms[1:] * np.arange(1, terms.size), main)
+    along = by_a if stuck else by_a / CUT_END
+    if region in (STUCK_BACK, SLIP_BACK):
+        by_chi = by_b / (cut - 0.5)
+        return along - b * moves * by_chi, by_chi
+    top = LARGEST_CHI if stuck else CUT_TOP
+    by_chi = by_b / (2.0 * b) / (top - cut)
+    return along - (1.0 - b * b) * moves * by_chi, by_chi

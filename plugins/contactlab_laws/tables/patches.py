@@ -1,0 +1,248 @@
+"""The evaluator of tables: a polynomial of two coordinates on each patch.
+
+A patch is a polynomial by powers of (a, b) less an origin of its own. Which patch a place is in,
+and its coordinates there, the table knows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache, cached_property
+from typing import Any, NamedTuple
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.int16]
+
+#: Fewer places than this are computed from gathered terms, a kilobyte for each, so many at once as
+#: fit into the cache; more are sorted by patch, which costs some 3 us a patch.
+FEW, GATHERED = 2000, 200
+#: Sorted places taken together, which fit into the cache.
+STRETCH = 8192
+#: Single places of a patch after which its polynomial is compiled, which costs a millisecond.
+COMPILED = 100
+
+
+class Slopes(NamedTuple):
+    """Values and their derivatives by a and b."""
+
+    g: Array
+    by_a: Array
+    by_b: Array
+
+
+@attrs.frozen(eq=False, slots=False)
+class Patches:
+    """Polynomials by patch.
+
+    Attributes
+    ----------
+    origins : array, shape (2, patches)
+    terms : array, shape (patches, n, m)
+        By powers of a (rows) and b; 0 where they are left out.
+    needed : list of list of int
+        Powers of a and of b that are left in each patch.
+    exact : array, shape (patches, n, m), optional
+        All terms, for derivatives.
+    """
+
+    origins: Array
+    terms: Array
+    needed: list[list[int]]
+    exact: Array | None = None
+
+    def values(self, patch: Numbers, a: Array, b: Array) -> Array:
+        """Return the values at places, shape (places,)."""
+        return self._sorted(patch, a, b) if patch.size >= FEW else self._gathered(patch, a, b)
+
+    def _sorted(self, patch: Numbers, a: Array, b: Array) -> Array:
+        """Return values, patch by patch: a product for each, the rest for whole stretches."""
+        order = np.argsort(patch, kind="stable")
+        counts = np.bincount(patch, minlength=len(self.terms))
+        stops = counts.cumsum()
+        origin_a, origin_b = (np.repeat(origin, counts) for origin in self.origins)
+        g = np.empty_like(a)
+        # room for all stretches: new memory for each would take longer than the rest
+        room = np.empty((2, max(self.terms.shape[1:]), min(STRETCH, g.size)))
+        for first in range(0, g.size, STRETCH):
+            stretch = slice(first, first + STRETCH)
+            who = order[stretch]
+            x, y = a[who], b[who]
+            x -= origin_a[stretch]
+            y -= origin_b[stretch]
+            found = slice(patch[who[0]], patch[who[-1]] + 1)
+            rows, columns = (max(needed[found]) for needed in self.needed)
+            y_powers, sums = powers(y, room[0, :columns, : x.size]), room[1, :rows, : x.size]
+            start = 0
+            for terms, stop in zip(
+                self.terms[found, :rows, :columns],
+                np.minimum(stops[found] - first, x.size).tolist(),
+                strict=True,
+            ):
+                if stop > start:
+                    np.matmul(terms, y_powers[:, start:stop], out=sums[:, start:stop])
+                    start = stop
+            g[who] = _horner(sums, x)
+        return g
+
+    def _gathered(self, patch: Numbers, a: Array, b: Array) -> Array:
+        """Return values at places in any order."""
+        x, y = a - self.origins[0, patch], b - self.origins[1, patch]
+        rows, columns = self.terms.shape[1:]
+        y_powers = np.ascontiguousarray(powers(y, np.empty((columns, y.size))).T)[..., None]
+        sums = np.empty((x.size, rows, 1))
+        for first in range(0, x.size, GATHERED):
+            part = slice(first, first + GATHERED)
+            np.matmul(self.terms[patch[part]], y_powers[part], out=sums[part])
+        return _horner(np.ascontiguousarray(sums[..., 0].T), x)
+
+    def slopes(self, patch: Numbers, a: Array, b: Array) -> Slopes:
+        """Return values and derivatives at places, from all terms."""
+        assert self.exact is not None
+        rows, columns = self.exact.shape[1:]
+        result = Slopes(np.empty_like(a), np.empty_like(a), np.empty_like(a))
+        order = np.argsort(patch, kind="stable")
+        of_a, of_b = (np.arange(1, count)[:, None] for count in (rows, columns))
+        for number, part in _stretches(patch):
+            who, terms = order[part], self.exact[number]
+            x = powers(a[who] - self.origins[0, number], np.empty((rows, who.size)))
+            y = powers(b[who] - self.origins[1, number], np.empty((columns, who.size)))
+            sums = terms @ y
+            result.g[who] = np.einsum("kn,kn->n", sums, x)
+            result.by_a[who] = np.einsum("kn,kn->n", sums[1:], x[:-1] * of_a)
+            result.by_b[who] = np.einsum("kn,kn->n", terms[:, 1:] @ (y[:-1] * of_b), x)
+        return result
+
+    @cached_property
+    def single(self) -> list[Callable[[float, float], float]]:
+        """The value of each patch as a function of plain floats a and b."""
+        found: list[Callable[[float, float], float]] = []
+        found += (_Rows(self, patch, found) for patch in range(len(self.terms)))
+        return found
+
+
+class _Rows:
+    """A patch in plain numbers, until it is worth compiling."""
+
+    def __init__(self, patches: Patches, patch: int, all_of_them: list[Any]) -> None:
+        rows, columns = (needed[patch] for needed in patches.needed)
+        self.left, self.low = patches.origins[:, patch].tolist()
+        # rows and terms from the highest power down
+        self.rows = patches.terms[patch, rows - 1 :: -1, columns - 1 :: -1].tolist()
+        self.patch, self.all_of_them, self.calls = patch, all_of_them, 0
+
+    def __call__(self, a: float, b: float) -> float:
+        """Return the value by Horner's rule; soon by one expression, the same to the last bit."""
+        self.calls += 1
+        if self.calls >= COMPILED:  # of two threads both may
+            text = _horner_text([_horner_text(row, "y") for row in self.rows], "x")
+            lines = f"x = a - {self.left!r}", f"y = b - {self.low!r}"
+            self.all_of_them[self.patch] = _compiled("a, b", *lines, f"return {text}")
+        x, y, total = a - self.left, b - self.low, 0.0
+        for row in self.rows:
+            inner = 0.0
+            for term in row:
+                inner = inner * y + term
+            total = total * x + inner
+        return total
+
+
+def _horner_text(terms: Sequence[object], argument: str) -> str:
+    """Return Horner's rule in Python, of numbers or texts from the highest power down."""
+    text = f"{terms[0]}"
+    for term in terms[1:]:
+        text = f"({text}) * {argument} + ({term})"
+    return text
+
+
+def _compiled(arguments: str, *lines: str) -> Any:
+    """Return a function of the lines."""
+    names: dict[str, Any] = {}
+    exec("\n ".join((f"def function({arguments}):", *lines)), names)
+    return names["function"]
+
+
+def compiled_polynomial(terms: Array) -> Callable[[float], float]:
+    """Return the polynomial with ``terms``, lowest first, as a function of a plain float."""
+    text = _horner_text(terms[::-1].tolist(), "x")
+    function: Callable[[float], float] = _compiled("x", f"return {text}")
+    return function
+
+
+def _stretches(patch: Numbers) -> Iterator[tuple[int, slice]]:
+    """Yield patches and the stretches of a sorted array that belong to them."""
+    stop = 0
+    for number, count in enumerate(np.bincount(patch).tolist()):
+        start, stop = stop, stop + count
+        for first in range(start, stop, STRETCH):
+            yield number, slice(first, min(first + STRETCH, stop))
+
+
+def powers(argument: Array, out: Array) -> Array:
+    """Return powers from 0, a row each, in ``out``, two rows at least."""
+    out[0] = 1.0
+    out[1] = argument
+    for power in range(2, len(out)):
+        np.multiply(out[power - 1], argument, out=out[power])
+    return out
+
+
+def _horner(terms: Array, argument: Array) -> Array:
+    """Return polynomials with ``terms`` of their own, lowest first; ``terms`` are lost."""
+    total: Array = terms[-1]
+    for term in terms[-2::-1]:
+        total *= argument
+        total += term
+    return total
+
+
+def polynomial(terms: Array, argument: Array) -> Array:
+    """Return the polynomial with ``terms``, lowest first, by Horner's rule."""
+    total = np.full_like(argument, terms[-1])
+    for term in terms[-2::-1].tolist():
+        total *= argument
+        total += term
+    return total
+
+
+@cache
+def powers_of_chebyshev(count: int, *, stretch: float, shift: float) -> Array:
+    """Return the matrix from terms by T_k(stretch x - shift) to terms by powers of x, exact."""
+    matrix = np.zeros((count, count))
+    matrix[0, 0] = 1.0
+    matrix[:2, 1] = -shift, stretch
+    for k in range(2, count):
+        matrix[1:, k] = 2.0 * stretch * matrix[:-1, k - 1]
+        matrix[:, k] -= 2.0 * shift * matrix[:, k - 1] + matrix[:, k - 2]
+    return matrix
+
+
+@cache
+def nodes(count: int) -> Array:
+    """Return Chebyshev's nodes in [0, 1], ascending."""
+    return np.asarray(0.5 - 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count))
+
+
+@cache
+def chebyshev_of_values(count: int) -> Array:
+    """Return the matrix from values at the nodes to Chebyshev coefficients."""
+    k = np.arange(count)
+    matrix = np.cos(np.pi * np.outer(k, k + 0.5) / count) * (2.0 / count)
+    matrix[0] *= 0.5
+    return matrix * (-1.0) ** k[:, None]
+
+
+def needed(sizes: Array, small: float) -> NDArray[np.intp]:
+    """Return how many Chebyshev terms are needed, one at least; those left out sum to ``small``.
+
+    Parameters
+    ----------
+    sizes : array, shape (patches, terms)
+        Sizes of the terms along a coordinate.
+    small : float
+    """
+    left = np.cumsum(sizes[:, ::-1], axis=1)[:, ::-1]
+    return np.asarray(np.maximum(np.count_nonzero(left > small, axis=1), 1))

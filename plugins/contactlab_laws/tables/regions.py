@@ -1,0 +1,200 @@
+"""Coordinates in which the elastic rebound is smooth: regions, each mapped to a unit square.
+
+With delta = abs(abs(psi1) - 1) and epsilon = abs(2 chi - 1), psi2 = psi1 (-1 + measure g), and g
+is tabulated (theory §10); measure is epsilon, but far from psi1 = 1 at chi < 1/2 delta.
+
+Where gross slip comes first, or nearly so, it ends at V = 1 - delta/epsilon (theory §2), and the
+radius that sticks then is about t = (delta/epsilon)^(1/5): there g is smooth in t and chi. Two
+regions are divided by a cut, on which the sign of the last slip changes: below it g is analytic,
+above it g is smooth in the square root of the distance.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.compose.rebound import TABULATED_CHI
+from contactlab_laws.tables.patches import polynomial
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.intp]
+
+(
+    SMALL_NEAR,  # chi < 1/2, delta < epsilon: the edge soon slips
+    SMALL_FAR,  # chi < 1/2, delta > epsilon
+    STUCK_BACK,  # chi > 1/2, sticks from the start; the last slip is backward
+    STUCK_ON,  # the same; the last slip is forward
+    SLIP_BACK,  # slips first; below the cut
+    SLIP_ON,  # slips first; above the cut
+    SLIP_LONG,  # slips first, up to maximum compression at most; no cut
+    SLIP_LATE,  # slips first, beyond maximum compression
+) = range(8)
+REGIONS = 8
+LARGEST_CHI = TABULATED_CHI
+#: Largest t at which the slip regions are cut: beyond it the cut runs above LARGEST_CHI.
+CUT_END = 0.8
+#: Upper end of SLIP_ON, above the cut's largest chi: it keeps the square from degenerating.
+CUT_TOP = 2.56
+#: First power of t in g after the constant: psi2 is C¹ at psi1 = 1 (theory §10).
+FIRST_POWER = 5
+
+
+#: Kinds of impact: one or two regions each, but for EARLY, which three of the slip regions share,
+#: and FULL, which slips throughout and needs no table.
+NEAR, FAR, STUCK, EARLY, LATE, FULL = range(6)
+
+
+class Cuts(NamedTuple):
+    """chi of both cuts by increasing powers: of abs(psi1) and of t, zeros included."""
+
+    stuck: Array
+    slip: Array
+
+
+class SingleCuts(NamedTuple):
+    """The same as functions of plain floats."""
+
+    stuck: Callable[[float], float]
+    slip: Callable[[float], float]
+
+
+class Places(NamedTuple):
+    """Impacts that do not slip throughout, those of a kind together.
+
+    Attributes
+    ----------
+    who : array of int, shape (places,)
+        Which impacts these are.
+    region : array of int, shape (places,)
+    a, b : array, shape (places,)
+        Coordinates in the unit square of the region.
+    speed, chi, measure : array, shape (places,)
+        abs(psi1), chi, and what g is multiplied with.
+    """
+
+    who: Rows
+    region: NDArray[np.int32]
+    a: Array
+    b: Array
+    speed: Array
+    chi: Array
+    measure: Array
+
+    def taken(self, part: slice | Rows) -> Places:
+        """Return some of them, in views if ``part`` is a slice."""
+        columns: Any = (column[part] for column in self)
+        return Places(*columns)
+
+    def parts(self) -> list[tuple[int, Rows]]:
+        """Return regions, and which of the places are in each."""
+        found = [(region, (self.region == region).nonzero()[0]) for region in range(REGIONS)]
+        return [(region, part) for region, part in found if part.size]
+
+
+def slip_cut(terms: Array, t: Array) -> Array:
+    """Return chi of the cut of the slip regions, of which some powers are missing."""
+    cut = polynomial(terms[FIRST_POWER:], t)
+    square = t * t
+    square *= square
+    square *= t
+    cut *= square
+    cut += terms[0]
+    return cut
+
+
+def place(speed: float, chi: float, cuts: SingleCuts) -> tuple[int, float, float, float] | None:
+    """Return region, a, b and measure of one impact; None if it slips throughout, eq. (46)."""
+    if speed > 1.0:
+        if speed >= 4.0 * chi - 1.0:
+            return None
+        measure = 2.0 * chi - 1.0
+        ratio, height = (speed - 1.0) / measure, (chi - 0.5) * (1.0 / (LARGEST_CHI - 0.5))
+        if ratio > 1.0:
+            return SLIP_LATE, ratio - 1.0, height, measure
+        t = ratio**0.2
+        if t > CUT_END:
+            return SLIP_LONG, (t - CUT_END) * (1.0 / (1.0 - CUT_END)), height, measure
+        cut = cuts.slip(t)
+        t *= 1.0 / CUT_END
+        if chi >= cut:
+            return SLIP_ON, t, math.sqrt((chi - cut) / (CUT_TOP - cut)), measure
+        return SLIP_BACK, t, (chi - 0.5) / (cut - 0.5), measure
+    if chi >= 0.5:
+        measure, cut = 2.0 * chi - 1.0, cuts.stuck(speed)
+        if chi >= cut:
+            return STUCK_ON, speed, math.sqrt((chi - cut) / (LARGEST_CHI - cut)), measure
+        return STUCK_BACK, speed, (chi - 0.5) / (cut - 0.5), measure
+    delta, epsilon = 1.0 - speed, 1.0 - 2.0 * chi
+    if delta < epsilon:
+        return SMALL_NEAR, (delta / epsilon) ** 0.2, epsilon, epsilon
+    return SMALL_FAR, epsilon / delta, delta, delta
+
+
+def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
+    """Return the places of impacts with chi <= LARGEST_CHI, but for those slipping throughout.
+
+    Parameters
+    ----------
+    speed, chi : array, shape (impacts,)
+        abs(psi1) and chi; no units.
+    cuts : Cuts
+        Polynomials of the boundaries between regions.
+    """
+    kind = _kinds(speed, chi)
+    stops = [int(np.count_nonzero(kind <= last)) for last in range(FULL)]
+    near, far, stuck, early, late = map(slice, [0, *stops], stops)
+    who = np.argsort(kind, kind="stable")[: stops[-1]]
+    p, x = speed[who], chi[who]
+    region, (a, b) = np.empty(who.size, dtype=np.int32), np.empty((2, who.size))
+    measure = np.abs(2.0 * x - 1.0)
+    region[near], b[near] = SMALL_NEAR, measure[near]
+    a[near] = ((1.0 - p[near]) / b[near]) ** 0.2
+    region[far], b[far] = SMALL_FAR, 1.0 - p[far]
+    np.divide(measure[far], b[far], out=a[far])
+    a[stuck], measure[far] = p[stuck], b[far]
+    b[stuck], above = _across(x[stuck], polynomial(cuts.stuck, a[stuck]), LARGEST_CHI)
+    region[stuck] = STUCK_BACK
+    region[stuck][above] = STUCK_ON
+    ends = slice(early.start, late.stop)
+    np.multiply(measure[ends], 0.5 / (LARGEST_CHI - 0.5), out=b[ends])
+    np.divide(p[ends] - 1.0, measure[ends], out=a[ends])
+    region[early], region[late] = SLIP_LONG, SLIP_LATE
+    a[late] -= 1.0
+    t = a[early] ** 0.2
+    np.multiply(t - CUT_END, 1.0 / (1.0 - CUT_END), out=a[early])
+    rows = (t <= CUT_END).nonzero()[0]
+    t, rows = t[rows], rows + early.start
+    a[rows] = t * (1.0 / CUT_END)
+    b[rows], above = _across(x[rows], slip_cut(cuts.slip, t), CUT_TOP)
+    region[rows] = SLIP_BACK
+    region[rows[above]] = SLIP_ON
+    return Places(who, region, a, b, p, x, measure)
+
+
+def _kinds(speed: Array, chi: Array) -> NDArray[np.int8]:
+    """Return the kinds of impacts."""
+    # abs(psi1) > 2 chi tells near from far where chi < 1/2, and early from late where slip comes
+    # first.
+    beyond = (speed > 2.0 * chi).view(np.int8)
+    fast = (speed >= 4.0 * chi - 1.0).view(np.int8)
+    fast += beyond
+    fast += EARLY
+    fast *= speed > 1.0
+    slow = (chi >= 0.5).view(np.int8)
+    slow *= STUCK
+    beyond ^= 1
+    return np.maximum(fast, np.maximum(slow, beyond, out=slow), out=fast)
+
+
+def _across(chi: Array, cut: Array, top: float) -> tuple[Array, Rows]:
+    """Return the second coordinates on both sides of a cut, and which impacts are above it."""
+    b = (chi - 0.5) / (cut - 0.5)
+    above = (chi >= cut).nonzero()[0]
+    edge = cut[above]
+    b[above] = np.sqrt((chi[above] - edge) / (top - edge))
+    return b, above

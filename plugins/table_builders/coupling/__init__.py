@@ -1,0 +1,1 @@
+"""The table of the size of elastic coupling between unlike bodies."""

@@ -1,0 +1,1 @@
+"""The table of the rebound with a restitution, by rings, and the cautions of other laws."""

@@ -1,0 +1,105 @@
+"""Differences of psi2: of springs from Coulomb's law, of normal laws from Tsuji's.
+
+``python -m table_builders damped differences`` writes ``differences.csv`` of the package
+``contactlab_laws.differences``: minutes.
+"""
+
+from __future__ import annotations
+
+import csv
+import sys
+from collections.abc import Iterator
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.registry import REGISTRY
+from contactlab.compose.simulation import Simulation
+from contactlab.contracts.normal import NormalLaw
+from contactlab.impact.scene import Scene
+from contactlab_laws.differences.table import FILE, key
+from contactlab_laws.rings.courses import solve
+from contactlab_laws.rings.rings import Array
+
+#: The impacts: least and number of psi1, up to slip throughout and 1 more, at each chi; as many
+#: again in ``NARROW``, the range of psi1 with the largest error of springs.
+LEAST, COUNT, CHI = 0.2, 24, (0.8, 1.0, 1.2, 49.0 / 34.0, 1.6, 1.8)
+NARROW = (0.7, 2.0)
+#: Numbers of rings; springs, extrapolated from this number and half of it, with four steps each.
+RINGS, SPRINGS = (48, 64, 80), 120
+#: Laws whose restitution is an option, and its values.
+CALIBRATED = ("tsuji", "hunt_crossley", "kuwabara_kono", "linear", "walton_braun")
+RESTITUTION = (1.0, 0.99, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3, 0.1)
+#: Options of the other laws, in units of ``Scene.nondimensional``; they give some restitutions.
+OTHERS: tuple[tuple[str, str, tuple[float, ...]], ...] = (
+    ("thornton", "yield_velocity", (0.6, 0.3, 0.1, 0.03, 0.01)),
+    ("jkr", "work_of_adhesion", (1e-3, 1e-2, 5e-2)),
+    ("dmt", "work_of_adhesion", (1e-2, 5e-2)),
+)
+
+
+def impacts(e: float) -> tuple[Array, Array]:
+    """Return psi1 and chi of the impacts, shape (impacts,)."""
+    last = 2.0 * np.array(CHI) * (1.0 + e) + 1.0
+    narrow = np.broadcast_to(np.linspace(*NARROW, COUNT)[:, None], (COUNT, len(CHI)))
+    psi1 = np.concatenate((np.linspace(LEAST, last, COUNT), narrow)).ravel()
+    return psi1, np.tile(CHI, 2 * COUNT)
+
+
+def springs(law: NormalLaw, psi1: Array, chi: Array) -> Array:
+    """Return psi2 by springs, extrapolated in their number, shape (impacts,)."""
+    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    psi2 = []
+    for count in (SPRINGS // 2, SPRINGS):
+        simulation = Simulation(
+            normal=law,
+            tangential=REGISTRY.create("tangential.springs", springs=count),
+            integrator=REGISTRY.create("integrator.symplectic", steps=4 * count),
+        )
+        psi2.append(np.asarray(simulation.sweep(scene).check().psi2))
+    return np.asarray(psi2[1] + (psi2[1] - psi2[0]) / 3.0)
+
+
+def by_rings(law: NormalLaw, psi1: Array, chi: Array) -> Array:
+    """Return psi2 with Coulomb's law at every point, shape (impacts,)."""
+    motion = normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0))
+    return solve(psi1, chi, motion, counts=RINGS)
+
+
+@cache
+def tsuji(e: float) -> Array:
+    """Return psi2 of the impacts under Tsuji's law."""
+    return by_rings(REGISTRY.create("normal.tsuji", restitution=e), *impacts(e))
+
+
+def laws() -> Iterator[Any]:
+    """Iterate over the normal laws that are measured."""
+    for name in CALIBRATED:
+        for e in RESTITUTION:
+            yield REGISTRY.create(f"normal.{name}", restitution=e)
+    for name, option, values in OTHERS:
+        for value in values:
+            yield REGISTRY.create(f"normal.{name}", **{option: value})
+
+
+def row(law: NormalLaw) -> list[str]:
+    """Return the class of a law, its restitution, and the two largest differences of psi2."""
+    motion = normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0))
+    e = round(-float(motion.final_rate), 6)
+    psi1, chi = impacts(e)
+    exact = by_rings(law, psi1, chi)
+    sizes = (np.abs(each - exact).max() for each in (springs(law, psi1, chi), tsuji(e)))
+    return [key(law), f"{e:g}", *(f"{size:.1e}" for size in sizes)]
+
+
+def write() -> None:
+    """Measure all the laws and write the table; progress goes to stderr."""
+    measured = []
+    for law in laws():
+        measured.append(row(law))
+        print(*measured[-1], file=sys.stderr, flush=True)
+    with FILE.open("w", encoding="utf-8", newline="") as file:
+        lines = csv.writer(file, lineterminator="\n")
+        lines.writerows([["law", "restitution", "springs", "choice"], *measured])

@@ -1,0 +1,69 @@
+"""Sweeps on a cluster of dask, two processes of this machine; and with other BLAS threads."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from contactlab import Scene, Simulation
+from tests.compose.test_sweep import CHI, assert_same, blocks_of, scene
+from tests.laws.ending_laws import Ending, Raising
+
+
+@pytest.fixture(scope="module")
+def executor():
+    from dask.distributed import Client, LocalCluster
+
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        Client(cluster) as client,
+    ):
+        yield client.get_executor()
+
+
+@pytest.mark.slow
+def test_a_cluster_answers_as_one_process(executor):
+    """Exactly, although dask gives its processes one BLAS thread each."""
+    scenes = Scene.nondimensional(psi1=np.linspace(0.0, 6.0, 9000), chi=CHI)
+    seen = []
+    there = Simulation().sweep(scenes, executor=executor, progress=lambda *n: seen.append(n))
+    assert seen[-1] == (9000, 9000)
+    assert_same(there, Simulation().sweep(scenes))
+
+
+@pytest.mark.slow
+def test_a_client_itself_has_a_method_submit(executor, monkeypatch):
+    blocks_of(monkeypatch, 50)
+    simulation = Simulation(tangential="coulomb")
+    assert_same(simulation.sweep(scene(), executor=executor._client), simulation.sweep(scene()))
+
+
+@pytest.mark.slow
+def test_failures_on_a_cluster(executor, monkeypatch, tmp_path):
+    blocks_of(monkeypatch, 50)
+    raising = Simulation(tangential=Raising(), integrator="symplectic")
+    assert_same(raising.sweep(scene(), executor=executor), raising.sweep(scene()))
+    ending = Simulation(tangential=Ending(folder=str(tmp_path), above=6.2), integrator="symplectic")
+    result = ending.sweep(scene(), executor=executor)
+    assert [status.name for status in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
+    assert "KilledWorker" in result.failures[100]
+
+
+PSI2 = """
+import sys, numpy, contactlab
+scene = contactlab.Scene.nondimensional(psi1=numpy.linspace(0.0, 6.0, 9000), chi=1.4411764706)
+sys.stdout.buffer.write(contactlab.Simulation().sweep(scene).psi2.tobytes())
+"""
+
+
+@pytest.mark.slow
+def test_the_exact_solution_does_not_depend_on_the_number_of_threads():
+    found = []
+    for threads in "12":
+        environment = os.environ | {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads}
+        command = [sys.executable, "-c", PSI2]
+        found.append(subprocess.run(command, env=environment, capture_output=True, check=True))
+    assert len(found[0].stdout) == 9000 * 8
+    assert found[0].stdout == found[1].stdout

@@ -1,0 +1,66 @@
+"""Collisions with a restitution instead of laws."""
+
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Simulation, collide
+from contactlab.compose.rebound import BEYOND_ERROR, DAMPED_ERROR
+from tests.compose.test_collision import BALL, meeting
+
+
+def test_a_restitution_is_that_of_tsujis_law_and_of_its_annuli():
+    """The table of rings against annuli, another solver of Coulomb's law at every point."""
+    rng = np.random.default_rng(11)
+    met = meeting(
+        target=BALL,
+        velocity=rng.normal((0, 0, -5), size=(12, 3)),
+        spin=40 * rng.normal(size=(12, 3)),
+    )
+    made = collide(met, restitution=0.8)
+    laws = Simulation(
+        normal=contactlab.create("normal.tsuji", restitution=0.8),
+        tangential=contactlab.create("tangential.annulus", annuli=100),
+        integrator=contactlab.create("integrator.symplectic", steps=400),
+    )
+    other = collide(met, laws)
+    np.testing.assert_allclose(made.normal_velocity, other.normal_velocity, rtol=1e-9)
+    scale = np.abs(other.slip_velocity_change).max()
+    apart = np.abs(made.slip_velocity_change - other.slip_velocity_change).max()
+    assert 0.0 < apart < 4e-3 * scale
+    np.testing.assert_allclose(made.energy.imbalance, 0.0, atol=1e-12)
+    assert made.result.laws["normal"].startswith("tsuji")
+    elastic = collide(met)
+    assert (np.abs(made.velocity - elastic.velocity).max(axis=1) > 1e-3).all()
+
+
+def test_gross_slip_with_a_restitution():
+    """Impulse mu (1 + e) M_n v1 in the limit of a long slide, theory §11."""
+    met = meeting(friction_coefficient=0.01, velocity=(50.0, 0.0, -1.0))
+    for e in (1.0, 0.9, 0.6):
+        drag = -collide(met, restitution=e).slip_velocity_change
+        pair = met.pair
+        full = 0.01 * (1.0 + e) * pair.normal_mass * 1.0 / pair.tangential_mass
+        assert drag == pytest.approx(full, rel=1e-3)
+
+
+def test_a_restitution_stands_in_place_of_laws():
+    with pytest.raises(ValueError, match="restitution"):
+        collide(meeting(), Simulation(), restitution=0.9)
+    with pytest.raises(ValueError, match="restitution"):
+        collide(meeting(), restitution=1.2)
+
+
+def test_the_plan_of_a_restitution_says_who_answered():
+    """It is not the annuli, which only ``result`` runs; their plan declares no error."""
+    plan = collide(meeting(), restitution=0.9).plan
+    assert "tangential motion: contactlab.rebound with restitution=0.9" in str(plan)
+    assert f"psi2: at most {DAMPED_ERROR:g} beside Coulomb's law at every point" in str(plan)
+    assert "Annulus" not in str(plan)
+    assert "the restitution alone does not decide psi2" in str(plan)
+    assert plan.psi2_error == DAMPED_ERROR
+    assert collide(meeting(), restitution=0.4).plan.psi2_error == BEYOND_ERROR
+    batch = collide(meeting(velocity=[(0.5, 0, -1), (0, 0, -1)], spin=(0, 0, 0)), restitution=0.9)
+    assert batch.plan.psi2_error.max() == DAMPED_ERROR
+    assert f"psi2 (1 of 2 impacts): at most {DAMPED_ERROR:g}" in str(batch.plan)
+    assert "Springs" in str(collide(meeting(), Simulation(tangential="springs")).plan)

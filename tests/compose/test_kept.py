@@ -1,0 +1,171 @@
+"""Sweeps that are kept go on where they stopped, and only they."""
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Scene, Simulation
+from contactlab.compose import kept
+from contactlab.compose import sweep as sweeping
+from tests.compose.test_sweep import CHI, RIGID, assert_same, blocks_of, scene
+from tests.laws.ending_laws import Ending
+
+
+@pytest.fixture(autouse=True)
+def blocks(monkeypatch):
+    blocks_of(monkeypatch, 40)
+
+
+def interrupted(simulation, folder, *, after=80, **changed):
+    def stop(done, total):
+        if done >= after:
+            raise KeyboardInterrupt
+
+    return simulation.sweep(**({"scenes": scene(), "keep": folder, "progress": stop} | changed))
+
+
+@pytest.mark.parametrize(("tangential", "chunk"), [("fronts", None), ("springs", 80)])
+def test_a_sweep_goes_on_where_it_stopped(tmp_path, tangential, chunk):
+    if tangential == "fronts":
+        tangential = contactlab.create("tangential.fronts", table=False)
+    simulation, folder = Simulation(tangential=tangential), tmp_path / "kept"
+    whole = simulation.sweep(scene())
+    assert interrupted(simulation, folder).status[-1].name == "INTERRUPTED"
+    seen = []
+    again = simulation.sweep(
+        scene(), keep=folder, chunk=chunk, progress=lambda *n: seen.append(n[0])
+    )
+    assert seen[0] == 80 + (chunk or 40) - (chunk == 80) * 10
+    assert_same(again, whole)
+    finished = simulation.sweep(scene(), keep=str(folder), progress=lambda *_: pytest.fail("ran"))
+    assert_same(finished, whole)
+
+
+def test_failures_are_kept_with_their_sentences(tmp_path):
+    simulation = Simulation(
+        tangential="springs",
+        integrator=contactlab.create("integrator.symplectic", steps=5, refine=False),
+    )
+    whole = simulation.sweep(scene())
+    assert whole.failures
+    interrupted(simulation, tmp_path / "kept")
+    assert_same(simulation.sweep(scene(), keep=tmp_path / "kept"), whole)
+
+
+def test_another_sweep_is_refused(tmp_path):
+    simulation, folder = Simulation(**RIGID), tmp_path / "kept"
+    interrupted(simulation, folder)
+    other = scene().psi1.copy()
+    other[-1] = np.nextafter(other[-1], 10.0)
+    steps = contactlab.create("integrator.symplectic", steps=7)
+    for changed, scenes, words in (
+        (simulation, Scene.nondimensional(psi1=other, chi=CHI), "scene was"),
+        (simulation, Scene.nondimensional(psi1=other[1:], chi=CHI), "impacts was 150, is 149"),
+        (attrs.evolve(simulation, integrator=steps), scene(), "integrator was .*steps=7"),
+        (Simulation(tangential="frictionless"), scene(), "tangential was .*Coulomb"),
+    ):
+        with pytest.raises(ValueError, match=rf"keep = .*holds another sweep: {words}"):
+            changed.sweep(scenes, keep=folder)
+
+
+def test_other_blocks_are_refused(tmp_path, monkeypatch):
+    interrupted(Simulation(**RIGID), tmp_path / "kept")
+    monkeypatch.setattr(sweeping, "block_of", lambda _: 41)
+    with pytest.raises(ValueError, match="block was 40, is 41"):
+        Simulation(**RIGID).sweep(scene(), keep=tmp_path / "kept")
+
+
+def test_what_holds_no_sweep_is_refused_and_left_alone(tmp_path):
+    simulation, folder = Simulation(**RIGID), tmp_path / "kept"
+    folder.mkdir()
+    (folder / "thesis.txt").write_text("mine")
+    with pytest.raises(ValueError, match="holds no sweep"):
+        simulation.sweep(scene(), keep=folder)
+    with pytest.raises(ValueError, match="must be the path of a folder"):
+        simulation.sweep(scene(), keep=3)
+    with pytest.raises(ValueError, match="is a file"):
+        simulation.sweep(scene(), keep=folder / "thesis.txt")
+    with pytest.raises(FileNotFoundError):
+        simulation.sweep(scene(), keep=tmp_path / "none" / "kept")
+    (folder / "thesis.txt").rename(tmp_path / "thesis.txt")
+    interrupted(simulation, folder)
+    (tmp_path / "thesis.txt").rename(folder / "thesis.txt")
+    kept.remove(folder)
+    assert [path.name for path in folder.iterdir()] == ["thesis.txt"]
+
+
+def test_damaged_files_are_refused(tmp_path):
+    simulation, folder = Simulation(**RIGID), tmp_path / "kept"
+    interrupted(simulation, folder)
+    piece = next(folder.glob("*.npz"))
+    whole = piece.read_bytes()
+    for content in (b"", whole[:100], b"x" * 300):
+        piece.write_bytes(content)
+        with pytest.raises(ValueError, match=r"is damaged.*delete this file"):
+            simulation.sweep(scene(), keep=folder)
+    piece.write_bytes(whole)
+    piece.rename(piece.with_name("impacts-40-90.npz"))
+    with pytest.raises(ValueError, match=r"not those of its name.*, or delete this file"):
+        simulation.sweep(scene(), keep=folder)
+    (folder / "sweep.json").write_text("[")
+    with pytest.raises(ValueError, match="cannot be read"):
+        simulation.sweep(scene(), keep=folder)
+
+
+def test_pieces_in_the_wrong_place_are_refused(tmp_path):
+    """Two files that changed names resumed with the answers of each other's impacts."""
+    simulation, folder = Simulation(**RIGID), tmp_path / "kept"
+    interrupted(simulation, folder)
+    first, second = sorted(folder.glob("*.npz"))
+    contents = first.read_bytes(), second.read_bytes()
+    first.write_bytes(contents[1])
+    second.write_bytes(contents[0])
+    with pytest.raises(ValueError, match=r"impacts 40 to 80, which.*impacts-40-80\.npz"):
+        simulation.sweep(scene(), keep=folder)
+    first.write_bytes(contents[0])
+    second.write_bytes(contents[1])
+    assert_same(simulation.sweep(scene(), keep=folder), simulation.sweep(scene()))
+
+
+def test_a_piece_of_another_sweep_is_refused(tmp_path):
+    simulation, folder, other = Simulation(**RIGID), tmp_path / "kept", tmp_path / "other"
+    interrupted(simulation, folder)
+    changed = Scene.nondimensional(psi1=-scene().psi1, chi=CHI)
+    interrupted(simulation, other, scenes=changed)
+    piece = sorted(other.glob("*.npz"))[0]
+    piece.replace(folder / piece.name)
+    with pytest.raises(ValueError, match=r"holds impacts 0 to 40 of another sweep; delete"):
+        simulation.sweep(scene(), keep=folder)
+
+
+def test_impacts_that_were_kept_twice_count_once(tmp_path):
+    simulation, folder, other = Simulation(**RIGID), tmp_path / "kept", tmp_path / "other"
+    interrupted(simulation, folder)
+    interrupted(simulation, other, chunk=80)
+    (piece,) = other.glob("*.npz")
+    piece.rename(folder / piece.name)
+    assert_same(simulation.sweep(scene(), keep=folder), simulation.sweep(scene()))
+
+
+def test_impacts_whose_worker_died_are_tried_again(tmp_path):
+    (ends := tmp_path / "ends").mkdir()
+    law = Ending(folder=str(ends), above=7.4, times=2)
+    simulation = Simulation(tangential=law, integrator="symplectic")
+    with contactlab.compose.workers.processes(1) as one:
+        first = simulation.sweep(scene(), executor=one, keep=tmp_path / "kept")
+        assert "WORKER_DIED" in {status.name for status in first.status}
+        assert simulation.sweep(scene(), executor=one, keep=tmp_path / "kept").check()
+
+
+def test_a_fingerprint_knows_every_number_and_class():
+    trees = [
+        scene(),
+        scene(149),
+        Scene.nondimensional(psi1=scene().psi1, chi=1.4),
+        *([1.0, 2.0], [2.0, 1.0], (1.0, 2.0), 1, 1.0, "1", None, True, {"a": 1}, {"b": 1}),
+        *(np.zeros(3), np.zeros((3, 1)), np.zeros(3, dtype=np.float32), frozenset()),
+        *(contactlab.create("tangential.springs", springs=n) for n in (50, 51)),
+    ]
+    assert len({kept.fingerprint(tree) for tree in trees}) == len(trees)
+    assert kept.fingerprint(scene()) == kept.fingerprint(scene())

@@ -1,0 +1,425 @@
+"""Finding and making laws; what broken plug-ins do, and do not do to others."""
+
+import sys
+from importlib import metadata
+
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import PluginError
+from contactlab.compose import rebound as rebounds
+from contactlab.compose.installed import PluginWarning
+from contactlab.compose.names import full_name, kind_of, short_name
+from contactlab.compose.registry import REGISTRY
+
+MINE = "tangential.mine"
+NORMAL_LAW = """
+from typing import ClassVar
+import attrs
+import contactlab
+from contactlab.contracts import NormalContact, NormalLaw
+
+@attrs.frozen(kw_only=True)
+class Soft(NormalLaw):
+    api_version: ClassVar[int] = 2
+    def start(self, scene):
+        return scene.pair.effective_modulus * scene.pair.radius
+    def respond(self, state, approach, rate):
+        inside = approach * (approach > 0.0)
+        return NormalContact(force=state * inside, radius=0.0 * inside, overlap=approach), state
+
+@contactlab.hookimpl
+def contactlab_law(name):
+    return Soft
+"""
+
+
+def test_every_declared_entry_point_loads(registry):
+    points = [
+        point
+        for point in metadata.entry_points(group="contactlab")
+        if point.dist.name == "contactlab"
+    ]
+    assert len(points) >= 6
+    for point in points:
+        law = registry.law_class(point.name)
+        assert law.kind == point.name.partition(".")[0]
+        assert registry.create(point.name) is not None
+
+
+def test_create_passes_options_and_checks_them():
+    assert contactlab.create("integrator.paper", steps=123).steps == 123
+    with pytest.raises(ValueError, match=r"integrator.paper: steps = 0: must be a whole number"):
+        contactlab.create("integrator.paper", steps=0)
+    with pytest.raises(
+        ValueError,
+        match=r"step = 3: integrator.paper does not know it; did you mean 'steps'",
+    ):
+        contactlab.create("integrator.paper", step=3)
+
+
+def test_a_name_that_is_no_text_is_refused():
+    with pytest.raises(ValueError, match="name = None: must be a text"):
+        contactlab.create(None)
+
+
+def test_unknown_name_gives_the_nearest_and_the_list():
+    with pytest.raises(
+        ValueError, match=r"did you mean 'tangential.coulomb'.*installed: .*tangential.springs"
+    ):
+        contactlab.create("tangential.columb")
+    with pytest.raises(
+        ValueError, match=r"'tangential.exact': no such law is installed; installed"
+    ):
+        contactlab.create("tangential.exact")  # like none but for the kind
+    with pytest.raises(ValueError, match=r"did you mean 'normal.hertz'"):
+        contactlab.create("hertz")
+
+
+def test_a_third_party_law_is_made_like_any_other(registry, install, law_source):
+    install("thirdparty", "thirdparty_law", law_source, MINE)
+    assert registry.info(MINE).distribution == "thirdparty"
+    assert registry.info(MINE).version == "1.5"
+    law = registry.create(MINE)
+    assert type(law).__name__ == "Mine"
+    assert registry.describe(law) == "mine (thirdparty 1.5)"
+
+
+def test_where_a_law_comes_from_does_not_hang_on_how_it_was_made(registry):
+    from contactlab_laws.springs.law import Springs
+
+    origin = registry.describe(Springs())
+    assert origin.startswith("springs (contactlab ")
+    assert registry.describe(registry.create("tangential.springs")) == origin
+
+
+def test_two_distributions_with_one_name_are_refused_naming_both(registry, install, law_source):
+    install("first", "first_law", law_source, MINE)
+    install("second", "second_law", law_source, MINE)
+    with pytest.raises(ValueError, match=r"first 1.5 and second 1.5") as caught:
+        registry.create(MINE)
+    assert "'first:tangential.mine' or 'second:tangential.mine'" in str(caught.value)
+    assert registry.create("tangential.coulomb") is not None
+    for name in ("first", "second"):
+        law = registry.create(f"{name}:{MINE}")
+        assert registry.describe(law) == f"mine ({name} 1.5)"
+        assert type(law).__module__ == f"{name}_law"
+    assert [name for name in registry.names() if MINE in name] == [
+        f"first:{MINE}",
+        f"second:{MINE}",
+    ]
+
+
+@pytest.mark.parametrize("blocking", ["second", f"second:{MINE}", "Second", "other, second"])
+def test_the_advised_block_leaves_the_other_law(
+    registry, install, law_source, monkeypatch, blocking
+):
+    for name in ("first", "second", "other"):
+        install(name, f"{name}_law", law_source, MINE if name != "other" else "tangential.other")
+    with pytest.raises(ValueError, match="block all laws of one: CONTACTLAB_BLOCK_PLUGINS=second"):
+        registry.create(MINE)
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", blocking)
+    assert registry.describe(registry.create(MINE)) == "mine (first 1.5)"
+    assert MINE in registry.names()
+    with pytest.raises(ValueError, match="blocked"):
+        registry.create(f"second:{MINE}")
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", MINE)
+    with pytest.raises(ValueError, match="blocked"):
+        registry.create(MINE)
+
+
+def test_a_distribution_cannot_take_over_a_built_in_name(
+    registry, install, law_source, monkeypatch
+):
+    install("usurper", "usurper_law", law_source, "tangential.coulomb")
+    assert registry.describe(registry.create("tangential.coulomb")).startswith(
+        "coulomb (contactlab "
+    )
+    ours = registry.create("contactlab:tangential.coulomb")
+    assert type(ours) is type(registry.create("tangential.coulomb"))
+    theirs = registry.create("usurper:tangential.coulomb")
+    assert registry.describe(theirs) == "coulomb (usurper 1.5)"
+    assert {"tangential.coulomb", "usurper:tangential.coulomb"} <= set(registry.names())
+    (sentence,) = registry.clashes()
+    assert (
+        "it means 'contactlab:tangential.coulomb'; write 'usurper:tangential.coulomb'" in sentence
+    )
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "contactlab:tangential.coulomb")
+    assert type(registry.create("tangential.coulomb")) is type(theirs)
+    assert registry.clashes() == []
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "usurper")
+    assert type(registry.create("tangential.coulomb")) is type(ours)
+
+
+def test_a_strangers_normal_hertz_leaves_the_program_as_it_was(registry, install, monkeypatch):
+    """The whole program was disabled by it: every default names this law."""
+    for name, nothing in (("_loaded", {}), ("_meant", {})):
+        monkeypatch.setattr(REGISTRY, name, nothing)
+    install("usurper", "usurper_law", NORMAL_LAW, "normal.hertz")
+    scene = contactlab.Scene.nondimensional(psi1=1.2, chi=1.4412)
+    assert contactlab.Simulation().run(scene).psi2 == pytest.approx(-0.18048, abs=1e-5)
+    for name in ("usurper:hertz", "usurper:normal.hertz", "Usurper:hertz"):
+        theirs = contactlab.Simulation(normal=name, tangential="coulomb")
+        assert type(theirs.normal).__name__ == "Soft"
+        assert theirs.run(scene).laws["normal"] == "hertz (usurper 1.5)"
+
+
+def test_names_of_no_law_with_a_distribution_are_refused_with_what_is_meant(
+    registry, install, law_source
+):
+    install("my-laws", "my_law", law_source, MINE)
+    assert registry.create(f"My_Laws:{MINE}") is not None  # spellings of one distribution
+    with pytest.raises(ValueError, match=r"'tangential.mine' is offered as 'my-laws:tangential"):
+        registry.create(f"contactlab:{MINE}")
+    with pytest.raises(ValueError, match=r"no distribution 'my-law' .* did you mean 'my-laws'"):
+        registry.create("my-law:tangential.other")
+    with pytest.raises(ValueError, match="no such law is installed"):
+        registry.create("my-laws:tangential.miner")
+
+
+def test_a_blocked_distribution_that_is_not_installed_is_warned_of(registry, install, monkeypatch):
+    install("my-laws", "my_law", "", MINE)
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "my-lawz my-laws")
+    with pytest.warns(PluginWarning, match=r"'my-lawz', .* did you mean 'my-laws'"):
+        assert MINE not in registry.names()
+
+
+def test_names_are_taken_apart_and_put_together():
+    assert full_name("normal", "hertz") == "normal.hertz"
+    assert full_name("normal", "a.b:hertz") == full_name("normal", "a.b:normal.hertz")
+    assert full_name("normal", "a.b:hertz") == "a.b:normal.hertz"
+    for name in ("normal.hertz", "a.b:normal.hertz", "tangential.normal"):
+        assert full_name(kind_of(name), short_name(name)) == name
+    assert short_name("a.b:normal.hertz") == "a.b:hertz"
+    assert short_name("hertz") == "hertz"
+
+
+def test_a_rebound_of_a_stranger_takes_the_place_of_ours_only_where_ours_is_blocked(
+    install, tmp_path, monkeypatch
+):
+    install("usurper", "usurper_rebound", "def rebound(*_, **__):\n    return 7.0\n")
+    path = tmp_path / "usurper-1.5.dist-info" / "entry_points.txt"
+    path.write_text("[contactlab.rebound]\nelastic = usurper_rebound:rebound\n")
+    rebounds._installed.cache_clear()
+    rebounds._kept_table.cache_clear()
+    try:
+        assert contactlab.rebound(1.2, 49 / 34) == pytest.approx(-0.18052, abs=1e-5)
+        for blocking in ("contactlab:rebound.elastic", "contactlab:rebound.elastic usurp"):
+            monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", blocking)
+            assert contactlab.rebound(1.2, 49 / 34) == 7.0
+    finally:
+        rebounds._installed.cache_clear()
+        rebounds._kept_table.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("import not_there_at_all", "could not be imported: ModuleNotFoundError"),
+        ("raise SystemExit(3)", "could not be imported: SystemExit"),
+        ("1/0", "could not be imported: ZeroDivisionError"),
+        ("", "has no hook"),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_lwa(name): pass",
+            "does not fit the hooks",
+        ),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name, more): pass",
+            "does not fit the hooks",
+        ),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return 5",
+            "not the class of a law",
+        ),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return None",
+            "not the class of a law",
+        ),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return int",
+            "not the class of a law",
+        ),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): 1/0",
+            "raised when asked",
+        ),
+    ],
+)
+def test_a_broken_plugin_says_so_and_harms_nobody(registry, install, source, message):
+    install("broken", "broken_law", source, MINE)
+    assert MINE in registry.names()
+    for _ in range(2):  # the second time is no different
+        with pytest.raises(PluginError, match=message) as caught:
+            registry.create(MINE)
+        assert "broken 1.5" in str(caught.value)
+        assert MINE in str(caught.value)
+    assert registry.create("tangential.coulomb") is not None
+
+
+def test_a_plugin_cannot_end_the_program_print_among_data_or_change_settings(
+    registry, install, law_source, capsys
+):
+    spoilt = "import numpy, sys\nprint('hello')\nnumpy.seterr(all='raise')\n" + law_source
+    asked = "    print('asked')\n    numpy.seterr(all='raise')\n    return Mine"
+    install("loud", "loud_law", spoilt.replace("    return Mine", asked), MINE)
+    before = np.geterr()
+    assert type(registry.create(MINE)).__name__ == "Mine"
+    assert np.geterr() == before
+    caught = capsys.readouterr()
+    assert (caught.out, caught.err) == ("", "hello\nasked\n")
+
+
+@pytest.mark.parametrize("raised", ["SystemExit(3)", "GeneratorExit()", "BaseException('x')"])
+def test_whatever_a_hook_or_an_import_raises_is_a_broken_plugin(registry, install, raised):
+    hook = "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): raise "
+    install("hook", "hook_law", hook + raised, MINE)
+    install("imported", "imported_law", f"raise {raised}", "tangential.other")
+    with pytest.raises(PluginError, match="raised when asked"):
+        registry.create(MINE)
+    with pytest.raises(PluginError, match="could not be imported"):
+        registry.create("tangential.other")
+
+
+def test_what_is_installed_meanwhile_is_found_and_what_is_known_is_not_read_again(
+    registry, install, law_source, monkeypatch
+):
+    assert MINE not in registry.names()
+    install("late", "late_law", law_source, MINE)
+    assert MINE in registry.names()
+    monkeypatch.setattr(metadata, "entry_points", None)
+    assert MINE in registry.names()
+    assert registry.create(MINE) is not None
+
+
+@pytest.mark.parametrize("content", [b"[contactlab]\ntangential.x\n", b"[contactlab]\n\xff = x\n"])
+def test_a_distribution_that_cannot_be_read_stops_nothing(
+    registry, install, law_source, content, tmp_path
+):
+    install("good", "good_law", law_source, MINE)
+    install("unreadable", "unreadable_law", "", "tangential.other")
+    (tmp_path / "unreadable-1.5.dist-info" / "entry_points.txt").write_bytes(content)
+    with pytest.warns(PluginWarning, match=r"unreadable-1.5.dist-info cannot be read"):
+        assert registry.create(MINE) is not None
+    assert {MINE, "tangential.coulomb"} <= set(registry.names())
+
+
+def test_a_distribution_without_its_papers(registry, install, law_source, tmp_path):
+    install("bare", "bare_law", law_source, MINE)
+    papers = tmp_path / "bare-1.5.dist-info" / "METADATA"
+    papers.write_bytes(b"Name: \xff\n")
+    assert (registry.info(MINE).distribution, registry.info(MINE).version) == ("unknown", "unknown")
+    papers.unlink()
+    assert registry.create(MINE) is not None
+
+
+def test_an_interruption_is_still_one(registry, install):
+    install("slow", "slow_law", "raise KeyboardInterrupt", MINE)
+    with pytest.raises(KeyboardInterrupt):
+        registry.create(MINE)
+
+
+@pytest.mark.parametrize(
+    "name", ["tangential.", "", "nodot", ".annulus", "tangental.mine", "a.b.c"]
+)
+def test_a_malformed_name_stops_nothing(registry, install, law_source, name):
+    install("odd", "odd_law", law_source, name, MINE)
+    found = {info.name: info for info in registry.installed() if info.distribution == "odd"}
+    assert found[MINE].malformed is False
+    assert all(info.malformed for known, info in found.items() if known != MINE)
+    assert name not in registry.names()
+    assert contactlab.Simulation(tangential=registry.create(MINE)) is not None
+    if name in found:
+        with pytest.raises(PluginError, match=r"odd 1\.5: the name must be"):
+            registry.create(name)
+
+
+def test_the_traceback_of_a_broken_plugin_is_kept(registry, install):
+    install("broken", "broken_law", "1/0", MINE)
+    with pytest.raises(PluginError) as caught:
+        registry.create(MINE)
+    assert isinstance(caught.value.__cause__, ZeroDivisionError)
+
+
+def test_wrong_interface_version_wrong_kind_and_abstract_laws(registry, install, law_source):
+    install("old", "old_law", law_source.replace("int] = 2", "int] = 99"), "tangential.old")
+    install("odd", "odd_law", law_source, "normal.odd")
+    start = "    def start(self, scene, normal):\n        return 0.0\n"
+    install("half", "half_law", law_source.replace(start, ""), "tangential.half")
+    with pytest.raises(PluginError, match=r"api_version is 99.*write api_version: ClassVar"):
+        registry.create("tangential.old")
+    with pytest.raises(
+        PluginError, match="a tangential law; each entry point needs a module of its own"
+    ):
+        registry.create("normal.odd")
+    with pytest.raises(PluginError, match="does not define start"):
+        registry.create("tangential.half")
+
+
+@pytest.mark.parametrize(
+    ("lines", "wanted"),
+    [
+        ("from contactlab.contracts import Problem", "Problem of contactlab.contracts"),
+        ("from contactlab.contracts.tangential import Run", "Run of contactlab.contracts.tang"),
+        ("from contactlab.checks import quantity", "contactlab.checks"),
+        ("import contactlab.status", "contactlab.status"),
+        ("import contactlab\ncontactlab.closed_forms.x", "closed_forms of contactlab"),
+        (
+            "import contactlab\n@contactlab.hookimpl\ndef contactlab_law():\n"
+            "    from contactlab.contracts import RunningTangentialLaw",
+            "RunningTangentialLaw of contactlab.contracts",
+        ),
+    ],
+)
+def test_a_plugin_of_an_older_contactlab_gets_one_sentence_that_says_what_to_do(
+    registry, install, lines, wanted
+):
+    install("old", "old_law", lines, MINE)
+    with pytest.raises(PluginError, match=f"it uses {wanted}.*, which is not there") as caught:
+        registry.create(MINE)
+    told = str(caught.value)
+    assert told.startswith("'tangential.mine' of old 1.5 was written for another version")
+    assert "`contactlab guide version-2` says what has changed" in told
+    assert "Error" not in told
+    assert caught.value.__suppress_context__  # no traceback of an import that cannot be helped
+    assert registry.create("tangential.coulomb") is not None
+
+
+def test_a_missing_package_of_somebody_else_is_no_older_contactlab(registry, install):
+    for number, lines in enumerate(
+        ("import contactlab_of_mine", "from math import nothing", "import math\nmath.nothing")
+    ):
+        install(f"other{number}", f"other_law{number}", lines, f"tangential.other{number}")
+        with pytest.raises(PluginError, match=r"could not be imported: .*Error"):
+            registry.create(f"tangential.other{number}")
+
+
+def test_a_law_of_version_1_gets_one_sentence_whatever_it_lacks(registry, install, law_source):
+    """Its version is told, not the methods that it lacks: they had other names."""
+    source = law_source.replace("int] = 2", "int] = 1").replace("def start", "def begin")
+    install("old", "old_law", source, MINE)
+    with pytest.raises(PluginError) as caught:
+        registry.create(MINE)
+    assert str(caught.value) == (
+        "'tangential.mine' of old 1.5: Mine was written for version 1 of the contracts, "
+        "contactlab has 2; `contactlab guide version-2` says what has changed and what to write; "
+        "then write api_version: ClassVar[int] = 2 in its class"
+    )
+
+
+def test_blocked_names_are_refused_and_not_imported(registry, install, monkeypatch):
+    install("broken", "broken_law", "1/0", MINE)
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", f"{MINE}, normal.other")
+    with pytest.warns(PluginWarning, match=r"'normal.other', .* did you mean 'normal.hertz'"):
+        assert MINE not in registry.names()
+    assert MINE not in registry.names()  # said once
+    with pytest.raises(ValueError, match="CONTACTLAB_BLOCK_PLUGINS"):
+        registry.create(MINE)
+    assert "broken_law" not in sys.modules
+
+
+def test_a_law_loaded_before_is_blocked_too(registry, monkeypatch):
+    registry.create("tangential.coulomb")
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "tangential.coulomb")
+    with pytest.raises(ValueError, match="blocked"):
+        registry.create("tangential.coulomb")

@@ -1,0 +1,432 @@
+"""Sweeps: the same answers however the work is shared out, and whatever happens to workers."""
+
+import itertools
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import time
+import types
+from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Scene, Simulation, Status
+from contactlab.compose import executors
+from contactlab.compose import sweep as sweeping
+from contactlab.compose import workers as workers_module
+from contactlab.compose.registry import REGISTRY
+from contactlab.compose.workers import processes
+from contactlab.contracts import WholeImpactTangentialLaw
+from contactlab.contracts.whole_impact import no_force
+from tests.laws.ending_laws import Ending, Raising
+
+CHI = 1.4411764706
+SIZE = 150
+#: Impacts of a block in these tests.
+BLOCK = 70
+RIGID = {"tangential": "coulomb", "integrator": "symplectic"}
+
+
+def scene(size=SIZE):
+    return Scene.nondimensional(psi1=np.linspace(0.3, 9.0, size), chi=CHI)
+
+
+def blocks_of(monkeypatch, block):
+    monkeypatch.setattr(sweeping, "block_of", lambda _: block)
+
+
+def assert_same(one, other):
+    """The same result to the last bit, plan and counters too."""
+    for name in one.motion.numbers():
+        first, second = (getattr(result.motion, name) for result in (one, other))
+        assert first.tobytes() == second.tobytes(), name
+    assert list(one.status) == list(other.status)
+    assert list(one.motion.detail) == list(other.motion.detail)
+    assert one.plan.to_dict() == other.plan.to_dict()
+    assert one.plan.marched.tolist() == other.plan.marched.tolist()
+    assert (dict(one.counters), one.laws) == (dict(other.counters), other.laws)
+
+
+@pytest.fixture(scope="module")
+def workers():
+    with processes(2) as two:
+        yield two
+
+
+@pytest.fixture(scope="module")
+def exact():
+    """A law whose last bits depend on the impacts beside: an array solver iterates for all."""
+    return Simulation(tangential="sharp_annulus")
+
+
+@pytest.fixture(scope="module")
+def exact_answers(exact):
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        blocks_of(monkeypatch, BLOCK)
+        return exact.sweep(scene())
+
+
+def test_blocks_do_matter(exact, exact_answers, monkeypatch):
+    """Else the next test could not fail."""
+    blocks_of(monkeypatch, SIZE)
+    together = exact.sweep(scene())
+    assert together.psi2 == pytest.approx(exact_answers.psi2, abs=1e-8)
+    assert (together.psi2 != exact_answers.psi2).any()
+
+
+@pytest.mark.parametrize("how", ["here", "workers", "threads", "processes"])
+def test_answers_are_the_same_to_the_last_bit(exact, exact_answers, workers, monkeypatch, how):
+    blocks_of(monkeypatch, BLOCK)
+    executors = {
+        "here": lambda: None,
+        "workers": lambda: workers,
+        "threads": lambda: ThreadPoolExecutor(3),
+        "processes": lambda: ProcessPoolExecutor(2, mp_context=get_context("spawn")),
+    }
+    executor = executors[how]()
+    for chunk in (1, 7, 1000) if how == "workers" else (7,):
+        assert_same(exact.sweep(scene(), chunk=chunk, executor=executor), exact_answers)
+    if how in ("threads", "processes"):
+        executor.shutdown()
+
+
+def test_a_scene_in_si_and_one_of_plain_numbers_go_to_workers(workers):
+    steel = contactlab.Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+    ball = contactlab.Sphere(0.0127, steel)
+    speed = np.linspace(0.1, 2.0, 30)
+    batch = Scene(ball, contactlab.HalfSpace(steel), 0.2, 1.0, tangential_velocity=speed)
+    simulation = Simulation(tangential="springs")
+    assert_same(simulation.sweep(batch, executor=workers), simulation.sweep(batch))
+    alike = [Scene.nondimensional(psi1=1.2, chi=CHI)] * 3
+    assert_same(simulation.sweep(alike, executor=workers), simulation.sweep(alike))
+
+
+@pytest.mark.parametrize("tangential", ["coulomb", "springs", "fronts"])
+def test_a_block_depends_on_the_laws_alone(tangential):
+    simulation = Simulation(tangential=tangential)
+    assert sweeping.block_of(simulation) >= 1000
+
+
+def test_impacts_that_the_table_answers_go_together():
+    batch = Scene.nondimensional(psi1=np.full(2 * sweeping.WHOLE_IMPACTS, 1.2), chi=1.44)
+    seen = []
+    result = Simulation().sweep(batch, progress=lambda done, _: seen.append(done))
+    assert seen == [sweeping.WHOLE_IMPACTS, 2 * sweeping.WHOLE_IMPACTS]
+    assert set(result.status) == {Status.SUCCESS}
+    assert not result.plan.marched.any()
+
+
+def test_a_law_says_where_it_needs_no_march():
+    table, solved = (contactlab.create("tangential.fronts", table=t) for t in (True, False))
+    inside, beyond = (Scene.nondimensional(psi1=[0.3, 1.2], chi=[1.0, chi]) for chi in (2.5, 2.6))
+    assert table.needs_no_march(inside, 1e-9)
+    assert table.needs_no_march(inside, None)
+    assert not table.needs_no_march(inside, 9e-10)
+    assert not table.needs_no_march(beyond, 1e-9)
+    assert not solved.needs_no_march(inside, 1e-9)
+    assert not contactlab.create("tangential.springs").needs_no_march(inside, None)
+
+
+def progress_of(simulation, **how):
+    seen = []
+    simulation.sweep(scene(), progress=lambda *n: seen.append(n), **how)
+    return seen
+
+
+def test_chunks_are_whole_blocks(monkeypatch, workers):
+    blocks_of(monkeypatch, 40)
+    for chunk, first in ((None, 40), (1, 40), (40, 40), (41, 80), (1000, SIZE)):
+        for executor in (None, workers):
+            seen = progress_of(Simulation(**RIGID), chunk=chunk, executor=executor)
+            assert {total for _, total in seen} == {SIZE}
+            counts = [done for done, _ in seen]
+            steps = sorted(np.diff([0, *counts]), reverse=True)
+            assert steps[0] == first
+            assert counts[-1] == SIZE
+
+
+@pytest.mark.parametrize("name", REGISTRY.names())
+def test_laws_pickle(name):
+    law = contactlab.create(name)
+    again = pickle.loads(pickle.dumps(law))
+    assert again == law
+    assert REGISTRY.describe(again) == REGISTRY.describe(law)
+
+
+def test_scenes_plans_and_results_pickle():
+    result = Simulation().run(Scene.nondimensional(psi1=1.2, chi=CHI), history=True)
+    for kind in (result, Simulation().sweep(scene(5))):
+        again = pickle.loads(pickle.dumps(kind))
+        assert again.scene == kind.scene
+        assert str(again.plan) == str(kind.plan)
+        assert np.array_equal(again.psi2, kind.psi2)
+        assert all(status is Status.SUCCESS for status in np.ravel(again.status))
+    assert not again.history
+    assert pickle.loads(pickle.dumps(result)).history.time.tolist() == result.history.time.tolist()
+    for status in Status:
+        assert pickle.loads(pickle.dumps(status)) is status
+
+
+def test_ctrl_c_keeps_what_is_done_and_gives_up_the_rest(monkeypatch):
+    blocks_of(monkeypatch, 10)
+    handed_in = []
+
+    class Slow(ThreadPoolExecutor):
+        def submit(self, function, /, *arguments):
+            handed_in.append(super().submit(function, *arguments))
+            return handed_in[-1]
+
+    def stop(done, total):
+        if done >= 20:
+            raise KeyboardInterrupt
+
+    with Slow(1) as executor:
+        executor.submit(lambda: None)
+        result = Simulation(**RIGID).sweep(scene(100), executor=executor, progress=stop)
+    names = [status.name for status in result.status]
+    assert names.count("INTERRUPTED") == 80
+    assert all(future.done() for future in handed_in)
+    done = result.status == Status.SUCCESS
+    assert (result.psi2[done] == Simulation(**RIGID).sweep(scene(100)).psi2[done]).all()
+
+
+def test_ctrl_c_that_reaches_a_worker_ends_the_sweep(monkeypatch):
+    blocks_of(monkeypatch, 100)
+
+    class Interrupted(ThreadPoolExecutor):
+        def submit(self, function, /, *arguments):
+            future = Future()
+            if arguments[2].first < 100:
+                future.set_result(function(*arguments))
+            else:
+                future.set_exception(KeyboardInterrupt())
+            return future
+
+    result = Simulation(**RIGID).sweep(scene(), executor=Interrupted(1))
+    assert [status.name for status in result.status] == ["SUCCESS"] * 100 + ["INTERRUPTED"] * 50
+
+
+@pytest.mark.parametrize("writes", [False, True])
+def test_a_law_that_raises_loses_those_impacts_as_in_one_process(monkeypatch, workers, writes):
+    blocks_of(monkeypatch, 100)
+    simulation = Simulation(tangential=Raising(writes=writes), integrator="symplectic")
+    here = simulation.sweep(scene())
+    there = simulation.sweep(scene(), executor=workers)
+    assert "LAW_RAISED" in {status.name for status in here.status}
+    assert_same(there, here)
+
+
+def ending(folder, **options):
+    return Simulation(tangential=Ending(folder=str(folder), **options), integrator="symplectic")
+
+
+@pytest.mark.parametrize("pool", [processes, ProcessPoolExecutor])
+def test_a_worker_that_dies_once_costs_a_retry(monkeypatch, tmp_path, pool):
+    blocks_of(monkeypatch, 50)
+    with pool(2) as two:
+        result = ending(tmp_path, times=1).sweep(scene(), executor=two)
+    assert result.check().psi2 == pytest.approx(scene().psi1)
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_a_chunk_that_ends_its_workers_has_a_status(monkeypatch, tmp_path):
+    blocks_of(monkeypatch, 50)
+    with processes(2) as two:
+        result = ending(tmp_path, above=6.2).sweep(scene(), executor=two)
+        assert [status.name for status in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
+        assert "BrokenProcessPool" in result.failures[100]
+        assert result.psi2[:100] == pytest.approx(scene().psi1[:100])
+        assert len(list(tmp_path.iterdir())) == 2
+        assert Simulation(**RIGID).sweep(scene(), executor=two).check()  # it stays broken
+
+
+@pytest.mark.parametrize("status", [0, 3])
+def test_a_law_that_leaves_its_process_is_told(monkeypatch, tmp_path, status):
+    """``os._exit(0)`` runs nobody's handlers, and looks like a process that ended well."""
+    blocks_of(monkeypatch, 50)
+    with processes(2) as two:
+        result = ending(tmp_path, above=6.2, status=status).sweep(scene(), executor=two)
+    assert [one.name for one in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
+    assert np.isnan(result.psi2[100:]).all()
+    assert len(list(tmp_path.iterdir())) == 2  # tried once more
+    with pytest.raises(contactlab.ImpactError, match=r"impact 100: .*BrokenProcessPool"):
+        result.check()
+
+
+def test_a_poisoned_impact_of_ten_thousand_loses_its_chunk_only(monkeypatch, tmp_path):
+    """The pool breaks in the middle: the chunk beside it and the later ones are solved."""
+    blocks_of(monkeypatch, 100)
+    psi1 = np.linspace(0.3, 4.0, 10_000)
+    poisoned = [5_050, 5_150, 9_999]
+    psi1[poisoned] = 6.0
+    scenes = Scene.nondimensional(psi1=psi1, chi=CHI)
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        result = ending(tmp_path).sweep(scenes, executor=pool)
+    died = result.status == Status.WORKER_DIED
+    assert set(np.flatnonzero(died) // 100) == {impact // 100 for impact in poisoned}
+    assert died.sum() == 100 * len(poisoned)
+    assert result.psi2[~died] == pytest.approx(psi1[~died])
+
+
+def test_an_executor_that_loses_a_chunk_loses_no_other(monkeypatch):
+    blocks_of(monkeypatch, 50)
+
+    class Losing:
+        def submit(self, function, /, *arguments):
+            future = Future()
+            if arguments[2].first == 50:
+                future.set_exception(OSError("the machine went away"))
+            else:
+                future.set_result(function(*arguments))
+            return future
+
+    result = Simulation(**RIGID).sweep(scene(), executor=Losing())
+    assert np.flatnonzero(result.status == Status.WORKER_DIED).tolist() == list(range(50, 100))
+    assert "OSError: the machine went away" in result.failures[50]
+
+
+def test_processes_that_do_not_start_are_refused():
+    """As those of a script without ``if __name__ == "__main__"``: nothing is lost in silence."""
+    with (
+        ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=os.abort) as pool,
+        pytest.raises(ValueError, match=r"end as they start; .*__main__"),
+    ):
+        Simulation(**RIGID).sweep(scene(3), executor=pool)
+
+
+def test_what_is_no_executor_is_refused():
+    for bad in (4, "dask", ThreadPoolExecutor):
+        with pytest.raises(ValueError, match=r"executor = .*get_executor"):
+            Simulation(**RIGID).sweep(scene(), executor=bad)
+    closed = ThreadPoolExecutor(1)
+    closed.shutdown()
+    with pytest.raises(ValueError, match=r"executor = .*takes no work"):
+        Simulation(**RIGID).sweep(scene(), executor=closed)
+    for bad in (0, 1.5, True):
+        with pytest.raises(ValueError, match="workers"):
+            processes(bad).__enter__()
+
+
+def local_law(kind="Local", module=None):
+    @attrs.frozen(kw_only=True)
+    class Local(WholeImpactTangentialLaw):
+        api_version = 2
+
+        def whole_impacts(self, scene, normal):
+            return (no_force(scene, where=True, reason="a test"),)
+
+    if module is not None:
+        Local.__module__, Local.__qualname__ = module, kind
+    return Local
+
+
+def test_a_law_that_does_not_pickle_is_named(workers):
+    simulation = Simulation(tangential=local_law()(), integrator="symplectic")
+    assert simulation.sweep(scene(3)).check()
+    with pytest.raises(ValueError, match=r"tangential = Local\(\): cannot be sent .*module"):
+        simulation.sweep(scene(3), executor=workers)
+
+
+def test_a_law_that_is_not_there_is_named(workers, monkeypatch):
+    module = types.ModuleType("only_here")
+    module.Local = local_law(module="only_here")
+    monkeypatch.setitem(sys.modules, "only_here", module)
+    simulation = Simulation(tangential=module.Local(), integrator="symplectic")
+    with pytest.raises(ValueError, match=r"cannot load the laws: .*only_here"):
+        simulation.sweep(scene(3), executor=workers)
+
+
+def test_other_versions_there_are_refused(monkeypatch):
+    versions = itertools.chain([{"normal": "hertz 1"}], itertools.repeat({"normal": "hertz 2"}))
+    monkeypatch.setattr(executors, "versions", lambda *_: next(versions))
+    monkeypatch.setattr(workers_module, "versions", lambda *_: next(versions))
+    with (
+        ThreadPoolExecutor(1) as executor,
+        pytest.raises(ValueError, match=r"hertz 2.*hertz 1.*same versions"),
+    ):
+        Simulation(**RIGID).sweep(scene(3), executor=executor)
+
+
+PROGRAM = """
+import os, signal, sys, time
+import numpy as np
+if __name__ == "__mp_main__":  # Ctrl-C while a process is being started
+    os.kill(os.getpid(), signal.SIGINT)
+if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ignores it
+    from contactlab import Scene, Simulation
+    from contactlab.compose import sweep
+    from contactlab.compose.workers import processes
+    from tests.laws.ending_laws import Waiting
+    sweep.block_of = lambda _: 10
+    scene = Scene.nondimensional(psi1=np.linspace(0.3, 9.0, 150), chi=1.4411764706)
+    simulation = Simulation(tangential=Waiting(folder=sys.argv[1]), integrator="symplectic")
+    with processes(2) as two:
+        result = simulation.sweep(scene, executor=two)
+    print([status.name for status in result.status].count("INTERRUPTED"))
+"""
+
+
+def waiting_program(tmp_path):
+    """Return a program whose two processes wait for ever in a law, and their process ids."""
+    program, folder = tmp_path / "program.py", tmp_path / "pids"
+    program.write_text(PROGRAM)
+    folder.mkdir()
+    running = subprocess.Popen(
+        [sys.executable, program, folder],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])},
+        start_new_session=True,
+    )
+    while len(pids := [int(path.name) for path in folder.iterdir()]) < 2:
+        assert running.poll() is None, running.communicate()
+        time.sleep(0.01)
+    return running, pids
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+@pytest.mark.parametrize("everybody", [True, False])
+def test_ctrl_c_ends_calls_and_processes(tmp_path, everybody):
+    """Of a terminal it reaches every process, and of ``kill`` the program alone."""
+    running, pids = waiting_program(tmp_path)
+    (os.killpg if everybody else os.kill)(running.pid, signal.SIGINT)
+    out, err = running.communicate(timeout=60)
+    assert (running.returncode, out) == (0, b"150\n")
+    assert sorted(err.replace(b"law", b"law\n").split(b"\n"))[-2:] == [b"printed by a law"] * 2
+    assert len(err) == 2 * len(b"printed by a law\n")  # the two may write at once
+    assert not any(map(alive, pids))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_processes_end_with_a_program_that_is_killed(tmp_path):
+    running, pids = waiting_program(tmp_path)
+    running.kill()
+    running.communicate(timeout=60)  # until the last of them has closed stderr
+    deadline = time.monotonic() + 60.0
+    while any(map(alive, pids)):
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+
+def test_a_call_is_ended_with_its_processes():
+    with processes(1) as pool:
+        call = pool.submit(time.sleep, 60.0)
+        while not call.running():
+            time.sleep(0.01)
+    assert isinstance(call.exception(), BrokenExecutor)
+
+
+def alive(pid):
+    """Whether a process runs; one that ended may wait for its parent to ask."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False

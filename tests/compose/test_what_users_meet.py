@@ -1,0 +1,89 @@
+"""Numbers in a wrong unit and options by default are told where a user looks."""
+
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import (
+    Encounter,
+    HalfSpace,
+    ImpactError,
+    Material,
+    Scene,
+    Simulation,
+    Sphere,
+    collide,
+)  # fmt: skip
+
+STEEL = Material.named("steel")
+#: E in GPa, as a handbook lists it.
+TABULAR = Material(young_modulus=208.0, poisson_ratio=0.3, density=7850.0)
+BLOCK = HalfSpace(STEEL)
+SLIPS = {
+    "sphere.radius = 10 m": Scene(Sphere(10.0, STEEL), BLOCK, 0.2, 1.0, 0.5),
+    "shear_modulus = 80 Pa": Scene(Sphere(0.01, TABULAR), HalfSpace(TABULAR), 0.2, 1.0, 0.5),
+    "30° are as many radians": Scene.at_angle(
+        Sphere(0.01, STEEL), BLOCK, 0.2, speed=3.0, angle_deg=math.radians(30.0)
+    ),
+}
+
+
+@pytest.mark.parametrize("words", SLIPS)
+def test_a_wrong_unit_is_told_by_print_and_raised_on_request(words):
+    scene, simulation = SLIPS[words], Simulation()
+    for result in (simulation.run(scene), simulation.sweep([scene, scene])):
+        assert any(words in line for line in str(result).splitlines() if "caution: unit" in line)
+        assert result.check() is result
+        with pytest.raises(ImpactError, match="caution: unit"):
+            result.check(cautions=True)
+
+
+def test_a_result_without_cautions_passes_the_strict_check():
+    scene = Scene(Sphere(0.01, STEEL), BLOCK, 0.2, 0.01, 0.005)
+    result = Simulation().run(scene)
+    assert result.cautions == []
+    assert result.check(cautions=True) is result
+
+
+def test_a_collision_tells_its_cautions_too():
+    ball = Sphere(10.0, STEEL)
+    made = collide(Encounter(ball, ball, 0.2, normal=[1, 0, 0], velocity=[1, 1, 0]))
+    assert "caution: unit: sphere.radius = 10 m" in str(made)
+    assert made.check() is made
+    with pytest.raises(ImpactError, match=r"caution: unit: sphere\.radius"):
+        made.check(cautions=True)
+    small = Sphere(0.01, STEEL)
+    fine = collide(Encounter(small, small, 0.2, normal=[1, 0, 0], velocity=[0.01, 0.01, 0]))
+    assert str(fine) == repr(fine)
+    assert fine.check(cautions=True) is fine
+
+
+@pytest.mark.parametrize("law", ["tsuji", "linear", "hunt_crossley", "kuwabara_kono"])
+def test_the_plan_says_that_a_restitution_is_the_default(law):
+    scene = SLIPS["sphere.radius = 10 m"]
+    assert "; restitution = 0.9 by default" in str(Simulation(normal=law).plan(scene))
+    chosen = contactlab.create(f"normal.{law}", restitution=0.8)
+    assert "by default" not in str(Simulation(normal=chosen).plan(scene))
+    assert "by default" not in str(Simulation().plan(scene))
+
+
+def test_a_run_without_history_says_how_to_have_one():
+    scene = SLIPS["sphere.radius = 10 m"]
+    result = Simulation().run(scene)
+    assert not result.history
+    with pytest.raises(AttributeError, match=r"history\.time: .*run\(scene, history=True\)"):
+        _ = result.history.time
+    again = pickle.loads(pickle.dumps(result.history))
+    assert not again
+    assert "history=True" in repr(again)
+    assert np.size(Simulation().run(scene, history=True).history.time) > 10
+
+
+@pytest.mark.parametrize("name", ["aluminum", "Aluminium", "plexiglas", "aluminium oxide"])
+def test_another_name_of_a_material_leads_to_that_of_the_collection(name):
+    with pytest.raises(ValueError, match=r"is listed as '.*'; write that name") as told:
+        Material.named(name)
+    Material.named(str(told.value).split("'")[3])

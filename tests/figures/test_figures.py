@@ -1,0 +1,276 @@
+"""Every figure function takes and returns Axes; words are legible and overlap nothing."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import inspect
+import itertools
+import pkgutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+import contactlab.figures
+from contactlab import Scene, Simulation, create
+from contactlab.figures import paper, results, style
+from contactlab.figures.comparison import all_laws, laws_over_sweep
+from contactlab.figures.files import save
+from contactlab.scene_file import read_scene
+from contactlab.study import paper_figures
+from contactlab.study.comparison import compare
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+WIDTHS = (None, "one", "two")
+#: Points; printed letters smaller than these are not read.
+LEGIBLE = 6.0
+
+
+def figure_functions():
+    """The public functions of ``contactlab.figures`` whose first argument is Axes, to draw on."""
+    found = {}
+    for module in pkgutil.iter_modules(contactlab.figures.__path__, "contactlab.figures."):
+        functions = inspect.getmembers(importlib.import_module(module.name), inspect.isfunction)
+        for name, function in functions:
+            first = next(iter(inspect.signature(function).parameters.values()), None)
+            of_axes = first is not None and "Axes" in str(first.annotation)
+            draws = of_axes and inspect.signature(function).return_annotation not in (
+                "float",
+                "bool",
+            )
+            if draws and not name.startswith("_") and function.__module__ == module.name:
+                found[f"{module.name}.{name}"] = function
+    return found
+
+
+def test_every_figure_function_takes_and_returns_axes():
+    found = figure_functions()
+    assert len(found) > 15
+    returned = {name: inspect.signature(one).return_annotation for name, one in found.items()}
+    assert {name: says for name, says in returned.items() if "Axes" not in says} == {}
+
+
+@pytest.fixture(scope="module")
+def simulation():
+    return Simulation(
+        tangential=create("tangential.annulus", annuli=12),
+        integrator=create("integrator.symplectic", steps=80),
+    )
+
+
+@pytest.fixture(scope="module")
+def data(simulation):
+    return {number: figure(simulation) for number, figure in paper_figures.paper_data().items()}
+
+
+def drawn(draw, tmp_path, monkeypatch, **options):
+    """The figure that ``save`` writes, laid out."""
+    kept = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: kept.append(figure))
+    with style.styled(width=options.get("width")):
+        save(tmp_path / "f.png", draw, **options)
+        canvas = FigureCanvasAgg(kept[0])
+        canvas.draw()
+    return kept[0], canvas.get_renderer()
+
+
+def boxes(figure, renderer):
+    """Every piece of text that is seen, and its box."""
+    found = []
+    for text in figure.findobj(Text):
+        if text.get_visible() and text.get_text().strip():
+            box = text.get_window_extent(renderer)
+            if box.width > 0.0 and not _outside(text, figure):
+                found.append((text.get_text(), text.get_fontsize(), box))
+    return found
+
+
+def _outside(text, figure):
+    """Whether a tick's label belongs to a tick beyond the limits, which is not drawn."""
+    for axes in figure.axes:
+        for axis, place in ((axes.xaxis, 0), (axes.yaxis, 1)):
+            low, high = sorted(axis.get_view_interval())
+            for tick in (*axis.get_major_ticks(), *axis.get_minor_ticks()):
+                if text in (tick.label1, tick.label2):
+                    return not low - 1e-9 <= text.get_position()[place] <= high + 1e-9
+    return False
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("number", [1, 2, 3, 4])
+def test_words_of_the_papers_figures_overlap_nothing(data, tmp_path, monkeypatch, number, width):
+    draw = functools.partial(paper.draw_paper, data=data[number])
+    figure, renderer = drawn(draw, tmp_path, monkeypatch, width=width)
+    found = boxes(figure, renderer)
+    assert len(found) > 12
+    assert min(size for _, size, _ in found) >= LEGIBLE
+    for (one, _, box), (other, _, another) in itertools.combinations(found, 2):
+        assert not box.overlaps(another), (one, other)
+    (axes,) = figure.axes
+    assert axes.get_legend() is None  # names stand beside the curves
+    within = figure.bbox.padded(1.0)
+    for line in axes.lines:
+        x, y = (np.asarray(values, dtype=float) for values in line.get_data())
+        if len(x) < 3:
+            continue  # lines that only guide the eye
+        fine = np.linspace(0.0, len(x) - 1.0, 2000)
+        points = np.column_stack([np.interp(fine, np.arange(len(x)), one) for one in (x, y)])
+        dots = axes.transData.transform(points)
+        for text, box in ((text, box) for text, _, box in found):
+            inside = np.all((dots > box.min) & (dots < box.max), axis=1)
+            assert not inside.any(), (text, line.get_label())
+    for text, _, box in found:
+        assert within.contains(*box.min), text
+        assert within.contains(*box.max), text
+
+
+def test_figures_2_and_4_show_the_exact_curve_beside_law_and_rigid_theory(data):
+    for number in (2, 4):
+        axes = paper.draw_paper(Figure().subplots(), data[number])
+        lines = {line.get_label(): line for line in axes.lines}
+        assert {"annulus law", "rigid-body theory", "exact solution"} <= set(lines)
+        law, exact = lines["annulus law"], lines["exact solution"]
+        assert exact.get_linewidth() < law.get_linewidth()  # one within the other: both are seen
+        assert law.get_zorder() <= exact.get_zorder()
+
+
+def test_what_all_curves_of_a_figure_share_is_written_on_it(data):
+    solid, oblique = r"$\chi$ = 1.4412", r"$\psi_1$ = 1.2"
+    for number, words in {1: solid, 2: solid, 3: oblique, 4: oblique}.items():
+        axes = paper.draw_paper(Figure().subplots(), data[number])
+        assert words in {text.get_text() for text in axes.texts}, number
+
+
+def test_the_label_of_the_band_stands_beside_its_band(data):
+    """It touches neither band nor curve, and is nearer than its own width."""
+    figure = Figure()
+    axes = paper.draw_paper(figure.subplots(), data[4])
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    (text,) = (one for one in axes.texts if "solid spheres" in one.get_text())
+    (band,) = (one for one in axes.patches if one.get_zorder() == -1)
+    box, left = text.get_window_extent(renderer), band.get_window_extent(renderer).x0
+    assert box.x1 < left < box.x1 + 0.3 * box.width
+
+
+def test_between_points_the_curves_are_straight_to_within_a_line():
+    """The law's line is 3 points wide, of which a band as narrow is hidden."""
+    for number, (x, others, scale) in {
+        2: (paper_figures.FIGURE_2_PSI1, {"chi": paper_figures.SOLID_CHI}, np.asarray),
+        4: (paper_figures.FIGURE_4_CHI, {"psi1": paper_figures.FIXED_PSI1}, np.log),
+    }.items():
+        name = {2: "psi1", 4: "chi"}[number]
+        fine = np.exp(np.linspace(*np.log(x[[0, -1]]), 801)) if number == 4 else x[0] + (
+            np.linspace(0.0, x[-1] - x[0], 801)
+        )  # fmt: skip
+        known, exact = (contactlab.rebound(**{name: at, **others}) for at in (x, fine))
+        off = np.abs(np.interp(scale(fine), scale(x), known) - exact).max()
+        assert off < style.VISIBLE * np.ptp(exact), number
+
+
+@pytest.mark.parametrize("width", ["one", "two"])
+@pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
+def test_pictures_have_the_width_of_their_columns(tmp_path, width, suffix):
+    path = tmp_path / f"f{suffix}"
+    save(path, lambda axes: axes.plot([0.0, 1.0]), width=width)
+    inches = {"one": 3.4, "two": 7.0}[width]
+    content = path.read_bytes()
+    if suffix == ".png":
+        assert int.from_bytes(content[16:20], "big") == round(inches * style.RESOLUTION)
+    elif suffix == ".svg":
+        assert f'width="{inches * 72:g}pt"'.encode() in content
+    else:
+        assert f"/MediaBox [ 0 0 {inches * 72:g} ".encode() in content
+
+
+def test_a_width_that_there_is_not_is_refused(simulation):
+    result = simulation.run(Scene.nondimensional(psi1=[0.5, 1.2], chi=1.4))
+    with pytest.raises(ValueError, match=r"'one', 'two'"):
+        result.plot(width="three")
+    with pytest.raises(ValueError, match="leave it out"):
+        result.plot(axes=Figure().subplots(), width="one")
+
+
+def test_a_plot_fills_its_column(simulation):
+    from matplotlib import pyplot
+
+    scene = Scene.nondimensional(psi1=1.2, chi=1.4)
+    result = simulation.run(scene, history=True)
+    for axes in (result.plot(width="one"), result.history.plot(width="one")):
+        assert isinstance(axes, Axes)
+        assert axes.figure.get_figwidth() == style.WIDTHS["one"]
+        assert axes.xaxis.label.get_fontsize() == style.PRINTED["one"]["axes.labelsize"]
+        assert axes.lines[-1].get_linewidth() == style.PRINTED["one"]["lines.linewidth"]
+        pyplot.close(axes.figure)
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_long_legends_stand_clear_of_the_axes(tmp_path, monkeypatch, width):
+    file = read_scene(EXAMPLES / "kharaz2001.toml")
+    laws = {name: Simulation(tangential=name) for name in ("coulomb", "frictionless", "walton")}
+    comparison = compare(file, laws)
+
+    def draw(axes):
+        all_laws(axes[0, 0], axes[1, 0], comparison, "psi2")
+
+    options = {"rows": 2, "heights": (1.9, 1.0), "wide": True, "width": width}
+    figure, renderer = drawn(draw, tmp_path, monkeypatch, **options)
+    legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
+    if not legends:
+        assert {"coulomb", "walton"} <= {text for text, _, _ in boxes(figure, renderer)}
+        return
+    (legend,) = legends
+    box = legend.get_window_extent(renderer).padded(-1.0)  # it may touch
+    assert figure.bbox.padded(1.0).contains(*box.min)
+    assert figure.bbox.padded(1.0).contains(*box.max)
+    for axes in figure.axes:
+        assert not box.overlaps(axes.get_window_extent(renderer))
+        assert not box.overlaps(axes.xaxis.label.get_window_extent(renderer))
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_error_bands_are_shown_from_one_threshold_on(share, monkeypatch, simulation):
+    """The same band of the same curve, in the plot of a result and in that of a comparison."""
+    x, y = np.linspace(0.0, 1.0, 5), np.linspace(0.0, 1.0, 5)
+    for module in (results, contactlab.figures.comparison):
+        assert module.error_band is style.error_band
+    axes = Figure().subplots()
+    axes.set_ylim(-1.0, 1.0)
+    half = np.full(5, share * style.VISIBLE * 2.0)
+    half[0] = np.nan
+    style.error_band(axes, x, y, half, {"color": "red"})
+    assert bool(axes.collections) == (share > 1.0)
+
+
+def test_laws_are_compared_on_axes():
+    file = read_scene(EXAMPLES / "kharaz2001.toml")
+    comparison = compare(file, {"coulomb": Simulation(tangential="coulomb")})
+    axes = Figure().subplots()
+    assert laws_over_sweep(axes, comparison, "psi2") is axes
+    assert len(axes.lines) == 1
+
+
+def test_laws_within_the_line_of_the_reference_are_named_with_it():
+    file = read_scene(EXAMPLES / "kharaz2001.toml")
+    laws = {"exact": Simulation(), "springs": Simulation(tangential="springs"),
+            "coulomb": Simulation(tangential="coulomb")}  # fmt: skip
+    upper, lower = Figure().subplots(2)
+    all_laws(upper, lower, compare(file, laws), "psi2")
+    named = [line.get_label() for line in upper.lines]
+    assert "exact, the reference; on its line:\nsprings" in named
+    assert "coulomb" in named
+
+
+def test_measured_values_are_drawn_beside_all_laws():
+    """Of the quantity that is drawn, and of no other."""
+    file = read_scene(EXAMPLES / "kharaz2001.toml")
+    comparison = compare(file, {"exact": Simulation(), "coulomb": Simulation(tangential="coulomb")})
+    first, other, _ = file.measured
+    upper, _ = all_laws(*Figure().subplots(2), comparison, first.quantity)
+    drawn = {tuple(line.get_ydata()) for line in upper.lines}
+    assert tuple(first.values) in drawn
+    assert tuple(other.values) not in drawn

@@ -1,0 +1,214 @@
+"""The guide says what is so: its code runs, its sections are those cited, its names exist."""
+
+import contextlib
+import io
+import re
+import sys
+import types
+from pathlib import Path
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Scene, Status, contracts
+from contactlab.cli.guide import SECTION, TOPICS, sections, summary, text
+from contactlab.compose import normal_motion
+from contactlab.contracts import error_model
+from contactlab.impact import bodies, coupling, hertz
+from contactlab.outcome import energy, history, motion, plan, result
+from contactlab.study.validation import REFERENCE_PSI2
+from contactlab.testing import Verdict, check_law
+
+ROOT = Path(__file__).parents[2]
+GUIDE = ROOT / "contactlab" / "guide"
+INDEX = ROOT / ".ci" / "site" / "index.md"
+#: Code with the output that is shown below it, if any.
+BLOCKS = re.compile(r"```python\n(.*?)```\n(?:```text\n(.*?)```\n)?", re.DOTALL)
+#: "theory §5", "theory §§1 and 4", also where a line ends between the two.
+CITATION = re.compile(r"\btheory(?:\.md`?)?\s+(?:#:?\s*)?(§§?\s*\d+(?:(?:,| and| to)\s+§?\d+)*)")
+DOI = re.compile(r"10\.\d{4,9}/[^\s,;]+")
+LAWS = ("Viscoelastic", "Brush", "HardSphere", "RoughSphere", "SlipThenRoll", "Leapfrog")
+#: Where names in the tables of the guide are looked for.
+NAMESPACES = (
+    contactlab, contracts, bodies, plan, history, motion, energy, normal_motion, result,
+)  # fmt: skip
+#: Modules that the glossary names functions of, by the name that stands there.
+MODULES = {"coupling": coupling, "error_model": error_model, "hertz": hertz}
+
+
+def sources():
+    """Every file that may cite the guide."""
+    for folder in ("contactlab", "plugins", "tests", "examples"):
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix in (".py", ".md", ".toml") and path != Path(__file__):
+                yield path
+    yield ROOT / "README.md"
+
+
+def run(topic):
+    """Run the code of a topic, block after block, as one module; return it and what it prints."""
+    module = types.ModuleType(f"guide_{topic.replace('-', '_')}")
+    sys.modules[module.__name__] = module  # a class must be found again to be copied
+    printed = []
+    for code, _ in BLOCKS.findall(text(topic)):
+        stream = io.StringIO()
+        with contextlib.redirect_stdout(stream):
+            exec(compile(code, f"{topic}.md", "exec"), vars(module))
+        printed.append(stream.getvalue())
+    return module, printed
+
+
+@pytest.fixture(scope="module")
+def extending():
+    return run("extending")[0]
+
+
+def test_topics_are_the_files():
+    assert {path.stem for path in GUIDE.glob("*")} == set(TOPICS)
+
+
+@pytest.mark.parametrize("topic", TOPICS)
+def test_a_topic_begins_with_a_title_and_a_line_about_it(topic):
+    lines = text(topic).split("\n", 4)
+    assert lines[0].startswith("# ")
+    assert (lines[1], lines[3]) == ("", "")
+    assert lines[2].endswith(".")
+    assert summary(topic) == lines[2]
+
+
+@pytest.mark.parametrize("topic", TOPICS)
+def test_lines_fit_a_terminal_but_for_tables_and_code(topic):
+    prose = re.sub(r"```.*?```", "", text(topic), flags=re.DOTALL).splitlines()
+    assert not [line for line in prose if len(line) > 120 and not line.startswith(("|", "!["))]
+
+
+@pytest.mark.parametrize("topic", TOPICS)
+def test_code_prints_what_is_shown(topic):
+    expected = [shown for _, shown in BLOCKS.findall(text(topic))]
+    assert run(topic)[1] == expected
+
+
+def test_the_code_of_the_site_prints_numbers_and_draws(capsys):
+    (code,) = re.findall(r"```python\n(.*?)```", INDEX.read_text("utf-8"), re.DOTALL)
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    try:
+        exec(compile(code, "index.md", "exec"), {})
+        assert pyplot.get_fignums()
+    finally:
+        pyplot.close("all")
+    assert len([float(word) for word in capsys.readouterr().out.split()]) == 3
+
+
+def test_there_is_code():
+    assert len(BLOCKS.findall(text("getting-started"))) >= 5
+    assert len(BLOCKS.findall(text("extending"))) == len(LAWS) + 2
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_law_of_the_guide_passes_the_kit(extending, name):
+    law = getattr(extending, name)()
+    found = check_law(law)
+    assert Verdict.PASSED in {item.verdict for item in found}
+    failing = {item.check for item in found if item.verdict is Verdict.EXPECTED_FAILURE}
+    assert failing == set(law.expected_failures)
+
+
+def test_the_theory_has_the_sections_that_are_numbered():
+    assert SECTION.findall(text("theory")) == [str(number) for number in range(1, 14)]
+
+
+def test_every_citation_of_the_theory_resolves():
+    known, cited = set(SECTION.findall(text("theory"))), []
+    for path in sources():
+        for found in CITATION.findall(path.read_text(encoding="utf-8")):
+            numbers = re.findall(r"\d+", found)
+            assert set(numbers) <= known, f"{path}: theory {found}"
+            cited += numbers
+    assert len(cited) > 50
+
+
+def test_sections_cited_within_the_theory_resolve():
+    known = set(SECTION.findall(text("theory")))
+    own = re.sub(r"§\d+\.\d+", "", text("theory"))  # sections of the paper
+    assert set(re.findall(r"§(\d+)", own)) <= known
+
+
+def rows(section):
+    """The rows of numbers in the tables of a section of the theory."""
+    for line in sections(text("theory"))[section].splitlines():
+        cells = line.strip("| ").split(" | ")
+        with contextlib.suppress(ValueError):
+            yield [49 / 34 if cell == "49/34" else float(cell) for cell in cells]
+
+
+def test_tables_of_the_theory_are_those_of_the_code():
+    reference = {round(row[0], 6): tuple(row[1:]) for row in rows("5")}
+    for chi, psi2 in REFERENCE_PSI2.items():
+        assert reference[round(chi, 6)] == psi2
+    angles = np.array([0.5, 1.0, 1.5, 2.0, 3.0])
+    shifts = {row[0]: [abs(cell) for cell in row[1:]] for row in rows("9")}
+    for strength in (0.25, 0.5, 1.0, 2.0):
+        scene = Scene.nondimensional(
+            psi1=angles, chi=49 / 34, poisson_ratio=0.3, coupling_number=strength
+        )
+        found = coupling.coupling_shift(scene)
+        assert found == pytest.approx(shifts[strength], rel=0.12, abs=4e-3)
+
+
+def test_references_of_the_theory_are_numbered_and_all_cited():
+    body, _, listed = text("theory").partition("## References")
+    numbers = re.findall(r"^(\d+)\. ", listed, re.MULTILINE)
+    assert numbers == [str(number) for number in range(1, len(numbers) + 1)]
+    assert set(re.findall(r"\[(\d+)\]", body)) == set(numbers)
+
+
+def test_dois_are_well_formed():
+    found = []
+    for path in sources():
+        for after in re.findall(r"\bdoi:\s*(\S+)", path.read_text(encoding="utf-8")):
+            doi = after.rstrip('.,;"\\`')
+            assert DOI.fullmatch(doi), f"{path}: {after}"
+            assert doi.count("(") == doi.count(")"), f"{path}: {after}"
+            found.append(doi)
+    assert len(set(found)) > 10
+
+
+@pytest.mark.parametrize("topic", TOPICS)
+def test_topics_named_in_the_guide_exist(topic):
+    named = re.findall(r"`contactlab guide ([a-z0-9-]+)", text(topic))
+    assert set(named) <= set(TOPICS)
+
+
+def test_every_status_is_explained():
+    rows = re.findall(r"^\| `([A-Z_]+)` \|", text("plans-and-statuses"), re.MULTILINE)
+    assert sorted(rows) == sorted(status.name for status in Status)
+
+
+@pytest.mark.parametrize("topic", ["glossary", "units-and-signs"])
+def test_names_of_code_exist(topic):
+    for owner, name in re.findall(r"`([A-Z]\w+|[a-z]\w+)\.([a-z_]\w*)`", text(topic)):
+        if owner in MODULES:
+            assert hasattr(MODULES[owner], name), f"{owner}.{name}"
+            continue
+        if owner in ("motion", "energy"):  # attributes of a result
+            owner = {"motion": "Motion", "energy": "EnergyLedger"}[owner]
+        holders = [vars(space)[owner] for space in NAMESPACES if owner in vars(space)]
+        if owner in ("contactlab", "plan"):
+            continue
+        assert holders, f"{owner}.{name}"
+        assert any(known(holder, name) for holder in holders), f"{owner}.{name}"
+
+
+def known(holder, name):
+    """Whether a class has an attribute, be it one of its instances only."""
+    fields = {field.name for field in attrs.fields(holder)} if attrs.has(holder) else set()
+    annotated = {key for kind in holder.__mro__ for key in vars(kind).get("__annotations__", {})}
+    return hasattr(holder, name) or name in fields | annotated
+
+
+def test_a_term_of_the_glossary_has_one_entry():
+    terms = re.findall(r"^\| ([^|]+?) \|", text("glossary"), re.MULTILINE)
+    terms = [term for term in terms if term != "term" and not term.startswith("---")]
+    assert len(terms) == len(set(terms)) > 90

@@ -1,0 +1,70 @@
+"""Importing loads no scipy, no matplotlib and no law; a long march holds few plain numbers."""
+
+import json
+import subprocess
+import sys
+import tracemalloc
+from collections import deque
+
+from contactlab import Scene, Simulation
+from contactlab_laws.march.division import midpoints, one_by_one
+
+PROBE = """
+import json, sys
+import contactlab
+heavy = [name for name in sys.modules if name.split(".")[0] in ("scipy", "matplotlib", "argparse")]
+laws = [name for name in sys.modules if name.startswith("contactlab_")]
+print(json.dumps([heavy, laws]))
+"""
+
+
+def loaded(code):
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def test_import_is_lean():
+    heavy, laws = loaded(PROBE)
+    assert heavy == []
+    assert laws == []
+
+
+def test_listing_the_laws_imports_none():
+    heavy, laws = loaded(
+        PROBE.replace(
+            "import contactlab\n",
+            "import contactlab\nassert contactlab.compose.registry.REGISTRY.names()\n",
+        )
+    )
+    assert heavy == []
+    assert laws == []
+
+
+def test_choosing_an_integrator_imports_no_other_law():
+    _, laws = loaded(
+        PROBE.replace(
+            "import contactlab\n",
+            "import contactlab\ncontactlab.Simulation(tangential='springs')\n",
+        )
+    )
+    needed = {"hertz", "springs", "jaeger", "differences", "march"}
+    assert {name.split(".")[1] for name in laws if "." in name} == needed
+
+
+def test_only_the_named_law_is_imported():
+    _, laws = loaded(
+        PROBE.replace(
+            "import contactlab\n", "import contactlab\ncontactlab.create('tangential.coulomb')\n"
+        )
+    )
+    assert {name.split(".")[1] for name in laws if "." in name} == {"coulomb"}
+
+
+def test_a_long_march_makes_plain_numbers_of_a_part_at_a_time():
+    """Of two million steps they were 700 MB."""
+    steps = midpoints(Simulation().normal_motion(Scene.nondimensional(psi1=1.2, chi=1.44)), 40_000)
+    tracemalloc.start()
+    deque(one_by_one(steps), maxlen=0)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 4e6

@@ -1,0 +1,210 @@
+"""What a stranger relies on when reading: a map of the modules, and documented parameters."""
+
+import ast
+import importlib
+import inspect
+import re
+import textwrap
+from pathlib import Path
+
+import pytest
+
+import contactlab
+
+PACKAGE = Path(contactlab.__file__).parent
+#: The public modules: guide, read-me and examples import from no other.
+PUBLIC_MODULES = (
+    "contactlab",
+    "contactlab.contracts",
+    "contactlab.testing",
+    "contactlab.study",
+    "contactlab.figures",
+    "contactlab.fitting",
+)
+ROOMS = re.findall(r"^``(\w+)`` ", contactlab.__doc__, flags=re.MULTILINE)
+#: Imports that still point upward, from a file to a room. The list may only become shorter.
+UPWARD = {
+    ("outcome/history.py", "figures"),
+    ("outcome/result.py", "figures"),
+}
+
+
+def imported_rooms(text):
+    """Yield the room of every import in a file: lazy and type-only ones too."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            names = [name.name for name in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            names = [f"{node.module}.{name.name}" for name in node.names]
+        else:
+            continue
+        yield from (name.split(".")[1] for name in names if name.startswith("contactlab."))
+
+
+def upward_imports():
+    """Return pairs (file, imported room) whose room comes after the room of the file."""
+    return {
+        (file.relative_to(PACKAGE).as_posix(), imported)
+        for level, room in enumerate(ROOMS)
+        for file in (PACKAGE / room).rglob("*.py")
+        for imported in imported_rooms(file.read_text())
+        if imported not in ROOMS[: level + 1]
+    }
+
+
+def test_the_map_of_the_package_names_every_room():
+    paths = (path for path in PACKAGE.iterdir() if (path.is_dir() or path.suffix == ".py"))
+    rooms = {path.stem for path in paths if not path.name.startswith("__")}
+    assert sorted(ROOMS) == sorted(rooms - {"guide", "kernels"})  # neither has Python
+
+
+def test_the_face_has_at_most_twenty_names():
+    assert len(contactlab.__all__) <= 20
+
+
+def test_the_example_of_the_first_docstring_runs(capsys):
+    example = re.search(r"::\n\n((?:    .*\n|\n)+)", contactlab.__doc__).group(1)
+    exec(textwrap.dedent(example), {})
+    assert "numerical error of psi2" in capsys.readouterr().out
+
+
+def test_imports_point_downward():
+    """In the order of the map: the laws import no figure, the scene no result."""
+    assert upward_imports() == UPWARD
+
+
+def test_lazy_and_type_only_imports_count():
+    text = (
+        "if TYPE_CHECKING:\n    from contactlab.cli.main import main\n"
+        "def lazy():\n    from contactlab import figures\n    import contactlab.pages.html\n"
+    )
+    assert list(imported_rooms(text)) == ["cli", "figures", "pages"]
+
+
+def exported():
+    """Return {dotted name: object} of the names in ``__all__`` of the public modules."""
+    modules = map(importlib.import_module, PUBLIC_MODULES)
+    return {
+        f"{module.__name__}.{name}": getattr(module, name)
+        for module in modules
+        for name in module.__all__
+    }
+
+
+def imported_by_readers():
+    """Return pairs (module, name) of what guide, read-me and examples import from contactlab."""
+    root = PACKAGE.parent
+    pages = [*root.glob("*.md"), *PACKAGE.glob("guide/*.md"), *root.glob("examples/**/*.py")]
+    return {
+        (module, name)
+        for page in pages
+        for module, block, line in re.findall(
+            r"^from (contactlab(?:\.\w+)*) import (?:\(([^)]*)\)|(.+))$",
+            page.read_text(encoding="utf-8"),
+            flags=re.MULTILINE,
+        )
+        for name in re.findall(r"\w+", block or line)
+    }
+
+
+def test_readers_are_shown_public_names_only():
+    names = imported_by_readers()
+    assert {("contactlab.study", "compare"), ("contactlab.figures", "save")} <= names
+    for module, name in names:
+        assert module in PUBLIC_MODULES, (module, name)
+        assert name in importlib.import_module(module).__all__, (module, name)
+
+
+def callables(name, value):
+    """Yield (name, function, documented object) of a function, or of the methods of a class.
+
+    A constructor is documented by its class; a generated one is left out, test_docstrings asks
+    for its fields. A module stands for the functions and classes that it defines.
+    """
+    if inspect.ismodule(value):
+        for inner, each in vars(value).items():
+            own = getattr(each, "__module__", None) == value.__name__
+            if own and not inner.startswith("_") and not inspect.ismodule(each):
+                yield from callables(f"{name}.{inner}", each)
+    elif inspect.isfunction(value):
+        yield name, value, value
+    elif inspect.isclass(value):
+        for inner, _ in inspect.getmembers(value):
+            if inner == "__init__" or not inner.startswith("_"):
+                method = inspect.getattr_static(value, inner)
+                method = getattr(method, "__func__", method)
+                generated = "<" in getattr(getattr(method, "__code__", None), "co_filename", "<")
+                if inspect.isfunction(method) and not (inner == "__init__" and generated):
+                    bound = getattr(value, inner)
+                    yield f"{name}.{inner}", bound, value if inner == "__init__" else bound
+
+
+def undocumented(name, value):
+    """Return the functions of a public name with four or more arguments and no Parameters section.
+
+    A method may have its section in a class that it is derived from.
+    """
+    missing = []
+    for dotted, function, described in callables(name, value):
+        arguments = [each for each in inspect.signature(function).parameters if each != "self"]
+        sections = ("Parameters\n---", "Attributes\n---")
+        text = inspect.getdoc(described) or ""
+        if len(arguments) >= 4 and not any(section in text for section in sections):
+            missing.append(dotted)
+    return missing
+
+
+def test_functions_of_four_arguments_document_them():
+    """Only what is public is asked: a private helper has one line."""
+    public = exported()
+    assert {"contactlab.collide", "contactlab.contracts.quantity"} <= public.keys()
+    assert {"contactlab.study.compare", "contactlab.figures.save"} <= public.keys()
+    looked_at = [each[0] for name, value in public.items() for each in callables(name, value)]
+    assert "contactlab.contracts.Integrator.integrate" in looked_at
+    assert "contactlab.Scene.at_angle" in looked_at
+    assert "contactlab.materials.entry" in looked_at
+    assert not [each for name, value in public.items() for each in undocumented(name, value)]
+
+
+def three(a, b, *, c): ...
+
+
+def four(a, b, c, *, d): ...
+
+
+class Base:
+    def inherited(self, a, b, c, d):
+        """Do.
+
+        Parameters
+        ----------
+        a, b, c, d : int
+        """
+
+
+class Some(Base):
+    def __init__(self, a, b, c, d): ...
+
+    def short(self, a, b, c): ...
+
+    def long(self, a, b, c, d): ...
+
+    def _private(self, a, b, c, d): ...
+
+    @classmethod
+    def made(cls, a, b, c, d): ...
+
+    def inherited(self, a, b, c, d): ...
+
+
+@pytest.mark.parametrize(
+    ("value", "missing"),
+    [
+        (three, []),
+        (four, ["x"]),
+        (Base, []),
+        (Some, ["x.__init__", "x.long", "x.made"]),
+    ],
+)
+def test_a_missing_section_is_found(value, missing):
+    assert undocumented("x", value) == missing

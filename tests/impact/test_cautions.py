@@ -1,0 +1,100 @@
+"""The size that a plan gives to the elastic coupling of unlike bodies."""
+
+import itertools
+import re
+from pathlib import Path
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Scene, Simulation
+from contactlab.impact.coupling import coupling_shift
+
+GUIDE = Path(contactlab.__file__).parent / "guide" / "theory.md"
+CHI = 49.0 / 34.0
+PSI1 = (0.5, 1.0, 1.5, 2.0, 3.0)
+SOLID, SHELL = np.sqrt(0.4), np.sqrt(2.0 / 3.0)
+
+
+def coupled(strength, psi1):
+    """Return the scene of psi1 whose Lambda = kappa beta/mu is ``strength``."""
+    return Scene.nondimensional(psi1=psi1, chi=CHI, poisson_ratio=0.3, coupling_number=strength)
+
+
+def table():
+    """Return Lambda and the shifts at ``PSI1`` from the table of the guide."""
+    text = GUIDE.read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (0\.25|0\.5|1|2) \|((?: -[\d.]+ \|){5})$", text, re.MULTILINE)
+    rows = rows[:4]  # the first of the tables with a Lambda
+    return {float(name): [float(word) for word in re.findall(r"[\d.]+", row)] for name, row in rows}
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_shift_is_that_of_the_table_of_the_guide(sign):
+    """Another program's; and of an impact from the other side, or with the bodies exchanged."""
+    for strength, shifts in table().items():
+        found = [float(coupling_shift(coupled(sign * strength, sign * psi1))) for psi1 in PSI1]
+        assert found == pytest.approx(shifts, rel=0.12, abs=4e-3)
+
+
+def test_between_the_entries_the_shift_is_their_mean():
+    assert float(coupling_shift(coupled(0.0, 1.0))) == 0.0
+    edges = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0]
+    for low, high in itertools.pairwise(edges):
+        ends = [coupling_shift(coupled(strength, 1.0)) for strength in (low, high)]
+        middle = coupling_shift(coupled(0.5 * (low + high), 1.0))
+        assert float(middle) == pytest.approx(0.5 * float(sum(ends)), rel=1e-12)
+    ends = [coupling_shift(coupled(1.0, psi1)) for psi1 in (0.5, 0.75)]
+    middle = coupling_shift(coupled(1.0, 0.625))
+    assert float(middle) == pytest.approx(0.5 * float(sum(ends)), rel=1e-12)
+
+
+def test_the_plan_says_the_worst_of_a_batch():
+    simulation = Simulation()
+    alone = str(simulation.plan(coupled(0.5, 1.0)))
+    assert "Lambda = kappa beta/mu = 0.5; it moves psi2 by about 0.05 (model" in alone
+    batch = str(simulation.plan(coupled(0.5, np.array([2.0, 1.0, 3.0]))))
+    assert "Lambda = kappa beta/mu = 0.5; it moves psi2 by up to about 0.05 (model" in batch
+    assert "by at least 0.4" in str(simulation.plan(coupled(4.5, 1.0)))
+    assert "unlike bodies" not in str(simulation.plan(coupled(0.02, 0.1)))
+    assert "unlike bodies" not in str(simulation.plan(coupled(0.0, 1.0)))
+
+
+def steel_on_rubber(psi1, *, gyration=SOLID):
+    """Return a scene in SI of a steel sphere on a soft half-space of nu = 0.3."""
+    steel = contactlab.Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+    soft = contactlab.Material(young_modulus=2e9, poisson_ratio=0.3)
+    ball = contactlab.Sphere(0.01, steel, gyration_ratio=gyration)
+    scene = Scene(ball, contactlab.HalfSpace(soft), 0.2, normal_speed=0.01)
+    return attrs.evolve(scene, tangential_velocity=np.asarray(psi1) / scene.psi_scale)
+
+
+def cautions(scene):
+    """Return what the plan says of the coupling."""
+    said = [str(sentence) for sentence in Simulation().plan(scene).cautions]
+    return [text for text in said if "unlike bodies" in text]
+
+
+def test_the_sentence_says_what_the_table_is_for():
+    (text,) = cautions(steel_on_rubber(1.0))
+    assert "by a table of half-space solutions, chi from 0.83 to 2.2)" in text
+    (text,) = cautions(steel_on_rubber(1.0, gyration=0.4))
+    assert "; a rough guide at chi = 2.99)" in text
+
+
+def test_where_the_whole_contact_slips_the_shift_is_of_second_order():
+    """Coupling turns the direction of slip; the shift does not end at 4 chi - 1 = 4.76."""
+    sizes = coupling_shift(steel_on_rubber([5.0, 12.0, 24.0, 48.0]))
+    assert 0.01 < sizes[0] < 0.1
+    assert sizes[1] / sizes[2:] == pytest.approx([4.0, 16.0])
+    assert not cautions(steel_on_rubber(500.0))
+    (both,) = cautions(steel_on_rubber([1.0, 5.0]))
+    assert "up to about" in both
+
+
+def test_without_friction_there_is_no_caution():
+    scene = attrs.evolve(steel_on_rubber(1.0), friction_coefficient=0.0)
+    assert not cautions(scene)
+    assert float(coupling_shift(scene)) == 0.0

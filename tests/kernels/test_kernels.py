@@ -1,0 +1,164 @@
+"""The kernels in C and JavaScript answer as the law in Python does, along the same motions."""
+
+import json
+import shutil
+import subprocess
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import contactlab
+from tests.kernels.motions import by_the_law, by_vectors, sliding, wandering, write
+
+HERE = Path(__file__).parent
+KERNELS = Path(str(resources.files("contactlab").joinpath("kernels")))
+STRICT = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O2"]
+SANITIZERS = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g"]
+COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+NODE = shutil.which("node")
+needs_c = pytest.mark.skipif(COMPILER is None, reason="no C compiler (cc, gcc, clang) is there")
+needs_node = pytest.mark.skipif(NODE is None, reason="node is not there")
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """Return a function that compiles the driver with flags, once for each set of flags."""
+    folder, made = tmp_path_factory.mktemp("kernel"), {}
+
+    def build(*flags):
+        if flags not in made:
+            made[flags] = folder / f"drive{len(made)}"
+            words = [COMPILER, *STRICT, *flags, f"-I{KERNELS}", str(HERE / "drive.c")]
+            subprocess.run([*words, "-o", str(made[flags]), "-lm"], check=True, timeout=120)
+        return made[flags]
+
+    return build
+
+
+def driven(words, folder, springs, rows):
+    """Return forces and works, shape (K, 4), that a driver writes."""
+    write(folder / "in", springs, rows)
+    subprocess.run([*words, folder / "in", folder / "out"], check=True, timeout=120)
+    return np.fromfile(folder / "out").reshape(-1, 4)
+
+
+@pytest.fixture(params=[pytest.param("c", marks=needs_c), pytest.param("js", marks=needs_node)])
+def words(request, built):
+    """Return the command of each driver."""
+    if request.param == "c":
+        return [built()]
+    return [NODE, HERE / "drive.mjs", KERNELS / "contactlab_springs.mjs"]
+
+
+@pytest.mark.parametrize("springs", [2, 4, 8, 16])
+def test_along_a_line_it_is_the_law_in_python(words, springs, tmp_path):
+    """Through doublings, zero normal force, separation and contact again: 1e-12."""
+    for seed in range(4):
+        rows, along, sizes = sliding(seed)
+        law = by_the_law(springs, rows, sizes)
+        found = driven(words, tmp_path, springs, rows)
+        largest = np.abs(law).max(axis=0)
+        assert (law[rows[:, 6] > 0.0, 0] != 0.0).mean() > 0.9
+        assert np.abs(found[:, :3] @ along + law[:, 0]).max() <= 1e-12 * largest[0]
+        assert np.abs(found[:, 3] - law[:, 1]).max() <= 1e-12 * largest[1]
+        for part in (slice(0, 100), slice(200, 220)):
+            assert found[part, :3] @ along == pytest.approx(-law[part, 0], rel=1e-9, abs=1e-300)
+
+
+@pytest.mark.parametrize("springs", [4, 8])
+def test_with_turning_normals_it_is_the_rules_for_vectors(words, springs, tmp_path):
+    for seed in range(4):
+        rows = wandering(seed)
+        expected = by_vectors(springs, rows)
+        found = driven(words, tmp_path, springs, rows)
+        assert np.abs(found[:, :3] - expected).max() <= 1e-12 * np.abs(expected).max()
+        length = np.linalg.norm(found[:, :3], axis=1)
+        assert (length <= rows[:, 7] * (1.0 + 1e-12)).all()
+        across = np.abs(np.einsum("ki,ki->k", found[:, :3], rows[:, 3:6]))
+        assert (across <= 1e-12 * length.max()).all()
+        assert (found[:, 3] >= 0.0).all()
+
+
+def test_a_turned_frame_turns_the_force(words, tmp_path):
+    rows = wandering(7)
+    turn, _ = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))
+    turned = rows.copy()
+    turned[:, :3], turned[:, 3:6] = rows[:, :3] @ turn, -rows[:, 3:6] @ turn  # either sense
+    first, second = (driven(words, tmp_path, 8, each)[:, :3] for each in (rows, turned))
+    assert np.abs(first @ turn - second).max() <= 1e-12 * np.abs(first).max()
+
+
+@pytest.mark.parametrize("spoilt", [0, 2, 4, 6, 7])
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_what_is_not_finite_is_nan_until_the_contact_ends(words, spoilt, value, tmp_path):
+    rows, _, _ = sliding(1)
+    rows[90:100, 6] = rows[89, 6]  # in contact; it ends at 100
+    clean = driven(words, tmp_path, 8, rows)
+    rows[95, spoilt] = value
+    found = driven(words, tmp_path, 8, rows)
+    assert (found[:95] == clean[:95]).all()
+    assert np.isnan(found[95:100]).all()
+    assert (found[101:] == clean[101:]).all()
+    assert np.isfinite(clean).all()
+    assert (found[100, :3] == 0.0).all()
+
+
+@needs_c
+def test_no_undefined_behaviour(built, tmp_path):
+    """The sanitizers stop the program at the first read or write out of the state, or overflow."""
+    rows = wandering(3)
+    rows[300, 6:] = 5e-324, 1.0  # the least radius there is, and the largest
+    rows[301, 6:] = 1e300, 1.0
+    rows[302, 6:] = 1e-300, 0.0
+    rows[310:320, 7] = np.nan
+    rows[330, 6] = np.inf
+    rows[340, 6] = -1.0
+    words = [built(*SANITIZERS)]
+    plain = driven([built()], tmp_path, 8, rows)
+    assert np.array_equal(driven(words, tmp_path, 8, rows), plain, equal_nan=True)
+    assert np.isfinite(plain[360:]).all()
+
+
+@needs_c
+def test_single_precision(built, tmp_path):
+    rows = wandering(2)
+    double = driven([built()], tmp_path, 8, rows)
+    single = driven([built("-DCONTACTLAB_REAL=float")], tmp_path, 8, rows)
+    gap = np.linalg.norm(single[:, :3] - double[:, :3], axis=1)
+    assert gap.max() <= 1e-4 * np.linalg.norm(double[:, :3], axis=1).max()
+    assert gap.max() > 0.0
+
+
+@needs_c
+def test_it_is_c_plus_plus_too(tmp_path):
+    compiler = shutil.which("c++") or shutil.which("g++")
+    if compiler is None:
+        pytest.skip("no C++ compiler (c++, g++) is there")
+    source = tmp_path / "use.cpp"
+    source.write_text('#include "contactlab_springs.h"\nint main() { return 0; }\n')
+    words = [compiler, "-std=c++11", "-Wall", "-Wextra", "-pedantic", "-Werror", f"-I{KERNELS}"]
+    subprocess.run([*words, "-Wno-unused-function", "-c", source, "-o", tmp_path / "use.o"],
+                   check=True, timeout=120)  # fmt: skip
+
+
+@needs_node
+@pytest.mark.parametrize(
+    ("psi1", "chi"), [(0.5, 1.18), (1.2, 49.0 / 34.0), (3.0, 1.75), (8.0, 1.44)]
+)
+def test_one_impact_in_javascript(psi1, chi):
+    words = [NODE, HERE / "drive.mjs", KERNELS / "contactlab_springs.mjs", "impact"]
+    numbers = [str(number) for number in (psi1, chi, 120, 600)]
+    run = subprocess.run([*words, *numbers], check=True, timeout=60, capture_output=True, text=True)
+    motion = json.loads(run.stdout)
+    assert motion["psi2"] == pytest.approx(contactlab.rebound(psi1, chi), abs=2e-3)
+    assert len(motion["time"]) == len(motion["force"]) == len(motion["limit"]) == 601
+    force, limit = np.array(motion["force"]), np.array(motion["limit"])
+    assert (np.abs(force) <= limit * (1.0 + 1e-12)).all()
+    assert (motion["time"][0], motion["time"][-1]) == (0.0, 1.0)
+    states = np.array(motion["states"])
+    assert states.shape == (600, 120)
+    assert set(np.unique(states)) <= {0, 1, 2, 3}
+    if psi1 >= 4.0 * chi - 1.0:  # it slips throughout
+        assert not (states == 1).any()

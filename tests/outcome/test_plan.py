@@ -1,0 +1,349 @@
+"""What a plan contains: each sentence, the impacts that it is said of, and the declared error."""
+
+import pickle
+import re
+from typing import ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
+from contactlab.compose import planning
+from contactlab.contracts import (
+    NormalContact,
+    NormalLaw,
+    SteppedTangentialLaw,
+    TangentialResponse,
+    WholeImpactTangentialLaw,
+)
+from contactlab.contracts.error_model import range_of
+from contactlab.contracts.whole_impact import no_force
+from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
+from tests.laws.normal_laws import Damped, ForceFree, LinearSpring
+
+CHI = 1.4411764706
+MIXED = [0.0, 1.2, 9.0, 50.0]
+UNDECLARED = "not declared; run(scene, estimate_error=True) estimates it"
+SPRINGS = {"tangential": "springs", "integrator": "symplectic"}
+
+MARCHED = (
+    "tangential motion: Symplectic(steps=200, refine=True) over Springs(springs=50, grid='largest')"
+)
+
+
+def scene(psi1=1.2):
+    return Scene.nondimensional(psi1=psi1, chi=CHI)
+
+
+def said(sentences):
+    """Return each sentence of a batch with the impacts that it is said of."""
+    return {sentence.words: sentence.where.tolist() for sentence in sentences}
+
+
+def test_the_plan_of_one_impact_that_is_marched():
+    plan = Simulation(**SPRINGS).plan(scene())
+    assert list(map(str, plan.computed)) == [
+        "normal motion: Hertz, in closed form",
+        MARCHED,
+        f"numerical error of psi2: {UNDECLARED}",
+    ]
+    assert list(map(str, plan.left_out)) == ["history: not asked for"]
+    assert plan.cautions == ()
+    assert plan.marched
+    assert str(plan).splitlines()[1] == f"computed: {plan.computed[1]}"
+    assert str(plan).splitlines()[-1] == "left out: history: not asked for"
+
+
+def test_the_plan_of_a_batch_says_which_impacts():
+    plan = Simulation(**SPRINGS).plan(scene(MIXED))
+    most = np.nanmax(plan.psi2_error)
+    assert said(plan.computed) == {
+        "normal motion: Hertz, in closed form": [True] * 4,
+        MARCHED: [
+            False, True, False, False,
+        ],
+        f"numerical error of psi2: at most {most:.2g}, declared": [True, False, True, True],
+        f"numerical error of psi2: {UNDECLARED}": [False, True, False, False],
+    }  # fmt: skip
+    march = "march of the tangential motion: "
+    assert said(plan.left_out) == {
+        f"{march}central impact, no slip velocity": [True, False, False, False],
+        f"{march}the impact slips from start to end, eq. (45)": [False, False, True, True],
+        "history: not asked for": [True] * 4,
+    }
+    assert plan.to_dict()["left_out"] == list(map(str, plan.left_out))
+    assert plan.to_dict()["psi2_error"][1] is None
+    assert plan.to_dict()["psi2_error"][2:] == plan.psi2_error[2:].tolist()
+
+
+@pytest.mark.parametrize(
+    ("history", "left_out"),
+    [
+        (False, ["history: not asked for"]),
+        (True, ["traction and stick/slip fields: not asked for (history='fields')"]),
+        ("fields", []),
+    ],
+)
+def test_what_of_the_history_is_left_out(history, left_out):
+    plan = Simulation(**SPRINGS).plan(scene(), history=history)
+    assert list(map(str, plan.left_out)) == left_out
+
+
+def test_a_closed_form_is_declared_to_rounding_and_an_integrator_to_its_tolerance():
+    """The error of psi2 is 1e-12 max(1, |psi1|) of closed forms, and the tolerance times that."""
+    largest = np.maximum(1.0, MIXED)
+    solved = Simulation(
+        tangential=contactlab.create("tangential.fronts", table=False),
+        integrator=contactlab.create("integrator.events", tolerance=1e-5),
+    )
+    plan = solved.plan(scene(MIXED))
+    assert plan.psi2_error[1] == pytest.approx(1.2e-5)
+    closed = plan.psi2_error[[0, 2, 3]] / largest[[0, 2, 3]]
+    assert ((closed >= 1e-12) & (closed < 1.1e-12)).all()
+    assert f"at most {1.2e-5:.2g}, declared" in str(plan)
+    for index, psi1 in enumerate(MIXED):
+        alone = solved.plan(scene(psi1)).psi2_error
+        assert alone == pytest.approx(plan.psi2_error[index], rel=1e-12)
+
+
+@attrs.frozen(kw_only=True)
+class Clutches(NormalLaw):
+    """A linear spring, that holds what comes faster than 1 m/s for ever at an overlap of 1 m."""
+
+    api_version: ClassVar[int] = 2
+
+    def start(self, scene):
+        return np.where(np.asarray(scene.normal_speed) > 1.0, 1.0, 0.0)
+
+    def respond(self, state, approach, rate):
+        overlap = np.maximum(approach, state)
+        if np.ndim(approach) == 0:
+            overlap = float(overlap)
+        return NormalContact(1e7 * approach, 0.0 * approach, overlap), state
+
+
+def test_the_range_that_an_error_is_a_share_of():
+    """The lesser of 4 chi and 2 |psi1|, in m/s, alone and in a batch."""
+    psi1 = [-3.0, 0.2, 0.0, 50.0]
+    widths = [4.0 * CHI, 0.4, 0.0, 4.0 * CHI]
+    assert range_of(scene(psi1)).width.tolist() == pytest.approx(widths)
+    for one, width in zip(psi1, widths, strict=True):
+        assert range_of(scene(one)) == pytest.approx((1.0, width, abs(one)))
+
+
+def test_fields_are_kept_only_where_they_are_asked_for():
+    simulation = Simulation(**SPRINGS)
+    assert simulation.run(scene(), history=True).history.fields == {}
+    kept = simulation.run(scene(), history="fields").history
+    assert kept.fields
+    assert {len(field) for field in kept.fields.values()} == {len(kept.time)}
+
+
+def test_a_solved_normal_motion_is_not_declared_exact():
+    """Its load impulse is good to 1e-7, and friction can change psi by 4 chi."""
+    plan = Simulation(normal=LinearSpring(), tangential="coulomb").plan(scene(MIXED))
+    assert plan.psi2_error == pytest.approx(np.full(4, 4e-7 * CHI), rel=1e-3)
+    assert "integrated from first touch to separation" in str(plan)
+
+
+def test_impacts_that_do_not_part_are_left_out_and_nothing_is_said_of_their_numbers():
+    steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+    speeds = np.array([0.5, 2.0, 0.7])
+    batch = Scene(Sphere(0.01, steel), HalfSpace(steel), 0.1, speeds, 0.05)
+    result = Simulation(normal=Clutches(), tangential="coulomb").run(batch)
+    parted = [True, False, True]
+    assert [status is Status.SUCCESS for status in result.status] == parted
+    came = "march of the tangential motion: the normal motion came to no end"
+    assert said(result.plan.left_out)[came] == [False, True, False]
+    errors = [where for text, where in said(result.plan.computed).items() if "error" in text]
+    assert errors == [parted]
+    assert result.plan.cautions
+    none = Simulation(normal=ForceFree(), tangential="coulomb").plan(scene())
+    assert none.cautions == ()
+    assert "error" not in str(none)
+
+
+def test_fields_are_not_left_out_where_only_some_impacts_part():
+    steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+    batch = Scene(Sphere(0.01, steel), HalfSpace(steel), 0.1, [0.5, 2.0], [-0.05, -0.05])
+    simulation = Simulation(normal=Clutches(), tangential=KnowsTwice(), integrator="symplectic")
+    plan = simulation.plan(batch, history="fields")
+    assert plan.marched.tolist() == [True, False]
+    assert "no march to take them from" not in str(plan)
+
+
+def test_remarks_are_on_the_impacts_that_are_marched():
+    """Of two stiff impacts one is central: no steps are taken for it."""
+    few = contactlab.create("integrator.symplectic", steps=5)
+    plan = Simulation(tangential="springs", integrator=few).plan(
+        Scene.nondimensional(psi1=[0.0, 1.2], chi=30.0)
+    )
+    assert "steps raised from 5 to 75 for 1 of 1 impacts" in str(plan)
+
+
+def test_undeclared_errors_are_said_of_the_impacts_that_are_marched():
+    """Of a damped contact the springs declare nothing; a central impact is known without them."""
+    plan = Simulation(normal=Damped(), **SPRINGS).plan(scene([0.0, 1.2]))
+    told = said(plan.computed)
+    assert told[f"numerical error of psi2: {UNDECLARED}"] == [False, True]
+    declared = [text for text, where in told.items() if where == [True, False]]
+    assert re.fullmatch(r"numerical error of psi2: at most 5.8e-07, declared", declared[0])
+
+
+def test_a_sweep_in_parts_has_the_plan_of_the_whole():
+    """Sentences that differ in their numbers only are one."""
+    psi1 = [0.0, 0.5, 1.2, 9.0, 0.0, 50.0]
+    simulation = Simulation(**SPRINGS)
+    whole = simulation.plan(scene(psi1))
+    parts = simulation.sweep(scene(psi1), chunk=2).plan
+    assert parts.marched.tolist() == whole.marched.tolist()
+    np.testing.assert_array_equal(parts.psi2_error, whole.psi2_error)
+    for kind in ("computed", "left_out", "cautions"):
+        joined = {str(text).partition(" at most")[0]: where
+                  for text, where in said(getattr(parts, kind)).items()}  # fmt: skip
+        once = {str(text).partition(" at most")[0]: where
+                for text, where in said(getattr(whole, kind)).items()}  # fmt: skip
+        assert joined == once
+
+
+def test_the_plan_of_one_impact_of_a_batch():
+    plan = Simulation(**SPRINGS).plan(scene(MIXED))
+    assert [bool(plan[index].marched) for index in range(4)] == [False, True, False, False]
+    assert isinstance(plan[1].psi2_error, float)
+    np.testing.assert_array_equal(plan[1:3].psi2_error, plan.psi2_error[1:3])
+
+
+@attrs.frozen(kw_only=True)
+class Partly(WholeImpactTangentialLaw):
+    """Knows impacts below psi = 2 only, in a contract that promises all."""
+
+    api_version: ClassVar[int] = 2
+    change: object = 0.0
+
+    def whole_impacts(self, scene, normal):
+        slow = np.abs(scene.slip_velocity) < 2.0
+        known = no_force(scene, where=slow, reason="slow")
+        return (attrs.evolve(known, slip_velocity_change=self.change),)
+
+
+@pytest.mark.parametrize("psi1", [3.0, [1.0, 3.0, 1.5]])
+def test_a_law_of_whole_impacts_that_leaves_some_out_is_named(psi1):
+    result = Simulation(tangential=Partly()).run(scene(psi1))
+    left_out = np.array(result.status, dtype=object) == Status.MALFORMED
+    assert left_out.tolist() == (np.array(psi1) > 2.0).tolist()
+    assert list(result.failures) == np.flatnonzero(left_out).tolist()
+    for sentence in result.failures.values():
+        assert "no answer to some impacts" in sentence
+        assert "Partly" in sentence
+
+
+@pytest.mark.parametrize("psi1", [1.0, [0.5, 1.0]])
+@pytest.mark.parametrize("change", [None, "0", 1j, np.zeros(3)])
+def test_an_answer_that_is_no_number_is_named(psi1, change):
+    result = Simulation(tangential=Partly(change=change)).run(scene(psi1))
+    assert {*np.ravel(np.array(result.status, dtype=object))} == {Status.MALFORMED}
+    assert "to a whole impact" in result.failures[0]
+
+
+@attrs.frozen(kw_only=True)
+class KnowsTwice(SteppedTangentialLaw):
+    """Two answers hold for an impact; the first counts."""
+
+    api_version: ClassVar[int] = 2
+
+    def whole_impacts(self, scene, normal):
+        first = no_force(scene, where=np.asarray(scene.slip_velocity) >= 0.0, reason="first")
+        second = no_force(scene, where=True, reason="second")
+        return first, attrs.evolve(second, slip_velocity_change=0.25)
+
+    def start(self, scene, normal):
+        return None
+
+    def advance(self, state, increment, before, after):
+        return TangentialResponse(0.0 * increment.velocity, 0.0 * increment.velocity), state
+
+
+def test_of_two_answers_the_first_is_taken():
+    simulation = Simulation(tangential=KnowsTwice(), integrator="symplectic")
+    psi1 = [1.0, -1.0]
+    result = simulation.run(scene(psi1)).check()
+    assert result.psi_change == pytest.approx([0.0, 0.25])
+    assert said(result.plan.left_out)["march of the tangential motion: second"] == [False, True]
+    alone = [simulation.run(scene(one)).check().psi_change for one in psi1]
+    assert alone == pytest.approx([0.0, 0.25])
+
+
+def test_the_error_of_a_sweep_in_parts_is_the_largest_of_its_parts():
+    """Of prose that was merged the number of the first part stayed: 9e-12."""
+    psi1 = [9.0, 10.0, 5e3, 6e3]
+    plan = Simulation(tangential="coulomb").sweep(scene(psi1), chunk=2).plan
+    (words,) = (clause.words for clause in plan.computed if "error" in clause.text)
+    assert words == f"numerical error of psi2: at most {plan.psi2_error.max():.2g}, declared"
+    assert plan.psi2_error.max() > 100.0 * plan.psi2_error[0]
+    (first,) = (clause.words for clause in plan[0].computed if "error" in clause.text)
+    assert first == f"numerical error of psi2: at most {plan.psi2_error[0]:.2g}, declared"
+
+
+def test_numbers_of_a_law_that_differ_between_parts_are_a_range():
+    whole = Clause("steps raised from 5 to 75: eq. (45)", np.ones(2, dtype=bool))
+    other = Clause("steps raised from 5 to 120: eq. (45)", np.ones(3, dtype=bool))
+    parts = [Plan(computed=(each,), left_out=(), marched=each.where) for each in (whole, other)]
+    (clause,) = Plan.joined(parts).computed
+    assert clause.words == "steps raised from 5 to 75..120: eq. (45)"
+    assert Plan.joined(parts[:1]).computed[0].words == whole.words
+
+
+def test_one_impact_of_a_batch_has_the_clauses_that_are_said_of_it():
+    plan = Simulation(**SPRINGS).plan(scene(MIXED))
+    alone = [Simulation(**SPRINGS).plan(scene(psi1)) for psi1 in MIXED]
+    assert [str(plan[index]) for index in range(len(MIXED))] == list(map(str, alone))
+
+
+def test_a_plan_survives_its_arrays():
+    plan = Simulation(**SPRINGS).plan(scene(MIXED))
+    again = Plan.from_arrays(plan.to_arrays())
+    assert str(again) == str(plan)
+    assert str(again[1]) == str(plan[1])
+
+
+def test_words_with_braces_are_words():
+    clause = Clause("a law's {odd} words of 3", np.array(True))
+    assert (clause.words, clause.template.words) == ("a law's {odd} words of 3",) * 2
+
+
+def test_a_clause_is_found_by_its_code_whatever_its_words():
+    scene = Scene.nondimensional(psi1=np.array([0.5, 1.0, 2.0]), chi=1.4412)
+    plan = Simulation(tangential="springs").plan(scene)
+    joined = Plan.joined([plan[:1], plan[1:]])
+    copy = Plan.from_arrays(joined.to_arrays())
+    for each in (plan, plan[1], joined, copy):
+        codes = [clause.code for clause in each.computed]
+        assert codes == ["", TANGENTIAL_MOTION, PSI2_ERROR]
+
+
+def test_clauses_of_unlike_codes_are_not_joined():
+    where = np.ones(1, dtype=bool)
+    plans = [
+        Plan(computed=(Clause("the same words", where, code=code),), left_out=(), marched=where)
+        for code in ("a", "b")
+    ]
+    assert [clause.code for clause in Plan.joined(plans).computed] == ["a", "b"]
+
+
+def test_a_plan_is_worded_when_it_is_read_and_may_travel_before(monkeypatch):
+    """The words of one impact cost more than its closed form; nobody may read them."""
+    worded = []
+    real = planning.unit_slips
+    monkeypatch.setattr(planning, "unit_slips", lambda scene: worded.append(1) or real(scene))
+    result = Simulation(tangential="coulomb").run(scene())
+    assert np.isfinite(result.psi2)
+    assert not worded
+    travelled = pickle.loads(pickle.dumps(result.plan))
+    assert worded == [1]
+    assert str(travelled) == str(result.plan)
+    assert worded == [1]  # once
+    other = result.plan.changed(left_out=(), psi2_error=0.5)
+    assert (other.left_out, other.psi2_error) == ((), 0.5)
+    assert other.computed == result.plan.computed

@@ -1,0 +1,143 @@
+"""What a result says, against the mechanics of rigid bodies and of Hertz, worked out by hand."""
+
+import math
+
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
+from contactlab.cli.describe import describe
+from tests.laws.normal_laws import Damped, LinearSpring
+
+STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+RADIUS, FRICTION, SPEED, TANGENTIAL, SPIN = 0.01, 0.1, 2.0, 3.0, 40.0
+KAPPA = 1.4 / 1.7
+
+
+def sliding(side=1.0, **laws):
+    """A solid steel ball that slips from start to end: v_x falls from 3.4 to 2.0 m/s."""
+    ball = Sphere(RADIUS, STEEL)
+    scene = Scene(ball, HalfSpace(STEEL), FRICTION, SPEED, side * TANGENTIAL, side * SPIN)
+    simulation = Simulation(tangential="coulomb", integrator="symplectic", **laws)
+    return ball, simulation.run(scene).check()
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_velocities_after_slip_throughout(side):
+    """Friction takes mu (1 + e) v1 from v, 5/2 of it over R from omega, 7/2 of it from v_x."""
+    _, result = sliding(side)
+    taken = FRICTION * 2.0 * SPEED
+    assert result.rebound_normal_velocity == pytest.approx(-SPEED, rel=1e-14)
+    assert side * result.rebound_tangential_velocity == pytest.approx(TANGENTIAL - taken)
+    assert side * result.rebound_spin == pytest.approx(SPIN - 2.5 * taken / RADIUS)
+    assert side * result.rebound_slip_velocity == pytest.approx(3.4 - 3.5 * taken)
+    assert side * result.psi1 == pytest.approx(KAPPA * 3.4 / (FRICTION * SPEED))
+    assert side * result.psi2 == pytest.approx(KAPPA * 2.0 / (FRICTION * SPEED))
+    assert side * result.psi_change == pytest.approx(-KAPPA * 1.4 / (FRICTION * SPEED))
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_angles_and_restitutions_after_slip_throughout(side):
+    """Angles are those of paths with the normal, positive where the velocity is."""
+    _, result = sliding(side)
+    assert side * result.incidence_angle == pytest.approx(math.atan(1.5))
+    assert side * result.rebound_angle == pytest.approx(math.atan(1.3))
+    assert side * result.local_rebound_angle == pytest.approx(math.pi / 4.0)
+    assert result.normal_restitution == pytest.approx(1.0)
+    assert result.tangential_restitution == pytest.approx(2.6 / 3.0)
+    assert result.slip_restitution == pytest.approx(2.0 / 3.4)
+
+
+def test_a_dissipative_rebound_leans_towards_the_surface():
+    """Over the rate of separation, e v1, and less friction for a smaller normal impulse."""
+    _, result = sliding(normal=Damped(damping=0.3))
+    e = result.normal_restitution
+    assert 0.5 < e < 0.9
+    taken = FRICTION * (1.0 + e) * SPEED
+    after = (3.4 - 3.5 * taken) / (e * SPEED), (TANGENTIAL - taken) / (e * SPEED)
+    assert result.local_rebound_angle == pytest.approx(math.atan(after[0]), rel=1e-6)
+    assert result.rebound_angle == pytest.approx(math.atan(after[1]), rel=1e-6)
+
+
+def test_the_books_are_those_of_the_free_ball():
+    """½ m v² + ½ I omega² before less after, over all its motion, is the friction work."""
+    ball, result = sliding()
+    inertia = 0.4 * ball.mass * RADIUS**2
+
+    def kinetic(normal, tangential, spin):
+        return 0.5 * ball.mass * (normal**2 + tangential**2) + 0.5 * inertia * spin**2
+
+    lost = kinetic(SPEED, TANGENTIAL, SPIN) - kinetic(
+        result.rebound_normal_velocity, result.rebound_tangential_velocity, result.rebound_spin
+    )
+    books = result.energy
+    assert books.friction_work == pytest.approx(lost, rel=1e-12)
+    # At the contact counts what a force there can change: 2/7 of the mass in slip.
+    assert books.start == pytest.approx(0.5 * ball.mass * (SPEED**2 + 3.4**2 / 3.5), rel=1e-14)
+    assert books.end == pytest.approx(0.5 * ball.mass * (SPEED**2 + 2.0**2 / 3.5), rel=1e-13)
+    assert books.start - books.end == pytest.approx(lost, rel=1e-12)
+    assert books.normal_loss == 0.0
+    written = books.to_dict()
+    assert written["relative_imbalance"] == pytest.approx(0.0, abs=1e-13)
+    assert written["start"] == books.start
+
+
+def test_the_greatest_force_and_compression_of_a_hertz_impact():
+    """½ m v1² = 8/15 E* sqrt(R) z^2.5 at greatest compression, where P = 4/3 E* sqrt(R) z^1.5."""
+    ball, result = sliding()
+    modulus = 208e9 / (2.0 * (1.0 - 0.3**2))
+    deepest = (0.5 * ball.mass * SPEED**2 * 15.0 / (8.0 * modulus * RADIUS**0.5)) ** 0.4
+    assert result.motion.maximum_approach == pytest.approx(deepest, rel=1e-12)
+    force = 4.0 / 3.0 * modulus * RADIUS**0.5 * deepest**1.5
+    assert result.motion.maximum_force == pytest.approx(force, rel=1e-12)
+    assert result.motion.maximum_radius == pytest.approx((RADIUS * deepest) ** 0.5, rel=1e-12)
+
+
+@pytest.mark.parametrize("batch", [False, True])
+def test_the_greatest_force_and_compression_of_a_linear_spring(batch):
+    """P_max = v1 sqrt(k m) and z_max = v1 sqrt(m/k)."""
+    speeds = np.array([0.5, 2.0]) if batch else 2.0
+    ball = Sphere(RADIUS, STEEL)
+    stiffness = 1e7
+    simulation = Simulation(normal=LinearSpring(stiffness=stiffness), tangential="coulomb")
+    result = simulation.run(Scene(ball, HalfSpace(STEEL), FRICTION, speeds, 1.0)).check()
+    force = speeds * math.sqrt(stiffness * ball.mass)
+    assert result.motion.maximum_force == pytest.approx(force, rel=1e-6)
+    assert result.motion.maximum_approach == pytest.approx(force / stiffness, rel=1e-6)
+
+
+def test_without_bodies_there_is_no_centre_and_no_spin():
+    result = Simulation(tangential="coulomb").run(Scene.nondimensional(psi1=6.0, chi=1.0))
+    assert result.rebound_tangential_velocity is None
+    assert result.rebound_spin is None
+    assert result.rebound_angle is None
+    assert result.tangential_restitution is None
+    assert result.local_rebound_angle == pytest.approx(math.atan(2.0))
+
+
+def test_restitutions_of_what_did_not_move_are_no_numbers():
+    ball = Sphere(RADIUS, STEEL)
+    scene = Scene(ball, HalfSpace(STEEL), FRICTION, SPEED, 0.0, [0.0, SPIN])
+    result = Simulation(tangential="coulomb").run(scene).check()
+    assert np.isnan(result.tangential_restitution).all()
+    assert np.isnan(result.slip_restitution).tolist() == [True, False]
+
+
+def test_the_result_of_one_impact_is_no_batch():
+    result = Simulation(tangential="coulomb").run(Scene.nondimensional(psi1=6.0, chi=1.0))
+    with pytest.raises(TypeError, match="cannot be indexed"):
+        result[0]
+    with pytest.raises(TypeError, match="no length"):
+        len(result)
+
+
+def test_failures_are_counted_sentence_by_sentence():
+    """Two alike make one line, and one alone has no count."""
+    few = contactlab.create("integrator.symplectic", steps=5, refine=False)
+    simulation = Simulation(tangential="springs", integrator=few)
+    result = simulation.run(Scene.nondimensional(psi1=[1.2, 0.5, 0.5], chi=[1e3, 30.0, 30.0]))
+    told = [line for line in describe(result, varied={}).splitlines() if line.startswith("status:")]
+    assert len(told) == 2
+    assert told[0].endswith("(2 impacts)")
+    assert not told[1].endswith("impacts)")

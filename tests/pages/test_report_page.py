@@ -1,0 +1,227 @@
+"""``contactlab report`` and ``contactlab cite``."""
+
+from __future__ import annotations
+
+import html.parser
+import re
+
+import numpy as np
+import pytest
+
+from contactlab import create
+from contactlab.compose.citations import DOI, YEAR, bibtex, references
+from contactlab.compose.registry import REGISTRY
+from tests.cli.conftest import EXAMPLES
+
+
+class Balanced(html.parser.HTMLParser):
+    """Text and tags of a page; a tag that is closed wrongly is an error."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.words = [], []
+
+    def handle_starttag(self, tag, attrs):
+        self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+
+@pytest.fixture
+def reported(run, tmp_path):
+    def call(*arguments):
+        page = tmp_path / "report.html"
+        ran = run("report", *arguments, "--out", page)
+        assert (ran.status, ran.out) == (0, f"{page}\n")
+        text = page.read_text("utf-8")
+        assert not re.search(r"src=|@import|<link|url\((?!#)", text)
+        return text
+
+    return call
+
+
+@pytest.fixture
+def damped(tmp_path):
+    path = tmp_path / "damped.toml"
+    path.write_text(
+        "[nondimensional]\npsi1 = 1.0\nchi = 1.0\n[simulation]\nnormal = 'tsuji'\n"
+        "tangential = 'springs'\n[simulation.options]\nnormal.restitution = 0.9\n",
+        encoding="utf-8",
+    )
+    return path
+
+
+def test_one_impact_in_one_file(reported, ball):
+    text = reported(ball)
+    for heading in ("scene", "answer", "laws compared", "plan", "Sources", "How this was made"):
+        assert re.search(f"<h2>[^<]*{heading}</h2>", text)
+    assert text.count("<svg") == 2  # the drawing and the forces
+    assert "2 m/s" in text
+    assert "Wear 38" in text
+    assert "estimated" in text
+
+
+def test_arrows_of_the_drawing_point_along_the_motion_of_the_sphere(reported, ball):
+    """It comes down on the surface, to the right, and leaves upwards; 1.9 radii of 60 at most."""
+    pattern = (
+        r"<line x1='(\S+)' y1='(\S+)' x2='(\S+)' y2='(\S+)' [^>]*'2.5'/>"
+        r"<polygon points='(\S+),(\S+) (\S+),(\S+) (\S+),(\S+)'"
+    )
+    lines = re.findall(pattern, reported(ball))
+    arriving, leaving = np.array(lines, dtype=float).reshape(2, 5, 2)
+    for (begin, stem, tip, *barbs), downwards in ((arriving, 1.0), (leaving, -1.0)):
+        way = tip - begin
+        assert way[0] > 0.0
+        assert way[1] * downwards > 0.0
+        assert np.hypot(*way) < 1.9 * 60.0 + 0.1
+        for end in (stem, *barbs):  # the tip is the foremost
+            assert 0.0 < (tip - end) @ way < way @ way
+        assert np.mean(barbs, axis=0) == pytest.approx(stem, abs=0.1)
+        assert (stem - begin) / np.hypot(*(stem - begin)) == pytest.approx(
+            way / np.hypot(*way), abs=2e-3
+        )
+    before = np.arctan2(*(arriving[2] - arriving[0]))
+    assert np.degrees(before) == pytest.approx(15.0, abs=0.2)  # as the file says
+
+
+def test_a_measured_sweep_has_its_residuals(reported, measured):
+    text = reported(measured, "--tangential", "coulomb,frictionless")
+    assert "rms difference" in text
+    assert '<td class="number">0.1</td>' in text  # measured 0.1 beside the rigid law
+    assert "made up" in text
+    assert "legend_1" in text  # the laws over the sweep, above their differences
+
+
+def test_rows_of_a_long_sweep_are_spread_over_all_of_it(reported, tmp_path):
+    path = tmp_path / "long.toml"
+    path.write_text(
+        "[nondimensional]\nchi = 1.0\n[sweep]\npsi1 = { start = 0.0, stop = 96.0, count = 97 }\n"
+        "[simulation]\ntangential = 'coulomb'\n",
+        encoding="utf-8",
+    )
+    text = reported(path, "--tangential", "frictionless")
+    assert "25 of 97 impacts are shown" in text
+    assert "A sweep of 97 impacts over psi1." in text
+    assert all(f'<td class="number">{psi1}</td>' in text for psi1 in (0, 48, 96))
+
+
+def test_a_default_law_that_does_not_fit_the_normal_law_is_left_out(reported, damped):
+    text = reported(damped)
+    assert "coulomb" in text
+    assert "fronts" not in text
+
+
+DROPS = (
+    "[sphere]\nradius = 0.01\nmaterial = 'steel'\n[target]\nkind = 'half-space'\n"
+    "material = 'steel'\n[impact]\nspeed = 2.0\nfriction_coefficient = 0.1\n"
+    "[simulation]\ntangential = 'coulomb'\n"
+)
+SWEPT = "[sweep]\nangle_deg = [50.0, 60.0, 70.0]\n"
+HEAD = "angle_deg,speed (m/s),tangential_restitution\n"
+
+
+def test_impacts_of_a_table_stand_beside_the_laws(reported, tmp_path):
+    """Gross slip at 45 degrees has e_t = 1 - 2 mu = 0.8: 0.75 is 0.05 off, and 1.0 is 0.2."""
+    (tmp_path / "drops.toml").write_text(DROPS + SWEPT, encoding="utf-8")
+    table = tmp_path / "drops.csv"
+    table.write_text(f"{HEAD}45,2.0,0.75\n45,2.05,1.0\n60,1.95,\n70,2,0.9\n", encoding="utf-8")
+    text = reported(tmp_path / "drops.toml", "--measured", table)
+    assert f"tangential_restitution, measured: {table}" in text
+    assert re.search(r"<td>coulomb</td>\s*<td class=\"number\">[\d.]+</td>\s*<td[^>]*>0.2<", text)
+
+
+@pytest.mark.parametrize(
+    ("scene", "rows", "words"),
+    [
+        (DROPS.replace("2.0", "2.0\nangle_deg = 45.0"), "45,2,0.8\n", "one column must vary"),
+        (DROPS + SWEPT, "45,2,0.8\n60,3,0.9\n", "these vary by more than 10%: angle_deg, speed"),
+        (DROPS + SWEPT, "45,2,0.8\n45,2,0.9\n", "one column must vary"),
+        (DROPS + SWEPT, "45,3,0.8\n60,3,0.9\n", "speed is 3 m/s, and 2 m/s in"),
+    ],
+)
+def test_impacts_that_are_not_those_of_the_scene_are_refused(run, tmp_path, scene, rows, words):
+    (tmp_path / "drops.toml").write_text(scene, encoding="utf-8")
+    (tmp_path / "drops.csv").write_text(HEAD + rows, encoding="utf-8")
+    files = tmp_path / "drops.toml", "--measured", tmp_path / "drops.csv"
+    ran = run("report", *files, "--out", tmp_path / "report.html")
+    assert (ran.status, len(ran.err.splitlines())) == (2, 1)
+    assert words in ran.err
+
+
+def test_text_of_a_file_is_escaped(reported, tmp_path):
+    path = tmp_path / "odd.toml"
+    path.write_text(
+        "[about]\ntitle = 'a < b & $c'\n[nondimensional]\npsi1 = 1.0\nchi = 1.0\n", encoding="utf-8"
+    )
+    text = reported(path, "--tangential", "coulomb")
+    assert "<h1>a &lt; b &amp; $c</h1>" in text
+
+
+def test_every_tag_is_closed(reported, short_sweep):
+    text = reported(short_sweep, "--tangential", "coulomb")
+    reader = Balanced()
+    reader.feed(re.sub(r"<svg.*?</svg>|<meta[^>]*>|<!doctype html>", "", text, flags=re.DOTALL))
+    assert reader.open == []
+
+
+def test_cite_prints_data_and_laws(run):
+    ran = run("cite", EXAMPLES / "kharaz2001.toml", "--tangential", "springs")
+    assert ran.status == 0
+    assert re.findall(r"^@\w+\{(\w+),", ran.out, re.MULTILINE) == [
+        "kharaz2001",
+        "maw1976",
+        "jaeger1995",
+        "popov2015",
+        "contactlab",
+    ]
+
+
+def test_cite_takes_all_laws_that_were_compared(run):
+    ran = run("cite", "--tangential", "fronts,coulomb,mindlin_cap")
+    assert ran.status == 0
+    keys = re.findall(r"^@\w+\{(\w+),", ran.out, re.MULTILINE)
+    assert keys == [
+        "maw1976", "ciavarella1998", "jaeger1998", "mindlin1949", "thornton2011", "direnzo2005",
+        "contactlab",
+    ]  # fmt: skip
+    assert "did you mean" in run("cite", "--tangential", "coulomb,columb").err
+
+
+@pytest.mark.parametrize("name", REGISTRY.names())
+def test_every_work_that_a_law_names_has_an_entry(name):
+    """Neither lost beside another of the same source, nor left in words."""
+    texts = references(REGISTRY.law_class(name))
+    entries = bibtex(texts)
+    for mark in [mark for text in texts for mark in DOI.findall(text) + YEAR.findall(text)]:
+        assert mark in entries
+    assert "@misc" not in entries
+
+
+def test_a_work_beside_a_known_one_is_kept_in_words():
+    known = "Maw, Barber & Fawcett, Wear 38 (1976) 101-114"
+    assert "@misc" not in bibtex([known])
+    both = bibtex([f"{known}; Somebody, J. Odd Res. 1 (1900)"])
+    assert "maw1976" in both
+    assert "Odd Res" in both
+    other = bibtex(["Thornton, J. Odd Res. 1 (1991), doi:10.9999/odd, ch. 1"])
+    assert "thornton1991" not in other
+
+
+def test_a_source_that_is_not_known_is_kept_in_words():
+    assert "note = {Somebody, J. Odd Res. 1 (1900)}" in bibtex(["Somebody, J. Odd Res. 1 (1900)"])
+
+
+def test_a_law_without_references_has_none():
+    assert references(create("tangential.frictionless")) == []
+    assert len(references(create("normal.hertz"))) == 1
+
+
+def test_a_law_that_is_asked_for_and_does_not_fit_is_refused(run, damped, tmp_path):
+    ran = run("report", damped, "--tangential", "fronts", "--out", tmp_path / "report.html")
+    assert (ran.status, ran.out) == (2, "")
+    assert "Fronts: needs 'elastic_hertz'" in ran.err
+    assert not (tmp_path / "report.html").exists()

@@ -1,0 +1,66 @@
+"""Hysteresis loops of laws along the same paths."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import contactlab
+from contactlab import Scene, Simulation
+from contactlab.figures.load_paths import draw_loops
+from contactlab.study.loops import CYCLES, QUARTER, REACH, loops
+
+SCENE = Scene.nondimensional(psi1=1.0, chi=1.4412)
+
+
+def forms():
+    """Return springs, and each form of the capped spring."""
+    names = ("displacement", "displacement_rescaled", "increment", "increment_rescaled")
+    caps = {form: contactlab.create("tangential.mindlin_cap", form=form) for form in names}
+    return {"springs": "springs", **caps}
+
+
+def test_loops_at_constant_load_close_and_have_the_area_of_theory():
+    found = loops(SCENE, {"springs": Simulation(tangential="springs"), "exact": Simulation()})
+    assert list(found.constant) == ["springs"]
+    assert "steps" in found.left_out["exact"]
+    moved, force = found.constant["springs"]
+    last = slice(-4 * QUARTER - 1, None)
+    assert force[last][0] == pytest.approx(force[-1], abs=1e-12)
+    area = np.sum(0.5 * (force[last][1:] + force[last][:-1]) * np.diff(moved[last]))
+    most = 1.0 - (1.0 - REACH) ** 1.5
+    theory = -4.0 * most * REACH + 8.0 * (REACH - 0.4 * (1.0 - (1.0 - REACH) ** 2.5))
+    assert area == pytest.approx(theory, rel=5e-3)
+    assert np.abs(force).max() == pytest.approx(most, abs=1e-3)
+
+
+def test_forms_of_the_capped_spring_part_where_the_load_oscillates():
+    laws = {name: Simulation(tangential=law) for name, law in forms().items()}
+    found = loops(SCENE, laws)
+    constant = np.array([found.constant[name][1] for name in list(laws)[1:]])
+    assert np.ptp(constant, axis=0).max() < 1e-9
+    swinging = np.array([found.oscillating[name][1] for name in laws])
+    assert np.ptp(swinging, axis=0).max() > 0.1
+    assert np.abs(swinging[0]).max() <= 1.0
+
+
+def test_a_batch_has_the_loops_of_its_first_impact():
+    batch = Scene.nondimensional(psi1=np.array([1.0, 2.0]), chi=1.4412)
+    law = {"springs": Simulation(tangential="springs")}
+    assert np.array_equal(
+        loops(batch, law).constant["springs"], loops(SCENE, law).constant["springs"]
+    )
+
+
+def test_loops_are_drawn_by_name_over_the_displacement():
+    found = loops(SCENE, {"springs": Simulation(tangential="springs")})
+    axes = draw_loops(Figure().subplots(), found.constant, title="constant load")
+    curve = next(line for line in axes.lines if line.get_label() == "springs")
+    assert len(curve.get_xdata()) == 4 * QUARTER * CYCLES + 1
+    assert curve.get_xdata().max() == pytest.approx(REACH)
+    assert axes.get_title() == "constant load"
+
+
+def test_loops_need_friction():
+    smooth = Scene(*[contactlab.Sphere(0.01, contactlab.Material.named("steel"))] * 2, 0.0, 1.0)
+    with pytest.raises(ValueError, match="friction_coefficient"):
+        loops(smooth, {"springs": Simulation(tangential="springs")})

@@ -1,0 +1,638 @@
+"""Small faults, one for each sentence of the kit that no other broken law brings about."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+
+import contactlab
+from contactlab import Status
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.contracts import TangentialMotion, faults, quantity
+from tests.testing.broken_impacts import AllAtOnce, Knowing, OtherwiseAtOnce, Whole
+from tests.testing.broken_integrators import AsksTillItGives
+from tests.testing.broken_laws import Answering, Sound
+from tests.testing.broken_normal import HERTZ, MOTION, Altered, Moving, Stepwise
+from tests.testing.fresh_faults import STEPS, Steps
+from tests.testing.fresh_sound import Brush, HardSphere, Press
+
+NUMBERS: dict[str, Any] = {"force": 0.0, "calls": 0}
+
+
+# What a law declares.
+
+
+class OfNoKind(Sound):
+    kind: ClassVar[str] = "elastic"
+
+
+class OfAnotherKind(Sound):
+    kind: ClassVar[str] = "normal"
+
+
+class NeedsAsANormalLaw(Press):
+    needs: ClassVar[frozenset] = frozenset({"radius"})
+
+
+class NamesNoParameter(Sound):
+    resolution: ClassVar[str] = "fineness"
+
+
+class NeedsInAList(Sound):
+    needs: ClassVar[Any] = ["radius"]
+
+
+class OffersHertzWithoutAMotion(Press):
+    offers: ClassVar[frozenset] = frozenset({"radius", "elastic_hertz"})
+
+
+class ClaimsAndExpects(Sound):
+    offers: ClassVar[frozenset] = frozenset({"partial_slip"})
+    expected_failures: ClassVar[dict] = {"cattaneo_mindlin": "one spring for the whole contact"}
+
+
+class ExpectsOfAnother(Sound):
+    expected_failures: ClassVar[dict] = {"grows": "it is no normal law at all"}
+
+
+@attrs.frozen(kw_only=True)
+class RefusesNamelessly(Sound):
+    """A parameter that is refused without its name."""
+
+    extra: float = 1.0
+
+    def __attrs_post_init__(self):
+        if not np.isreal(self.extra) or isinstance(self.extra, str) or self.extra != 1.0:
+            raise ValueError("must be 1")
+
+
+@attrs.frozen(kw_only=True)
+class CopiesOtherwise(Sound):
+    """A copy has forgotten where it is from."""
+
+    origin: Any = attrs.field(default="made", eq=False)
+
+    def __copy__(self):
+        return attrs.evolve(self, origin="copied")
+
+
+# Stepped laws.
+
+
+@attrs.frozen(kw_only=True)
+class ChangesItself(Sound):
+    """Counts its calls in a dictionary of its own."""
+
+    calls: Any = attrs.field(factory=dict, eq=False)
+
+    def advance(self, state, increment, before, after):
+        self.calls["made"] = self.calls.get("made", 0) + 1
+        return super().advance(state, increment, before, after)
+
+
+class WritesIntoItsState(Sound):
+    """Notes the step in a list that came in; the answer does not depend on it."""
+
+    def start(self, scene, normal):
+        return super().start(scene, normal), []
+
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state[0], increment, before, after)
+        state[1].append(1)
+        return response, (new, state[1])
+
+
+class WearsByTheRun(Sound):
+    """A little stiffer with every start."""
+
+    def start(self, scene, normal):
+        NUMBERS["calls"] += 1
+        state = super().start(scene, normal)
+        return state._replace(stiffness=state.stiffness * (1.0 + 1e-9 * NUMBERS["calls"]))
+
+
+class ChangesTheScene(Sound):
+    """Rounds the speed of the scene that it is given."""
+
+    def start(self, scene, normal):
+        state = super().start(scene, normal)
+        object.__setattr__(scene, "normal_speed", np.round(scene.normal_speed, 1))
+        return state
+
+
+class FieldsWithoutNames(Sound):
+    def fields(self, state):
+        return {1: np.zeros(3)}
+
+
+class InfinitelyStiff(Sound):
+    def stiffness(self, scene, normal):
+        return np.inf * super().stiffness(scene, normal)
+
+    def start(self, scene, normal):
+        return super().start(scene, normal)._replace(stiffness=super().stiffness(scene, normal))
+
+
+class NeverSettles(Sound):
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state, increment, before, after)
+        return response._replace(settled=False), new
+
+
+class RemembersAClosedLoop(Sound):
+    """Weaker by a little from the second turn of the slip on: loading and unloading are alike."""
+
+    def start(self, scene, normal):
+        return super().start(scene, normal), (0.0, 0)
+
+    def advance(self, state, increment, before, after):
+        spring, (last, turns) = state
+        turns = turns + (last * increment.displacement < 0.0)
+        response, new = super().advance(spring, increment, before, after)
+        told = response._replace(force=np.where(turns > 1, 0.999, 1.0)[()] * response.force)
+        moved = np.where(increment.displacement == 0.0, last, increment.displacement)[()]
+        return told, (new, (moved, turns))
+
+
+class BundleUnderDamping(Brush):
+    """Springs cut alone, without a word of what that does under a damped normal law."""
+
+    expected_failures: ClassVar[dict] = {}
+
+
+class NeedsBodies(HardSphere):
+    """Twice the restitution where bodies are known."""
+
+    def restitution(self, scene):
+        return 0.2 if scene.sphere is None else 0.4
+
+
+class WeakerInABatch(AllAtOnce):
+    """Of a batch a little weaker where all steps are taken at once."""
+
+    def told(self, response):
+        share = 0.99 if response.force.ndim > 1 else 1.0
+        return response._replace(force=share * response.force)
+
+
+class HurriedForce(Knowing):
+    """The right change along the course, by twice the force."""
+
+    def told(self, known, scene):
+        def course(impulse, load):
+            change, force = known.course(impulse, load)
+            return change, 2.0 * force
+
+        return attrs.evolve(known, course=course)
+
+
+class CourseOfTheEnd(Whole):
+    """Its course has the end only."""
+
+    def told(self, known, scene):
+        def course(impulse, load):
+            change, force = known.course(impulse, load)
+            return np.ravel(change)[-1:], np.ravel(force)[-1:]
+
+        return attrs.evolve(known, course=course)
+
+
+@attrs.frozen(kw_only=True)
+class CountsItsImpacts(Whole):
+    """Counts the impacts in a dictionary of its own."""
+
+    calls: Any = attrs.field(factory=dict, eq=False)
+
+    def told(self, known, scene):
+        self.calls["made"] = self.calls.get("made", 0) + 1
+        return known
+
+
+# Normal laws.
+
+
+class AnswersANumber(Press):
+    def respond(self, state, approach, rate):
+        return 0.0 * approach, state
+
+
+@attrs.frozen(kw_only=True)
+class CountsItsCalls(Press):
+    calls: Any = attrs.field(factory=dict, eq=False)
+
+    def respond(self, state, approach, rate):
+        self.calls["made"] = self.calls.get("made", 0) + 1
+        return super().respond(state, approach, rate)
+
+
+class HeedsTheCallBefore(Press):
+    """A force from the approach of the call before, whichever state it was for."""
+
+    def respond(self, state, approach, rate):
+        contact, state = super().respond(state, approach, rate)
+        force = contact.force * (1.0 + 1e-3 * (NUMBERS["force"] > 1.2 * np.max(approach)))
+        NUMBERS["force"] = float(np.max(approach))
+        return contact._replace(force=force), state
+
+
+class ChangesTheSceneToo(Press):
+    def start(self, scene):
+        state = super().start(scene)
+        object.__setattr__(scene, "normal_speed", np.round(scene.normal_speed, 1))
+        return state
+
+
+class NanOverlap(Altered):
+    """An approach of NaN is out of contact; the force is NaN all the same."""
+
+    def alter(self, contact, approach, rate):
+        return contact._replace(overlap=np.where(np.isnan(approach), -1.0, contact.overlap)[()])
+
+
+class NanLoad(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(friction_load=np.nan_to_num(contact.friction_load)[()])
+
+
+class NegativeRadius(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(radius=-contact.radius)
+
+
+class WideWithoutContact(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(radius=contact.radius + 1e-9)
+
+
+class LoadedWithoutContact(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(friction_load=contact.friction_load + 1e-3)
+
+
+class NoForceAtAll(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(force=0.0 * contact.force, friction_load=0.0 * contact.force)
+
+
+class NeverEnds(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(overlap=1.0 + abs(contact.overlap))
+
+
+class NeverParts(Stepwise):
+    """A dashpot alone: the bodies come to rest in contact."""
+
+    def alter(self, contact, dashpot, rate):
+        return contact._replace(force=3.0 * dashpot * np.maximum(rate, 0.0))
+
+
+class Faulty(MOTION):
+    """Hertz's motion with something done to it."""
+
+
+class StartsSlower(Faulty):
+    def at(self, phase):
+        sample = super().at(phase)
+        return sample._replace(rate=sample.rate * (1.0 - 1e-9))
+
+
+class StartsApart(Faulty):
+    def at(self, phase):
+        sample = super().at(phase)
+        return sample._replace(approach=sample.approach - 1e-10 * self.maximum_approach)
+
+
+class HeavierScaled(Faulty):
+    @property
+    def scaled_mass(self):
+        return 0.81
+
+
+class WiderScaled(Faulty):
+    def scaled(self, phase):
+        return super().scaled(phase)._replace(radius=1.01 * super().scaled(phase).radius)
+
+
+class LaterAtARate(Faulty):
+    def phase_at_rate(self, rate):
+        return super().phase_at_rate(rate) + 1e-6
+
+
+class LaterAtAFraction(Faulty):
+    def phase(self, fraction):
+        return super().phase(fraction) * (1.0 + 1e-5)
+
+
+def moving(motion):
+    """Return Hertz's law with that motion."""
+    return type(f"With{motion.__name__}", (Moving,), {"moving": motion, "__module__": __name__})
+
+
+WithStartsSlower, WithStartsApart = moving(StartsSlower), moving(StartsApart)
+WithHeavierScaled, WithWiderScaled = moving(HeavierScaled), moving(WiderScaled)
+WithLaterAtARate, WithLaterAtAFraction = moving(LaterAtARate), moving(LaterAtAFraction)
+
+
+# Integrators.
+
+
+class MassOfTheSphere(STEPS):
+    """2 m/7 of the sphere for M_t, as if it met a wall."""
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        if scene.sphere is not None:
+            mass = scene.sphere.mass / (1.0 + 1.0 / scene.sphere.gyration_ratio**2)
+            pair = attrs.evolve(scene.pair, tangential_mass=mass)
+            scene = attrs.evolve(scene, sphere=None, target=None, pair=pair)
+            normal = normal_motion(normal.law, scene)
+        return super().integrate(normal, tangential, scene, observer)
+
+
+class ClaimsAccuracy(STEPS):
+    """Twenty steps, and an accuracy of 1e-9."""
+
+    accuracy: ClassVar[float] = 1e-9
+
+
+class GivesUp(Steps):
+    """Reports every impact as unresolved."""
+
+    def alter(self, motion, scene):
+        return attrs.evolve(motion, status=Status.UNRESOLVED) if not scene.shape else motion
+
+
+class SaysMore(Steps):
+    """A success with a remark."""
+
+    def alter(self, motion, scene):
+        return attrs.evolve(motion, detail="all is well") if not scene.shape else motion
+
+
+class WrongWay(Steps):
+    def alter(self, motion, scene):
+        return attrs.evolve(motion, slip_velocity_change=-motion.slip_velocity_change)
+
+
+class CountsInHalves(Steps):
+    def alter(self, motion, scene):
+        return attrs.evolve(motion, counters={"steps": 199.5})
+
+
+class SilentFault(Steps):
+    """A status without a word."""
+
+    def alter(self, motion, scene):
+        return attrs.evolve(motion, detail="") if not scene.shape else motion
+
+
+class ShowsInstantsTwice(STEPS):
+    def integrate(self, normal, tangential, scene, observer=None):
+        def twice(sample):
+            observer(sample)
+            observer(sample)
+
+        watched = twice if observer is not None else None
+        return super().integrate(normal, tangential, scene, watched)
+
+
+class ShowsTheFirstHalf(STEPS):
+    def integrate(self, normal, tangential, scene, observer=None):
+        half = 0.5 * float(np.max(normal.duration))
+
+        def early(sample):
+            if np.max(sample.time) < half:
+                observer(sample)
+
+        watched = early if observer is not None else None
+        return super().integrate(normal, tangential, scene, watched)
+
+
+@attrs.frozen(kw_only=True)
+class CountsItsRuns(Steps):
+    calls: Any = attrs.field(factory=dict, eq=False)
+
+    def alter(self, motion, scene):
+        self.calls["made"] = self.calls.get("made", 0) + 1
+        return motion
+
+
+class FailsInABatch(Steps):
+    """Of a batch the first impact is unresolved."""
+
+    def alter(self, motion, scene):
+        if not scene.shape:
+            return motion
+        status = np.array(motion.status, dtype=object)
+        status[(0,) * status.ndim] = Status.UNRESOLVED
+        return TangentialMotion(
+            slip_velocity_change=motion.slip_velocity_change,
+            friction_work=motion.friction_work,
+            status=status,
+        )
+
+
+class ReportsItsEndlessness(AsksTillItGives):
+    """Repeats a step of a stiff law until it raises, and reports that."""
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        try:
+            return super().integrate(normal, tangential, scene, observer)
+        except Exception as error:
+            detail = faults.raised(error)
+            return TangentialMotion.nothing(scene.shape, Status.LAW_RAISED, detail)
+
+
+EVENTS = contactlab.compose.registry.REGISTRY.law_class("integrator.events")
+
+
+class EndsTheEndless(EVENTS):
+    """Takes events without end for a success."""
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        motion = super().integrate(normal, tangential, scene, observer)
+        if scene.shape or motion.status is Status.SUCCESS:
+            return motion
+        return attrs.evolve(motion, status=Status.SUCCESS, detail="", slip_velocity_change=-1.0)
+
+
+# Sentences of checks whose first sentence another law brings about.
+
+
+class WorkOfOneSense(Answering):
+    """One per cent more work where the force is negative."""
+
+    def answer(self, response, state):
+        share = np.where(response.force < 0.0, 1.01, 1.0)[()]
+        return response._replace(friction_work=share * response.friction_work), state
+
+
+class StiffensUnderLoad(Sound):
+    """A sheared force that grows with the load, as far as friction goes."""
+
+    def advance(self, state, increment, before, after):
+        grown = after.friction_load / np.where(
+            before.friction_load > 0.0, before.friction_load, 1.0
+        )
+        force = np.where(before.friction_load > 0.0, grown, 1.0)[()] * state.force
+        return super().advance(state._replace(force=force), increment, before, after)
+
+
+class SpoilsTheOthers(Answering):
+    """NaN of one contact of a batch makes the others stronger."""
+
+    def answer(self, response, state):
+        share = 1.0 + 0.01 * bool(np.isnan(response.force).any())
+        return response._replace(force=share * response.force), state
+
+
+class ThrowsAtTheEnd(Sound):
+    """Twice the force that the load could hold, in a step that ends almost without load."""
+
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state, increment, before, after)
+        gone = after.friction_load < 1e-3 * before.friction_load
+        thrown = 2.0 * state.friction_coefficient * before.friction_load * gone
+        return response._replace(force=response.force + thrown), new
+
+
+class PaysUnderTension(Sound):
+    """Friction works on the bodies where the normal force is negative."""
+
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state, increment, before, after)
+        gift = 1e-3 * abs(after.force * increment.displacement) * (after.force < 0.0)
+        return response._replace(friction_work=response.friction_work - gift), new
+
+
+class StatesTooStiff(Sound):
+    """A stiffness that no number of steps follows, and a force of a softer spring."""
+
+    def stiffness(self, scene, normal):
+        return 1e8 * super().stiffness(scene, normal)
+
+    def start(self, scene, normal):
+        return super().start(scene, normal)._replace(stiffness=super().stiffness(scene, normal))
+
+
+class EqualToItselfOnly(Sound):
+    """No copy is equal to it."""
+
+    __hash__ = Sound.__hash__
+
+    def __eq__(self, other):
+        return self is other
+
+
+@attrs.frozen(kw_only=True)
+class InFurlongs(Sound):
+    """A parameter in a unit of no system."""
+
+    length: float = quantity("furlong", default=1.0)
+
+
+class EndsFaster(HERTZ):
+    """A final rate that the motion does not reach."""
+
+    def motion(self, scene):
+        motion = super().motion(scene)
+        return attrs.evolve(motion, final_rate=(1.0 + 1e-8) * motion.final_rate)
+
+
+class MissesOnePerThousand(Steps):
+    """Friction work, one per thousand too much at any number of steps."""
+
+    def alter(self, motion, scene):
+        return attrs.evolve(motion, friction_work=1.001 * motion.friction_work)
+
+
+class ShowsSuccessesOnly(STEPS):
+    """Keeps what an observer should see until the end, and shows nothing of a failed run."""
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        seen = []
+        motion = super().integrate(normal, tangential, scene, seen.append)
+        if observer is not None and np.all(motion.status == Status.SUCCESS):
+            for sample in seen:
+                observer(sample)
+        return motion
+
+
+class RunsItsOwnLawsOnly(STEPS):
+    """Runs laws of one class, which no other law is derived from."""
+
+    tangential_contract: ClassVar[type] = InFurlongs
+
+
+#: Each with the check meant for it, and words of what the check says of it.
+BROKEN = [
+    (OfNoKind, "contract", "kind = 'elastic': must be one of"),
+    (OfAnotherKind, "contract", "A normal law must be a NormalLaw"),
+    (NeedsAsANormalLaw, "contract", "Only a tangential law needs something"),
+    (NamesNoParameter, "contract", "resolution = 'fineness': must name a parameter"),
+    (NeedsInAList, "contract", "needs = ['radius']: must be a frozenset of words"),
+    (OffersHertzWithoutAMotion, "contract", "offers 'elastic_hertz', and is no ClosedForm"),
+    (ClaimsAndExpects, "expected_failures", "It offers 'partial_slip' and expects to fail"),
+    (ExpectsOfAnother, "expected_failures", "'grows' is not a check of such a law"),
+    (RefusesNamelessly, "parameters", "extra = nan: refused without its name: must be 1"),
+    (CopiesOtherwise, "copies", "A copy differs: "),
+    (ChangesItself, "pure", "The law itself was changed by a run"),
+    (WritesIntoItsState, "pure", "The state that went in was changed at step 1."),
+    (WearsByTheRun, "repeatable", "gives other forces"),
+    (FieldsWithoutNames, "fields", "fields: 1 is not a name"),
+    (InfinitelyStiff, "stiffness", "stiffness = inf"),
+    (NeverSettles, "coulomb_limit", "The law found no answer on a straight load path"),
+    (RemembersAClosedLoop, "turning_points", "A closed loop at slip 0.3 is not forgotten"),
+    (BundleUnderDamping, "coulomb_at_a_point_damped", "under StronglyDampedHertz"),
+    (MassOfTheSphere, "unlike_bodies_by", "Balls unlike in mass, psi1 = 0.5: exchanged, psi2"),
+    (NeedsBodies, "unlike_bodies", "off that of a scene with the same pair and no bodies"),
+    (WeakerInABatch, "all_steps", "A batch of shape (8,): differs by"),
+    (HurriedForce, "whole_impacts", "along the course the force is"),
+    (CourseOfTheEnd, "whole_impact_form", "its course answers shapes (1,), (1,) to (20001,)"),
+    (CountsItsImpacts, "impact_repeatable", "A run changed the law (as whole impacts)"),
+    (AnswersANumber, "grows", "respond returned "),
+    (CountsItsCalls, "contacts_pure", "The law itself was changed by a run"),
+    (HeedsTheCallBefore, "contacts_pure", "A step tried and thrown away changed the next one"),
+    (NanOverlap, "contacts_non_finite", "An approach of NaN is taken for no contact"),
+    (NanLoad, "contacts_non_finite", "An approach of NaN gives a friction load of 0.0"),
+    (NegativeRadius, "presses", "A contact radius of -"),
+    (WideWithoutContact, "presses", "There is a contact radius out of contact"),
+    (LoadedWithoutContact, "presses", "There is a friction load out of contact"),
+    (NoForceAtAll, "presses", "There is no force at any approach"),
+    (NeverEnds, "presses", "Far behind first touch the overlap says that there is still"),
+    (NeverParts, "rebounds", "An impact does not end: "),
+    (WithStartsSlower, "motion_agrees", "It starts at 0.8299"),
+    (WithStartsApart, "motion_agrees", "It does not start at touch"),
+    (WithHeavierScaled, "motion_obeys_newton", "The scaled mass is 1.3e-02 off"),
+    (WithWiderScaled, "motion_scaled", "The scaled radius is 1.0e-02 off"),
+    (WithLaterAtARate, "motion_scaled", "phase_at_rate is 1.0e-06 off"),
+    (WithLaterAtAFraction, "motion_scaled", "off the inverse of time"),
+    (ClaimsAccuracy, "finer_is_better", "off the exact solution"),
+    (GivesUp, "ends_well", "UNRESOLVED"),
+    (SaysMore, "ends_well", "A success says 'all is well'"),
+    (WrongWay, "ends_well", "m/s changes by 1.1"),
+    (CountsInHalves, "ends_well", "counters = {'steps': 199.5}: must be whole numbers"),
+    (SilentFault, "faults_reported", "says nothing of what and where"),
+    (ShowsInstantsTwice, "observer_changes_nothing", "called at times that do not increase"),
+    (ShowsTheFirstHalf, "observer_changes_nothing", "The last instant seen is at 0.4"),
+    (CountsItsRuns, "integrator_pure", "A run changed the integrator"),
+    (FailsInABatch, "impacts_batch", "An impact of a batch ends otherwise"),
+    (ChangesTheScene, "read_only", "The law changed the scene"),
+    (ChangesTheSceneToo, "contacts_read_only", "The law changed the scene"),
+    (ReportsItsEndlessness, "bounded", "Unyielding is asked without end"),
+    (EndsTheEndless, "bounded", "A run with endless events is reported as a success"),
+    (WorkOfOneSense, "odd_in_slip", "Reversed slip gives a friction work that differs by"),
+    (StiffensUnderLoad, "normal_load_alone", "Pressing on a contact that is sheared adds"),
+    (SpoilsTheOthers, "non_finite", "of one contact of a batch changes the force of the others"),
+    (ThrowsAtTheEnd, "last_step", "mu P_max as the load falls to zeta = 1e-06"),
+    (PaysUnderTension, "tension", "Under tension friction work is -"),
+    (StatesTooStiff, "impact_central", "the stiffness that it states, "),
+    (EqualToItselfOnly, "copies", "A copy is not equal to the law"),
+    (InFurlongs, "units", "The unit 'furlong' is not understood"),
+    (EndsFaster, "motion_obeys_newton", "It does not end at its final rate"),
+    (MissesOnePerThousand, "books_by", "With 8 times the steps "),
+    (ShowsSuccessesOnly, "faults_reported", "0 instants of the history are left"),
+    (RunsItsOwnLawsOnly, "mirror_images", "It fits none of the laws of the kit"),
+    (OtherwiseAtOnce, "impact_repeatable", "Watched, an impact ends differently, by 1"),
+]

@@ -1,0 +1,107 @@
+"""Stepped laws that answer well, and break a clause of what is declared or of how they are made."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import attrs
+from scipy.interpolate import PchipInterpolator
+
+from contactlab.contracts import TangentialLaw
+from contactlab.numeric.checks import POSITIVE, count, quantity
+from tests.testing.broken_laws import Sound
+
+
+class WrongVersion(Sound):
+    api_version: ClassVar[int] = 1
+
+
+class ExpectsTooMuch(Sound):
+    expected_failures: ClassVar[dict] = {"units": "it says so, but it is not so"}
+
+
+class ExpectsWithoutReason(Sound):
+    expected_failures: ClassVar[dict] = {"units": ""}
+
+
+class ExpectsTheUnknown(Sound):
+    expected_failures: ClassVar[dict] = {"unit": "there is no such check at all"}
+
+
+class Misspells(Sound):
+    offers: ClassVar[frozenset] = frozenset({"partialslip"})
+
+
+class MisspellsMember(Sound):
+    def psi2_eror(self, scene, normal, steps):
+        return 0.1
+
+
+class NeedsTheUnknown(Sound):
+    needs: ClassVar[frozenset] = frozenset({"advance"})
+
+
+class OneOfThreeWays(TangentialLaw):
+    """Derived from none of the contracts by which a law is run."""
+
+    api_version: ClassVar[int] = 2
+
+
+@attrs.define(kw_only=True)
+class Mutable(Sound):
+    def __setattr__(self, name, value):
+        object.__setattr__(self, name, value)
+
+
+@attrs.frozen(kw_only=True)
+class CannotBePickled(Sound):
+    rule: Any = attrs.field(factory=lambda: lambda value: value)
+
+
+@attrs.frozen(kw_only=True)
+class TakesAnything(Sound):
+    extra: float = 1.0
+
+
+@attrs.frozen(kw_only=True)
+class TakesAnyFlag(Sound):
+    flag: bool = False
+
+
+@attrs.frozen(kw_only=True)
+class TwoRequired(Sound):
+    """Sound, with parameters that have no defaults."""
+
+    stretch: float = quantity("m", rule=POSITIVE)
+    count: int = count()
+
+
+def _curve():
+    """Stiffness over that of full stick, which depends on nothing."""
+    return PchipInterpolator([0.0, 1.0, 2.0], [0.7, 0.7, 0.7])
+
+
+@attrs.frozen(kw_only=True)
+class Interpolates(Sound):
+    """Sound, with an object that can be called among its attributes."""
+
+    curve: Any = attrs.field(init=False, factory=_curve, eq=False)
+
+    def stiffness(self, scene, normal):
+        return float(self.curve(1.0)) / self.ratio * super().stiffness(scene, normal)
+
+
+#: Each with the check meant for it, and words of what the check says of it.
+BROKEN = [
+    (WrongVersion, "api_version", "api_version = 1"),
+    (ExpectsWithoutReason, "expected_failures", "'units' needs a reason"),
+    (ExpectsTheUnknown, "expected_failures", "'unit', which is not a check"),
+    (Misspells, "contract", "'partialslip' is a word that no check knows"),
+    (MisspellsMember, "spelling", "psi2_eror is no member of its contracts: psi2_error misspelt?"),
+    (NeedsTheUnknown, "contract", "needs: 'advance' is a word that no check knows; there are: el"),
+    (OneOfThreeWays, "contract", "It must be derived from one of SteppedTangentialLaw"),
+    (Mutable, "immutable", "ratio can be set"),
+    (CannotBePickled, "copies", "Can't pickle local object"),
+    (TakesAnything, "parameters", "extra = nan: accepted without a ValueError"),
+    (TakesAnyFlag, "parameters", "flag = nan: accepted without a ValueError"),
+]

@@ -1,0 +1,348 @@
+"""Laws of paths, of whole impacts and of all steps at once that break one clause each."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+import attrs
+import numpy as np
+
+from contactlab.contracts import (
+    AllStepsResponse,
+    AllStepsTangentialLaw,
+    NormalContact,
+    PathTangentialLaw,
+    Stretch,
+    TangentialResponse,
+    WholeImpactTangentialLaw,
+    sliding,
+)
+from contactlab.contracts.tangential import Increment
+from tests.testing.broken_laws import Sound
+
+
+@attrs.frozen(kw_only=True)
+class AllAtOnce(AllStepsTangentialLaw):
+    """Rigid sliders, sound: all steps at once, which for such a law is the same loop."""
+
+    api_version: ClassVar[int] = 2
+
+    def start(self, scene, normal):
+        nothing = np.zeros(scene.shape) if scene.shape else 0.0
+        stiffness = 1.4 * scene.pair.effective_shear_modulus * normal.maximum_radius
+        return scene.friction_coefficient, stiffness, nothing
+
+    def stiffness(self, scene, normal):
+        return 1.4 * scene.pair.effective_shear_modulus * normal.maximum_radius
+
+    def advance(self, state, increment, before, after):
+        friction, stiffness, held = state
+        limit = friction * after.friction_load
+        trial = held + stiffness * increment.displacement
+        force = np.minimum(np.maximum(trial, -limit), limit)
+        work = np.maximum(0.5 * (force + held) * (trial - force) / stiffness, 0.0)
+        return TangentialResponse(force, work), (friction, stiffness, force)
+
+    def advance_all(self, scene, normal, steps):
+        state, forces, work = self.start(scene, normal), [], 0.0
+        velocity, mass = scene.slip_velocity, scene.pair.tangential_mass
+        contact = NormalContact(0.0, 0.0, 0.0, 0.0)
+        for row in zip(*steps.contact, *steps[1:4], strict=True):
+            before, contact, (drift, kick, load) = contact, NormalContact(*row[:4]), row[4:]
+            given = Increment(velocity * drift, velocity, load, kick)
+            response, state = self.advance(state, given, before, contact)
+            velocity = velocity - response.force * kick / mass
+            forces.append(response.force)
+            work = work + response.friction_work
+        return self.told(AllStepsResponse(np.array(forces), work, True))
+
+    def told(self, response):
+        return response
+
+
+class OtherwiseAtOnce(AllAtOnce):
+    """A little weaker where all steps are taken at once."""
+
+    def told(self, response):
+        return response._replace(force=0.99 * response.force)
+
+
+class Knowing(Sound):
+    """A spring and a slider, which knows of grazing impacts as wholes."""
+
+    def whole_impacts(self, scene, normal):
+        where = np.abs(scene.psi1) >= 5.0 * np.asarray(scene.chi)
+        known = sliding(scene, normal, where=where, reason="grazing", stops=False)
+        return (*super().whole_impacts(scene, normal), self.told(known, scene))
+
+    def told(self, known, scene):
+        return known
+
+
+class KnowsTooMuch(Knowing):
+    """Says that every impact grazes."""
+
+    def told(self, known, scene):
+        return attrs.evolve(known, where=True)
+
+
+class KnowsHalfTheWork(Knowing):
+    def told(self, known, scene):
+        return attrs.evolve(known, friction_work=0.5 * known.friction_work, course=None)
+
+
+class KnowsAnotherCourse(Knowing):
+    """The right end, by a course that hurries."""
+
+    def told(self, known, scene):
+        def course(impulse, load):
+            change, force = known.course(impulse, load)
+            return known.slip_velocity_change * (change / known.slip_velocity_change) ** 0.5, force
+
+        return attrs.evolve(known, course=course)
+
+
+class ShortImpulse(Knowing):
+    """One per cent short of the impulse that friction has, as a whole; it slips all the same."""
+
+    def told(self, known, scene):
+        return attrs.evolve(
+            known, slip_velocity_change=0.99 * known.slip_velocity_change, course=None
+        )
+
+
+@attrs.frozen(kw_only=True)
+class Whole(WholeImpactTangentialLaw):
+    """Slip until it stops, with something done to the answer."""
+
+    api_version: ClassVar[int] = 2
+
+    def whole_impacts(self, scene, normal):
+        known = sliding(scene, normal, where=True, reason="rigid", stops=True)
+        return (*super().whole_impacts(scene, normal), self.told(known, scene))
+
+    def told(self, known, scene):
+        return known
+
+
+class WholeNotOdd(Whole):
+    def told(self, known, scene):
+        change = known.slip_velocity_change * np.where(scene.slip_velocity > 0.0, 1.0, 0.9)
+        return attrs.evolve(known, slip_velocity_change=change)
+
+
+class WholeInMetres(Whole):
+    """Weaker for large bodies, by a constant with a unit."""
+
+    def told(self, known, scene):
+        share = 1.0 / (1.0 + 10.0 * scene.pair.radius)
+        return attrs.evolve(known, slip_velocity_change=share * known.slip_velocity_change)
+
+
+class WholeTooStrong(Whole):
+    """Throws back what it should stop, a little faster."""
+
+    def told(self, known, scene):
+        change = -2.04 * scene.slip_velocity * np.ones(scene.shape)
+        return attrs.evolve(known, slip_velocity_change=change)
+
+
+class WholeStopsAnything(Whole):
+    """Brings to rest what friction cannot."""
+
+    def told(self, known, scene):
+        change = -1.0 * scene.slip_velocity * np.ones(scene.shape)
+        return attrs.evolve(known, slip_velocity_change=change)
+
+
+class WholeTooLong(Whole):
+    """Slips under a twentieth more of friction than there is, if it does not stop."""
+
+    def told(self, known, scene):
+        change = 1.05 * known.slip_velocity_change
+        return attrs.evolve(known, slip_velocity_change=change, course=None)
+
+
+class WholeOfOtherWork(Whole):
+    """One per cent more work than its course does."""
+
+    def told(self, known, scene):
+        return attrs.evolve(known, friction_work=1.01 * known.friction_work)
+
+
+class WholeOfNan(Whole):
+    """Does not know the work."""
+
+    def told(self, known, scene):
+        return attrs.evolve(known, friction_work=np.nan * known.friction_work)
+
+
+class WholeWithoutBooks(Whole):
+    def told(self, known, scene):
+        return attrs.evolve(known, friction_work=0.5 * known.friction_work)
+
+
+class WholeBeyondCoulomb(Whole):
+    """Twice the friction along its course."""
+
+    def told(self, known, scene):
+        def course(impulse, load):
+            change, force = known.course(impulse, load)
+            return change, 2.0 * force
+
+        return attrs.evolve(known, course=course)
+
+
+class MovesTheCentral(WholeImpactTangentialLaw):
+    """Makes a force of normal load alone."""
+
+    api_version: ClassVar[int] = 2
+
+    def whole_impacts(self, scene, normal):
+        known = sliding(scene, normal, where=True, reason="rigid", stops=True)
+        change = known.slip_velocity_change + 1e-3 * scene.normal_speed
+        return (attrs.evolve(known, slip_velocity_change=change),)
+
+
+class WholeOfTheFirst(Whole):
+    """Of a batch the first mass for all."""
+
+    def told(self, known, scene):
+        mass = np.asarray(scene.pair.tangential_mass)
+        share = mass / np.ravel(mass)[0]
+        return attrs.evolve(known, slip_velocity_change=share * known.slip_velocity_change)
+
+
+COUNT = {"impacts": 0}
+
+
+class WholeWears(Whole):
+    """Weaker with every impact that any such law has seen."""
+
+    def told(self, known, scene):
+        COUNT["impacts"] += 1
+        share = 1.0 / (1.0 + 0.01 * COUNT["impacts"])
+        return attrs.evolve(known, slip_velocity_change=share * known.slip_velocity_change)
+
+
+class WholeClaims(Whole):
+    offers: ClassVar[frozenset] = frozenset({"partial_slip"})
+
+
+class WholeOnePercentShort(Whole):
+    """No more than 0.99 of what friction can do."""
+
+    def told(self, known, scene):
+        return attrs.evolve(known, slip_velocity_change=0.99 * known.slip_velocity_change)
+
+
+class NegativeAsAWhole(Whole):
+    def told(self, known, scene):
+        return attrs.evolve(known, friction_work=-known.friction_work)
+
+
+@attrs.frozen
+class Slide(Stretch):
+    """Gross slip with a factor on the force."""
+
+    factor: float
+    change: float
+    work: float
+    start: ClassVar[float] = 0.0
+    stop: ClassVar[float] = math.pi
+
+    def states(self, contact):
+        return 0.5 * self.change * (1.0 - contact.rate), self.factor * contact.force
+
+
+@attrs.frozen(kw_only=True)
+class Paths(PathTangentialLaw):
+    """Slips in one direction for ever, under some factor times Coulomb's force."""
+
+    api_version: ClassVar[int] = 2
+    force: ClassVar[float] = 1.0
+    power: ClassVar[float] = 1.0
+
+    def factor(self, motion):
+        return self.force
+
+    def path(self, velocity, inertia, motion, tolerance):
+        factor = self.factor(motion)
+        fall = 2.0 * motion.scaled_mass * factor
+        change = -inertia * fall
+        yield Slide(factor, change, self.power * fall * (velocity + 0.5 * change))
+
+
+class TooStrong(Paths):
+    force: ClassVar[float] = 1.2
+
+
+class TooWeakInTheBooks(Paths):
+    power: ClassVar[float] = 0.5
+
+
+class PathOfNan(Paths):
+    force: ClassVar[float] = float("nan")
+
+
+class PushesAlong(Paths):
+    """Speeds slip up."""
+
+    force: ClassVar[float] = -0.5
+
+
+class SlipsWhateverItClaims(Paths):
+    offers: ClassVar[frozenset] = frozenset({"partial_slip"})
+
+
+class PathInMetres(Paths):
+    """Weaker in a wide contact, by a constant with a unit."""
+
+    def factor(self, motion):
+        return 1.0 / (1.0 + 100.0 * motion.maximum_radius)
+
+
+IMPACTS = {"count": 0}
+
+
+class Wears(Paths):
+    """Weaker with every impact that any such law has seen."""
+
+    def factor(self, motion):
+        IMPACTS["count"] += 1
+        return 1.0 / (1.0 + 0.01 * IMPACTS["count"])
+
+
+#: Each with the check meant for it, and words of what the check says of it.
+BROKEN = [
+    (OtherwiseAtOnce, "all_steps", "differs by"),
+    (KnowsTooMuch, "whole_impacts", "off the law's own run (by Symplectic)"),
+    (KnowsHalfTheWork, "whole_impacts", "off the energy lost in the law's own run"),
+    (KnowsAnotherCourse, "whole_impacts", "along the course psi is"),
+    (ShortImpulse, "whole_impacts", "'grazing': psi2 is 0.0"),
+    (ShortImpulse, "sliding_impulse", "0.01 off mu (1 + e) v1 M_n/M_t (grazing)"),
+    (WholeNotOdd, "impact_odd", "(as whole impacts)"),
+    (WholeInMetres, "impact_units", "(as whole impacts)"),
+    (WholeTooStrong, "impact_bounds", "energy from nothing (as whole impacts)"),
+    (WholeStopsAnything, "impact_bounds", "psi changes by -2, more than mu P can"),
+    (WholeTooLong, "impact_bounds", "psi changes by -1.68, more than mu P can"),
+    (WholeOfOtherWork, "whole_impact_form", "psi1 = 0.3, chi = 0.4, 'rigid': the force along its"),
+    (WholeOfNan, "whole_impact_form", "'rigid': friction_work = "),
+    (WholeWithoutBooks, "impact_books", "of the energy is unaccounted (as whole impacts)"),
+    (WholeBeyondCoulomb, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.74 of mu P_max"),
+    (WholeBeyondCoulomb, "whole_impact_form", "the force along its course gives an impulse of"),
+    (NegativeAsAWhole, "whole_impact_form", "the friction work is -"),
+    (MovesTheCentral, "impact_central", "psi1 = 0, chi = 0.4: UNBALANCED The contact slips inf"),
+    (WholeOfTheFirst, "impact_batch", "(as whole impacts)"),
+    (WholeWears, "impact_repeatable", "run twice, ends differently (as whole impacts)"),
+    (WholeClaims, "impact_reference", "off (as whole impacts)"),
+    (WholeOnePercentShort, "sliding_impulse", "0.01 off mu (1 + e) v1 M_n/M_t (as whole impacts)"),
+    (TooStrong, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.2"),
+    (TooWeakInTheBooks, "impact_books", "UNRESOLVED At step 2: the energy books miss"),
+    (PathOfNan, "impact_odd", "NON_FINITE At step 1: velocity, work or x is not finite"),
+    (PushesAlong, "impact_bounds", "energy from nothing (by Events)"),
+    (SlipsWhateverItClaims, "impact_reference", "off (by Events)"),
+    (PathInMetres, "impact_units", "differs by"),
+    (Wears, "impact_repeatable", "run twice, ends differently"),
+]

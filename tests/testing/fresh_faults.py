@@ -1,0 +1,533 @@
+"""Forty faults that authors could really write: one method of a sound law, changed.
+
+Each fault stands in ``FAULTS`` with the check that catches it and the words that name it. What
+the kit said of them before is in ``fresh_faults_before.txt``.
+"""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, NamedTuple
+
+import attrs
+import numpy as np
+
+import contactlab
+from contactlab import Status
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.contracts import TangentialResponse
+from tests.testing.fresh_sound import (
+    Brush,
+    HardSphere,
+    Mindlin,
+    Press,
+    Slider,
+    Slip,
+    SlipThenRoll,
+    Tabled,
+)
+
+HERTZ = contactlab.compose.registry.REGISTRY.law_class("normal.hertz")
+MOTION = type(HERTZ().motion(contactlab.Scene.nondimensional(psi1=0.0, chi=1.0)))
+STEPS = contactlab.compose.registry.REGISTRY.law_class("integrator.symplectic")
+
+
+# Bodies: what counts is the pair of them, and the slip velocity of the contact.
+
+
+class IgnoresSpin(HardSphere):
+    """Takes the velocity of the centre for that of the contact."""
+
+    def slip(self, scene):
+        return scene.tangential_velocity
+
+
+class NormalRadiusOfOneBody(Press):
+    """R of the sphere, whatever it meets."""
+
+    def radius(self, scene):
+        return scene.pair.radius if scene.sphere is None else scene.sphere.radius
+
+
+class LimitRadiusOfOneBody(Brush):
+    """Limits mu (b² - r²)/(kappa R) with R of the sphere."""
+
+    def start(self, scene, normal):
+        radius = scene.pair.radius if scene.sphere is None else scene.sphere.radius
+        return (
+            super()
+            .start(scene, normal)
+            ._replace(friction=scene.friction_coefficient * scene.pair.radius / radius)
+        )
+
+
+class NormalModulusOfOneBody(Press):
+    """E* = G/(1 - nu): right of two bodies of one material."""
+
+    def modulus(self, scene):
+        if scene.sphere is None:
+            return scene.pair.effective_modulus
+        material = scene.sphere.material
+        return material.shear_modulus / (1.0 - material.poisson_ratio)
+
+
+class ShearModulusOfOneBody(Brush):
+    """G* = 2 G/(2 - nu): right of two bodies of one material."""
+
+    def modulus(self, scene):
+        if scene.sphere is None:
+            return scene.pair.effective_shear_modulus
+        material = scene.sphere.material
+        return 2.0 * material.shear_modulus / (2.0 - material.poisson_ratio)
+
+
+class MassOfOneBody(HardSphere):
+    """2 m/7 of the sphere, as if it met a wall."""
+
+    def mass(self, scene):
+        if scene.sphere is None:
+            return scene.pair.tangential_mass
+        return scene.sphere.mass / (1.0 + 1.0 / scene.sphere.gyration_ratio**2)
+
+
+class RadiusOverRootTwoInStiffness(Mindlin):
+    """R z/2 for b², in the stiffness only."""
+
+    def modulus(self, scene):
+        return super().modulus(scene) / 2.0**0.5
+
+
+class NormalRadiusOverRootTwo(Press):
+    """b² = R z/2; it claims no hemisphere of pressure."""
+
+    offers: ClassVar[frozenset[str]] = frozenset({"radius"})
+
+    def width(self, square):
+        return (0.5 * square) ** 0.5
+
+
+class FourfoldModulus(Mindlin):
+    """8 G* b, which is for the G* of discrete-element codes."""
+
+    def modulus(self, scene):
+        return 8.0 * scene.pair.effective_shear_modulus
+
+
+class HalfModulus(Mindlin):
+    """G* b: a factor 2 was lost."""
+
+    def modulus(self, scene):
+        return scene.pair.effective_shear_modulus
+
+
+# Friction work.
+
+
+class WorkOnePercent(Brush):
+    """Friction work, one per cent too much."""
+
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state, increment, before, after)
+        return response._replace(friction_work=1.01 * response.friction_work), new
+
+
+class WorkOfThePreviousStep(Slider):
+    """The work of a step comes with the answer to the next one."""
+
+    def start(self, scene, normal):
+        return super().start(scene, normal), np.zeros(scene.shape)[()]
+
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state[0], increment, before, after)
+        return response._replace(friction_work=state[1]), (new, response.friction_work)
+
+
+class MorePower(Slip):
+    power: ClassVar[float] = 1.01
+
+
+class PowerOnePercent(SlipThenRoll):
+    """Power of friction, one per cent too much."""
+
+    slip: ClassVar[type] = MorePower
+
+
+# Oddness.
+
+
+class Count(NamedTuple):
+    memory: Any
+    displacement: Any
+
+
+class NotOddAtLargeD(Slider):
+    """The total displacement is cut at 500 units of it, on one side only."""
+
+    def start(self, scene, normal):
+        unit = scene.friction_coefficient * normal.maximum_approach / scene.pair.stiffness_ratio
+        return Count(super().start(scene, normal), (500.0 * unit, 0.0))
+
+    def advance(self, state, increment, before, after):
+        most, so_far = state.displacement
+        now = np.minimum(so_far + increment.displacement, most)
+        given = increment._replace(displacement=now - so_far)
+        response, memory = super().advance(state.memory, given, before, after)
+        return response, Count(memory, (most, now))
+
+
+class CourseOfOneSign(HardSphere):
+    """The course of an impact is that of a positive slip velocity."""
+
+    def whole_impacts(self, scene, normal):
+        *others, last = super().whole_impacts(scene, normal)
+        friction, mass = scene.friction_coefficient, scene.pair.tangential_mass
+        share = abs(last.slip_velocity_change) * mass / (friction * normal.total_load_impulse)
+
+        def course(impulse, load):
+            return -share * friction * impulse / mass, share * friction * load
+
+        return (*others, attrs.evolve(last, course=course))
+
+
+class Steps(STEPS):
+    """The symplectic scheme with something done to its motion."""
+
+    def alter(self, motion, scene):
+        return motion
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        return self.alter(super().integrate(normal, tangential, scene, observer), scene)
+
+
+class IntegratorNotOdd(Steps):
+    """One per cent short where slip is negative."""
+
+    def alter(self, motion, scene):
+        share = np.where(np.asarray(scene.slip_velocity) < 0.0, 0.99, 1.0)
+        change = share * motion.slip_velocity_change
+        return attrs.evolve(motion, slip_velocity_change=change if scene.shape else float(change))
+
+
+# Declared errors.
+
+
+class FalsePsi2Error(Brush):
+    """Declares 1e-9; the answers are good to 1e-3."""
+
+    def psi2_error(self, scene, normal, steps):
+        return 1e-9 + 0.0 * scene.psi1
+
+
+class FalseErrorOfAWhole(Tabled):
+    """Declares 1e-9; the table is good to 1e-2."""
+
+    def answer(self, scene, change, work):
+        return attrs.evolve(super().answer(scene, change, work), psi2_error=1e-9)
+
+
+class RoughMotion(MOTION):
+    """A load impulse out of a rough table."""
+
+    accuracy = 1e-12
+
+    def at(self, phase):
+        sample = super().at(phase)
+        return sample._replace(load_impulse=(1.0 + 3e-6) * sample.load_impulse)
+
+
+class FalseAccuracyOfAMotion(HERTZ):
+    """Declares an accuracy of 1e-12; the load impulse is good to 3e-6."""
+
+    def motion(self, scene):
+        motion = RoughMotion.of(self, scene)
+        return attrs.evolve(motion, total_load_impulse=(1.0 + 3e-6) * motion.total_load_impulse)
+
+
+class FalseResolution(STEPS):
+    """Says that it takes ten times the steps that it takes."""
+
+    def resolution_for(self, normal, tangential, scene):
+        return 10.0 * super().resolution_for(normal, tangential, scene)
+
+
+# Memory.
+
+
+class RemembersAfterSeparation(Slider):
+    """Out of contact it answers zero, and keeps its state."""
+
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state, increment, before, after)
+        return response, new._replace(
+            force=np.where(after.friction_load > 0.0, new.force, state.force)[()]
+        )
+
+
+class ClearsOneStepLate(Slider):
+    """Lets go where the contact was open before the step and is open after it."""
+
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state, increment, before, after)
+        gone = (before.friction_load <= 0.0) & (after.friction_load <= 0.0)
+        kept = np.where(gone | (after.friction_load > 0.0), new.force, state.force)[()]
+        return response, new._replace(force=kept)
+
+
+class StateInPlaceInABatch(Slider):
+    """Of a batch the force is written into the state that came in."""
+
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state, increment, before, after)
+        if np.ndim(state.force):
+            state.force[...] = new.force
+            return response, state
+        return response, new
+
+
+STARTED: dict[Any, Any] = {}
+
+
+class CachedByShape(Slider):
+    """What it made of a scene is kept for every other scene of the same shape."""
+
+    def start(self, scene, normal):
+        if scene.shape not in STARTED:
+            STARTED[scene.shape] = super().start(scene, normal)
+        return STARTED[scene.shape]
+
+
+class RelaxesPerCall(Slider):
+    """Creep in every call, whatever its duration."""
+
+    def held(self, state, increment, before, after):
+        return (1.0 - 1e-6) * state.force
+
+
+class LimitOfTheStepBefore(Slider):
+    """Coulomb's limit of the load that the step begins with."""
+
+    def limit(self, state, before, after):
+        return state.friction * before.friction_load
+
+
+# Friction.
+
+
+class LimitOfTheForce(Slider):
+    """Coulomb's limit of the normal force, where it presses."""
+
+    def limit(self, state, before, after):
+        return state.friction * np.maximum(after.force, 0.0)
+
+
+class LimitByMuSquared(Slider):
+    def friction(self, scene):
+        return scene.friction_coefficient**2
+
+
+class HardCodedFriction(Slider):
+    """Steel on steel, 0.3."""
+
+    def friction(self, scene):
+        return 0.3 + 0.0 * scene.friction_coefficient
+
+
+class FrictionOfTheFirst(Slider):
+    """Of a batch the first friction coefficient, for all."""
+
+    def friction(self, scene):
+        return np.ravel(scene.friction_coefficient)[0] + np.zeros(scene.shape)[()]
+
+
+class RestitutionOfTheVelocities(HardSphere):
+    """mu (1 + e) M_n v1 with e of the normal velocities: not the impulse of the friction load."""
+
+    def impulse(self, scene, normal):
+        return scene.pair.normal_mass * (scene.normal_speed - normal.final_rate)
+
+
+class UniformLimits(Brush):
+    """Springs that slip all at once; it claims no partial slip."""
+
+    offers: ClassVar[frozenset[str]] = frozenset()
+
+    def profile(self, places, radius):
+        return 1.0 * (places < radius) * radius**2
+
+
+# Batches, NaN, units, chance.
+
+
+class TransposedBatch(Slider):
+    """Of a batch of two axes the friction coefficients in the order of the other axis."""
+
+    def friction(self, scene):
+        friction = np.asarray(scene.friction_coefficient)
+        if friction.ndim < 2:
+            return scene.friction_coefficient
+        return np.ravel(friction, order="F").reshape(friction.shape)
+
+
+class TransposedNormalBatch(Press):
+    """Of a batch of two axes the radii in the order of the other axis."""
+
+    def radius(self, scene):
+        radius = np.asarray(scene.pair.radius)
+        if radius.ndim < 2:
+            return scene.pair.radius
+        return np.ravel(radius, order="F").reshape(radius.shape)
+
+
+class HidesNanInABatch(Slider):
+    """Of a batch NaN is cleaned away."""
+
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state, increment, before, after)
+        if np.ndim(state.force):
+            force = np.nan_to_num(response.force)
+            return TangentialResponse(force, np.nan_to_num(response.friction_work)), new._replace(
+                force=force
+            )
+        return response, new
+
+
+class NanRateIsNoDamping(Press):
+    """A rate of NaN is taken for rest."""
+
+    def dashpot(self, damping, rate):
+        return 1.0 + damping * np.nan_to_num(rate)
+
+
+class RegularisedInMillimetres(Slider):
+    """Below a millimetre a second friction is viscous."""
+
+    def limit(self, state, before, after):
+        return state.friction * after.friction_load
+
+    def advance(self, state, increment, before, after):
+        slow = np.tanh(np.abs(increment.velocity) / 1e-3)
+        softer = state._replace(friction=state.friction * slow)
+        response, new = super().advance(softer, increment, before, after)
+        return response, new._replace(friction=state.friction)
+
+
+class DrawsFromTheGlobalGenerator(HardSphere):
+    """A rough surface: mu varies by a per cent, from NumPy's global generator."""
+
+    def friction(self, scene):
+        draw = np.random.standard_normal(scene.shape or None)  # noqa: NPY002
+        return scene.friction_coefficient * (1.0 + 0.01 * draw)
+
+
+# Integrators.
+
+
+class IntegratorIgnoresSpin(STEPS):
+    """Takes the velocity of the centre for that of the contact."""
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        if scene.sphere is not None:
+            scene = attrs.evolve(scene, spin=0.0)
+            normal = normal_motion(normal.law, scene)
+        return super().integrate(normal, tangential, scene, observer)
+
+
+class HidesUnsettled(Steps):
+    """A law that found no answer reads as success."""
+
+    def alter(self, motion, scene):
+        if scene.shape or motion.status is not Status.UNSETTLED:
+            return motion
+        return attrs.evolve(motion, status=Status.SUCCESS, detail="")
+
+
+#: Each with the check that catches it, and words by which its sentence names the fault.
+FAULTS = [
+    (IgnoresSpin, "spin", "of which spin is 1: psi2 differs by"),
+    (
+        NormalRadiusOfOneBody,
+        "contacts_unlike",
+        "Balls unlike in radius: exchanged, the force differs by",
+    ),
+    (
+        LimitRadiusOfOneBody,
+        "unlike_bodies",
+        "Balls unlike in radius, psi1 = 0.5: exchanged, psi2 differs by",
+    ),
+    (
+        NormalModulusOfOneBody,
+        "contacts_unlike",
+        "unlike in shear_modulus: exchanged, the force differs",
+    ),
+    (
+        ShearModulusOfOneBody,
+        "unlike_bodies",
+        "unlike in shear_modulus, psi1 = 0.5: exchanged, psi2",
+    ),
+    (
+        MassOfOneBody,
+        "unlike_bodies",
+        "Balls unlike in mass, psi1 = 9.0: exchanged, psi2 differs by",
+    ),
+    (RadiusOverRootTwoInStiffness, "at_rest_stiffness", "a contact at rest is 0.7071 times 2 G* b"),
+    (NormalRadiusOverRootTwo, "radius", "b² is 0.5 R z at greatest compression"),
+    (FourfoldModulus, "at_rest_stiffness", "dF/dD of a contact at rest is 4 times 2 G* b"),
+    (HalfModulus, "at_rest_stiffness", "dF/dD of a contact at rest is 0.5 times 2 G* b"),
+    (WorkOnePercent, "gross_slip", "work of gross slip by 4.0 is 1.01 times force times slip"),
+    (WorkOfThePreviousStep, "work_in_its_step", "that of the step before, of 0.1, 0.059"),
+    (PowerOnePercent, "impact_books", "the energy books miss 1.0e-02"),
+    (NotOddAtLargeD, "odd_in_slip", "Reversed slip, as far as 10000 units, gives a force that"),
+    (
+        CourseOfOneSign,
+        "whole_impact_form",
+        "psi1 = -0.3, chi = 0.4, 'hard spheres': its course ends",
+    ),
+    (IntegratorNotOdd, "mirror_images", "psi1 = -0.3: the motion is 1.0e-02 off the mirror image"),
+    (FalsePsi2Error, "declared_error", "psi2_error = 1e-09 is declared, and psi2 is 0.0007"),
+    (FalseErrorOfAWhole, "declared_error", "psi2_error = 1e-09 is declared, and psi2 is 0.004"),
+    (
+        FalseAccuracyOfAMotion,
+        "motion_accuracy",
+        "accuracy = 1e-12 is declared for the load impulse",
+    ),
+    (
+        FalseResolution,
+        "resolution_told",
+        "resolution_for says steps = 2000, and with steps = 2000 an",
+    ),
+    (
+        RemembersAfterSeparation,
+        "contact_again",
+        "contact is made again: pressing alone gives F = 0.01",
+    ),
+    (ClearsOneStepLate, "contact_again", "After 1 step(s) out of contact, contact is made again"),
+    (StateInPlaceInABatch, "pure", "changed the next one, at step 1 of a batch of shape (3,)"),
+    (CachedByShape, "impact_after_another", "An impact of other bodies, run after another scene"),
+    (
+        RelaxesPerCall,
+        "held_still",
+        "Held still for 400 steps, the force of 0.225 mu P_max changes by",
+    ),
+    (LimitOfTheStepBefore, "coulomb_limit", "it is mu times the load at the start of the step"),
+    (
+        LimitOfTheForce,
+        "friction_load",
+        "mu times the friction load is 0.3514 and mu times the normal",
+    ),
+    (LimitByMuSquared, "friction_coefficient", "goes with mu to the power 2, not 1"),
+    (HardCodedFriction, "friction_coefficient", "goes with mu to the power"),
+    (FrictionOfTheFirst, "batch", "Contact 1 of a batch that differs in friction_coefficient only"),
+    (RestitutionOfTheVelocities, "load_impulse", "off mu times the impulse of the friction load"),
+    (UniformLimits, "coulomb_at_a_point", "The traction exceeds mu p by 1"),
+    (TransposedBatch, "batch", "Contact (0, 1) of a batch of shape (2, 3) is off"),
+    (TransposedNormalBatch, "contacts_batch", "Contact (0, 1) of a batch of shape (2, 3) is off"),
+    (
+        HidesNanInABatch,
+        "non_finite",
+        "NaN as the slip of one contact of a batch gives F = 0 N there",
+    ),
+    (NanRateIsNoDamping, "contacts_non_finite", "A rate of NaN gives a force of"),
+    (RegularisedInMillimetres, "impact_units", "in other units psi2 differs by"),
+    (DrawsFromTheGlobalGenerator, "impact_repeatable", "An impact that slips, run twice, ends"),
+    (IntegratorIgnoresSpin, "spin_by", "of which spin is 1: psi2 differs by"),
+    (HidesUnsettled, "faults_reported", "A fault in Hertz and UnsettledSpring reads as success"),
+]

@@ -1,0 +1,58 @@
+"""Every installed law keeps its contract, or says which part it does not keep, and why."""
+
+import pytest
+
+from contactlab.compose.registry import REGISTRY
+from contactlab.testing import parametrize_with_checks
+
+#: Smaller than the defaults, for speed; as fine as the checks' tolerances need.
+OPTIONS = {
+    "tangential.annulus": {"annuli": 40},
+    "tangential.sharp_annulus": {"annuli": 30},
+    "tangential.springs": {"springs": 30},
+    "tangential.halfspace": {"rings": 16, "angles": 1},
+}
+#: Laws that an option makes another law.
+FORMS = [
+    ("tangential.annulus", {"annuli": 40, "displacement": "mean"}),
+    ("tangential.linear_spring", {"damping": 0.3}),
+    ("tangential.springs", {"springs": 100, "grid": "doubling"}),
+    ("tangential.mindlin_cap", {"stiffness_factor": 2.0 / 3.0, "damping": 0.2}),
+    ("tangential.mindlin_cap", {"form": "displacement_rescaled"}),
+    ("tangential.mindlin_cap", {"form": "increment"}),
+    ("tangential.mindlin_cap", {"form": "increment_rescaled"}),
+    ("normal.linear", {"restitution": 0.1, "stiffness": 1e7}),
+    ("normal.tsuji", {"restitution": 0.1}),
+    ("normal.hunt_crossley", {"damping": 0.2}),
+    ("normal.kuwabara_kono", {"relaxation_time": 1e-6}),
+    ("normal.walton_braun", {"restitution": 0.3, "stiffness": 1e7}),
+    ("normal.thornton", {"yield_pressure": 1e9}),
+    ("normal.jkr", {"work_of_adhesion": 20.0}),
+    ("normal.dmt", {"work_of_adhesion": 20.0}),
+]
+CHOSEN = [(name, OPTIONS.get(name, {})) for name in REGISTRY.names()] + FORMS
+LAWS = [REGISTRY.create(name, **options) for name, options in CHOSEN]
+#: Laws whose checks take longer than a few seconds.
+HEAVY = [law for law in LAWS if type(law).__name__ == "HalfSpace"]
+CLAIMING = [law for law in LAWS if "partial_slip" in law.offers]
+
+
+@parametrize_with_checks([law for law in LAWS if law not in HEAVY])
+def test_conformance(law, check):
+    check(law)
+
+
+@pytest.mark.slow
+@parametrize_with_checks(HEAVY)
+def test_conformance_of_a_heavy_law(law, check):
+    check(law)
+
+
+@pytest.mark.parametrize("law", CLAIMING, ids=repr)
+def test_a_law_that_claims_partial_slip_expects_to_fail_under_damping_at_most(law):
+    assert set(law.expected_failures) <= {"coulomb_at_a_point_damped"}
+
+
+def test_the_laws_of_partial_slip_claim_it():
+    names = {type(law).__name__ for law in CLAIMING}
+    assert names == {"Annulus", "Fronts", "SharpAnnulus", "Springs"}

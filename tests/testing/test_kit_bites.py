@@ -1,0 +1,129 @@
+"""The kit catches each broken law by the check that is meant for it, and lets a sound one pass."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from contactlab.testing import CHECKS, ConformanceError, Verdict, check_law, checks_for, outcome
+from tests.testing import broken_clauses as clauses
+from tests.testing import broken_couplings as couplings
+from tests.testing import broken_declarations as declarations
+from tests.testing import broken_impacts as impacts
+from tests.testing import broken_integrators as integrators
+from tests.testing import broken_laws as laws
+from tests.testing import broken_normal as normal
+from tests.testing import broken_rigid as rigid
+from tests.testing import fresh_faults
+
+pytestmark = pytest.mark.slow
+
+README = Path(__file__).parents[2] / "README.md"
+
+
+BROKEN = [
+    *laws.BROKEN,
+    *declarations.BROKEN,
+    *impacts.BROKEN,
+    *normal.BROKEN,
+    *integrators.BROKEN,
+    *clauses.BROKEN,
+    *couplings.BROKEN,
+    *fresh_faults.FAULTS,
+    *rigid.BROKEN,
+]
+
+
+def failed(law):
+    """Names of the checks failed, the slow ones on whole impacts left out."""
+    checks = [check for check in checks_for(law) if not check.name.startswith("impact_")]
+    return [check.name for check in checks if outcome(law, check).verdict is Verdict.FAILED]
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        laws.Sound(),
+        declarations.TwoRequired(stretch=1e-3, count=3),
+        declarations.Interpolates(),
+        impacts.AllAtOnce(),
+        impacts.Knowing(),
+        impacts.Whole(),
+        normal.Stepwise(),
+    ],
+    ids=["Sound", "TwoRequired", "Interpolates", "AllAtOnce", "Knowing", "Whole", "Stepwise"],
+)
+def test_a_sound_law_passes_every_check(law):
+    verdicts = {entry.verdict for entry in check_law(law)}
+    assert verdicts <= {Verdict.PASSED, Verdict.NOT_CLAIMED, Verdict.NOT_APPLICABLE}
+    assert Verdict.PASSED in verdicts
+
+
+@pytest.mark.parametrize(
+    ("broken", "name", "words"), BROKEN, ids=[f"{law.__name__}-{name}" for law, name, _ in BROKEN]
+)
+def test_each_broken_law_is_caught_by_the_check_meant_for_it(broken, name, words):
+    """For the fault it has: a check that only stumbles over it says something else."""
+    np.random.seed(1)  # noqa: NPY002 one of the faults draws from the global generator
+    law = broken()
+    check = next(check for check in checks_for(law) if check.name == name)
+    found = outcome(law, check)
+    assert found.verdict is Verdict.FAILED, found
+    assert words in found.sentence
+
+
+def test_every_check_bites():
+    assert {name for _, name, _ in BROKEN} == {check.name for check in CHECKS}
+
+
+def test_the_counts_of_the_readme():
+    told = " ".join(README.read_text(encoding="utf-8").split())
+    assert f"{len({law for law, _, _ in BROKEN})} deliberately broken laws" in told
+    assert f"{len(CHECKS)} small named checks" in told
+
+
+@pytest.mark.parametrize(
+    ("broken", "name"),
+    [
+        (laws.NotOdd, "odd_in_slip"),
+        (laws.UnderstatesStiffness, "stiffness"),
+        (declarations.WrongVersion, "api_version"),
+    ],
+)
+def test_a_fault_in_one_clause_fails_few_checks(broken, name):
+    assert name in failed(broken())
+    assert len(failed(broken())) <= 4
+
+
+def test_what_cannot_be_run_is_not_passed():
+    law = declarations.OneOfThreeWays()
+    found = {entry.name: outcome(law, entry).verdict for entry in checks_for(law)}
+    marched = ("impact_", "whole_impacts", "sliding_impulse")
+    tried = {name: verdict for name, verdict in found.items() if name.startswith(marched)}
+    assert len(tried) >= 10
+    assert set(tried.values()) <= {Verdict.NOT_APPLICABLE, Verdict.NOT_CLAIMED}
+
+
+def test_a_force_that_is_not_told_is_not_judged():
+    law = impacts.WholeTooLong()
+    check = next(check for check in checks_for(law) if check.name == "impact_coulomb_limit")
+    assert outcome(law, check).verdict is Verdict.NOT_APPLICABLE
+
+
+def test_a_refusal_names_law_check_and_fault():
+    with pytest.raises(ConformanceError, match=r"WrongSign.*\n(.*\n)*opposes_slip: failed: "):
+        check_law(laws.WrongSign())
+
+
+def test_an_unexpected_pass_is_reported():
+    law = declarations.ExpectsTooMuch()
+    check = next(check for check in checks_for(law) if check.name == "units")
+    assert outcome(law, check).verdict is Verdict.UNEXPECTED_PASS
+    with pytest.raises(ConformanceError, match="units: unexpected pass"):
+        check_law(law)
+
+
+def test_a_fault_in_one_law_harms_no_other():
+    for broken in (laws.Raises, laws.HiddenMemory, laws.ReturnsNone):
+        failed(broken())
+    assert failed(laws.Sound()) == []
