@@ -30,9 +30,11 @@ def test_bench(run, monkeypatch, tmp_path):
     ran = run("bench", "--quick", "--csv", table, "--figure", picture)
     assert ran.status == 130
     assert ran.out.endswith("not complete: interrupted\n")
-    assert [row["method"] for row in rows(table)] == ["springs / symplectic"] * 2
+    assert [row["method"] for row in rows(table)] == ["rebound()"] + ["springs / symplectic"] * 2
     assert picture.read_bytes().startswith(b"\x89PNG")
-    monkeypatch.setattr(work_precision, "_row", interrupting(work_precision._row, 0))
+    monkeypatch.setattr(
+        work_precision, "_rebound_row", interrupting(work_precision._rebound_row, 0)
+    )
     ran = run("bench", "--quick", "--json", "--figure", tmp_path / "none.png")
     assert ran.status == 130
     content = json.loads(ran.out)
@@ -44,7 +46,8 @@ def test_a_sweep_that_is_interrupted_within_a_study_ends_the_study(run, monkeypa
     """A sweep returns what is done; its time, and its gaps, are not those of the law."""
     monkeypatch.setattr(solve, "outcome", interrupting(solve.outcome, 0))
     with pytest.raises(KeyboardInterrupt):
-        work_precision._sweep_time(Simulation(tangential="coulomb", integrator="symplectic"))
+        simulation = Simulation(tangential="coulomb", integrator="symplectic")
+        work_precision._sweep_time(simulation, alone=1e-4)
     monkeypatch.setattr(validation, "_checks", lambda: iter([validation._rigid]))
     ran = run("validate")
     assert (ran.status, ran.out) == (130, "")
