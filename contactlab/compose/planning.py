@@ -45,7 +45,7 @@ def make_plan(
     known : sequence of Answer
         What need not be marched.
     history : bool or "fields"
-        What is asked for.
+        True if a history was requested, ``"fields"`` if one with fields was.
     """
     ended, marched = _ended_and_marched(scene, normal, known)
     error = _error(scene, normal, laws, known, marched)

@@ -1,4 +1,4 @@
-"""What a scene needs, and what is left out and why, said before anything runs."""
+"""The plan of an impact: statements on what is computed and what is left out, and cautions."""
 
 from __future__ import annotations
 
@@ -59,14 +59,14 @@ class Clause(NamedTuple):
     Attributes
     ----------
     text : str
-        The words, or their format where there are ``values``.
+        The words; if there are ``values``, a format string for them.
     where : array of bool
-        Of the batch shape.
+        Impacts that the statement is about; an array of the batch shape.
     values : tuple or None
-        What ``text`` formats: an array of the batch shape, of which the largest entry among the
-        impacts is shown, a ``Span``, or a law. None: ``text`` is the words.
+        Values to format into ``text``: a ``Span``, a law, or an array of the batch shape, whose
+        largest entry among the impacts is shown. None if ``text`` is not a format string.
     code : str
-        What the statement is about, for programs: a constant of this module, or empty.
+        Subject of the statement, for programs: a constant of this module, or empty.
     """
 
     text: str

@@ -56,7 +56,7 @@ def follow_all(
     count : int
         Rings within the largest contact.
     course : Course
-        Of all impacts.
+        Normal motions of the impacts.
     psi1, chi, stiffness : array, shape (impacts,)
         Dimensionless angles of incidence, inertia ratios, and units of force times those of time
         over M_n v1.

@@ -42,7 +42,7 @@ class Pictures:
     Parameters
     ----------
     options : Options
-        Of the law.
+        Options of the law.
     every : NormalMotion
         Motion of one impact or of a batch.
     left : array of bool
@@ -65,7 +65,7 @@ class Pictures:
         Parameters
         ----------
         load_impulse : float or array
-            Of the batch shape.
+            Integral of the load at the instant of each impact, in N s, of the batch shape.
         """
         shape = self._every.scene.shape
         if not self._kept:

@@ -152,7 +152,7 @@ def _shared(share: Callable[..., Iterable[Array]], workers: int, psi1: Array, ch
     Returns
     -------
     array
-        Of ``exact``, parts joined along the first axis.
+        Answers of ``exact``, in the order of ``psi1``.
     """
     parts = 8 * workers
     return np.concatenate(
