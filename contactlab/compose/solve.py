@@ -1,4 +1,4 @@
-"""The outcome of a scene under three laws: plan and motion, from what is known and what is not."""
+"""The outcome of a scene under three laws: plan and motion, by whole-impact answers or a march."""
 
 from __future__ import annotations
 
@@ -11,17 +11,16 @@ import numpy as np
 
 from contactlab.compose.answers import Answer, answers, show
 from contactlab.compose.composition import Laws
-from contactlab.compose.marching import march
 from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.older import books_bound
 from contactlab.compose.planning import make_plan
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.solved_motion import FailedMotion
 from contactlab.contracts import faults
-from contactlab.contracts.integrator import TangentialMotion
+from contactlab.contracts.integrator import Observer, TangentialMotion
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import NormalMotions
 from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, halves, some
 from contactlab.numeric.checks import refuse
@@ -32,6 +31,8 @@ from contactlab.outcome.plan import Plan
 
 #: Friction work over the energy at the start is this many times less accurate than psi2.
 WORK_ACCURACY = 10.0
+#: A failed batch of at most so many impacts is marched one by one; a larger batch is halved first.
+FEW = 8
 
 
 class Prepared(NamedTuple):
@@ -143,7 +144,7 @@ def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> Ta
     normal, known, plan = prepared
     shape, marched = normal.scene.shape, plan.marched
     if every(marched):
-        return march(laws, normal, recorder)
+        return _march(laws, normal, recorder)
     if recorder is not None and not some(marched):
         show(normal, known, recorder)
     if not shape:
@@ -161,8 +162,44 @@ def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> Ta
     motion = _answered(normal, known)
     if not some(marched):
         return motion
-    parts = [(np.ones(shape, dtype=bool), motion), (marched, march(laws, normal.take(marched)))]
+    parts = [(np.ones(shape, dtype=bool), motion), (marched, _march(laws, normal.take(marched)))]
     return TangentialMotion.merged(parts, shape)
+
+
+def _march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) -> TangentialMotion:
+    """Return the tangential motion; in a batch only the impacts that fail have no answer."""
+    # With an observer, failures are not isolated: the observer would be called again.
+
+    def part(index: Any) -> TangentialMotion:
+        return _march(laws, normal.take(index))
+
+    shape = normal.scene.shape
+    size = math.prod(shape)
+    if shape and size == 1 and observer is None:  # one impact is faster as plain numbers
+        return TangentialMotion.joined([part((0,) * len(shape))], shape)
+    motion, raised = _attempt(laws, normal, observer)
+    if not shape or observer is not None or np.all(motion.status == Status.SUCCESS):
+        return motion
+    if laws.integrator.own_statuses and not raised:
+        return motion
+    parts = np.ndindex(shape) if size <= FEW else halves(shape)
+    return TangentialMotion.joined([part(index) for index in parts], shape)
+
+
+def _attempt(
+    laws: Laws, normal: NormalMotion, observer: Observer | None
+) -> tuple[TangentialMotion, bool]:
+    """Return the motion, and True if the integrator raised instead of returning a motion."""
+    scene = normal.scene
+    try:
+        # Underflow is harmless here, even if the user has numpy raise for it.
+        with np.errstate(under="ignore"):
+            return laws.integrator.integrate(normal, laws.tangential, scene, observer), False
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # a plug-in may not end the process
+        sentence = faults.sentence(laws.integrator, faults.raised(error), 1)
+        return TangentialMotion.nothing(scene.shape, Status.LAW_RAISED, sentence), True
 
 
 def _answered(normal: NormalMotion, known: list[Answer]) -> TangentialMotion:

@@ -61,7 +61,7 @@ def swept(
     if executor is None:
         pieces = (solved(laws, scene.take(slice(*each)), each, block) for each in missing)
     else:
-        from contactlab.compose.executors import pieces_of  # needed with an executor only
+        from contactlab.compose.workers import pieces_of  # needed with an executor only
 
         pieces = pieces_of(laws, scene, list(missing), block, executor)
     try:
