@@ -12,6 +12,7 @@ import numpy as np
 from contactlab.compose.answers import Answer, answers, show
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.pieces import Chunk, Piece
 from contactlab.compose.planning import make_plan
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.solved_motion import FailedMotion
@@ -85,6 +86,14 @@ def outcome(
     bound: Any = books_bound(laws.tangential, scene)
     bound = bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
     return prepared.plan, _named(laws, balanced(motion, scene, bound))
+
+
+def solved(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
+    """Return the piece of a sweep's chunk, a block at a time; ``scene`` is the chunk alone."""
+    ends = range(0, chunk.size, block)
+    scenes = (scene.take(slice(first, min(first + block, chunk.size))) for first in ends)
+    plans, motions = zip(*(outcome(laws, each, False, None) for each in scenes), strict=True)
+    return Piece(chunk, Plan.joined(plans), Motion.joined(motions, (chunk.size,)))
 
 
 def _named(laws: Laws, motion: Motion) -> Motion:

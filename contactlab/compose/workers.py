@@ -21,7 +21,8 @@ import numpy as np
 
 from contactlab.compose.composition import Laws, versions
 from contactlab.compose.installed import short
-from contactlab.compose.pieces import Chunk, Piece, solved, unsolved
+from contactlab.compose.pieces import Chunk, Piece, unsolved
+from contactlab.compose.solve import solved
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
