@@ -82,7 +82,7 @@ def answers(
             raise _unanswered(tangential)
         return []
     left = separated(normal)
-    found = []
+    given = []
     for known in tangential.whole_impacts(scene, normal):
         if known.where is False:
             continue
@@ -90,13 +90,13 @@ def answers(
         if not always:
             where &= _serves(known, scene, history, accuracy)
         if where.any():
-            found.append(Answer(where, _checked(known, tangential, shape)))
+            given.append(Answer(where, _checked(known, tangential, shape)))
             left &= ~where
     if always and left.any():
         raise _unanswered(tangential)
     if history and left.any():
         return []
-    return found
+    return given
 
 
 def separated(normal: NormalMotion) -> Mask:

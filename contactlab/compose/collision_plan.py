@@ -74,11 +74,11 @@ def by_rebound(plan: Plan, chi: Any, restitution: float) -> Plan:
 
 def _turns(encounter: Encounter) -> Any:
     """Return whether either body spins about the normal."""
-    found: Any = False
+    turning: Any = False
     normal = encounter.contact().normal
     for spin in (encounter.spin, encounter.target_spin):
         parts = components(spin)
         about = sum(one * n for one, n in zip(parts, normal, strict=True))
         whole = np.sqrt(sum(one * one for one in parts))
-        found = found | (np.abs(about) > TURNING * whole)
-    return found
+        turning = turning | (np.abs(about) > TURNING * whole)
+    return turning

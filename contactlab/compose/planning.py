@@ -122,11 +122,11 @@ def _ended_and_marched(
 def _not_marched(reasons: Sequence[tuple[str, Mask, bool]], ended: Mask) -> list[Clause]:
     """Return why impacts are not marched."""
     march = "march of the tangential motion"
-    found = [Clause(f"{march}: {reason}", where) for reason, where, _ in reasons]
-    found += [Clause(UNCHECKED, where, code=BOOKS) for _, where, balanced in reasons if balanced]
+    clauses = [Clause(f"{march}: {reason}", where) for reason, where, _ in reasons]
+    clauses += [Clause(UNCHECKED, where, code=BOOKS) for _, where, balanced in reasons if balanced]
     if not every(ended):
-        found.append(Clause(f"{march}: the normal motion came to no end", ~ended))
-    return found
+        clauses.append(Clause(f"{march}: the normal motion came to no end", ~ended))
+    return clauses
 
 
 def _no_history(history: bool | str, marched: Mask, *, fields: bool) -> str | None:
@@ -178,11 +178,11 @@ def _error_clauses(error: Any, ended: Mask) -> list[Clause]:
         undeclared, declared = ended, NONE
     else:
         undeclared, declared = NONE, ended
-    found = []
+    clauses = []
     if some(declared):
         text = "numerical error of psi2: at most {:.2g}, declared"
-        found.append(Clause(text, declared, (error,), PSI2_ERROR))
+        clauses.append(Clause(text, declared, (error,), PSI2_ERROR))
     if some(undeclared):
         text = f"numerical error of psi2: not declared{ADVICE}"
-        found.append(Clause(text, undeclared, code=PSI2_ERROR))
-    return found
+        clauses.append(Clause(text, undeclared, code=PSI2_ERROR))
+    return clauses

@@ -208,7 +208,7 @@ class _Room(NamedTuple):
 
     def led(self) -> tuple[Array, Array | None] | None:
         """Return the best centre of the name away from its curve, and where its line begins."""
-        best, found = np.inf, None
+        best, place = np.inf, None
         size, unit, pad = self.size, self.unit, LEAST * self.unit
         for point in self.own[:: POINTS // PLACES]:
             distances = (_distances(point[None], points)[0] for points in self.others)
@@ -228,8 +228,8 @@ class _Room(NamedTuple):
                 )
                 length = float(np.hypot(*(end - point))) + CROSSED * unit * crossed
                 if length < best:
-                    best, found = length, (centre, point)
-        return found
+                    best, place = length, (centre, point)
+        return place
 
     def _free(self, boxes: Array) -> NDArray[np.bool_]:
         """Return which boxes lie in the axes and touch neither a curve nor other text."""

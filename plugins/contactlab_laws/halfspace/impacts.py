@@ -174,13 +174,13 @@ def parts_of(chi: float, least: int, rings: int) -> int:
 def along_one_direction(normal: NormalMotion, matter: Matter, rings: int, parts: int) -> Impacts:
     """Return impacts whose tractions are along one direction, functions of the radius."""
     path = course(normal, rings, parts)
-    found = follow_all(rings, path, matter.psi1, matter.chi, matter.stiffness)
+    motion = follow_all(rings, path, matter.psi1, matter.chi, matter.stiffness)
     return Impacts(
-        change=found.change[-1],
-        work=found.work,
-        residual=np.zeros(found.work.shape),
-        impulse=np.broadcast_to(path.impulse, found.share.shape),
-        share=found.share,
+        change=motion.change[-1],
+        work=motion.work,
+        residual=np.zeros(motion.work.shape),
+        impulse=np.broadcast_to(path.impulse, motion.share.shape),
+        share=motion.share,
         path=path,
     )
 

@@ -105,8 +105,8 @@ def settle(table: Modes, step: Step, start: Array) -> Settled:
         if joint:
             wanted[2] -= (step.yielding * force) * metric
         columns = (to @ wanted).transpose(1, 0, 2).reshape(size, parts * number, 1)
-        found = (resolvent @ columns).reshape(size, parts, number).transpose(1, 0, 2)
-        change = back @ found
+        resolved = (resolvent @ columns).reshape(size, parts, number).transpose(1, 0, 2)
+        change = back @ resolved
         change -= x
         applied += 1
         largest = float(np.abs(change).max())

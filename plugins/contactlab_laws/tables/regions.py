@@ -92,8 +92,8 @@ class Places(NamedTuple):
 
     def parts(self) -> list[tuple[int, Rows]]:
         """Return regions, and which of the places are in each."""
-        found = [(region, (self.region == region).nonzero()[0]) for region in range(REGIONS)]
-        return [(region, part) for region, part in found if part.size]
+        places = [(region, (self.region == region).nonzero()[0]) for region in range(REGIONS)]
+        return [(region, part) for region, part in places if part.size]
 
 
 def slip_cut(terms: Array, t: Array) -> Array:

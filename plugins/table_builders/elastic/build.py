@@ -109,8 +109,8 @@ def build(path: Path, *, tolerance: float = TOLERANCE, workers: int = 1) -> None
     cells = np.array([progress.done[k] for k in order], dtype=np.int16)
     terms = np.array([progress.terms[k] for k in order])
     stuck, slip = progress.cuts
-    found = {"stuck": stuck, "slip": slip, "cells": cells, "terms": terms}
-    write(path, Stored.today(tolerance=tolerance, **found))
+    arrays = {"stuck": stuck, "slip": slip, "cells": cells, "terms": terms}
+    write(path, Stored.today(tolerance=tolerance, **arrays))
     kept.unlink()
 
 
