@@ -1,4 +1,4 @@
-"""The making of a plan, from the scene, its normal motion and what the laws say of them."""
+"""Makes the plan of a scene from its normal motion and the declarations of the laws."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from contactlab.outcome.plan import BOOKS, PSI2_ERROR, TANGENTIAL_MOTION, UNCHEC
 
 #: Error of what is known in closed form, over max(1, |psi1|).
 CLOSED_FORM = 1e-12
-#: What a plan says after an error that is not declared.
+#: Advice of a plan if the error is not declared.
 ADVICE = "; run(scene, estimate_error=True) estimates it"
 
 
@@ -43,7 +43,7 @@ def make_plan(
         Already made: it comes first.
     laws : Laws
     known : sequence of Answer
-        What need not be marched.
+        Whole-impact answers; their impacts are not marched.
     history : bool or "fields"
         True if a history was requested, ``"fields"`` if one with fields was.
     """
@@ -107,7 +107,7 @@ def _defaults(law: Any) -> str:
 def _ended_and_marched(
     scene: Scene, normal: NormalMotion, known: Sequence[Answer]
 ) -> tuple[Mask, Mask]:
-    """Return the impacts that the normal motion ends, and those of them not known as a whole."""
+    """Return the impacts whose normal motion ends, and the ones among them to be marched."""
     if not scene.shape:
         if normal.status is not Status.SUCCESS:
             return NONE, NONE

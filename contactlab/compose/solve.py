@@ -37,7 +37,7 @@ FEW = 8
 
 
 class Prepared(NamedTuple):
-    """What comes before the march: the normal motion, whole-impact answers, and the plan."""
+    """Normal motion, whole-impact answers and plan of a scene, made before the march."""
 
     normal: NormalMotion
     known: list[Answer]
@@ -55,9 +55,9 @@ def outcome(
     laws : Laws
     scene : Scene
     history : bool or "fields"
-        What the plan is to say of a history.
+        The history that is requested; the plan states what it leaves out.
     recorder : Recorder or None
-        What keeps it.
+        Keeps the history.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def outcome(
         return _by_halves(laws, scene)
     tangential = _tangential(laws, prepared, recorder)
     motion = sound(Motion.along(prepared.normal, tangential))
-    # What the books may miss by: the law's own bound, and the integrator's share.
+    # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
     bound: Any = books_bound(laws.tangential, scene)
     bound = bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
     return prepared.plan, _named(laws, balanced(motion, scene, bound))
@@ -118,12 +118,12 @@ def _named(laws: Laws, motion: Motion) -> Motion:
 
 
 def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
-    """Return what comes before the march.
+    """Return normal motion, whole-impact answers and plan of a scene.
 
     Raises
     ------
     LawFaultError
-        If a law raises where it is asked what it knows.
+        If a law raises while it is asked for whole-impact answers or cautions.
     """
     normal = normal_or_failed(laws, scene)
     accuracy = laws.integrator.accuracy
@@ -133,7 +133,7 @@ def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
 
 
 def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
-    """Return the normal motion of ``scene``; of a law that fails one of which nothing is known."""
+    """Return the normal motion of ``scene``; all its values are NaN if the law fails."""
     try:
         return normal_motion(laws.normal, scene)
     except faults.LawFaultError as fault:
@@ -149,7 +149,7 @@ def _by_halves(laws: Laws, scene: Scene) -> tuple[Plan, Motion]:
 
 
 def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> TangentialMotion:
-    """Return the tangential motion: what is known as a whole, and the rest marched."""
+    """Return the tangential motion, by whole-impact answers where there are any, else marched."""
     normal, known, plan = prepared
     shape, marched = normal.scene.shape, plan.marched
     if every(marched):

@@ -23,7 +23,7 @@ Mask = NDArray[np.bool_]
 #: Codes of clauses that programs look for: the march of the tangential motion, the declared or
 #: undeclared numerical error of psi2, and energy books that check nothing.
 TANGENTIAL_MOTION, PSI2_ERROR, BOOKS = "tangential_motion", "psi2_error", "unchecked_books"
-#: What is left out where the friction work is a difference of energies.
+#: Entry of a plan whose friction work is a difference of energies.
 UNCHECKED = (
     "check of the energy books: closed by construction, not checked; the friction work is the "
     "energy that the velocities lose"
@@ -161,12 +161,12 @@ class Plan:
 
     @property
     def computed(self) -> Clauses:
-        """What is computed; ``str`` of a clause gives its words."""
+        """Statements on what is computed; ``str`` of a clause gives its words."""
         return self._read()[0]
 
     @property
     def left_out(self) -> Clauses:
-        """What is left out, and why."""
+        """Statements on what is left out, and why."""
         return self._read()[1]
 
     @property

@@ -49,7 +49,7 @@ ERROR = 1e-9
 #: Powers of each coordinate in a patch; cells are found in a grid of 2^DEEPEST by 2^DEEPEST.
 NODES, DEEPEST = 12, 6
 SIZE = 1 << DEEPEST
-#: What is left out along each coordinate changes g by less; half of 12 terms by 12 are left.
+#: Terms left out along each coordinate change g by less; about half of 12 by 12 terms stay.
 SMALL = 1e-11
 #: Fewer impacts than this are computed one by one; so many are taken together at most.
 FEW, BLOCK = 40, 1 << 16

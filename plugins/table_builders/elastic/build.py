@@ -35,7 +35,7 @@ MINOR = 0.01
 
 @attrs.define
 class Progress:
-    """What is done and what is left; may be kept in a file."""
+    """Cells done and cells left, with their terms; may be kept in a file."""
 
     cuts: Cuts
     todo: list[Cell]
