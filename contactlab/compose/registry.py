@@ -7,7 +7,6 @@ import os
 import warnings
 from functools import cached_property, lru_cache
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import attrs
 
@@ -68,7 +67,6 @@ class Registry:
         self._warned: set[str] = set()
         self._found: set[tuple[str, str, str, str]] = set()
         self._stamp: object = None
-        self._described: WeakKeyDictionary[type[Law], str] = WeakKeyDictionary()
 
     @cached_property
     def _modules(self) -> list[tuple[str, str]]:
@@ -195,14 +193,10 @@ class Registry:
     def describe(self, law: Law | type[Law]) -> str:
         """Return a law's name, distribution and version; its class if no distribution offers it."""
         law_class = law if isinstance(law, type) else type(law)
-        text = self._described.get(law_class)
-        if text is None:
-            info = self._origin(law_class)
-            text = f"{law_class.__module__}.{law_class.__qualname__} (not registered)"
-            if info is not None:
-                text = f"{info.name.partition('.')[2]} ({info.distribution} {info.version})"
-            self._described[law_class] = text
-        return text
+        info = self._origin(law_class)
+        if info is None:
+            return f"{law_class.__module__}.{law_class.__qualname__} (not registered)"
+        return f"{info.name.partition('.')[2]} ({info.distribution} {info.version})"
 
     def _origin(self, law_class: type[Law]) -> PluginInfo | None:
         """Return the plug-in that offers this class, imported by name or not; None if none does."""

@@ -101,19 +101,18 @@ def _named(laws: Laws, motion: Motion) -> Motion:
     if not (motion.detail if isinstance(motion.detail, str) else np.any(motion.detail)):
         return motion
 
+    names = [(type(law).__name__, REGISTRY.describe(law)) for law in laws]
+
     def named(sentence: str) -> str:
-        for law in laws:
-            blamed = f", from {type(law).__name__}."
-            sentence = sentence.replace(blamed, f"{blamed[:-1]}, {REGISTRY.describe(law)}.")
+        for name, described in names:
+            sentence = sentence.replace(f", from {name}.", f", from {name}, {described}.")
         return sentence
 
     detail: Any = motion.detail
-    if isinstance(detail, np.ndarray):
-        detail = np.array([named(one) for one in detail.ravel()], dtype=object).reshape(
-            detail.shape
-        )
-    else:
-        detail = named(detail)
+    if isinstance(detail, str):
+        return attrs.evolve(motion, detail=named(detail))
+    sentences = [named(one) for one in detail.ravel()]
+    detail = np.array(sentences, dtype=object).reshape(detail.shape)
     return attrs.evolve(motion, detail=detail)
 
 
