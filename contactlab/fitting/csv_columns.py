@@ -45,7 +45,7 @@ ENCODINGS = ("utf-8-sig", "cp1252")
 
 
 class Heading(NamedTuple):
-    """What a column holds.
+    """The meaning of a column.
 
     ``role`` is "given" (an entry of the scene), "measured", "error" (standard error of a
     measured quantity) or "unused"; ``factor`` converts to the unit of ``name``.

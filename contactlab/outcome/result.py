@@ -149,7 +149,7 @@ class ImpactResult:
 
     @property
     def cautions(self) -> list[str]:
-        """What ``str`` tells to be wary of: of the numerical error, then of the plan."""
+        """Cautions that ``str`` shows: about the numerical error, then those of the plan."""
         return [*error_cautions(self), *map(str, self.plan.cautions)]
 
     @property
