@@ -3,13 +3,14 @@
 Writes ``kharaz2001.png`` in the current folder.
 """
 
+from importlib import resources
 from pathlib import Path
 
 from contactlab import Simulation, read_scene
 from contactlab.figures import laws_over_sweep, save
 from contactlab.study import compare
 
-file = read_scene(Path(__file__).with_name("kharaz2001.toml"))
+file = read_scene(Path(str(resources.files("contactlab.study"))) / "measured" / "kharaz2001.toml")
 laws = ("annulus", "coulomb")
 simulations = {law: Simulation(tangential=law, integrator="symplectic") for law in laws}
 comparison = compare(file, simulations)
