@@ -71,9 +71,8 @@ def test_the_reference_leads_from_each_public_name_to_its_source(site, opened):
     told = page.find_element("css selector", "article").text
     assert [name for name in contactlab.__all__ if name not in told] == []
     page.find_element("link text", "Scene").click()
-    page.find_element(
-        "css selector", "#contactlab\\.Scene a.viewcode-back, a[href*=_modules]"
-    ).click()
+    source = page.find_element("css selector", "dt[id='contactlab.Scene'] a[href*=_modules]")
+    page.get(source.get_attribute("href"))
     assert "class Scene" in page.find_element("css selector", "article").text
 
 
