@@ -182,13 +182,16 @@ def scripts(base: str, below: str, above: str) -> str:
 
 def prose(text: str) -> str:
     """Return plain words with symbols set: ``psi1`` as psi with an index, ``z^1.5`` raised."""
+    for plain, sign in {"<=": "≤", ">=": "≥", "->": "→"}.items():
+        text = text.replace(f" {plain} ", f" {sign} ")
+    text = re.sub(r"\b([FP])\^(?![\w(])", "\\1\u0302", text)
     text = re.sub(r"\babs\(([^()|]*)\)", r"&#124;\1&#124;", text)
     text = re.sub(r"(?<=[\w)])\^\(?(-?[\d./]+\d|\d)\)?", r"<sup>\1</sup>", text)
     text = re.sub(r"\b([A-Za-z])_(\w+)", r"<i>\1</i><sub>\2</sub>", text)
     text = re.sub(r"\b([EGKRTkmv])([0-9])(?![\w.*]*[0-9A-Za-z_])", r"<i>\1</i><sub>\2</sub>", text)
     names = "|".join(GREEK)
     return re.sub(
-        rf"\b({names})(?:_?(\d|[a-z]))?(?![\w*])",
+        rf"\b({names})(?:_?(\d|[a-z]))?(?![A-Za-z0-9_*])",
         lambda found: f"<i>{GREEK[found[1]]}</i>" + f"<sub>{found[2] or ''}</sub>" * bool(found[2]),
         text,
     )
@@ -223,7 +226,9 @@ def _outside_code(text: str, blocks: bool) -> str:
             paragraphs[number : number + 3] = [first + gap + second]
     for number, paragraph in enumerate(paragraphs):
         if not _indented(paragraph) and not paragraph.startswith("#"):
-            pieces = re.split(r"(`[^`]*`|\]\([^)]*\)|!\[[^\]]*\]|<[^>]*>|https?:\S+)", paragraph)
+            pieces = re.split(
+                r"(`[^`]*`|\]\([^)]*\)|!\[[^\]]*\]|</?[a-z][^>]*>|https?:\S+)", paragraph
+            )
             pieces[::2] = map(prose, pieces[::2])
             paragraphs[number] = "".join(pieces)
         elif (

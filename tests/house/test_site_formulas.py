@@ -60,6 +60,11 @@ def test_an_open_bracket_is_refused(site):
         site.formula("(a + b")
 
 
+def test_what_looks_like_a_tag_is_typeset(site):
+    shown = site.typeset("at abs(psi1) < 1, or mu² >= F^", blocks=False)
+    assert shown == "at &#124;<i>ψ</i><sub>1</sub>&#124; < 1, or <i>μ</i>² ≥ F\u0302"
+
+
 def test_symbols_in_prose(site):
     shown = site.prose("psi1 of abs(mu), zeta^1.5, v_x, nu1 and a museum")
     assert shown == (
