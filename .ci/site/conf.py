@@ -78,6 +78,12 @@ def attributes_apart(*given: Any) -> None:
     lines[:] = apart
 
 
+def left_out(_: Any, __: str, ___: str, member: Any, skip: bool, ____: Any) -> bool | None:
+    """Leave out fields of named tuples that the docstring of the class documents."""
+    return True if (member.__doc__ or "").startswith("Alias for field number") else None
+
+
 def setup(app: Any) -> None:
     """Have the attributes taken apart after napoleon has read the docstrings."""
+    app.connect("autodoc-skip-member", left_out)
     app.connect("autodoc-process-docstring", attributes_apart, priority=900)
