@@ -1,8 +1,8 @@
 """Does a real ball do what the theory says: the experiment of Kharaz, Gorham & Salman (2001).
 
 An aluminium-oxide sphere meets glass at angles from 2 to 85 degrees. Beyond 30 degrees the
-contact slips throughout, and the elastic and the rigid law agree; below, the ball comes back with
-less of its tangential velocity than a rigid one, as the elastic law says.
+contact slips throughout, and the elastic and the rigid law agree; below, the rigid law
+keeps 5/7 of the tangential velocity at every angle, and the measured share runs from 0.8 to 0.6.
 
 Writes ``kharaz2001.png`` in the current folder.
 """

@@ -78,9 +78,9 @@ def attributes_apart(*given: Any) -> None:
     lines[:] = apart
 
 
-def left_out(_: Any, __: str, ___: str, member: Any, skip: bool, ____: Any) -> bool | None:
+def left_out(*given: Any) -> bool | None:
     """Leave out fields of named tuples that the docstring of the class documents."""
-    return True if (member.__doc__ or "").startswith("Alias for field number") else None
+    return True if (given[3].__doc__ or "").startswith("Alias for field number") else None
 
 
 def setup(app: Any) -> None:
