@@ -44,6 +44,7 @@ SCRIPTS = {
 SLOW = (
     *("sweep_on_a_cluster", "reproduce_the_paper", "fit_your_experiment", "billiards"),
     *("beyond_the_paper", "superball", "law_swap", "stick_slip_map", "granular_gas"),
+    *("hysteresis", "signs"),
 )
 #: Options that make a script short.
 OPTIONS = {
