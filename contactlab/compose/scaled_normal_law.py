@@ -113,6 +113,6 @@ class ScaledNormalLaw:
 
     def _per_item(self, entry: Any) -> Any:
         """Return a scalar or an array of the scene's shape as an array of shape (items,)."""
-        if not self.shape:
-            return np.array([entry], dtype=np.float64)
-        return np.array(np.broadcast_to(entry, self.shape), dtype=np.float64).reshape(-1)
+        array = np.array(entry, dtype=np.float64)
+        same = array.shape == self.shape  # broadcasting takes longer than a small batch
+        return (array if same else np.broadcast_to(array, self.shape)).reshape(-1)

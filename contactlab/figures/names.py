@@ -15,8 +15,8 @@ Array = NDArray[np.float64]
 
 #: Points along a curve beside which its name may stand, and points that stand for a curve.
 PLACES, POINTS = 48, 1500
-#: Boxes that are compared with all points of a curve at once: some megabytes.
-BOXES = 64
+#: Boxes that are compared with all points of a curve at once: what a processor's cache holds.
+BOXES = 16
 #: Distances in points: least between two names, least between a name and any curve, and those
 #: that are tried between a name and its own curve.
 BETWEEN, LEAST, GAPS = 2.5, 1.5, (2.5, 5.0, 9.0)
@@ -138,10 +138,15 @@ def _off(boxes: Array, points: Array) -> Array:
     if not len(points):
         return np.full(len(boxes), np.inf)
     least = np.empty(len(boxes))
+    columns = np.ascontiguousarray(points.T)
     for first in range(0, len(boxes), BOXES):
-        low, high = np.moveaxis(boxes[first : first + BOXES, :, None], 1, 0)
-        beyond = np.maximum(np.maximum(low - points, points - high), 0.0)
-        least[first : first + BOXES] = (beyond[..., 0] ** 2 + beyond[..., 1] ** 2).min(axis=1)
+        squared: Any = 0.0
+        for axis, column in enumerate(columns):
+            low, high = boxes[first : first + BOXES, :, axis, None].swapaxes(0, 1)
+            beyond = np.maximum(low - column, column - high)
+            np.maximum(beyond, 0.0, out=beyond)
+            squared = squared + np.square(beyond, out=beyond)
+        least[first : first + BOXES] = squared.min(axis=1)
     return np.sqrt(least)
 
 
