@@ -132,7 +132,8 @@ const slips = JSON.parse(process.argv[2]);
 console.log(JSON.stringify(slips.map(([along, spin]) => {
   const ball = newBall({
     radius: 0.02, density: 1000, young: 1e7, poisson: 0.3, friction: 0.4, fastest: 3,
-    position: [0, 0, 0.05], velocity: [0.6 * along, 0.8 * along, -3], spin: [-0.8 * spin, 0.6 * spin, 0],
+    position: [0, 0, 0.05], velocity: [0.6 * along, 0.8 * along, -3],
+    spin: [-0.8 * spin, 0.6 * spin, 0],
   });
   for (let k = 0; k < 2; k++) frame(ball, 0);
   return [ball.velocity, ball.spin, ball.frictionWork, ball.mass];
