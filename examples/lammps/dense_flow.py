@@ -112,6 +112,7 @@ def draw(found: dict[float, dict[str, Array]], path: Path) -> None:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import LogLocator
 
     from contactlab.figures.style import law_style, styled
 
@@ -127,7 +128,10 @@ def draw(found: dict[float, dict[str, Array]], path: Path) -> None:
             axes.set(xlabel=r"friction coefficient $\mu$", ylabel=name)
             axes.set_xticks(range(len(found)), [f"{mu:g}" for mu in found])
         panels[1].set_yscale("log")
-        panels[0].legend(loc="upper left")
+        panels[1].yaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+        panels[1].yaxis.set_major_formatter("{x:g}")
+        panels[1].yaxis.set_minor_formatter("")
+        panels[0].legend(loc="lower right")
         figure.savefig(path)
 
 
