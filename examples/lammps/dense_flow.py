@@ -18,7 +18,7 @@ import numpy as np
 from engine import Array, Engine, Grains, arguments, engine, folder, friction, write
 
 YOUNG, POISSON, DENSITY, RADIUS = 1e8, 0.3, 2500.0, 0.01
-FILLED, SHEAR_RATE = 0.59, 5.0
+SHEAR_RATE = 5.0
 #: Coefficient of LAMMPS's ``tsuji`` for which a head-on impact keeps 0.9 of its speed.
 TSUJI = 0.8621
 LAWS = ("mindlin/force", "mindlin_rescale/force", "springs8")
@@ -28,7 +28,7 @@ BEGUN, SHEARED = 2.0, 8.0
 EVERY = 50  # steps between two stresses of the mean
 
 
-def sheared(lammps: Engine, law: str, mu: float, count: int, seed: int) -> Array:
+def sheared(lammps: Engine, law: str, mu: float, count: int, seed: int, filled: float) -> Array:
     """Return shear stress over pressure, scaled pressure and contacts a grain of one pack."""
     random = np.random.default_rng(seed)
     side = int(np.ceil(count ** (1 / 3)))
@@ -39,7 +39,7 @@ def sheared(lammps: Engine, law: str, mu: float, count: int, seed: int) -> Array
         np.ones(count, int), diameter, np.full(count, DENSITY), (lattice + 0.5) * pitch,
         random.normal(size=(count, 3)) * 0.1, np.zeros((count, 3)),
     )  # fmt: skip
-    final = (np.sum(np.pi / 6.0 * diameter**3) / FILLED) ** (1.0 / 3.0)
+    final = (np.sum(np.pi / 6.0 * diameter**3) / filled) ** (1.0 / 3.0)
     steps = [round(strain / SHEAR_RATE / TIME_STEP) for strain in (BEGUN, SHEARED)]
     style = lammps.pair if law.startswith("springs") else "granular"
     script = f"""
@@ -88,6 +88,7 @@ def main() -> None:
     parser.add_argument("--grains", type=int, default=400)
     parser.add_argument("--packs", type=int, default=4)
     parser.add_argument("--mu", type=float, nargs="+", default=[0.1, 0.3, 0.5])
+    parser.add_argument("--filled", type=float, default=0.59, help="share of the box")
     parser.add_argument("--figure", type=Path)
     given = parser.parse_args()
     lammps = engine(given)
@@ -97,7 +98,9 @@ def main() -> None:
         found[mu] = {}
         for law in LAWS:
             packs = range(given.packs)
-            each = np.array([sheared(lammps, law, mu, given.grains, seed) for seed in packs])
+            each = np.array(
+                [sheared(lammps, law, mu, given.grains, seed, given.filled) for seed in packs]
+            )
             error = each.std(axis=0, ddof=1) / np.sqrt(given.packs)
             found[mu][law] = np.array([each.mean(axis=0), error])
             cells = " ".join(f"{m:8.4g} ± {e:5.2g}" for m, e in found[mu][law].T)
