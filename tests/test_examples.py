@@ -38,10 +38,10 @@ SCRIPTS = {
     "beyond_the_paper": ("one-way coupling: 0.021 from the finite elements (rms)", BEYOND),
     "law_in_five_minutes": ("0.1 of the normal speed", "law_in_five_minutes.png"),
 }
-#: Those that wait for processes to start, or draw many pictures.
+#: Those that take longer than a second, but for one of each kind.
 SLOW = (
     *("sweep_on_a_cluster", "reproduce_the_paper", "fit_your_experiment", "billiards"),
-    "beyond_the_paper",
+    *("beyond_the_paper", "superball", "law_swap", "stick_slip_map", "granular_gas"),
 )
 #: Options that make a script short.
 OPTIONS = {

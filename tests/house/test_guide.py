@@ -30,6 +30,8 @@ BLOCKS = re.compile(r"```python\n(.*?)```\n(?:```text\n(.*?)```\n)?", re.DOTALL)
 CITATION = re.compile(r"\btheory(?:\.md`?)?\s+(?:#:?\s*)?(§§?\s*\d+(?:(?:,| and| to)\s+§?\d+)*)")
 DOI = re.compile(r"10\.\d{4,9}/[^\s,;]+")
 LAWS = ("Viscoelastic", "Brush", "HardSphere", "RoughSphere", "SlipThenRoll", "Leapfrog")
+#: Laws whose checks take longer than a second.
+HEAVY = ("Brush", "Leapfrog")
 #: Where names in the tables of the guide are looked for.
 NAMESPACES = (
     contactlab, contracts, bodies, plan, history, motion, energy, normal_motion, result,
@@ -106,7 +108,9 @@ def test_there_is_code():
     assert len(BLOCKS.findall(text("extending"))) == len(LAWS) + 2
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in HEAVY)) for name in LAWS]
+)
 def test_a_law_of_the_guide_passes_the_kit(extending, name):
     law = getattr(extending, name)()
     found = check_law(law)

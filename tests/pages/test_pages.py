@@ -11,6 +11,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from PIL import Image
+from scipy.integrate import trapezoid
 
 import contactlab
 from contactlab.figures import animation
@@ -99,7 +100,7 @@ def test_a_soft_ball_moves_and_turns_while_it_touches(superball):
     radius, time = 0.025, superball.history.time
     assert place[:, 1].min() == pytest.approx(-superball.motion.maximum_approach / radius, rel=1e-3)
     # the contact point moves by the integral of the slip velocity, counted from velocity and spin
-    slipped = np.trapezoid(superball.history.slip_velocity, time)
+    slipped = trapezoid(superball.history.slip_velocity, time)
     assert (place[-1, 0] + turned[-1]) * radius == pytest.approx(slipped, rel=1e-12)
     # the spin is reversed within the contact
     slope = np.diff(turned) / np.diff(time)
