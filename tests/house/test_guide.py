@@ -81,6 +81,13 @@ def test_a_topic_begins_with_a_title_and_a_line_about_it(topic):
 
 
 @pytest.mark.parametrize("topic", TOPICS)
+def test_every_page_has_a_picture_that_exists(topic):
+    pictures = re.findall(r"!\[.+?\]\(\.\./\.\./(.+?)\)", text(topic))
+    assert pictures
+    assert [picture for picture in pictures if not (ROOT / picture).is_file()] == []
+
+
+@pytest.mark.parametrize("topic", TOPICS)
 def test_lines_fit_a_terminal_but_for_tables_and_code(topic):
     prose = re.sub(r"```.*?```", "", text(topic), flags=re.DOTALL).splitlines()
     assert not [line for line in prose if len(line) > 120 and not line.startswith(("|", "!["))]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -60,6 +61,21 @@ def test_the_page_fetches_nothing(run, tmp_path):
     text = page.read_text("utf-8")
     assert not re.search(r"https?://|src=|@import|<link", text)
     assert "/*" not in re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+
+
+def test_the_parts_of_the_page_have_names_of_their_own():
+    script = explore_page().partition("<script>")[2]
+    names = re.findall(r"^(?:function|class) (\w+)", script, re.MULTILINE)
+    for words in re.findall(r"^(?:const|let) (.*?);", script, re.MULTILINE | re.DOTALL):
+        names += re.findall(r"(?:^|, )(\w+)(?= =|,|$)", words.partition("=>")[0])
+    assert len(names) > 40
+    assert sorted(names) == sorted(set(names))
+    assert "export " not in script
+
+
+def test_the_kernel_of_the_page_is_the_one_for_engines():
+    kernel = resources.files("contactlab").joinpath("kernels", "contactlab_springs.mjs")
+    assert kernel.read_text("utf-8").strip().replace("\nexport ", "\n") in explore_page()
 
 
 @pytest.fixture
