@@ -143,7 +143,7 @@ def _bars(figure: Figure, panels: Sequence[list[Axes]], kinds: Sequence[bool]) -
 def model_errors(axes: Axes, models: Sequence[ModelError]) -> Axes:
     """Draw the model error of each law over chi."""
     for number, item in enumerate(models):
-        look = law_style(number) | {"marker": "os^Dv<"[number % 6], "markersize": 3.5}
+        look = law_style(number) | {"marker": "os^Dv<>p"[number % 8], "markersize": 3.5}
         error = np.maximum(item.error, LEAST_MODEL)  # keeps NaN
         axes.plot(item.chis, error, label=item.law.replace("_", " "), **look)
     axes.set_xscale("log")
@@ -151,7 +151,7 @@ def model_errors(axes: Axes, models: Sequence[ModelError]) -> Axes:
     axes.set_ylim(0.7 * LEAST_MODEL, 1.5)
     axes.set_xlabel(label("chi"))
     axes.set_ylabel("model error of $\\psi_2$\nover its possible range")
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
     return axes
 
 
