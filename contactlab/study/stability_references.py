@@ -62,8 +62,8 @@ def reference_for(law: TangentialLaw, normal: NormalLaw) -> Reference:
 
     Under a normal law other than elastic Hertz contact there is no exact solution. A law that
     converges to the continuum is then judged by another law with the same limit, or else by itself
-    at high resolution, a rigid body by the impulse of the friction load. A law of whole impacts that
-    has a resolution is judged by itself at twice that.
+    at high resolution, a rigid body by the impulse of the friction load. A law of whole impacts
+    that has a resolution is judged by itself at twice that.
     """
     elastic = "elastic_hertz" in normal.offers
     if "no_friction" in law.offers:

@@ -81,7 +81,7 @@ def follow_all(
     gains = 2.0 * chi * np.diff(course.impulse, axis=0)
     durations = np.diff(course.time, axis=0) + np.zeros(impacts)
     acting = course.pressure > 0.0
-    some, whole = acting.any(axis=1).tolist(), acting.all(axis=1).tolist()
+    some, whole = np.any(acting, axis=1), np.all(acting, axis=1)
     smaller = [table.within(number) for number in range(count + 1)]
     for k, number in enumerate(course.inside[1:].tolist(), start=1):
         duration, gain, share = durations[k - 1], gains[k - 1], shares[k - 1]

@@ -201,7 +201,7 @@ def _divided(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) 
     """Return the tractions of prescribed divisions, shape (impacts, rings)."""
     traction = np.where(stuck, 0.0, sense * limit)
     rest = aim - traction @ table.compliance.T
-    discs = (stuck[:, :-1] >= stuck[:, 1:]).all(axis=1)
+    discs = np.logical_and.reduce(stuck[:, :-1] >= stuck[:, 1:], axis=1)
     held = np.where(stuck, (np.where(stuck, rest, 0.0) @ table.lower.T), 0.0) @ table.upper.T
     if discs.all():
         return np.where(stuck, held, traction)
