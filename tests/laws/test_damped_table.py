@@ -7,10 +7,11 @@ from numpy.polynomial.polynomial import polyval
 import contactlab
 from contactlab import Scene, Simulation
 from contactlab.compose.rebound import BEYOND_ERROR, DAMPED_ERROR
-from contactlab_laws.rings.courses import by_rings
+from contactlab_laws.rings.courses import by_rings, tsuji
 from contactlab_laws.tables.damped import BORDERS, depth, inner, rebound, section
 from contactlab_laws.tables.damped import CHI as RANGE_OF_CHI
 from table_builders.damped import build
+from table_builders.damped.build import by_half_space
 from table_builders.damped.checks import solve
 from table_builders.damped.coordinates import restitution
 from tests.laws.test_rings import REFERENCES
@@ -112,7 +113,7 @@ def test_error_beside_the_cuts(e):
     offsets = np.array([-0.01, -0.003, -1e-5, 1e-5, 0.001, 0.003, 0.01])
     psi1 = (cuts[None] + offsets[:, None, None]).ravel()
     chi = np.broadcast_to(chi, (len(offsets), *cuts.shape)).ravel()
-    finer = solve(psi1, chi, e, counts=(64, 80, 96, 112, 128, 160))
+    finer = by_half_space(tsuji(e), psi1, chi, rings=128)
     assert rebound(psi1, chi, e) == pytest.approx(finer, abs=DAMPED_ERROR)
 
 

@@ -20,7 +20,7 @@ LARGEST_RESIDUAL = 1e-6
 #: Slip velocity, in psi over max(1, Lam, 4 chi), from which the answer is gross slip: all that it
 #: leaves out is smaller by this squared.
 GRAZING = 1e6
-#: Least declared error times rings² over chi and 2 psi1 (up to 1), for numbers of rings whose
+#: Least declared error times rings² over chi and 3 psi1 (up to 1), for numbers of rings whose
 #: answers agree by chance: this times chi², from ``LEAST`` to 1. Beyond chi = 2.5 slip comes and
 #: goes more often.
 GROWTH, LEAST = 0.07, 0.1
@@ -80,7 +80,7 @@ def answered(options: Options, normal: NormalMotion) -> Answered:
         error[items], shares = math.nan, fine.share
         if coarse is not None:
             off = fine.change - coarse.change
-            chi, slow = matter.chi[items], np.minimum(2.0 * np.abs(matter.psi1[items]), 1.0)
+            chi, slow = matter.chi[items], np.minimum(3.0 * np.abs(matter.psi1[items]), 1.0)
             by_chance = slow * chi * np.clip(GROWTH * chi**2, LEAST, 1.0)
             error[items] = np.abs(off) + by_chance / options.rings**2
             residual[items] = np.maximum(fine.residual, coarse.residual)

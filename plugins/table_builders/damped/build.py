@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.contracts import NormalMotion
 from contactlab_laws.halfspace.axisymmetric import follow_all
 from contactlab_laws.halfspace.course import course as halfspace_course
 from contactlab_laws.halfspace.impacts import ALONG
@@ -41,15 +42,20 @@ CENTRE, WHOLE = 0.995, 0.9999
 
 def solve(psi1: Array, chi: Array, e: float) -> Array:
     """Return psi2 of impacts of one restitution, with Coulomb's law at every point."""
-    shape, motion = np.broadcast_shapes(psi1.shape, chi.shape), tsuji(e)
+    shape = np.broadcast_shapes(psi1.shape, chi.shape)
     psi1, chi = (np.broadcast_to(each, shape).ravel() for each in (psi1, chi))
+    return by_half_space(tsuji(e), psi1, chi).reshape(shape)
+
+
+def by_half_space(motion: NormalMotion, psi1: Array, chi: Array, *, rings: int = FINE) -> Array:
+    """Return psi2 of impacts, shape (impacts,), that have a normal motion in units of their own."""
     fine, coarse = (
         follow_all(
-            rings, halfspace_course(motion, rings, ALONG), psi1, chi, np.ones(psi1.shape)
+            count, halfspace_course(motion, count, ALONG), psi1, chi, np.ones(psi1.shape)
         ).change[-1]
-        for rings in (FINE, FINE // 2)
+        for count in (rings, rings // 2)
     )
-    return np.asarray(psi1 + fine + (fine - coarse) / 3.0).reshape(shape)
+    return np.asarray(psi1 + fine + (fine - coarse) / 3.0)
 
 
 def cuts_at(e: float, chi: Array, *, rings: int = RINGS) -> Array:
