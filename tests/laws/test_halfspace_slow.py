@@ -140,3 +140,17 @@ def test_costs_as_solutions_of_a_system():
         run = partial(simulation(**options).run, finite_element_case(0.98))
         run()  # makes the matrices
         assert min(seconds(run, 1) for _ in range(3)) < times * unit
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "count", "bound"),
+    [(0.05, 3.0, 1000, 3e-3), (3.0, 10.0, 300, 0.01), (10.0, 100.0, 60, 0.04)],
+)
+def test_the_declared_error_holds_at_random_impacts(low, high, count, bound):
+    draw = np.random.default_rng(11)
+    chi = np.exp(draw.uniform(np.log(low), np.log(high), count))
+    psi1 = draw.uniform(0.0, 1.0, count) ** 2 * np.minimum(4.0 * chi, 40.0)
+    result = simulation(angles=1).run(Scene.nondimensional(psi1=psi1, chi=chi))
+    error = np.abs(result.psi2 - contactlab.rebound(psi1, chi))
+    assert (error <= result.plan.psi2_error).all()
+    assert error.max() < bound
