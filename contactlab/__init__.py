@@ -16,7 +16,7 @@ which effects were left out::
 The package has these parts. Each imports only from the parts above it:
 
 ============== ===========================================================================
-``numeric``    checked numbers, vectors, batches, collocation, Runge-Kutta steps
+``numeric``    checked numbers, vectors, batches, collocation, Runge-Kutta, lazy imports
 ``impact``     materials, bodies, scenes, encounters, Hertz's closed forms, cautions
 ``contracts``  base classes of normal laws, tangential laws and integrators; statuses
 ``outcome``    results: motion, plan, energy books, history, tables and files
@@ -46,16 +46,17 @@ from contactlab.compose.rebound import rebound
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
+from contactlab.impact import material as materials
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
+from contactlab.numeric.lazy import imported_on_use
 from contactlab.outcome.energy import EnergyLedger
 from contactlab.outcome.result import ImpactError, ImpactResult
 
 if TYPE_CHECKING:
     from contactlab.fitting import fit
-    from contactlab.impact import material as materials
     from contactlab.scene_file import SceneFile
 
 __version__ = "0.1.0"
@@ -123,12 +124,4 @@ def read_scene(path: str | Path) -> SceneFile:
     return scene_file.read_scene(path)
 
 
-def __getattr__(name: str) -> Any:
-    """Return ``fit`` or ``materials``, imported on first use."""
-    import importlib
-
-    if name == "fit":
-        return importlib.import_module("contactlab.fitting").fit
-    if name == "materials":
-        return importlib.import_module("contactlab.impact.material")
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = imported_on_use(__name__, {"fit": "fitting"})

@@ -64,8 +64,8 @@ save(Path("beyond-axisymmetry.png"), draw_price)
 # %%
 # **Unlike bodies.** The plane is rigid and the sphere is not, so pressure drags the surface of the
 # sphere sideways. Finite elements assume neither Hertz's pressure nor one direction of slip.
-path = Path(str(resources.files("contactlab.study"))) / "measured" / "finite-elements.toml"
-elements = read_scene(path)
+measured_by_others = Path(str(resources.files("contactlab.study"))) / "measured"
+elements = read_scene(measured_by_others / "finite-elements.toml")
 measured = elements.measured[0]
 element_psi1 = elements.scene_at(tangential_velocity=measured.x).psi1
 inside = (element_psi1 > 0.1) & (element_psi1 < 4.5)
@@ -188,7 +188,7 @@ with styled():
 # **An experiment.** A sphere of aluminium oxide meets glass. By the balance of moments the spin
 # gives e_t = 1 - (2/5) omega R/v_t under any friction law; the rebound angle gives
 # e_t = e tan(angle after)/tan(angle), with the measured e = 0.98.
-kharaz = read_scene(Path(__file__).with_name("kharaz2001.toml"))
+kharaz = read_scene(measured_by_others / "kharaz2001.toml")
 theories = {
     "axisymmetric": (np.linspace(1.0, 42.0, 165), Simulation()),
     "with coupling": (

@@ -1,15 +1,20 @@
-"""The experiment of Kharaz, Gorham & Salman (2001) against the elastic and the rigid law.
+"""Does a real ball do what the theory says: the experiment of Kharaz, Gorham & Salman (2001).
+
+An aluminium-oxide sphere meets glass at angles from 2 to 85 degrees. Beyond 30 degrees the
+contact slips throughout, and the elastic and the rigid law agree; below, the rigid law
+keeps 5/7 of the tangential velocity at every angle, and the measured share runs from 0.8 to 0.6.
 
 Writes ``kharaz2001.png`` in the current folder.
 """
 
+from importlib import resources
 from pathlib import Path
 
 from contactlab import Simulation, read_scene
 from contactlab.figures import laws_over_sweep, save
 from contactlab.study import compare
 
-file = read_scene(Path(__file__).with_name("kharaz2001.toml"))
+file = read_scene(Path(str(resources.files("contactlab.study"))) / "measured" / "kharaz2001.toml")
 laws = ("annulus", "coulomb")
 simulations = {law: Simulation(tangential=law, integrator="symplectic") for law in laws}
 comparison = compare(file, simulations)

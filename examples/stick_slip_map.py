@@ -10,8 +10,8 @@ from contactlab.figures import draw_stick_slip, save
 
 scene = contactlab.Scene.nondimensional(psi1=1.2, chi=1.4412)
 simulation = contactlab.Simulation(
-    tangential=contactlab.create("tangential.annulus", annuli=100),
-    integrator=contactlab.create("integrator.symplectic", steps=400),
+    tangential=contactlab.create("tangential.springs", springs=200),
+    integrator=contactlab.create("integrator.symplectic", steps=800),
 )
 result = simulation.run(scene, history="fields").check()
 history = result.history
@@ -21,5 +21,5 @@ in_contact = fields["stuck"] | (fields["slipping"] != 0)
 for instant in (0.1, 0.3, 0.5, 0.7, 0.9):
     row = int(abs(time - instant).argmin())
     share = fields["stuck"][row].sum() / in_contact[row].sum()
-    print(f"t/t_c = {instant}: {share:4.0%} of the annuli in contact stick")
+    print(f"t/t_c = {instant}: {share:4.0%} of the springs in contact stick")
 save(Path("stick_slip_map.png"), lambda axes: draw_stick_slip(axes, result))

@@ -5,6 +5,9 @@ from __future__ import annotations
 import os
 import sys
 
+# One thread for each process: the tests themselves run side by side (pytest -n auto).
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 from hypothesis import HealthCheck, settings
 
 #: Examples of each property in the long run, and in the quick one.

@@ -29,7 +29,7 @@ SCRIPTS = {
     "law_swap": ("coulomb", "law_swap.png"),
     "sweep": ("1000 impacts", "sweep.png"),
     "experiment": ("coulomb  rms 0.046", "kharaz2001.png"),
-    "stick_slip_map": ("100% of the annuli", "stick_slip_map.png"),
+    "stick_slip_map": ("100% of the springs", "stick_slip_map.png"),
     "custom_law": ("mindlin cap", "custom_law.png"),
     "reproduce_the_paper": ("least psi2 = -1.48 at psi1 = 3.61", FIGURES),
     "fit_your_experiment": ("exact          friction 0.0932, rms residual 0.012", "fit.png"),
@@ -39,12 +39,15 @@ SCRIPTS = {
     "granular_gas": ("elastic spheres", "granular_gas.png"),
     "superball": ("at most 0.59 of its velocity", "superball.png"),
     "beyond_the_paper": ("one-way coupling: 0.021 from the finite elements (rms)", BEYOND),
+    "hysteresis": ("Mindlin and Deresiewicz: 0.1310", "hysteresis.png"),
+    "signs": ("spin -90 rad/s, slip 0.00 m/s", "signs.png"),
     "law_in_five_minutes": ("0.1 of the normal speed", "law_in_five_minutes.png"),
 }
-#: Those that wait for processes to start, or draw many pictures.
+#: Those that take longer than a second, but for one of each kind.
 SLOW = (
     *("sweep_on_a_cluster", "reproduce_the_paper", "fit_your_experiment", "billiards"),
-    "beyond_the_paper",
+    *("beyond_the_paper", "superball", "law_swap", "stick_slip_map", "granular_gas"),
+    *("hysteresis", "signs"),
 )
 #: Options that make a script short.
 OPTIONS = {

@@ -10,7 +10,7 @@ import pytest
 
 FOLDER = Path(__file__).parents[1] / "examples" / "lammps"
 PAGE = (FOLDER / "README.md").read_text("utf-8")
-SCRIPTS = ("build", "rebounds", "checks", "cost", "gas")
+SCRIPTS = ("build", "rebounds", "checks", "cost", "gas", "dense_flow")
 
 
 def shown():

@@ -19,6 +19,8 @@ release = version = contactlab.__version__
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.viewcode",
     "sphinx.ext.napoleon",
     "sphinx_gallery.gen_gallery",
 ]
@@ -35,6 +37,9 @@ html_title = f"contactlab {version}"
 html_theme_options = {"navigation_with_keys": True}
 exclude_patterns = ["gallery-source"]
 html_extra_path = ["explore.html"]
+html_static_path = ["site.css"]
+html_css_files = ["site.css"]
+autosummary_generate = False  # the tables lead to the pages of the rooms
 html_copy_source = html_show_sourcelink = True
 suppress_warnings = [
     "config.cache",  # the gallery's order is an object, not a word
@@ -51,6 +56,8 @@ sphinx_gallery_conf = {
     "capture_repr": (),  # what a script prints; the pictures are found as files
     "matplotlib_animations": False,
     "remove_config_comments": True,
+    # A kernel has options of its own, which a script would take for its.
+    "first_notebook_cell": "import sys\n\nsys.argv = sys.argv[:1]",
     "min_reported_time": 1e9,
     "show_memory": False,
     "download_all_examples": False,
@@ -71,6 +78,12 @@ def attributes_apart(*given: Any) -> None:
     lines[:] = apart
 
 
+def left_out(*given: Any) -> bool | None:
+    """Leave out fields of named tuples that the docstring of the class documents."""
+    return True if (given[3].__doc__ or "").startswith("Alias for field number") else None
+
+
 def setup(app: Any) -> None:
     """Have the attributes taken apart after napoleon has read the docstrings."""
+    app.connect("autodoc-skip-member", left_out)
     app.connect("autodoc-process-docstring", attributes_apart, priority=900)

@@ -11,7 +11,7 @@ from typing import Any
 #: What a script may rely on and the gallery does not give it; not shown in its page.
 HIDDEN = """
 # sphinx_gallery_start_ignore
-__file__, __doc__ = {path!r}, {doc!r}
+__doc__ = {doc!r}
 # sphinx_gallery_end_ignore
 """
 
@@ -48,7 +48,7 @@ def lay_out(examples: Path, to: Path) -> None:
         code = text.split('"""', 2)[2]
         # a script in cells is a notebook, which has no file, and begins with words
         cells = code.lstrip().startswith("# %%")
-        hidden = "" if cells else HIDDEN.format(path=str(to / script.name), doc=doc)
+        hidden = "" if cells else HIDDEN.format(doc=doc)
         if script.stem in NOT_RUN:
             picture = shutil.copy(examples / "pictures" / f"{script.stem}.png", kept)
             place = Path(picture).relative_to(to.parent).as_posix()

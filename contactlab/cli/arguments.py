@@ -199,10 +199,11 @@ def measured(arguments: argparse.Namespace, file: SceneFile) -> SceneFile:
         if arguments.column:
             raise ValueError("--column: names headings of --measured DATA.csv, which is missing")
         return file
-    from contactlab.fitting import read_measurements, with_measurements  # only for --measured
+    from contactlab.fitting import measurements  # only for --measured
 
-    table = read_measurements(arguments.measured, columns=dict(arguments.column))
-    return with_measurements(file, table)
+    columns = dict(arguments.column)
+    table = measurements.read_measurements(arguments.measured, columns=columns)
+    return measurements.with_measurements(file, table)
 
 
 def add_progress(parser: argparse.ArgumentParser) -> None:

@@ -184,10 +184,10 @@ def _draw_loops(
     """Draw hysteresis loops of the laws that have some; name the others on stderr."""
     from contactlab.cli.drawing import draw_load_paths  # matplotlib only when drawing
 
-    found = loops(scene, compared)
-    for name, reason in found.left_out.items():
+    paths = loops(scene, compared)
+    for name, reason in paths.left_out.items():
         print(f"contactlab compare: --loops: {name} is left out: {reason}", file=sys.stderr)
-    draw_load_paths(path, found, **shared.look(arguments))
+    draw_load_paths(path, paths, **shared.look(arguments))
 
 
 def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation]:

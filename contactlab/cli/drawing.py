@@ -52,12 +52,12 @@ def draw_all(path: Path, comparison: Comparison, quantity: str, **look: Any) -> 
     save(path, draw, rows=2, heights=(2.4, 1.2), **look)
 
 
-def draw_load_paths(path: Path, found: Loops, **look: Any) -> None:
+def draw_load_paths(path: Path, paths: Loops, **look: Any) -> None:
     """Draw loops at constant and at oscillating load, one panel each."""
 
     def draw(axes: Any) -> None:
-        draw_loops(axes[0, 0], found.constant, title="constant load")
-        draw_loops(axes[0, 1], found.oscillating, title="oscillating load")
+        draw_loops(axes[0, 0], paths.constant, title="constant load")
+        draw_loops(axes[0, 1], paths.oscillating, title="oscillating load")
         axes[0, 1].set_ylabel("")
         axes[0, 0].legend()
 

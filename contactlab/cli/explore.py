@@ -2,7 +2,7 @@
 
 Examples
 --------
-  contactlab explore --out explore.html
+  contactlab explore
   contactlab explore --material rubber --angle 45 --predict --out superball.html
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import inspect
+from pathlib import Path
 
 from contactlab.cli import arguments as shared
 from contactlab.outcome.files import written
@@ -31,7 +32,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--material", default="pmma", metavar="NAME", help="of ball and block (default: pmma)"
     )
     parser.add_argument("--predict", action="store_true", help="ask for a prediction first")
-    parser.add_argument("--out", type=shared.file_of(".html"), required=True, metavar="FILE.html")
+    parser.add_argument(
+        "--out", type=shared.file_of(".html"), default=Path("explore.html"), metavar="FILE.html",
+        help="(default: explore.html)",
+    )  # fmt: skip
     shared.add_progress(parser)
 
 

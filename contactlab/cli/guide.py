@@ -20,7 +20,7 @@ from contactlab.numeric.checks import refuse
 TOPICS = (
     "getting-started", "units-and-signs", "choosing", "laws", "how-far-to-trust",
     "plans-and-statuses", "for-a-paper", "beyond-the-paper", "command-line", "fitting",
-    "load-paths", "extending", "version-2",
+    "load-paths", "engines", "extending", "version-2",
     "theory", "glossary",
 )  # fmt: skip
 #: Heading of a numbered section, such as ``## 5. The slip front``.

@@ -52,19 +52,19 @@ def answers(
 ) -> list[Answer]:
     """Return the answers of ``tangential`` to whole impacts, each impact in one of them at most.
 
-    None where a march is asked for: traction and stick/slip fields come from nothing else, and
-    the impacts of a batch that keeps its history share one time axis. Where a law can be marched,
-    an answer without a course is not taken for a history, nor one with a larger error than
-    ``accuracy``.
+    The list is empty if fields are requested, or the history of a batch: tractions and stick/slip
+    fields come of a march only, and the impacts of a batch share the time axis of its history. If
+    the law can be marched, an answer without a course is not used for a history, and no answer
+    with a larger error than ``accuracy`` is used.
 
     Parameters
     ----------
     scene : Scene
     normal : NormalMotion
-        Of the scene.
+        Normal motion of ``scene``.
     tangential : TangentialLaw
     history : bool or "fields"
-        What is asked for.
+        True if a history was requested, ``"fields"`` if one with fields was.
     accuracy : float or None
         Error of psi2 over max(1, abs(psi1)) that the integrator controls; None for no bound.
     """
@@ -82,7 +82,7 @@ def answers(
             raise _unanswered(tangential)
         return []
     left = separated(normal)
-    found = []
+    given = []
     for known in tangential.whole_impacts(scene, normal):
         if known.where is False:
             continue
@@ -90,13 +90,13 @@ def answers(
         if not always:
             where &= _serves(known, scene, history, accuracy)
         if where.any():
-            found.append(Answer(where, _checked(known, tangential, shape)))
+            given.append(Answer(where, _checked(known, tangential, shape)))
             left &= ~where
     if always and left.any():
         raise _unanswered(tangential)
     if history and left.any():
         return []
-    return found
+    return given
 
 
 def separated(normal: NormalMotion) -> Mask:

@@ -1,4 +1,4 @@
-"""What the plan of a collision says besides that of its scenes."""
+"""Plan entries specific to collisions: bodies that separate, spin about the normal."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ TURNING = 1e-12
 
 
 def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
-    """Return the plan with what the bodies do that no scene knows.
+    """Return the plan with clauses on separating bodies and on spin about the normal.
 
     Parameters
     ----------
     plan : Plan
-        Of the scenes of those that collided.
+        Plan of the scenes of the bodies that collided.
     met : Encounter or None
-        Those that collided, if any did.
+        The encounters whose bodies collided; None if no bodies did.
     passed : array of bool
         Encounters of the whole batch whose bodies separate.
     """
@@ -41,15 +41,16 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
 
 
 def by_rebound(plan: Plan, chi: Any, restitution: float) -> Plan:
-    """Return the plan with ``rebound`` in place of the laws that stand for it in ``result``.
+    """Return the plan with the answers of ``rebound`` in place of those of the laws.
 
     Parameters
     ----------
     plan : Plan
-        Of those laws.
+        Plan of the laws that give the same answers as ``rebound``.
     chi : float or array
-        Of the impacts.
+        Inertia ratio of each impact.
     restitution : float
+        Normal restitution that ``rebound`` was given.
     """
     unknown = np.isnan(plan.psi2_error)
     bound = np.broadcast_to(damped_error(chi, restitution), unknown.shape)
@@ -73,11 +74,11 @@ def by_rebound(plan: Plan, chi: Any, restitution: float) -> Plan:
 
 def _turns(encounter: Encounter) -> Any:
     """Return whether either body spins about the normal."""
-    found: Any = False
+    turning: Any = False
     normal = encounter.contact().normal
     for spin in (encounter.spin, encounter.target_spin):
         parts = components(spin)
         about = sum(one * n for one, n in zip(parts, normal, strict=True))
         whole = np.sqrt(sum(one * one for one in parts))
-        found = found | (np.abs(about) > TURNING * whole)
-    return found
+        turning = turning | (np.abs(about) > TURNING * whole)
+    return turning

@@ -82,7 +82,7 @@ class Kept:
             np.savez(stream, **_arrays(piece), sweep=np.array(self.sweep))
 
     def pieces(self) -> list[Piece]:
-        """Return the pieces in the folder, no impact in two of them; refuse what does not fit."""
+        """Return the pieces in the folder, no impact in two of them; refuse other files."""
         pieces: list[Piece] = []
         for path in sorted(self.folder.glob(PIECES), key=_first):
             # Two runs at the same time, with different chunks, may have written impacts twice.

@@ -265,18 +265,18 @@ def _followed(laws: tuple[Any, Any], scene: Scene, points: Points) -> Followed:
 
 
 def _result(
-    laws: tuple[Any, Any], scene: Scene, points: Points, origin: Array, found: Followed
+    laws: tuple[Any, Any], scene: Scene, points: Points, origin: Array, answers: Followed
 ) -> LoadPath:
     """Return the path with the answers of the laws."""
     normal, tangential = laws
-    entries = {"time": points.time + origin, "approach": points.approach, **found.columns}
+    entries = {"time": points.time + origin, "approach": points.approach, **answers.columns}
     return LoadPath(
         scene=scene,
         normal=normal,
         tangential=tangential,
         displacement=points.displacement,
         **{name: locked(column) for name, column in entries.items()},
-        status=found.status,
-        detail=found.detail,
-        states=found.states,
+        status=answers.status,
+        detail=answers.detail,
+        states=answers.states,
     )

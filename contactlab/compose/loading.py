@@ -6,61 +6,17 @@ import contextlib
 import sys
 from collections.abc import Iterator
 
-import attrs
 import numpy as np
 import pluggy
 
 from contactlab.compose import hookspecs
-from contactlab.compose.installed import GROUP, short
-from contactlab.compose.names import KINDS
+from contactlab.compose.installed import GROUP, PluginInfo, short
 from contactlab.compose.older import REMEDY, other_version
 from contactlab.contracts.law import API_VERSION, Law
 
 
 class PluginError(RuntimeError):
     """A plug-in is broken or conflicts with another; the message names plug-in and distribution."""
-
-
-@attrs.frozen
-class PluginInfo:
-    """One installed law as its entry point describes it; its module is not imported.
-
-    Attributes
-    ----------
-    name, distribution, version, module : str
-        Name and module of the entry point, and the distribution that it belongs to.
-    blocked : bool
-        True if ``CONTACTLAB_BLOCK_PLUGINS`` blocks the law: see ``Registry``.
-    meant : bool
-        True if the name without a distribution means this law.
-    """
-
-    name: str
-    distribution: str
-    version: str
-    module: str
-    blocked: bool
-    meant: bool = True
-
-    @property
-    def qualified(self) -> str:
-        """The unique name with the distribution: ``"my-laws:normal.hertz"``."""
-        return f"{self.distribution}:{self.name}"
-
-    @property
-    def known_as(self) -> str:
-        """The shortest name that means this law."""
-        return self.name if self.meant else self.qualified
-
-    @property
-    def kind(self) -> str:
-        """The part of the name before the dot."""
-        return self.name.partition(".")[0]
-
-    @property
-    def malformed(self) -> bool:
-        """True if the name is not a kind, a dot and a name; such a law cannot be made."""
-        return self.kind not in KINDS or not self.name.partition(".")[2]
 
 
 def law_class(info: PluginInfo) -> type[Law]:
@@ -73,7 +29,7 @@ def law_class(info: PluginInfo) -> type[Law]:
     """
     from importlib import metadata
 
-    source = f"{info.name!r} of {info.distribution} {info.version}"
+    source = info.source
     with _guarded(source, "could not be imported"):
         module = metadata.EntryPoint(info.name, info.module, GROUP).load()
     manager = pluggy.PluginManager(hookspecs.PROJECT)  # of its own: modules do not see each other

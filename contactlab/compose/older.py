@@ -3,11 +3,6 @@
 from __future__ import annotations
 
 import re
-from typing import Any
-
-from contactlab.contracts.tangential import TangentialLaw
-from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
 
 #: Messages of errors about modules and names that this version does not have.
 MISSING = (
@@ -31,9 +26,3 @@ def other_version(error: BaseException) -> str | None:
                 f"there; {REMEDY}"
             )
     return None
-
-
-def books_bound(law: TangentialLaw, scene: Scene) -> Real:
-    """Return ``law.books_bound(scene)``; earlier laws have a number in place of the method."""
-    bound: Any = law.books_bound
-    return bound(scene) if callable(bound) else bound  # type: ignore[no-any-return]

@@ -1,4 +1,4 @@
-"""The making of a plan, from the scene, its normal motion and what the laws say of them."""
+"""Makes the plan of a scene from its normal motion and the declarations of the laws."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from contactlab.outcome.plan import BOOKS, PSI2_ERROR, TANGENTIAL_MOTION, UNCHEC
 
 #: Error of what is known in closed form, over max(1, |psi1|).
 CLOSED_FORM = 1e-12
-#: What a plan says after an error that is not declared.
+#: Advice of a plan if the error is not declared.
 ADVICE = "; run(scene, estimate_error=True) estimates it"
 
 
@@ -43,9 +43,9 @@ def make_plan(
         Already made: it comes first.
     laws : Laws
     known : sequence of Answer
-        What need not be marched.
+        Whole-impact answers; their impacts are not marched.
     history : bool or "fields"
-        What is asked for.
+        True if a history was requested, ``"fields"`` if one with fields was.
     """
     ended, marched = _ended_and_marched(scene, normal, known)
     error = _error(scene, normal, laws, known, marched)
@@ -107,7 +107,7 @@ def _defaults(law: Any) -> str:
 def _ended_and_marched(
     scene: Scene, normal: NormalMotion, known: Sequence[Answer]
 ) -> tuple[Mask, Mask]:
-    """Return the impacts that the normal motion ends, and those of them not known as a whole."""
+    """Return the impacts whose normal motion ends, and the ones among them to be marched."""
     if not scene.shape:
         if normal.status is not Status.SUCCESS:
             return NONE, NONE
@@ -122,11 +122,11 @@ def _ended_and_marched(
 def _not_marched(reasons: Sequence[tuple[str, Mask, bool]], ended: Mask) -> list[Clause]:
     """Return why impacts are not marched."""
     march = "march of the tangential motion"
-    found = [Clause(f"{march}: {reason}", where) for reason, where, _ in reasons]
-    found += [Clause(UNCHECKED, where, code=BOOKS) for _, where, balanced in reasons if balanced]
+    clauses = [Clause(f"{march}: {reason}", where) for reason, where, _ in reasons]
+    clauses += [Clause(UNCHECKED, where, code=BOOKS) for _, where, balanced in reasons if balanced]
     if not every(ended):
-        found.append(Clause(f"{march}: the normal motion came to no end", ~ended))
-    return found
+        clauses.append(Clause(f"{march}: the normal motion came to no end", ~ended))
+    return clauses
 
 
 def _no_history(history: bool | str, marched: Mask, *, fields: bool) -> str | None:
@@ -178,11 +178,11 @@ def _error_clauses(error: Any, ended: Mask) -> list[Clause]:
         undeclared, declared = ended, NONE
     else:
         undeclared, declared = NONE, ended
-    found = []
+    clauses = []
     if some(declared):
         text = "numerical error of psi2: at most {:.2g}, declared"
-        found.append(Clause(text, declared, (error,), PSI2_ERROR))
+        clauses.append(Clause(text, declared, (error,), PSI2_ERROR))
     if some(undeclared):
         text = f"numerical error of psi2: not declared{ADVICE}"
-        found.append(Clause(text, undeclared, code=PSI2_ERROR))
-    return found
+        clauses.append(Clause(text, undeclared, code=PSI2_ERROR))
+    return clauses

@@ -12,8 +12,8 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.clashes import BLOCK_VARIABLE, blocks
 from contactlab.compose.hookspecs import PROJECT
+from contactlab.compose.installed import BLOCK_VARIABLE, blocks
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.numeric.checks import POSITIVE, Real, Rule, paired, real, refuse
 
@@ -49,7 +49,7 @@ CHI = Rule(
 LARGEST = 1e5
 
 
-#: What ``tolerance`` and ``restitution`` are where they are left out: a comparison takes long.
+#: Defaults of ``tolerance`` and ``restitution``, tested by identity: a comparison takes long.
 USUAL, ELASTIC = 1e-5, 1.0
 #: Arrays that are looked at number by number: NumPy takes longer to begin.
 FEW = 40

@@ -7,14 +7,23 @@ import os
 import warnings
 from functools import cached_property, lru_cache
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import attrs
 
-from contactlab.compose import hookspecs
-from contactlab.compose.clashes import BLOCK_VARIABLE, blocked_names, blocks, clash, meant
-from contactlab.compose.installed import PluginWarning, entry_points, stamp
-from contactlab.compose.loading import PluginError, PluginInfo, law_class
+from contactlab.compose.hookspecs import PROJECT
+from contactlab.compose.installed import (
+    BLOCK_VARIABLE,
+    PluginInfo,
+    PluginWarning,
+    blocked_names,
+    blocks,
+    by_name,
+    clash,
+    entry_points,
+    meant,
+    stamp,
+)
+from contactlab.compose.loading import PluginError, law_class
 from contactlab.compose.names import KINDS, kind_of, parted, same_distribution
 from contactlab.contracts.law import Law
 from contactlab.numeric.checks import nearest, refuse
@@ -58,7 +67,6 @@ class Registry:
         self._warned: set[str] = set()
         self._found: set[tuple[str, str, str, str]] = set()
         self._stamp: object = None
-        self._described: WeakKeyDictionary[type[Law], str] = WeakKeyDictionary()
 
     @cached_property
     def _modules(self) -> list[tuple[str, str]]:
@@ -76,12 +84,9 @@ class Registry:
             for name, distribution, version, module in self._found
         ]
         self._warn_of_unknown(infos)
-        offers: dict[str, list[PluginInfo]] = {}
-        for info in infos:
-            offers.setdefault(info.name, []).append(info)
         laws = [
             attrs.evolve(info, meant=info is meant(rivals))
-            for rivals in offers.values()
+            for rivals in by_name(infos).values()
             for info in rivals
         ]
         return sorted(laws, key=lambda info: (_rank(info.kind), info.name, info.distribution))
@@ -103,20 +108,12 @@ class Registry:
 
     def names(self, kind: str | None = None) -> list[str]:
         """Return the shortest names of laws that can be made, of one kind or of all kinds."""
-        return sorted(
-            {
-                info.known_as
-                for info in self.installed()
-                if not (info.blocked or info.malformed) and kind in (None, info.kind)
-            }
-        )
+        usable = (info for info in self.installed() if info.usable)
+        return sorted({info.known_as for info in usable if kind in (None, info.kind)})
 
     def clashes(self) -> list[str]:
         """Return a sentence on each name that several distributions offer, with its meaning."""
-        offers: dict[str, list[PluginInfo]] = {}
-        for info in self.installed():
-            if not (info.blocked or info.malformed):
-                offers.setdefault(info.name, []).append(info)
+        offers = by_name(info for info in self.installed() if info.usable)
         return [clash(rivals) for rivals in offers.values() if len(rivals) > 1]
 
     def info(self, name: str) -> PluginInfo:
@@ -140,10 +137,8 @@ class Registry:
         if not matches:
             raise self._unknown(name)
         if matches[0].malformed:
-            source = f"{name!r} of {matches[0].distribution} {matches[0].version}"
-            raise PluginError(
-                f"{source}: the name must be one of {', '.join(KINDS)}, a dot, a name"
-            )
+            rule = f"the name must be one of {', '.join(KINDS)}, a dot, a name"
+            raise PluginError(f"{matches[0].source}: {rule}")
         usable = [info for info in matches if not info.blocked]
         if not usable:
             raise refuse("name", name, f"is blocked by {BLOCK_VARIABLE}", "unset it to use the law")
@@ -154,7 +149,7 @@ class Registry:
 
     def at_hand(self, info: PluginInfo) -> bool:
         """Return True for contactlab's own laws, and for plug-ins that were imported before."""
-        return info.distribution == hookspecs.PROJECT or info.qualified in self._loaded
+        return info.distribution == PROJECT or info.qualified in self._loaded
 
     def law_class(self, name: str) -> type[Law]:
         """Import the plug-in that offers ``name`` and return the law's class."""
@@ -198,14 +193,10 @@ class Registry:
     def describe(self, law: Law | type[Law]) -> str:
         """Return a law's name, distribution and version; its class if no distribution offers it."""
         law_class = law if isinstance(law, type) else type(law)
-        text = self._described.get(law_class)
-        if text is None:
-            info = self._origin(law_class)
-            text = f"{law_class.__module__}.{law_class.__qualname__} (not registered)"
-            if info is not None:
-                text = f"{info.name.partition('.')[2]} ({info.distribution} {info.version})"
-            self._described[law_class] = text
-        return text
+        info = self._origin(law_class)
+        if info is None:
+            return f"{law_class.__module__}.{law_class.__qualname__} (not registered)"
+        return f"{info.name.partition('.')[2]} ({info.distribution} {info.version})"
 
     def _origin(self, law_class: type[Law]) -> PluginInfo | None:
         """Return the plug-in that offers this class, imported by name or not; None if none does."""
@@ -221,31 +212,29 @@ class Registry:
         if plain in FORMER:
             return refuse("name", name, "no such law is installed", FORMER[plain])
         kind, _, short = plain.rpartition(".")
-        names = self.names(kind if kind in KINDS else None)
+        installed, names = self.installed(), self.names(kind if kind in KINDS else None)
         others = [law for law in self.names() if law.endswith(f".{short}")]
-        if distribution:
-            distributions = {info.distribution for info in self.installed()}
-            offering = sorted(info.qualified for info in self.installed() if info.name == plain)
-            if offering:
-                hint = f"{plain!r} is offered as {' and '.join(map(repr, offering))}; "
-            elif not any(same_distribution(each, distribution) for each in distributions):
-                nearby = nearest(distribution, distributions)
-                hint = f"no distribution {distribution!r} has laws; {nearby}"
-            else:
-                hint = ""
-        elif kind in KINDS and others:
+        offering = sorted(info.qualified for info in installed if info.name == plain)
+        distributions = {info.distribution for info in installed}
+        if distribution and offering:
+            hint = f"{plain!r} is offered as {' and '.join(map(repr, offering))}; "
+        elif distribution:
+            known = any(same_distribution(each, distribution) for each in distributions)
+            nearby = nearest(distribution, distributions)
+            hint = "" if known else f"no distribution {distribution!r} has laws; {nearby}"
+        elif others and kind in KINDS:
             hint = f"{short!r} is a law of another kind, {others[0]!r}; "
+        elif others:
+            hint = f"did you mean {others[-1]!r}? "
         else:
             import difflib  # needed for a misspelt name only
 
             # Names are compared without their kind, which would make any two similar.
-            full_names = {full.rpartition(".")[2]: full for full in others or names}
-            cutoff = 0.0 if others else 0.5
-            close = difflib.get_close_matches(short, full_names, n=1, cutoff=cutoff)
+            full_names = {full.rpartition(".")[2]: full for full in names}
+            close = difflib.get_close_matches(short, full_names, n=1, cutoff=0.5)
             hint = f"did you mean {full_names[close[0]]!r}? " if close else ""
-        return refuse(
-            "name", name, "no such law is installed", f"{hint}installed: {', '.join(names)}"
-        )
+        listed = f"{hint}installed: {', '.join(names)}"
+        return refuse("name", name, "no such law is installed", listed)
 
 
 @lru_cache(maxsize=256)

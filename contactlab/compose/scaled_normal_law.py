@@ -14,7 +14,7 @@ from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
-from contactlab.numeric import arrays as batch
+from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import shown
 
 Array = NDArray[np.float64]
@@ -32,8 +32,8 @@ class ScaledNormalLaw:
         Number of impacts.
     speed, mass, radius : array, shape (items,)
         Normal speed (m/s), and normal mass (kg) and radius (m) of the pair.
-    unit : array, shape (items,)
-        Unit of time in s: the duration of a Hertz impact.
+    unit, length : array, shape (items,)
+        Unit of time in s, the duration of a Hertz impact, and unit of approach in m.
     momentum : array, shape (items,)
         Momentum at first touch, in N s.
     active : array of bool, shape (items,)
@@ -95,7 +95,7 @@ class ScaledNormalLaw:
         try:
             with np.errstate(all="ignore"):  # restores the settings if the law changes them
                 if self.shape:
-                    arrays = (batch.locked(each.reshape(self.shape)) for each in (approach, rate))
+                    arrays = (locked(each.reshape(self.shape)) for each in (approach, rate))
                     contact, state = self.law.respond(self.state, *arrays)
                 else:
                     contact, state = self.law.respond(self.state, approach.item(), rate.item())
@@ -113,6 +113,6 @@ class ScaledNormalLaw:
 
     def _per_item(self, entry: Any) -> Any:
         """Return a scalar or an array of the scene's shape as an array of shape (items,)."""
-        if not self.shape:
-            return np.array([entry], dtype=np.float64)
-        return np.array(np.broadcast_to(entry, self.shape), dtype=np.float64).reshape(-1)
+        array = np.array(entry, dtype=np.float64)
+        same = array.shape == self.shape  # broadcasting takes longer than a small batch
+        return (array if same else np.broadcast_to(array, self.shape)).reshape(-1)

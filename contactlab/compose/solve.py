@@ -1,4 +1,4 @@
-"""The outcome of a scene under three laws: plan and motion, from what is known and what is not."""
+"""The outcome of a scene under three laws: plan and motion, by whole-impact answers or a march."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ import numpy as np
 
 from contactlab.compose.answers import Answer, answers, show
 from contactlab.compose.composition import Laws
-from contactlab.compose.marching import march
 from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.older import books_bound
+from contactlab.compose.pieces import Chunk, Piece
 from contactlab.compose.planning import make_plan
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.solved_motion import FailedMotion
 from contactlab.contracts import faults
-from contactlab.contracts.integrator import TangentialMotion
+from contactlab.contracts.integrator import Observer, TangentialMotion
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import NormalMotions
 from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, halves, some
 from contactlab.numeric.checks import refuse
@@ -32,10 +32,12 @@ from contactlab.outcome.plan import Plan
 
 #: Friction work over the energy at the start is this many times less accurate than psi2.
 WORK_ACCURACY = 10.0
+#: A failed batch of at most so many impacts is marched one by one; a larger batch is halved first.
+FEW = 8
 
 
 class Prepared(NamedTuple):
-    """What comes before the march: the normal motion, whole-impact answers, and the plan."""
+    """Normal motion, whole-impact answers and plan of a scene, made before the march."""
 
     normal: NormalMotion
     known: list[Answer]
@@ -53,9 +55,9 @@ def outcome(
     laws : Laws
     scene : Scene
     history : bool or "fields"
-        What the plan is to say of a history.
+        The history that is requested; the plan states what it leaves out.
     recorder : Recorder or None
-        What keeps it.
+        Keeps the history.
 
     Raises
     ------
@@ -80,10 +82,18 @@ def outcome(
         return _by_halves(laws, scene)
     tangential = _tangential(laws, prepared, recorder)
     motion = sound(Motion.along(prepared.normal, tangential))
-    # What the books may miss by: the law's own bound, and the integrator's share.
+    # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
     bound: Any = books_bound(laws.tangential, scene)
     bound = bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
     return prepared.plan, _named(laws, balanced(motion, scene, bound))
+
+
+def solved(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
+    """Return the piece of a sweep's chunk, a block at a time; ``scene`` is the chunk alone."""
+    ends = range(0, chunk.size, block)
+    scenes = (scene.take(slice(first, min(first + block, chunk.size))) for first in ends)
+    plans, motions = zip(*(outcome(laws, each, False, None) for each in scenes), strict=True)
+    return Piece(chunk, Plan.joined(plans), Motion.joined(motions, (chunk.size,)))
 
 
 def _named(laws: Laws, motion: Motion) -> Motion:
@@ -91,29 +101,28 @@ def _named(laws: Laws, motion: Motion) -> Motion:
     if not (motion.detail if isinstance(motion.detail, str) else np.any(motion.detail)):
         return motion
 
+    names = [(type(law).__name__, REGISTRY.describe(law)) for law in laws]
+
     def named(sentence: str) -> str:
-        for law in laws:
-            blamed = f", from {type(law).__name__}."
-            sentence = sentence.replace(blamed, f"{blamed[:-1]}, {REGISTRY.describe(law)}.")
+        for name, described in names:
+            sentence = sentence.replace(f", from {name}.", f", from {name}, {described}.")
         return sentence
 
     detail: Any = motion.detail
-    if isinstance(detail, np.ndarray):
-        detail = np.array([named(one) for one in detail.ravel()], dtype=object).reshape(
-            detail.shape
-        )
-    else:
-        detail = named(detail)
+    if isinstance(detail, str):
+        return attrs.evolve(motion, detail=named(detail))
+    sentences = [named(one) for one in detail.ravel()]
+    detail = np.array(sentences, dtype=object).reshape(detail.shape)
     return attrs.evolve(motion, detail=detail)
 
 
 def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
-    """Return what comes before the march.
+    """Return normal motion, whole-impact answers and plan of a scene.
 
     Raises
     ------
     LawFaultError
-        If a law raises where it is asked what it knows.
+        If a law raises while it is asked for whole-impact answers or cautions.
     """
     normal = normal_or_failed(laws, scene)
     accuracy = laws.integrator.accuracy
@@ -123,7 +132,7 @@ def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
 
 
 def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
-    """Return the normal motion of ``scene``; of a law that fails one of which nothing is known."""
+    """Return the normal motion of ``scene``; all its values are NaN if the law fails."""
     try:
         return normal_motion(laws.normal, scene)
     except faults.LawFaultError as fault:
@@ -139,11 +148,11 @@ def _by_halves(laws: Laws, scene: Scene) -> tuple[Plan, Motion]:
 
 
 def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> TangentialMotion:
-    """Return the tangential motion: what is known as a whole, and the rest marched."""
+    """Return the tangential motion, by whole-impact answers where there are any, else marched."""
     normal, known, plan = prepared
     shape, marched = normal.scene.shape, plan.marched
     if every(marched):
-        return march(laws, normal, recorder)
+        return _march(laws, normal, recorder)
     if recorder is not None and not some(marched):
         show(normal, known, recorder)
     if not shape:
@@ -161,8 +170,44 @@ def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> Ta
     motion = _answered(normal, known)
     if not some(marched):
         return motion
-    parts = [(np.ones(shape, dtype=bool), motion), (marched, march(laws, normal.take(marched)))]
+    parts = [(np.ones(shape, dtype=bool), motion), (marched, _march(laws, normal.take(marched)))]
     return TangentialMotion.merged(parts, shape)
+
+
+def _march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) -> TangentialMotion:
+    """Return the tangential motion; in a batch only the impacts that fail have no answer."""
+    # With an observer, failures are not isolated: the observer would be called again.
+
+    def part(index: Any) -> TangentialMotion:
+        return _march(laws, normal.take(index))
+
+    shape = normal.scene.shape
+    size = math.prod(shape)
+    if shape and size == 1 and observer is None:  # one impact is faster as plain numbers
+        return TangentialMotion.joined([part((0,) * len(shape))], shape)
+    motion, raised = _attempt(laws, normal, observer)
+    if not shape or observer is not None or np.all(motion.status == Status.SUCCESS):
+        return motion
+    if laws.integrator.own_statuses and not raised:
+        return motion
+    parts = np.ndindex(shape) if size <= FEW else halves(shape)
+    return TangentialMotion.joined([part(index) for index in parts], shape)
+
+
+def _attempt(
+    laws: Laws, normal: NormalMotion, observer: Observer | None
+) -> tuple[TangentialMotion, bool]:
+    """Return the motion, and True if the integrator raised instead of returning a motion."""
+    scene = normal.scene
+    try:
+        # Underflow is harmless here, even if the user has numpy raise for it.
+        with np.errstate(under="ignore"):
+            return laws.integrator.integrate(normal, laws.tangential, scene, observer), False
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # a plug-in may not end the process
+        sentence = faults.sentence(laws.integrator, faults.raised(error), 1)
+        return TangentialMotion.nothing(scene.shape, Status.LAW_RAISED, sentence), True
 
 
 def _answered(normal: NormalMotion, known: list[Answer]) -> TangentialMotion:

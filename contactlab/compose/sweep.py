@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from contactlab.compose.composition import Laws
-from contactlab.compose.pieces import Chunk, Piece, solved, unsolved
+from contactlab.compose.pieces import Chunk, Piece, unsolved
+from contactlab.compose.solve import solved
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import WholeImpactTangentialLaw
@@ -61,7 +62,7 @@ def swept(
     if executor is None:
         pieces = (solved(laws, scene.take(slice(*each)), each, block) for each in missing)
     else:
-        from contactlab.compose.executors import pieces_of  # needed with an executor only
+        from contactlab.compose.workers import pieces_of  # needed with an executor only
 
         pieces = pieces_of(laws, scene, list(missing), block, executor)
     try:

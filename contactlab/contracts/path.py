@@ -69,12 +69,12 @@ class Stretch(ABC):
         Parameters
         ----------
         normal : ClosedFormMotion
-            Of the impact, for its scales.
+            Normal motion of the impact, which has its scales.
         contact : ScaledContact
-            At the instant, of floats.
+            Contact at the instant; its entries are floats.
         factor : float
-            What the scaled solution is multiplied with: -1 for a negative slip velocity, and see
-            clause 4 of ``PathTangentialLaw``.
+            Factor on the scaled solution: -1 for a negative slip velocity, and smaller than 1 where
+            an integrator scales, by clause 4 of ``PathTangentialLaw``.
         """
         return {}
 

@@ -5,8 +5,9 @@ The functions choose no backend and open no window; the caller does.
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from contactlab.numeric.lazy import imported_on_use
 
 if TYPE_CHECKING:
     from contactlab.figures.comparison import laws_over_sweep
@@ -29,23 +30,19 @@ __all__ = [
     "save_figure",
     "styled",
 ]
-#: Module of each public name; a module is imported on first use.
-MODULES = {
-    "draw_fits": "fitting",
-    "draw_paper": "paper",
-    "draw_stick_slip": "stick_slip",
-    "law_style": "style",
-    "laws_over_sweep": "comparison",
-    "name_curves": "names",
-    "ordered_colours": "style",
-    "save": "files",
-    "save_figure": "files",
-    "styled": "style",
-}
 
-
-def __getattr__(name: str) -> Any:
-    """Return a public name, imported on first use."""
-    if name not in MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(f"{__name__}.{MODULES[name]}"), name)
+__getattr__ = imported_on_use(
+    __name__,
+    {
+        "draw_fits": "figures.fitting",
+        "draw_paper": "figures.paper",
+        "draw_stick_slip": "figures.stick_slip",
+        "law_style": "figures.style",
+        "laws_over_sweep": "figures.comparison",
+        "name_curves": "figures.names",
+        "ordered_colours": "figures.style",
+        "save": "figures.files",
+        "save_figure": "figures.files",
+        "styled": "figures.style",
+    },
+)

@@ -154,11 +154,11 @@ def _codes(axes: Axes, comparison: Comparison, quantity: str, varied: str) -> li
     """Draw the measured series of the scene file as points; return them."""
     series = [item.measured for item in comparison.agreements]
     drawn = [item for item in series if (item.quantity, item.against) == (quantity, varied)]
-    found: list[Line2D] = []
+    points: list[Line2D] = []
     for number, item in enumerate(drawn):
         look = {key: POINTS[key] for key in CODE_LOOK} | {"marker": MARKERS[number % len(MARKERS)]}
-        found += axes.plot(item.x, item.values, label=verbatim(item.label), **look)
-    return found
+        points += axes.plot(item.x, item.values, label=verbatim(item.label), **look)
+    return points
 
 
 def laws_over_sweep(

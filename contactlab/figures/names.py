@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,13 +16,15 @@ Array = NDArray[np.float64]
 
 #: Points along a curve beside which its name may stand, and points that stand for a curve.
 PLACES, POINTS = 48, 1500
-#: Boxes that are compared with all points of a curve at once: some megabytes.
-BOXES = 64
+#: Boxes that are compared with all points of a curve at once: what a processor's cache holds.
+BOXES = 16
 #: Distances in points: least between two names, least between a name and any curve, and those
 #: that are tried between a name and its own curve.
 BETWEEN, LEAST, GAPS = 2.5, 1.5, (2.5, 5.0, 9.0)
 #: Distances at which a thin line leads from the name to its curve, where there is room only there.
 LED = (12.0, 18.0, 26.0, 38.0, 54.0, 72.0)
+#: Shifts to the side of such a name that are tried, in widths of the name.
+SHIFTS = (-1.2, -0.8, -0.4, 0.0, 0.4, 0.8, 1.2)
 #: Least distance in points from other curves where such a line begins, and the length that it may
 #: be longer to cross one curve less.
 APART, CROSSED = 2.5, 25.0
@@ -77,9 +80,8 @@ def name_curves(
         group = next((group for group in alike if line in group), (line,))
         others = [points for other, points in dots.items() if other not in group]
         curves = [*dots.values(), *rules]
-        found = _place(dots[line], others, curves, taken, frame, size, unit)
-        if found is None:
-            found = _led(dots[line], others, curves, taken, frame, size, unit)
+        room = _Room(dots[line], others, curves, taken, frame, size, unit)
+        found = room.beside() or room.led()
         if found is None:
             for leader in leaders:
                 leader.remove()
@@ -138,41 +140,16 @@ def _off(boxes: Array, points: Array) -> Array:
     if not len(points):
         return np.full(len(boxes), np.inf)
     least = np.empty(len(boxes))
+    columns = np.ascontiguousarray(points.T)
     for first in range(0, len(boxes), BOXES):
-        low, high = np.moveaxis(boxes[first : first + BOXES, :, None], 1, 0)
-        beyond = np.maximum(np.maximum(low - points, points - high), 0.0)
-        least[first : first + BOXES] = (beyond[..., 0] ** 2 + beyond[..., 1] ** 2).min(axis=1)
+        squared: Any = 0.0
+        for axis, column in enumerate(columns):
+            low, high = boxes[first : first + BOXES, :, axis, None].swapaxes(0, 1)
+            beyond = np.maximum(low - column, column - high)
+            np.maximum(beyond, 0.0, out=beyond)
+            squared = squared + np.square(beyond, out=beyond)
+        least[first : first + BOXES] = squared.min(axis=1)
     return np.sqrt(least)
-
-
-def _place(
-    own: Array,
-    others: Sequence[Array],
-    curves: Sequence[Array],
-    taken: Sequence[Array],
-    frame: Array,
-    size: Array,
-    unit: float,
-) -> tuple[Array, Array | None] | None:
-    """Return the best centre of a name beside its curve, in dots, or None."""
-    offsets = [
-        (shift * size[0], side * (0.5 * size[1] + gap * unit))
-        for gap in GAPS
-        for side in (-1.0, 1.0)
-        for shift in (-0.5, 0.0, 0.5)
-    ]
-    centres = (own[:: POINTS // PLACES, None] + np.array(offsets)).reshape(-1, 2)
-    centres = centres[_free(_boxes(centres, size), curves, taken, frame, unit)]
-    if not len(centres):
-        return None
-    boxes = _boxes(centres, size)
-    near = _off(boxes, own)
-    far = np.full(len(boxes), 60.0 * unit)
-    if others:
-        far = np.min([_off(boxes, points) for points in others], axis=0)
-    score = np.where(far < NEARER * near, -np.inf, np.minimum(far, 30.0 * unit) - 1.5 * near)
-    best = int(np.argmax(score))
-    return (centres[best], None) if score[best] > -np.inf else None
 
 
 def _boxes(centres: Array, size: Array) -> Array:
@@ -180,57 +157,88 @@ def _boxes(centres: Array, size: Array) -> Array:
     return np.stack([centres - 0.5 * size, centres + 0.5 * size], axis=1)
 
 
-def _led(
-    own: Array,
-    others: Sequence[Array],
-    curves: Sequence[Array],
-    taken: Sequence[Array],
-    frame: Array,
-    size: Array,
-    unit: float,
-) -> tuple[Array, Array] | None:
-    """Return the best centre of a name away from its curve, and where its line begins, or None."""
-    best, found, pad = np.inf, None, LEAST * unit
-    for point in own[:: POINTS // PLACES]:
-        if (
-            min((_distances(point[None], points)[0] for points in others), default=9e9)
-            < APART * unit
-        ):
-            continue
-        for gap in LED:
-            for side in (-1.0, 1.0):
-                for shift in (-1.2, -0.8, -0.4, 0.0, 0.4, 0.8, 1.2):
-                    reach = side * gap * unit
-                    offset = np.array([shift * size[0], reach + side * 0.5 * size[1]])
-                    centre = point + offset
-                    if not _free(_boxes(centre[None], size), curves, taken, frame, unit)[0]:
-                        continue
-                    end = centre - np.array([0.0, side * 0.5 * size[1]])
-                    path = point + np.linspace(0.1, 1.0, 16)[:, None] * (end - point)
-                    crossed = sum(
-                        _distances(path, points).min() < LEAST * unit for points in others
-                    )
-                    crossed += sum(
-                        bool(((path > other[0] - pad) & (path < other[1] + pad)).all(axis=1).any())
-                        for other in taken
-                    )
-                    length = float(np.hypot(*(end - point))) + CROSSED * unit * crossed
-                    if length < best:
-                        best, found = length, (centre, point)
-    return found
+class _Room(NamedTuple):
+    """The name of one curve, and all that it may not touch; points and boxes in dots.
 
+    Attributes
+    ----------
+    own : array, shape (n, 2)
+        Points of the curve.
+    others, curves : sequence of arrays
+        Points of curves with other names, and of all curves and straight lines.
+    taken : sequence of arrays, shape (2, 2)
+        Boxes of other text.
+    frame : array, shape (2, 2)
+        Box of the axes.
+    size : array, shape (2,)
+        Width and height of the name.
+    unit : float
+        Dots of a point.
+    """
 
-def _free(
-    boxes: Array, curves: Sequence[Array], taken: Sequence[Array], frame: Array, unit: float
-) -> NDArray[np.bool_]:
-    """Return which boxes lie in the axes and touch neither a curve nor other text."""
-    low, high = boxes[:, 0], boxes[:, 1]
-    free: NDArray[np.bool_] = (low >= frame[0] + unit).all(axis=1) & (high <= frame[1] - unit).all(
-        axis=1
-    )
-    pad = BETWEEN * unit
-    for other in taken:
-        free &= ~((low < other[1] + pad).all(axis=1) & (high > other[0] - pad).all(axis=1))
-    for points in curves:
-        free[free] = _off(boxes[free], points) >= LEAST * unit
-    return free
+    own: Array
+    others: Sequence[Array]
+    curves: Sequence[Array]
+    taken: Sequence[Array]
+    frame: Array
+    size: Array
+    unit: float
+
+    def beside(self) -> tuple[Array, Array | None] | None:
+        """Return the best centre of the name beside its curve, without a line; or None."""
+        size, unit = self.size, self.unit
+        offsets = [
+            (shift * size[0], side * (0.5 * size[1] + gap * unit))
+            for gap in GAPS
+            for side in (-1.0, 1.0)
+            for shift in (-0.5, 0.0, 0.5)
+        ]
+        centres = (self.own[:: POINTS // PLACES, None] + np.array(offsets)).reshape(-1, 2)
+        centres = centres[self._free(_boxes(centres, size))]
+        if not len(centres):
+            return None
+        boxes = _boxes(centres, size)
+        near = _off(boxes, self.own)
+        far = np.full(len(boxes), 60.0 * unit)
+        if self.others:
+            far = np.min([_off(boxes, points) for points in self.others], axis=0)
+        score = np.where(far < NEARER * near, -np.inf, np.minimum(far, 30.0 * unit) - 1.5 * near)
+        best = int(np.argmax(score))
+        return (centres[best], None) if score[best] > -np.inf else None
+
+    def led(self) -> tuple[Array, Array | None] | None:
+        """Return the best centre of the name away from its curve, and where its line begins."""
+        best, place = np.inf, None
+        size, unit, pad = self.size, self.unit, LEAST * self.unit
+        for point in self.own[:: POINTS // PLACES]:
+            distances = (_distances(point[None], points)[0] for points in self.others)
+            if min(distances, default=9e9) < APART * unit:
+                continue
+            for gap, side, shift in itertools.product(LED, (-1.0, 1.0), SHIFTS):
+                reach = side * gap * unit
+                centre = point + np.array([shift * size[0], reach + side * 0.5 * size[1]])
+                if not self._free(_boxes(centre[None], size))[0]:
+                    continue
+                end = centre - np.array([0.0, side * 0.5 * size[1]])
+                path = point + np.linspace(0.1, 1.0, 16)[:, None] * (end - point)
+                crossed = sum(_distances(path, points).min() < pad for points in self.others)
+                crossed += sum(
+                    bool(((path > other[0] - pad) & (path < other[1] + pad)).all(axis=1).any())
+                    for other in self.taken
+                )
+                length = float(np.hypot(*(end - point))) + CROSSED * unit * crossed
+                if length < best:
+                    best, place = length, (centre, point)
+        return place
+
+    def _free(self, boxes: Array) -> NDArray[np.bool_]:
+        """Return which boxes lie in the axes and touch neither a curve nor other text."""
+        low, high = boxes[:, 0], boxes[:, 1]
+        inside = (low >= self.frame[0] + self.unit) & (high <= self.frame[1] - self.unit)
+        free: NDArray[np.bool_] = inside.all(axis=1)
+        pad = BETWEEN * self.unit
+        for other in self.taken:
+            free &= ~((low < other[1] + pad) & (high > other[0] - pad)).all(axis=1)
+        for points in self.curves:
+            free[free] = _off(boxes[free], points) >= LEAST * self.unit
+        return free

@@ -23,13 +23,15 @@ from contactlab.figures.style import (
 )
 from contactlab.study.paper_figures import FIXED_PSI1, SOLID_CHI, FigureData, chi_of_gyration
 
-SOLID_CHI_RANGE = (3.5 / 3.0, 3.5 / 2.0)  # nu = 0.5 and nu = 0 in eq. (38)
+#: chi of solid spheres: nu = 0.5 and nu = 0 in eq. (38).
+SOLID_CHI_RANGE = (3.5 / 3.0, 3.5 / 2.0)
+#: Place of a legend for whose names there is no room beside the curves.
+BESIDE: Mapping[str, Any] = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
 
 
 def draw_paper(axes: Axes, data: FigureData) -> Axes:
-    """Draw a figure of the paper: by ``figure_<number>`` if defined, else by ``curves``."""
-    drawn: Axes = globals().get(f"figure_{data.number}", curves)(axes, data)
-    return drawn
+    """Draw a figure of the paper; plain curves if the figure has no function of its own."""
+    return FIGURES.get(data.number, curves)(axes, data)
 
 
 def curves(axes: Axes, data: FigureData) -> Axes:
@@ -47,10 +49,7 @@ def figure_1(axes: Axes, data: FigureData) -> Axes:
     lines = _forces(axes, data)
     axes.text(0.02, 0.03, rf"$\chi$ = {SOLID_CHI:.4f}", transform=axes.transAxes)
     names = [f"{curve.parameter:g}" for curve in data.curves[1:]]
-    names[0] = rf"$\psi_1$ = {names[0]}"
-    if not name_curves(axes, lines, names):
-        axes.legend(title=r"$\psi_1$", **_BESIDE)
-    return axes
+    return _named(axes, lines, r"$\psi_1$", names, title=r"$\psi_1$")
 
 
 def figure_2(axes: Axes, data: FigureData) -> Axes:
@@ -77,10 +76,7 @@ def figure_3(axes: Axes, data: FigureData) -> Axes:
     lines = _forces(axes, data, name=lambda ratio: f"{ratio:.3g}  ({chi_of_gyration(ratio):.2f})")
     axes.text(0.02, 0.03, rf"$\psi_1$ = {FIXED_PSI1}", transform=axes.transAxes)
     names = [f"{curve.parameter:.3g}" for curve in data.curves[1:]]
-    names[0] = f"$K$ = {names[0]}"
-    if not name_curves(axes, lines, names):
-        axes.legend(title=r"$K$  ($\chi$)", **_BESIDE)
-    return axes
+    return _named(axes, lines, "$K$", names, title=r"$K$  ($\chi$)")
 
 
 def figure_4(axes: Axes, data: FigureData) -> Axes:
@@ -107,7 +103,15 @@ def figure_4(axes: Axes, data: FigureData) -> Axes:
     return axes
 
 
-_BESIDE: Mapping[str, Any] = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
+#: Functions of the figures by number.
+FIGURES = {1: figure_1, 2: figure_2, 3: figure_3, 4: figure_4}
+
+
+def _named(axes: Axes, lines: list[Line2D], symbol: str, values: list[str], *, title: str) -> Axes:
+    """Write the values beside the curves, the first with its symbol; else draw a legend."""
+    if not name_curves(axes, lines, [f"{symbol} = {values[0]}", *values[1:]]):
+        axes.legend(title=title, **BESIDE)
+    return axes
 
 
 def _forces(

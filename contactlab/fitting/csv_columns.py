@@ -45,7 +45,7 @@ ENCODINGS = ("utf-8-sig", "cp1252")
 
 
 class Heading(NamedTuple):
-    """What a column holds.
+    """The meaning of a column.
 
     ``role`` is "given" (an entry of the scene), "measured", "error" (standard error of a
     measured quantity) or "unused"; ``factor`` converts to the unit of ``name``.
@@ -75,13 +75,17 @@ def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
         return Heading(role, name, _factor(text, name, unit, QUANTITIES[name].unit))
     if name in QUANTITIES or name == "status":
         return Heading("unused", text)
-    before = [entry for entry in ENTRIES if "." not in entry]
     raise ValueError(
         f"heading {text!r}: is neither an entry of a scene nor a quantity of a rebound; "
-        f"{nearest(name, [*ENTRIES, *MEASURABLE])}before the impact: {', '.join(before)}; after "
-        f"it: {', '.join(MEASURABLE)}; name the column by --column '{text.strip()}=...' "
-        "(columns= in Python), or begin its heading with # to leave it unread"
+        f"{nearest(name, [*ENTRIES, *MEASURABLE])}{_known_names()}name the column by --column "
+        f"'{text.strip()}=...' (columns= in Python), or begin its heading with # to leave it unread"
     )
+
+
+def _known_names() -> str:
+    """Return the names that a heading may have."""
+    before = [entry for entry in ENTRIES if "." not in entry]
+    return f"before the impact: {', '.join(before)}; after it: {', '.join(MEASURABLE)}; "
 
 
 def _name_and_unit(text: str) -> tuple[bool, str, str]:
@@ -135,7 +139,15 @@ def read_columns(text: str, names: Mapping[str, str]) -> dict[str, list[float]]:
     headings, rows, decimal_comma = _rows(text)
     if len(set(headings)) < len(headings):
         raise ValueError("two columns have the same heading")
-    roles = [read_heading(heading, names).role for heading in headings]
+    roles, refused = [], []
+    for heading in headings:
+        try:
+            roles.append(read_heading(heading, names).role)
+        except ValueError as error:
+            refused.append(str(error))
+    if refused:  # all at once, to be mended at once; the names that there are, once
+        first = [sentence.replace(_known_names(), "") for sentence in refused[:-1]]
+        raise ValueError(". And ".join([*first, refused[-1]]))
     columns: dict[str, list[float]] = {heading: [] for heading in headings}
     for line, row in rows:
         if len(row) != len(headings):

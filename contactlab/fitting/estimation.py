@@ -145,9 +145,9 @@ def _with_bootstrap(
     Notes
     -----
     The wild bootstrap: residuals, widened by sqrt(n/(n - p)), are added to the prediction, with
-    one random sign for all quantities of an impact. Each impact so keeps its own scatter, and
-    the quantities of an impact stay correlated: Wu, Ann. Statist. 14
-    (1986) 1261-1295, doi:10.1214/aos/1176350142.
+    one random sign for all quantities of an impact. So each impact keeps its own scatter, and the
+    quantities of an impact stay correlated: Wu, Ann. Statist. 14 (1986) 1261-1295,
+    doi:10.1214/aos/1176350142.
     """
     generator = np.random.default_rng(seed)
     residuals = {name: rows[0] for name, rows in problem.residuals(values[None]).items()}
@@ -228,7 +228,9 @@ def _outcome(
     freedom = len(weighted) - len(values)
     mean_square = float(weighted @ weighted) / freedom if freedom > 0 else math.nan
     stated = all(name in problem.errors for name in problem.measured)
-    factor = max(mean_square, 1.0) if stated and freedom else 1.0 if stated else mean_square
+    factor = mean_square
+    if stated:  # errors may be stated too small, but are not believed to be too large
+        factor = max(mean_square, 1.0) if freedom else 1.0
     size = np.sqrt(np.sum(jacobian**2, axis=0))
     covariance = np.linalg.inv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
     errors = np.sqrt(factor * np.diag(covariance))

@@ -71,14 +71,14 @@ def coupling_shift(scene: Scene) -> Any:
     psi1, last = np.abs(scene.psi1), axes[0][-1]
     nu = (2.0 - 2.0 * kappa) / (2.0 - kappa)
     entries = np.broadcast_arrays(psi1, scene.chi, nu, coupling_number(scene))
-    found: Any = np.zeros(entries[0].shape)
+    shift: Any = np.zeros(entries[0].shape)
     lower, shares = zip(*(_place(*pair) for pair in zip(entries, axes, strict=True)), strict=True)
     for corner in itertools.product((0, 1), repeat=len(axes)):
         places = tuple(low + up for low, up in zip(lower, corner, strict=True))
         weights = [share if up else 1.0 - share for share, up in zip(shares, corner, strict=True)]
-        found = found + np.prod(weights, axis=0) * size[places]
-    found = found * np.minimum(1.0, last / np.maximum(psi1, last)) ** 2
-    return np.where(np.asarray(scene.friction_coefficient) == 0.0, 0.0, found)
+        shift = shift + np.prod(weights, axis=0) * size[places]
+    shift = shift * np.minimum(1.0, last / np.maximum(psi1, last)) ** 2
+    return np.where(np.asarray(scene.friction_coefficient) == 0.0, 0.0, shift)
 
 
 def _place(values: Any, axis: Array) -> tuple[Any, Any]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from contactlab.numeric.checks import POISSON, POSITIVE, Real, nearest, quantity, real, refuse
 
+OWN = "or give your own: Material(young_modulus=..., poisson_ratio=..., density=...)"
 #: Names in common use, with the name in the collection.
 OTHER_NAMES = {
     "aluminum": "aluminium alloy", "aluminium": "aluminium alloy", "aluminum oxide": "alumina",
@@ -173,9 +174,13 @@ def entry(name: str) -> Entry:
         other = OTHER_NAMES[key]
         raise refuse("name", name, f"is listed as {other!r}", "write that name")
     similar = [listed for long_key, listed in names_by_key.items() if key and key in long_key]
+    words = set(key.split())
+    similar = similar or [
+        listed for each, listed in names_by_key.items() if words & {*each.split()}
+    ]
     hint = f"did you mean {' or '.join(map(repr, similar))}? " if similar else ""
     hint = hint or nearest(name, collection)
-    raise refuse("name", name, "no such material", f"{hint}known: {', '.join(collection)}")
+    raise refuse("name", name, "no such material", f"{hint}known: {', '.join(collection)}; {OWN}")
 
 
 def entries() -> tuple[Entry, ...]:

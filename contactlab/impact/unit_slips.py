@@ -36,7 +36,8 @@ def unit_slips(scene: Scene) -> list[str]:
             number = f"{name}.material.density = {_least(density):.4g} kg/m³"
             slips.append(f"unit: {number}: is it in g/cm³?")
         if modulus < LEAST_MODULUS:
-            number = f"{name}.material.shear_modulus = {modulus:.4g} Pa"
+            young = 2.0 * (1.0 + _least(body.material.poisson_ratio)) * modulus
+            number = f"{name}.material.shear_modulus = {modulus:.4g} Pa (Young's {young:.4g} Pa)"
             slips.append(f"unit: {number}: is it in GPa?")
     speed = math.hypot(_most(scene.normal_speed), _most(abs(scene.tangential_velocity)))
     spin = _most(abs(scene.spin))

@@ -115,20 +115,22 @@ static inline CONTACTLAB_REAL contactlab_springs_step(CONTACTLAB_REAL *state, in
     const CONTACTLAB_REAL l = i < touching ? most * (u * u - r * r) : 0;
     /* A spring that the contact reaches in the step moves from then on only. */
     const CONTACTLAB_REAL part = growth > 0 && r > v ? (u - r) / growth : 1;
-    CONTACTLAB_REAL square = 0, share = 1;
+    CONTACTLAB_REAL square = 0;
     along = w[0] * normal[0] + w[1] * normal[1] + w[2] * normal[2];
     for (k = 0; k < 3; ++k) {
       held[k] = w[k] - along * normal[k];
       w[k] = held[k] + part * d[k];
       square += w[k] * w[k];
     }
-    if (square > l * l) share = l / (CONTACTLAB_REAL) sqrt((double) square);
-    for (k = 0; k < 3; ++k) { /* the work of a spring: its mean w times its slip */
-      const CONTACTLAB_REAL kept = share * w[k];
-      work += (w[k] - kept) * (held[k] + kept);
-      total[k] += kept;
-      w[k] = kept;
+    if (!(square <= l * l)) { /* cut to its limit; the work of a spring: its mean w times its slip */
+      const CONTACTLAB_REAL share = l / (CONTACTLAB_REAL) sqrt((double) square);
+      for (k = 0; k < 3; ++k) {
+        const CONTACTLAB_REAL kept = share * w[k];
+        work += (w[k] - kept) * (held[k] + kept);
+        w[k] = kept;
+      }
     }
+    for (k = 0; k < 3; ++k) total[k] += w[k];
   }
   for (k = 0; k < 3; ++k) force[k] = -modulus * cell * total[k];
   state[1] = radius;

@@ -134,7 +134,7 @@ def first_fall(nodes: Nodes, table: Array, level: float, *, fresh: bool) -> tupl
     fresh : bool
         Values may begin at zero: if the second node is above ``level``, a fall before it is noise.
     """
-    found = np.inf, -1
+    first = np.inf, -1
     for which, (values, fine) in enumerate(zip(table, table @ nodes.to_fine, strict=True)):
         begin = nodes.second if fresh and values[1] >= level else 0
         k = begin + int((fine[begin:] < level).argmax())
@@ -143,9 +143,9 @@ def first_fall(nodes: Nodes, table: Array, level: float, *, fresh: bool) -> tupl
         elif (ends := _dip(nodes, values, fine, begin, level)) == (0.0, 0.0):
             continue
         tau = _root(nodes, values, *ends)
-        if tau < found[0]:
-            found = tau, which
-    return found
+        if tau < first[0]:
+            first = tau, which
+    return first
 
 
 def _dip(nodes: Nodes, values: Array, fine: Array, begin: int, level: float) -> tuple[float, float]:

@@ -94,14 +94,14 @@ def _coupled(
     scene, own, law = normal.scene, tangential.normal, normal.law
     assert isinstance(law, NormalLaw)
     alone = np.isnan(gathered(own, lambda motion: motion.duration, scene.shape))
-    found = {
+    coupled = {
         name: np.where(alone, entries[name], gathered(own, attrgetter(source), scene.shape))
         for name, source in ENDS.items()
     }
     speed: Any = scene.normal_speed
-    lost = 0.5 * scene.pair.normal_mass * (speed * speed - found["normal_velocity"] ** 2)
+    lost = 0.5 * scene.pair.normal_mass * (speed * speed - coupled["normal_velocity"] ** 2)
     dissipated = gathered(own, law.dissipation, scene.shape)
-    return found | {"exchange": np.where(alone, 0.0, lost - dissipated)}
+    return coupled | {"exchange": np.where(alone, 0.0, lost - dissipated)}
 
 
 #: The numbers of a motion but the exchange, which may be undeclared.

@@ -1,4 +1,4 @@
-"""What a scene needs, and what is left out and why, said before anything runs."""
+"""The plan of an impact: statements on what is computed and what is left out, and cautions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Mask = NDArray[np.bool_]
 #: Codes of clauses that programs look for: the march of the tangential motion, the declared or
 #: undeclared numerical error of psi2, and energy books that check nothing.
 TANGENTIAL_MOTION, PSI2_ERROR, BOOKS = "tangential_motion", "psi2_error", "unchecked_books"
-#: What is left out where the friction work is a difference of energies.
+#: Entry of a plan whose friction work is a difference of energies.
 UNCHECKED = (
     "check of the energy books: closed by construction, not checked; the friction work is the "
     "energy that the velocities lose"
@@ -59,14 +59,14 @@ class Clause(NamedTuple):
     Attributes
     ----------
     text : str
-        The words, or their format where there are ``values``.
+        The words; if there are ``values``, a format string for them.
     where : array of bool
-        Of the batch shape.
+        Impacts that the statement is about; an array of the batch shape.
     values : tuple or None
-        What ``text`` formats: an array of the batch shape, of which the largest entry among the
-        impacts is shown, a ``Span``, or a law. None: ``text`` is the words.
+        Values to format into ``text``: a ``Span``, a law, or an array of the batch shape, whose
+        largest entry among the impacts is shown. None if ``text`` is not a format string.
     code : str
-        What the statement is about, for programs: a constant of this module, or empty.
+        Subject of the statement, for programs: a constant of this module, or empty.
     """
 
     text: str
@@ -161,12 +161,12 @@ class Plan:
 
     @property
     def computed(self) -> Clauses:
-        """What is computed; ``str`` of a clause gives its words."""
+        """Statements on what is computed; ``str`` of a clause gives its words."""
         return self._read()[0]
 
     @property
     def left_out(self) -> Clauses:
-        """What is left out, and why."""
+        """Statements on what is left out, and why."""
         return self._read()[1]
 
     @property

@@ -91,8 +91,12 @@ class ImpactResult:
         return f"ImpactResult({answer}; {outcome}; {laws})"
 
     def __str__(self) -> str:
-        """Return ``repr``, the numerical error and every caution, one line each."""
+        """Return ``repr``, the numerical error, the first failure and every caution, in lines."""
         lines = [repr(self), f"numerical error of psi2: {error_words(self)}"]
+        failures = self.failures
+        for index in [*failures][:1]:
+            where = f" (impact {index}; {len(failures)} in all)" if self.scene.shape else ""
+            lines.append(f"failed{where}: {failures[index]}")
         return "\n".join([*lines, *(f"caution: {text}" for text in self.cautions)])
 
     def _repr_html_(self) -> str:
@@ -149,7 +153,7 @@ class ImpactResult:
 
     @property
     def cautions(self) -> list[str]:
-        """What ``str`` tells to be wary of: of the numerical error, then of the plan."""
+        """Cautions that ``str`` shows: about the numerical error, then those of the plan."""
         return [*error_cautions(self), *map(str, self.plan.cautions)]
 
     @property

@@ -99,7 +99,8 @@ function rings(states) {
 }
 
 function drawContact() {
-  const colours = ["", "var(--grey)", "var(--blue)", "var(--red)"], k = row(), list = rings(found.contact.states[k]);
+  const colours = ["", "var(--grey)", "var(--blue)", "var(--red)"], k = row();
+  const list = k ? rings(found.contact.states[k - 1]) : []; // the springs of each step, none at the start
   const size = 104, cx = 125, cy = 112;
   let svg = `<circle class="rule" fill="none" cx="${cx}" cy="${cy}" r="${size}"/>`;
   for (const ring of list) svg += `<circle cx="${cx}" cy="${cy}" r="${(size * ring.outer).toFixed(2)}" fill="${colours[ring.state]}" data-state="${ring.state}"/>`;

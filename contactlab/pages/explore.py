@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from importlib import resources
 from typing import Any
 
@@ -18,8 +19,11 @@ RADIUS = 10.0
 #: Ranges of the sliders: least, most.
 RANGES = {"angle": (0.0, 85.0), "speed": (0.1, 10.0), "spin": (-600.0, 600.0),
           "friction": (0.02, 1.0)}  # fmt: skip
-#: Parts of the page and their files beside this module.
-PARTS = {"STYLE": "explore.css", "KERNEL": "springs.js", "THROW": "throw.js", "PAGE": "explore.js"}
+#: Parts of the page and their files; the kernel is that for engines, no module here.
+PARTS = {
+    "STYLE": "pages/explore.css", "KERNEL": "kernels/contactlab_springs.mjs",
+    "OTHERS": "pages/springs.js", "THROW": "pages/throw.js", "PAGE": "pages/explore.js",
+}  # fmt: skip
 
 
 def explore_page(
@@ -59,10 +63,11 @@ def explore_page(
         if not least <= value <= most:
             raise refuse(name, value, f"must lie in [{least:g}, {most:g}], the range of the slider")
     first |= {"material": entry(material).name, "predict": predict, "guess": 0, "radius": RADIUS}
-    folder = resources.files("contactlab").joinpath("pages")
-    page = folder.joinpath("explore.html").read_text("utf-8")
+    folder = resources.files("contactlab")
+    page = folder.joinpath("pages", "explore.html").read_text("utf-8")
     for part, file in PARTS.items():
-        page = page.replace(f"/*{part}*/", folder.joinpath(file).read_text("utf-8").strip())
+        text = folder.joinpath(file).read_text("utf-8").strip()
+        page = page.replace(f"/*{part}*/", re.sub("^export ", "", text, flags=re.MULTILINE))
     entries = {
         "/*MATERIALS*/null": json.dumps({name: entry(name).numbers() for name in names()}),
         "/*FIRST*/null": json.dumps(first),

@@ -34,7 +34,7 @@ function leaving(met, set, psi2) {
 /* Return the whole throw: meeting, contact, and how the ball leaves under the three laws. */
 function thrown(set) {
   const met = meeting(set), contact = impact(met.psi1, met.chi, SPRINGS, STEPS);
-  const capped = cappedImpact(met.psi1, met.chi, STEPS);
+  const capped = cappedImpact(met.psi1, met.chi, contact);
   return {
     met, contact, capped,
     exact: leaving(met, set, contact.psi2),
@@ -48,9 +48,9 @@ function rebounds(set) {
   const rows = [];
   for (let angle = 0; angle <= 84; angle += 2) {
     const at = {...set, angle}, met = meeting(at);
+    const contact = impact(met.psi1, met.chi, 40, 160);
     const psi2 = [
-      impact(met.psi1, met.chi, 40, 160).psi2, cappedImpact(met.psi1, met.chi, 160).psi2,
-      rigidRebound(met.psi1, met.chi),
+      contact.psi2, cappedImpact(met.psi1, met.chi, contact).psi2, rigidRebound(met.psi1, met.chi),
     ];
     rows.push([angle, ...psi2.map(value => leaving(met, at, value).angle)]);
   }

@@ -14,6 +14,11 @@ Made = TypeVar("Made")
 #: Numbers of a material in a scene file.
 MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density", "yield_stress")
 
+#: What to write for a number that has no unit to tell it by.
+ABSENT = {
+    "friction_coefficient": "a number such as 0.2; `contactlab fit` finds it from measured rebounds"
+}
+
 
 class Table:
     """A table, its dotted ``path`` for messages, and the keys it may have.
@@ -56,7 +61,7 @@ class Table:
 
         A list in the file is refused: entries that vary belong in ``[sweep]``.
         """
-        value = self.require(key, remedy)
+        value = self.require(key, f"write {key} = ...: {ABSENT.get(key, remedy)}")
         if isinstance(value, list):
             raise refuse(self.at(key), value, "must be one number", "put lists in [sweep]")
         return real(self.at(key), value, rule=rule, remedy=remedy)

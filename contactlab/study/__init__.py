@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from contactlab.numeric.lazy import imported_on_use
 
 if TYPE_CHECKING:
     from contactlab.impact.coupling import coupling_shift
@@ -11,18 +12,14 @@ if TYPE_CHECKING:
     from contactlab.study.paper_figures import SOLID_CHI, paper_data
 
 __all__ = ["SOLID_CHI", "Comparison", "compare", "coupling_shift", "paper_data"]
-#: Module of each public name; a module is imported on first use.
-MODULES = {
-    "SOLID_CHI": "contactlab.study.paper_figures",
-    "Comparison": "contactlab.study.comparison",
-    "compare": "contactlab.study.comparison",
-    "coupling_shift": "contactlab.impact.coupling",
-    "paper_data": "contactlab.study.paper_figures",
-}
 
-
-def __getattr__(name: str) -> Any:
-    """Return a public name, imported on first use."""
-    if name not in MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(MODULES[name]), name)
+__getattr__ = imported_on_use(
+    __name__,
+    {
+        "SOLID_CHI": "study.paper_figures",
+        "Comparison": "study.comparison",
+        "compare": "study.comparison",
+        "coupling_shift": "impact.coupling",
+        "paper_data": "study.paper_figures",
+    },
+)

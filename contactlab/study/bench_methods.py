@@ -33,9 +33,9 @@ ELSEWHERE = (
 #: psi1 and chi of a quick benchmark, in the same two sets.
 QUICK, QUICK_ELSEWHERE = ((0.5, 49 / 34), (1.2, 49 / 34), (3.0, 49 / 34)), ((1.2, 3.0),)
 
-#: Ladders of resolution: of parts (springs, annuli) if a law has them, else of steps. A part has as
-#: many steps as the ratio of the two defaults (ten for the paper's steps and annuli), else
-#: ``STEPS_PER_PART``, and all parts together ``LEAST_STEPS`` at least.
+#: Ladders of resolution: parts (springs, annuli) if a law has them, else steps. The number of steps
+#: is then the number of parts times the ratio of the two defaults (ten for the paper's steps and
+#: annuli) or times ``STEPS_PER_PART``, but at least ``LEAST_STEPS``.
 STEPS = (25, 50, 100, 200, 400)
 PARTS = (2, 3, 4, 8, 12, 25, 50, 100)
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10)

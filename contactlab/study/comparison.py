@@ -239,7 +239,7 @@ def _varied(scene: Scene) -> dict[str, Array]:
         return {}
     if scene.axes:
         return product(scene.axes)
-    # Of several entries that vary together the first counts.
+    # Several entries may vary together: the first one with different values is the abscissa.
     entries: dict[str, Any] = {"psi1": scene.psi1, "chi": scene.chi}
     if scene.sphere is not None:
         angle = np.degrees(np.arctan2(scene.tangential_velocity, scene.normal_speed))

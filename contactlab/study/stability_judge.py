@@ -9,13 +9,13 @@ import attrs
 import numpy as np
 
 from contactlab.compose.error_estimate import estimated
-from contactlab.compose.older import books_bound as bound_of
 from contactlab.compose.registry import PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.compose.solved_motion import ACCURACY
 from contactlab.contracts import ClosedFormNormalLaw
 from contactlab.contracts.error_model import LARGEST_SHARE, range_of
 from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.result import ImpactResult
@@ -168,7 +168,7 @@ def _wrong(simulation: Simulation, result: ImpactResult, error: float, bound: fl
         result,
         bound,
         passive="books" not in tangential.expected_failures,
-        books_bound=float(np.max(bound_of(tangential, result.scene))),
+        books_bound=float(np.max(books_bound(tangential, result.scene))),
         load_impulse=None if elastic else load_impulse(result.scene, normal),
     )
     if error > bound:

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.older import books_bound
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import Integrator, Law, NormalLaw, SteppedTangentialLaw, TangentialLaw
 from contactlab.contracts.sampled_motion import gathered
+from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
 from contactlab.testing.check import apply_if, check, hold
 from contactlab.testing.coupled_laws import Exchanging, Marked, succeeded

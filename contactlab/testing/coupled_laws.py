@@ -27,7 +27,7 @@ MARKS, SPREAD = (0.41, 1.27, 1.30, 2.6), 0.11
 
 @attrs.frozen(kw_only=True)
 class Marked(Yielding):
-    """``Yielding`` with marks that differ from impact to impact; it keeps what it is told."""
+    """``Yielding`` with marks that differ from impact to impact; it keeps what its steps get."""
 
     seen: list[tuple[Increment, NormalContact]] = attrs.field(factory=list, eq=False, repr=False)
 

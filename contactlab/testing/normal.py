@@ -49,13 +49,15 @@ def respond(law: Any, impact: Scene, approach: Any, rate: Any) -> Any:
     approach, rate : array, shape (K, ...)
         In m and m/s, in the order of the course.
     """
-    state, rows = law.start(impact), []
+    state = law.start(impact)
+    answers = np.empty((len(ENTRIES), len(approach), *impact.shape))
     limits.begin(f"a course of {len(approach)} depths")
-    for depth, speed in zip(_rows(approach), _rows(rate), strict=True):
+    for row, (depth, speed) in enumerate(zip(_rows(approach), _rows(rate), strict=True)):
         limits.DOING.steps += 1
         contact, state = law.respond(state, depth, speed)
-        rows.append([np.broadcast_to(part, impact.shape) for part in _complete(contact)])
-    return np.moveaxis(np.array(rows, dtype=np.float64), 1, 0)
+        for entry, part in enumerate(_complete(contact)):
+            answers[entry, row] = part
+    return answers
 
 
 def _rows(column: Any) -> Any:
@@ -64,7 +66,8 @@ def _rows(column: Any) -> Any:
 
 
 def _complete(contact: Any) -> NormalContact:
-    hold(isinstance(contact, NormalContact), f"respond returned {contact!r}, no NormalContact.")
+    if not isinstance(contact, NormalContact):
+        hold(False, f"respond returned {contact!r}, no NormalContact.")
     complete: NormalContact = contact.complete
     return complete
 
@@ -80,8 +83,9 @@ def contacts(law: Any) -> None:
             for name, value in zip(ENTRIES, contact, strict=True):
                 if name == "friction_load" and value is None:
                     continue
-                good = well_formed(value, shape) and np.all(np.isfinite(np.asarray(value)))
-                hold(good, f"{name} = {value!r} at approach {depth!s:.60}, batch shape {shape}.")
+                if not (well_formed(value, shape) and np.all(np.isfinite(np.asarray(value)))):
+                    where = f"at approach {depth!s:.60}, batch shape {shape}"
+                    hold(False, f"{name} = {value!r} {where}.")
 
 
 @check(NormalLaw)

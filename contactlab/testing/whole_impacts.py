@@ -11,9 +11,9 @@ from scipy.integrate import trapezoid
 
 from contactlab.compose.answers import answers
 from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.older import books_bound
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalLaw, NormalMotion, TangentialLaw, WholeImpact
+from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import spread
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold

@@ -152,21 +152,26 @@ def draw(found: dict[float, dict[str, tuple[float, float]]], path: Path) -> None
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    figure, panels = plt.subplots(1, len(found), figsize=(5 * len(found), 3), squeeze=False)
-    for axes, (mu, rows) in zip(panels[0], found.items(), strict=True):
-        exact, error = rows["direct"]
-        axes.axvspan(exact - error, exact + error, color="0.85")
-        axes.axvline(exact, color="0.4", label="direct simulation")
-        laws = [name for name in rows if name != "direct"]
-        for place, name in enumerate(laws):
-            axes.errorbar(rows[name][0], place, xerr=rows[name][1], fmt="o", capsize=4)
-        axes.set_yticks(range(len(laws)), laws)
-        axes.set_ylim(len(laws) - 0.5, -0.5)
-        axes.set_xlabel("rotational over translational temperature")
-        axes.set_title(f"cooling gas, e = {RESTITUTION}, mu = {mu:g}")
-        axes.legend(frameon=False)
-    figure.tight_layout()
-    figure.savefig(path, dpi=120)
+    from contactlab.figures.style import QUIET, law_style, styled
+
+    with styled("print", "two"):
+        figure, panels = plt.subplots(1, len(found), figsize=(7.0, 2.2), squeeze=False)
+        for axes, (mu, rows) in zip(panels[0], found.items(), strict=True):
+            exact, error = rows["direct"]
+            axes.axvspan(exact - error, exact + error, color="0.87", lw=0)
+            axes.axvline(exact, color=QUIET, lw=1.0)
+            axes.annotate(
+                "direct simulation ", (exact - error, 1.0), xycoords=("data", "axes fraction"),
+                ha="right", va="top", color="#555555", fontsize="small",
+            )  # fmt: skip
+            for place, name in enumerate(LAWS):
+                look = {"color": law_style(place)["color"], "marker": "os^"[place]}
+                axes.errorbar(rows[name][0], place, xerr=rows[name][1], ms=5, capsize=3, **look)
+            axes.set_yticks(range(len(LAWS)), LAWS if axes is panels[0, 0] else [""] * len(LAWS))
+            axes.set_ylim(len(LAWS) - 0.5, -0.8)
+            axes.set_xlabel("rotational over translational temperature")
+            axes.set_title(rf"$\mu$ = {mu:g}", fontsize="medium")
+        figure.savefig(path)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import json
 import os
 import re
 import subprocess
@@ -11,6 +12,9 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
+
+import contactlab
+from contactlab.cli.guide import TOPICS
 
 pytestmark = pytest.mark.browser
 TOP = Path(__file__).parents[2]
@@ -41,9 +45,57 @@ def test_a_page_of_the_gallery_shows_picture_and_output(site, opened):
     pictures = page.find_elements("css selector", "article img.sphx-glr-single-img")
     assert [picture.get_property("naturalWidth") > 500 for picture in pictures] == [True]
     assert (
-        "of the annuli in contact stick"
+        "of the springs in contact stick"
         in page.find_element("css selector", ".sphx-glr-script-out").text
     )
+
+
+def test_formulas_are_typeset_and_drawings_left(site, opened):
+    page = opened(site / "theory.html")
+    fraction = page.find_element("css selector", "table.formulas math mfrac")
+    assert fraction.size["height"] > 1.4 * page.find_element("css selector", "p").size["height"] / 3
+    assert len(page.find_elements("css selector", "math")) > 35
+    assert any("edge slip" in each.text for each in page.find_elements("css selector", "pre"))
+
+
+def test_every_page_of_the_guide_has_a_picture_that_is_there(site, opened):
+    for topic in TOPICS:
+        page = opened(site / f"{topic}.html")
+        pictures = page.find_elements("css selector", "article img")
+        assert pictures, topic
+        assert all(picture.get_property("naturalWidth") > 300 for picture in pictures), topic
+
+
+def test_the_reference_leads_from_each_public_name_to_its_source(site, opened):
+    page = opened(site / "reference.html")
+    told = page.find_element("css selector", "article").text
+    assert [name for name in contactlab.__all__ if name not in told] == []
+    page.find_element("link text", "Scene").click()
+    source = page.find_element("css selector", "dt[id='contactlab.Scene'] a[href*=_modules]")
+    page.get(source.get_attribute("href"))
+    assert "class Scene" in page.find_element("css selector", "article").text
+
+
+def test_notebooks_open_and_run(site, tmp_path):
+    """The code of a notebook runs where no file is, with the options of a kernel."""
+    books = {path.stem: path for path in site.rglob("*.ipynb")}
+    code = {}
+    for name, path in books.items():
+        cells = json.loads(path.read_text("utf-8"))["cells"]
+        code[name] = "\n\n".join(
+            "".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"
+        )
+        compile(code[name], name, "exec")
+        assert "__file__" not in code[name]
+    done = subprocess.run(
+        [sys.executable, "-", "-f", "kernel.json"],
+        input=code["experiment"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "kharaz2001.png").exists()
 
 
 def test_the_search_finds_a_word(site, opened):

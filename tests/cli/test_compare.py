@@ -213,7 +213,7 @@ def test_a_pdf_has_fonts_that_journals_take(run, short_sweep, tmp_path):
     figure.subplots().set_xlabel("of one's own")
     save_figure(figure, path)
     assert b"/Type3" not in path.read_bytes()
-    with pytest.raises(ValueError, match=r"figure.eps': must end in .png, .pdf, .svg"):
+    with pytest.raises(ValueError, match=r"must end in .png, .pdf, .svg"):
         save_figure(figure, tmp_path / "figure.eps")
 
 

@@ -45,8 +45,8 @@ def test_bench(run, monkeypatch, tmp_path):
 def test_a_sweep_that_is_interrupted_within_a_study_ends_the_study(run, monkeypatch):
     """A sweep returns what is done; its time, and its gaps, are not those of the law."""
     monkeypatch.setattr(solve, "outcome", interrupting(solve.outcome, 0))
+    simulation = Simulation(tangential="coulomb", integrator="symplectic")
     with pytest.raises(KeyboardInterrupt):
-        simulation = Simulation(tangential="coulomb", integrator="symplectic")
         work_precision._sweep_time(simulation, alone=1e-4)
     monkeypatch.setattr(validation, "_checks", lambda: iter([validation._rigid]))
     ran = run("validate")

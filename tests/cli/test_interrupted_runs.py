@@ -62,7 +62,9 @@ def test_a_report_of_the_laws_that_are_done(run, monkeypatch, ball, tmp_path):
     assert "Interrupted before all laws were compared" in page.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(("done", "sources"), [(1, 0), (2, 0), (2, 1)])
+@pytest.mark.parametrize(
+    ("done", "sources"), [(1, 0), (2, 0), pytest.param(2, 1, marks=pytest.mark.slow)]
+)
 def test_validate_keeps_checks_and_sources(run, monkeypatch, done, sources):
     checks = [validation._rigid] * done + [interrupting(None, 0)] * (sources == 0)
     monkeypatch.setattr(validation, "_checks", lambda: iter(checks))

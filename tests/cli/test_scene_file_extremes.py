@@ -18,6 +18,9 @@ class BytesPath:
     def __fspath__(self):
         return b"scene.toml"
 
+    def __repr__(self):
+        return "BytesPath()"
+
 
 @pytest.mark.parametrize(
     "path", [None, 3, 1.5, True, b"scene.toml", ["scene.toml"], BytesPath(), "a\0b"], ids=repr

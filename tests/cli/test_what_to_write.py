@@ -46,3 +46,35 @@ def test_words_are_no_range(capsys):
     assert (
         "START" not in told(capsys, "sweep", "--psi1", "steep", "--chi", "1.44").split("usage")[0]
     )
+
+
+def test_all_headings_that_cannot_be_read_are_told_at_once(tmp_path, capsys):
+    table, bodies = tmp_path / "mine.csv", tmp_path / "bodies.toml"
+    table.write_text("angle,v_in,angle_out\n10,2.0,7.1\n20,2.0,13.4\n", encoding="utf-8")
+    bodies.write_text("[sphere]\nradius = 0.01\n", encoding="utf-8")
+    assert main(["fit", str(table), str(bodies)]) == 2
+    told = capsys.readouterr().err
+    assert "'angle (deg)'" in told
+    assert "--column 'v_in=...'" in told
+    assert "--column 'angle_out=...'" in told
+    assert told.count("before the impact: ") == 1
+
+
+def test_a_missing_friction_is_told_where_to_find(tmp_path, capsys):
+    bodies = tmp_path / "bodies.toml"
+    bodies.write_text(
+        '[sphere]\nradius = 0.01\nmaterial = "steel"\n[target]\nkind = "half-space"\n'
+        'material = "steel"\n[impact]\nspeed = 2.0\nangle_deg = 30.0\n',
+        encoding="utf-8",
+    )
+    assert main(["run", str(bodies)]) == 2
+    told = capsys.readouterr().err
+    assert "write friction_coefficient = ...: a number such as 0.2" in told
+    assert "contactlab fit" in told
+
+
+def test_the_page_to_play_with_has_a_name_of_its_own(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["explore"]) == 0
+    assert capsys.readouterr().out == "explore.html\n"
+    assert (tmp_path / "explore.html").exists()

@@ -84,6 +84,7 @@ def test_of_an_integrator_with_a_tolerance_the_law_is_refined_too():
     assert error / 3.0 < result.psi2_error_estimate < 3.0 * error
 
 
+@pytest.mark.slow
 def test_where_a_tolerance_cannot_be_tightened_the_law_alone_is_refined():
     """The annuli at least are seen; a stepped law that jumps may need millions of steps."""
     tight = Tight(tolerance=1e-2)

@@ -102,6 +102,7 @@ def test_laws_that_do_not_fit_are_refused(laws, words):
         methods(laws)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("theirs")
 def test_bench_of_them(capsys, monkeypatch):
     """The law scaled in stiffness is Hertz's at another speed: springs converge under it too."""

@@ -18,7 +18,6 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation, Status
-from contactlab.compose import executors
 from contactlab.compose import sweep as sweeping
 from contactlab.compose import workers as workers_module
 from contactlab.compose.registry import REGISTRY
@@ -345,7 +344,6 @@ def test_a_law_that_is_not_there_is_named(workers, monkeypatch):
 
 def test_other_versions_there_are_refused(monkeypatch):
     versions = itertools.chain([{"normal": "hertz 1"}], itertools.repeat({"normal": "hertz 2"}))
-    monkeypatch.setattr(executors, "versions", lambda *_: next(versions))
     monkeypatch.setattr(workers_module, "versions", lambda *_: next(versions))
     with (
         ThreadPoolExecutor(1) as executor,

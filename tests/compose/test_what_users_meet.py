@@ -2,7 +2,9 @@
 
 import math
 import pickle
+from typing import ClassVar
 
+import attrs
 import numpy as np
 import pytest
 
@@ -17,6 +19,7 @@ from contactlab import (
     Sphere,
     collide,
 )  # fmt: skip
+from contactlab.contracts import SteppedTangentialLaw
 
 STEEL = Material.named("steel")
 #: E in GPa, as a handbook lists it.
@@ -87,3 +90,28 @@ def test_another_name_of_a_material_leads_to_that_of_the_collection(name):
     with pytest.raises(ValueError, match=r"is listed as '.*'; write that name") as told:
         Material.named(name)
     Material.named(str(told.value).split("'")[3])
+
+
+@attrs.frozen(kw_only=True)
+class Unfinished(SteppedTangentialLaw):
+    """A law whose author forgot an argument."""
+
+    api_version: ClassVar[int] = 2
+
+    def start(self, scene):
+        return 0.0
+
+    def advance(self, state, increment, before, after):
+        return 0.0
+
+
+def test_a_failure_is_told_by_print():
+    scene, simulation = (
+        Scene.nondimensional(psi1=1.2, chi=1.44),
+        Simulation(tangential=Unfinished()),
+    )
+    one, many = simulation.run(scene), simulation.sweep([scene, scene])
+    assert "failed: A law raised an error" in str(one)
+    assert "start() takes 2 positional arguments but 3 were given" in str(one)
+    assert "failed (impact 0; 2 in all): A law raised an error" in str(many)
+    assert "failed" not in str(Simulation().run(scene))

@@ -98,7 +98,14 @@ def by_hand(law, mass, speed):
 
 @pytest.mark.parametrize("own_load", [False, True])
 @pytest.mark.parametrize(
-    ("unloading", "cohesion"), [(1.5e7, 1e7), (3e7, 1e6), (3e7, 5e6), (5e7, 1e6), (1e8, 5e5)]
+    ("unloading", "cohesion"),
+    [
+        (1.5e7, 1e7),
+        *(
+            pytest.param(*pair, marks=pytest.mark.slow)
+            for pair in ((3e7, 1e6), (3e7, 5e6), (5e7, 1e6), (1e8, 5e5))
+        ),
+    ],
 )
 def test_cohesive_law_keeps_the_declared_error(unloading, cohesion, own_load):
     """Its load impulse was off by 28 times what is declared, its rate by as much."""

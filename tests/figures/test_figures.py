@@ -164,8 +164,8 @@ def test_between_points_the_curves_are_straight_to_within_a_line():
         4: (paper_figures.FIGURE_4_CHI, {"psi1": paper_figures.FIXED_PSI1}, np.log),
     }.items():
         name = {2: "psi1", 4: "chi"}[number]
-        fine = np.exp(np.linspace(*np.log(x[[0, -1]]), 801)) if number == 4 else x[0] + (
-            np.linspace(0.0, x[-1] - x[0], 801)
+        fine = np.exp(np.linspace(*np.log(x[[0, -1]]), 401)) if number == 4 else x[0] + (
+            np.linspace(0.0, x[-1] - x[0], 401)
         )  # fmt: skip
         known, exact = (contactlab.rebound(**{name: at, **others}) for at in (x, fine))
         off = np.abs(np.interp(scale(fine), scale(x), known) - exact).max()

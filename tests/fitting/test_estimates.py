@@ -182,6 +182,7 @@ def test_gaps_are_left_out():
     assert len(found.measurements) == np.isfinite(some).sum()
 
 
+@pytest.mark.slow
 def test_standard_errors_are_the_spread_of_estimates():
     true, estimates, errors = restitution(0.12), [], []
     for seed in range(25):

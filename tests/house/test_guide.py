@@ -30,6 +30,8 @@ BLOCKS = re.compile(r"```python\n(.*?)```\n(?:```text\n(.*?)```\n)?", re.DOTALL)
 CITATION = re.compile(r"\btheory(?:\.md`?)?\s+(?:#:?\s*)?(§§?\s*\d+(?:(?:,| and| to)\s+§?\d+)*)")
 DOI = re.compile(r"10\.\d{4,9}/[^\s,;]+")
 LAWS = ("Viscoelastic", "Brush", "HardSphere", "RoughSphere", "SlipThenRoll", "Leapfrog")
+#: Laws whose checks take longer than a second.
+HEAVY = ("Brush", "Leapfrog")
 #: Where names in the tables of the guide are looked for.
 NAMESPACES = (
     contactlab, contracts, bodies, plan, history, motion, energy, normal_motion, result,
@@ -79,6 +81,13 @@ def test_a_topic_begins_with_a_title_and_a_line_about_it(topic):
 
 
 @pytest.mark.parametrize("topic", TOPICS)
+def test_every_page_has_a_picture_that_exists(topic):
+    pictures = re.findall(r"!\[.+?\]\(\.\./\.\./(.+?)\)", text(topic))
+    assert pictures
+    assert [picture for picture in pictures if not (ROOT / picture).is_file()] == []
+
+
+@pytest.mark.parametrize("topic", TOPICS)
 def test_lines_fit_a_terminal_but_for_tables_and_code(topic):
     prose = re.sub(r"```.*?```", "", text(topic), flags=re.DOTALL).splitlines()
     assert not [line for line in prose if len(line) > 120 and not line.startswith(("|", "!["))]
@@ -106,7 +115,9 @@ def test_there_is_code():
     assert len(BLOCKS.findall(text("extending"))) == len(LAWS) + 2
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in HEAVY)) for name in LAWS]
+)
 def test_a_law_of_the_guide_passes_the_kit(extending, name):
     law = getattr(extending, name)()
     found = check_law(law)

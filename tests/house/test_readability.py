@@ -5,6 +5,8 @@ import importlib
 import inspect
 import re
 import textwrap
+from functools import cache
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -29,16 +31,21 @@ UPWARD = {
 }
 
 
-def imported_rooms(text):
-    """Yield the room of every import in a file: lazy and type-only ones too."""
+@cache
+def imported_names(text):
+    """Return the dotted name of every import in a file: lazy and type-only ones too."""
+    names = []
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
-            names = [name.name for name in node.names]
+            names += [name.name for name in node.names]
         elif isinstance(node, ast.ImportFrom):
-            names = [f"{node.module}.{name.name}" for name in node.names]
-        else:
-            continue
-        yield from (name.split(".")[1] for name in names if name.startswith("contactlab."))
+            names += [f"{node.module}.{name.name}" for name in node.names]
+    return [name for name in names if name.startswith("contactlab.")]
+
+
+def imported_rooms(text):
+    """Return the room of every import in a file."""
+    return [name.split(".")[1] for name in imported_names(text)]
 
 
 def upward_imports():
@@ -73,12 +80,38 @@ def test_imports_point_downward():
     assert upward_imports() == UPWARD
 
 
+def imports_of_modules():
+    """Return {module: modules that it imports}, without the named imports that point upward."""
+    files = {}
+    for file in PACKAGE.rglob("*.py"):
+        parts = file.relative_to(PACKAGE.parent).with_suffix("").parts
+        files[".".join(part for part in parts if part != "__init__")] = file
+    graph = {}
+    for module, file in files.items():
+        path = file.relative_to(PACKAGE).as_posix()
+        names = [
+            name
+            for name in imported_names(file.read_text())
+            if (path, name.split(".")[1]) not in UPWARD
+        ]
+        owners = {name if name in files else name.rpartition(".")[0] for name in names}
+        graph[module] = (owners & files.keys()) - {module}
+    return graph
+
+
+def test_imports_make_no_circle():
+    """Inside a room neither: modules can be read one after the other, each after its imports."""
+    graph = imports_of_modules()
+    assert "contactlab.compose.installed" in graph["contactlab.compose.registry"]
+    assert len(list(TopologicalSorter(graph).static_order())) == len(graph)
+
+
 def test_lazy_and_type_only_imports_count():
     text = (
         "if TYPE_CHECKING:\n    from contactlab.cli.main import main\n"
         "def lazy():\n    from contactlab import figures\n    import contactlab.pages.html\n"
     )
-    assert list(imported_rooms(text)) == ["cli", "figures", "pages"]
+    assert imported_rooms(text) == ["cli", "figures", "pages"]
 
 
 def exported():

@@ -63,7 +63,9 @@ def test_capitals_hyphens_and_blanks_make_no_difference(name):
 @pytest.mark.parametrize(
     ("name", "words"),
     [("steal", "did you mean 'steel'"), ("glass", "'soda-lime glass' or 'borosilicate glass'"),
-     ("unobtainium", "known: steel"), ("", "no such material"), (7, "must be the name")],
+     ("unobtainium", "known: steel"), ("", "no such material"),
+     ("glass beads", "did you mean 'soda-lime glass'"), ("wood", "give your own: Material("),
+     (7, "must be the name")],
 )  # fmt: skip
 def test_an_unknown_name_is_refused_with_the_nearest(name, words):
     with pytest.raises(ValueError, match=re.escape(words)):

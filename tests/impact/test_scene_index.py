@@ -93,7 +93,9 @@ def test_the_draws_are_those_of_seed_and_index():
     np.testing.assert_allclose(-change / batch.slip_velocity, draws(7, np.arange(SIZE)))
 
 
-@pytest.mark.parametrize("name", SIMULATIONS)
+@pytest.mark.parametrize(
+    "name", [pytest.param("normal", marks=pytest.mark.slow), "whole", "stepped"]
+)
 def test_a_sweep_draws_the_same_in_chunks_in_workers_and_after_it_was_ended(
     name, workers, monkeypatch, tmp_path
 ):

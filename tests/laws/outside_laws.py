@@ -11,13 +11,13 @@ from contactlab.contracts import (
     NormalContact,
     NormalLaw,
     Sample,
+    Status,
     SteppedTangentialLaw,
     TangentialMotion,
     TangentialResponse,
-    WholeImpact,
-    WholeImpactTangentialLaw,
 )
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Rule, count, quantity
+from tests.testing.fresh_sound import HardSphere
 
 RESTITUTION = Rule(lambda value: (value > 0.0) & (value <= 1.0), "must lie in (0, 1]")
 
@@ -194,26 +194,13 @@ class RescaledSpring(SteppedTangentialLaw):
 
 
 @attrs.frozen(kw_only=True)
-class Walton(WholeImpactTangentialLaw):
+class Walton(HardSphere):
     """Walton's law of hard spheres: slip, or a constant restitution beta of the slip velocity."""
-
-    api_version: ClassVar[int] = 2
 
     beta: float = quantity("1", rule=RESTITUTION, default=0.4)
 
-    def whole_impacts(self, scene, normal):
-        mass = scene.pair.tangential_mass
-        slips = scene.friction_coefficient * normal.total_load_impulse / mass
-        sticks = (1.0 + self.beta) * np.abs(scene.slip_velocity)
-        lost = np.minimum(slips, sticks)
-        change = -np.sign(scene.slip_velocity) * lost
-        work = mass * lost * (np.abs(scene.slip_velocity) - 0.5 * lost)
-        return (
-            *super().whole_impacts(scene, normal),
-            WholeImpact(
-                where=True, slip_velocity_change=change, friction_work=work, reason="hard spheres"
-            ),
-        )
+    def restitution(self, scene):
+        return self.beta
 
 
 @attrs.frozen(kw_only=True)
@@ -264,7 +251,7 @@ class Heun(Integrator):
                         fields=lambda: law.fields(state),  # noqa: B023
                     )
                 )
-        status = np.where(settled, _Status.SUCCESS, _Status.UNSETTLED).astype(object)
+        status = np.where(settled, Status.SUCCESS, Status.UNSETTLED).astype(object)
         return TangentialMotion(
             slip_velocity_change=_plain(change),
             friction_work=_plain(work),
@@ -281,6 +268,3 @@ class Heun(Integrator):
 
 def _plain(value):
     return float(value) if np.ndim(value) == 0 else value
-
-
-from contactlab import Status as _Status  # noqa: E402

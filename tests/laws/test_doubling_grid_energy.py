@@ -47,7 +47,7 @@ def through(knots):
     return np.concatenate(legs)
 
 
-@pytest.mark.parametrize("springs", [4, 8])
+@pytest.mark.parametrize("springs", [4, pytest.param(8, marks=pytest.mark.slow)])
 def test_no_random_path_gains_energy(springs):
     """10,000 paths through random slips and loads, many of them light, from rest."""
     random, items = np.random.default_rng(1), 10_000

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 import contactlab
 from contactlab import Scene, Simulation
@@ -166,7 +167,7 @@ def test_fields_carry_the_force():
     assert (np.hypot(fields["traction_x"], fields["traction_y"]) <= friction * 1.0001).all()
     middle = len(history.time) // 2
     radius, traction = fields["radius"][middle], fields["traction_x"][middle].mean(axis=0)
-    force = np.trapezoid(2.0 * np.pi * radius * traction, radius)
+    force = trapezoid(2.0 * np.pi * radius * traction, radius)
     assert force == pytest.approx(history.tangential_force[middle], rel=0.08)
     assert fields["stuck"][middle].any()
     assert not fields["stuck"][middle].all()

@@ -109,3 +109,10 @@ def test_restitution_of_a_material_falls_with_speed():
     law = contactlab.create("normal.hunt_crossley", damping=0.1)
     e = restitution(law, scene(np.array([0.01, 0.02, 0.04])))
     assert order([1.0, 2.0, 4.0], 1.0 / (1.0 - e)) == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("distance", [1e-6, 1e-12, 1e-13, 1e-15])
+def test_a_restitution_next_to_one_is_calibrated(distance):
+    """Theory §11: 1 - e = 1.1534 (1.5 A) (k/M)^(2/5) v1^(1/5), with k/M = 5/4 in scaled units."""
+    number = viscosity_number(1.0 - distance)
+    assert number == pytest.approx(distance / (1.1534 * 1.5 * 1.25**0.4), rel=1e-3, abs=2e-12)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from PIL import Image
+from scipy.integrate import trapezoid
 
 import contactlab
 from contactlab.figures import animation
@@ -61,6 +63,21 @@ def test_the_page_fetches_nothing(run, tmp_path):
     assert "/*" not in re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
 
 
+def test_the_parts_of_the_page_have_names_of_their_own():
+    script = explore_page().partition("<script>")[2]
+    names = re.findall(r"^(?:function|class) (\w+)", script, re.MULTILINE)
+    for words in re.findall(r"^(?:const|let) (.*?);", script, re.MULTILINE | re.DOTALL):
+        names += re.findall(r"(?:^|, )(\w+)(?= =|,|$)", words.partition("=>")[0])
+    assert len(names) > 40
+    assert sorted(names) == sorted(set(names))
+    assert "export " not in script
+
+
+def test_the_kernel_of_the_page_is_the_one_for_engines():
+    kernel = resources.files("contactlab").joinpath("kernels", "contactlab_springs.mjs")
+    assert kernel.read_text("utf-8").strip().replace("\nexport ", "\n") in explore_page()
+
+
 @pytest.fixture
 def few_frames(monkeypatch):
     monkeypatch.setattr(animation, "ARRIVING", 2)
@@ -99,7 +116,7 @@ def test_a_soft_ball_moves_and_turns_while_it_touches(superball):
     radius, time = 0.025, superball.history.time
     assert place[:, 1].min() == pytest.approx(-superball.motion.maximum_approach / radius, rel=1e-3)
     # the contact point moves by the integral of the slip velocity, counted from velocity and spin
-    slipped = np.trapezoid(superball.history.slip_velocity, time)
+    slipped = trapezoid(superball.history.slip_velocity, time)
     assert (place[-1, 0] + turned[-1]) * radius == pytest.approx(slipped, rel=1e-12)
     # the spin is reversed within the contact
     slope = np.diff(turned) / np.diff(time)

@@ -32,8 +32,9 @@ FORMS = [
 ]
 CHOSEN = [(name, OPTIONS.get(name, {})) for name in REGISTRY.names()] + FORMS
 LAWS = [REGISTRY.create(name, **options) for name, options in CHOSEN]
-#: Laws whose checks take longer than a few seconds.
-HEAVY = [law for law in LAWS if type(law).__name__ == "HalfSpace"]
+#: Laws whose checks take longer than a few seconds, and other forms of laws that are checked.
+FORMED = LAWS[-len(FORMS) :]
+HEAVY = [law for law in LAWS if type(law).__name__ == "HalfSpace"] + FORMED
 CLAIMING = [law for law in LAWS if "partial_slip" in law.offers]
 
 
@@ -44,7 +45,7 @@ def test_conformance(law, check):
 
 @pytest.mark.slow
 @parametrize_with_checks(HEAVY)
-def test_conformance_of_a_heavy_law(law, check):
+def test_conformance_of_heavy_laws_and_of_forms(law, check):
     check(law)
 
 

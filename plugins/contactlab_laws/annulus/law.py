@@ -11,21 +11,18 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import (
     AllStepsResponse,
-    AllStepsTangentialLaw,
     Increment,
     NormalContact,
     NormalMotion,
     Steps,
     TangentialResponse,
-    WholeImpact,
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, choice, count
 from contactlab_laws.annulus import blocks, many, one
 from contactlab_laws.annulus.tables import Tables, hertz_pressure, tables
 from contactlab_laws.jaeger.all_steps import ScaledSteps
-from contactlab_laws.jaeger.gross_slip import gross_slip
-from contactlab_laws.jaeger.law import Scales
+from contactlab_laws.jaeger.partial_slip import PartialSlip, Scales
 from contactlab_laws.jaeger.pressure import hemisphere
 
 
@@ -38,7 +35,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class Annulus(AllStepsTangentialLaw):
+class Annulus(PartialSlip):
     """Mindlin's partial slip by the paper's concentric annuli.
 
     Each step solves (33) where the surfaces stick and (34) where they slip, tests the
@@ -66,8 +63,6 @@ class Annulus(AllStepsTangentialLaw):
 
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "annuli"
-    offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
-    needs: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     annuli: int = count(default=50, most=2000)
     displacement: str = choice("midpoint", "mean", default="midpoint")
@@ -79,17 +74,9 @@ class Annulus(AllStepsTangentialLaw):
         """
         return 1.0 / self.annuli if self.displacement == "midpoint" else 0.01
 
-    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return the whole-impact answers, with those of gross slip by (44) and (46)."""
-        return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
-
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, and one on a pressure that may be no hemisphere."""
         return (*super().cautions(scene, normal), *hemisphere(normal))
-
-    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""
-        return scene.pair.tangential_stiffness(normal.maximum_radius)
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return a contact without traction."""
@@ -157,15 +144,13 @@ class Annulus(AllStepsTangentialLaw):
             return np.asarray(value)[..., None]
 
         xi = memory.traction @ table.compliance.T
-        with np.errstate(divide="ignore"):
-            unit = np.where(np.asarray(scales.displacement) > 0, 1.0 / scales.displacement, 0.0)
         return {
             "radius": np.broadcast_to(
                 column(scales.radius) * np.sqrt(table.radius_squared), memory.traction.shape
             ),
             # the unit is mu times Hertz's greatest pressure, 3 P_max/(2 pi a²), eq. (3)
             "traction": column(1.5 * scales.force / (np.pi * scales.radius**2)) * memory.traction,
-            "displacement": column(unit) * xi,
+            "displacement": column(scales.metres) * xi,
             "stuck": stuck,
             "slipping": slipping,
         }

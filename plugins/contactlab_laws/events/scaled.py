@@ -82,24 +82,24 @@ def solve(law: PathTangentialLaw, normal: ClosedFormMotion, tolerance: float) ->
         factor, velocity = factor * velocity / law.linear_below, law.linear_below
     if not (math.isfinite(velocity) and math.isfinite(inertia) and inertia > 0.0):
         failure = "psi1 or chi is not finite and positive."
-        found = _Followed((), 0.0, math.nan, failure=failure, status=Status.NON_FINITE)
+        path = _Followed((), 0.0, math.nan, failure=failure, status=Status.NON_FINITE)
     elif velocity == 0.0 or limit == 0.0:  # nothing moves, or nothing resists
-        found = _Followed(())
+        path = _Followed(())
     else:
-        found = _follow(law, normal, velocity, inertia, tolerance)
+        path = _follow(law, normal, velocity, inertia, tolerance)
     # A tiny factor stands for a huge friction coefficient: each unit takes its own.
     units = factor * unit, factor * limit
-    usable = math.nan if found.failure else 1.0
+    usable = math.nan if path.failure else 1.0
     with np.errstate(all="ignore"):
-        done = units[0] * (approach / speed) * units[1] * found.work if found.work else 0.0
+        done = units[0] * (approach / speed) * units[1] * path.work if path.work else 0.0
     motion = TangentialMotion(
-        slip_velocity_change=usable * units[0] * found.change,
+        slip_velocity_change=usable * units[0] * path.change,
         friction_work=usable * done,
-        status=found.status,
-        detail=found.failure,
-        counters={"panels": len(found.stretches), "solves": found.solves},
+        status=path.status,
+        detail=path.failure,
+        counters={"panels": len(path.stretches), "solves": path.solves},
     )
-    return Solved(law, normal, found.stretches, found.reached, factor, *units, motion)
+    return Solved(law, normal, path.stretches, path.reached, factor, *units, motion)
 
 
 def _follow(

@@ -73,7 +73,7 @@ class Piece:
         return [part.item() for part in front]
 
     def cut(self, place: float) -> None:
-        """Let the piece end at ``place``: what is outside of it has slipped."""
+        """Let the piece end at ``place``: all beyond it has slipped."""
         self.outer = place
         gone, lack, _, radius = self.curve(np.array([self.inner, place]))
         square = self.rest * radius * radius

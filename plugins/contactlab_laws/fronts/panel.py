@@ -46,10 +46,16 @@ class Panel(NamedTuple):
     place: Array
 
 
-class Front(Stretch):
+@attrs.frozen(eq=False)
+class FrontStretch(Stretch):
     """A stretch within whose ``front`` all sticks, and outside which all slips one way."""
 
     sign: int
+    start: float
+    stop: float
+    change: float
+    work: float
+    solves: int
 
     def front(self, contact: ScaledContact) -> float:
         """Return the radius of the front at one instant."""
@@ -75,18 +81,12 @@ class Front(Stretch):
 
 
 @attrs.frozen(eq=False)
-class PanelStretch(Front):
+class PanelStretch(FrontStretch):
     """A stretch of stick or of slip at the edge, as its panel has it.
 
     ``columns`` holds x, change of velocity, force, and radius of the front at the nodes.
     """
 
-    sign: int
-    start: float
-    stop: float
-    change: float
-    work: float
-    solves: int
     columns: Array
 
     def _at(self, x: Array) -> Array:
@@ -109,18 +109,12 @@ class PanelStretch(Front):
 
 
 @attrs.frozen(eq=False)
-class GrossStretch(Front):
+class GrossStretch(FrontStretch):
     """Gross slip: psi falls in proportion to V, under Coulomb's force.
 
     ``ratio`` is 2 chi, ``rate`` the V at the end.
     """
 
-    sign: int
-    start: float
-    stop: float
-    change: float
-    work: float
-    solves: int
     rate: float
     ratio: float
 

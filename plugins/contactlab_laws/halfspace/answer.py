@@ -115,15 +115,15 @@ def _whole_impact(
 ) -> WholeImpact:
     """Return the answer in SI units, with numbers of the batch shape."""
     # ``normal`` is the motion of the impacts that ``left`` marks in the batch of ``every``.
-    found, shape, scene = answered(options, normal), every.scene.shape, normal.scene
+    solved, shape, scene = answered(options, normal), every.scene.shape, normal.scene
     numbers = np.flatnonzero(left).tolist()
-    departing = {numbers[item]: each for item, each in found.departing.items()}
+    departing = {numbers[item]: each for item, each in solved.departing.items()}
     own = own_motion(every, departing) if departing else None
     unit: Any = 1.0 / np.atleast_1d(scene.psi_scale)
     mass: Any = np.atleast_1d(scene.pair.tangential_mass)
     momentum: Any = np.atleast_1d(scene.pair.normal_mass * scene.normal_speed)
     # Under huge friction unit² may exceed what a float holds, and the work is as small.
-    change, work = unit * found.change, mass * (unit * (unit * found.work))
+    change, work = unit * solved.change, mass * (unit * (unit * solved.work))
     friction = np.broadcast_to(scene.friction_coefficient, change.shape)
     units = np.broadcast_to(unit, change.shape), np.broadcast_to(momentum, change.shape)
     chi = np.broadcast_to(scene.chi, change.shape)
@@ -142,9 +142,9 @@ def _whole_impact(
         places = [()] if not shape else list(zip(*np.nonzero(left), strict=True))
         for item, place in enumerate(places):
             at = (..., *place)
-            knots, shares = found.impulse[item], found.share[item]
+            knots, shares = solved.impulse[item], solved.share[item]
             wanted = passed[at] / units[1][item]
-            if own is not None and item in found.departing:
+            if own is not None and item in solved.departing:
                 # The samples carry another impulse than the steps, for force is linear between.
                 wanted = np.interp(passed[at], own.impulses[numbers[item]], knots)
             gained[at], share = _along(wanted, knots, shares)
@@ -152,8 +152,8 @@ def _whole_impact(
             force[at] = friction[item] * share * acting[at]
         return (gained, force) if outer else (float(gained), float(force))
 
-    worst = float(found.residual.max())
-    bad = found.residual > LARGEST_RESIDUAL
+    worst = float(solved.residual.max())
+    bad = solved.residual > LARGEST_RESIDUAL
     detail = f"A step is solved to a residual of {worst:.2g} only, from HalfSpace."
     status: Any = Status.UNSETTLED if bad.any() else Status.SUCCESS
     if shape:
@@ -167,7 +167,7 @@ def _whole_impact(
         reason=f"followed by the law over {options.rings} rings, residual {most}{worst:.1e}",
         course=course,
         fields=Pictures(options, every, left).at,
-        psi2_error=spread(found.error),
+        psi2_error=spread(solved.error),
         normal=None if own is None else own.motion,
         status=status,
         detail=detail if bad.any() else "",

@@ -56,7 +56,7 @@ def follow_all(
     count : int
         Rings within the largest contact.
     course : Course
-        Of all impacts.
+        Normal motions of the impacts.
     psi1, chi, stiffness : array, shape (impacts,)
         Dimensionless angles of incidence, inertia ratios, and units of force times those of time
         over M_n v1.
@@ -101,11 +101,11 @@ def follow_all(
             for _ in range(PASSES):
                 share = np.where(begins, after, shares[k - 1])
                 total = (fixed - swept * (share / 3.0 + after / 6.0))[chosen, None]
-                found = settle(ours, total / scale - resting, limit, *guess)
+                solution = settle(ours, total / scale - resting, limit, *guess)
                 after = shares[k - 1].copy()
-                after[chosen] = found @ ours.weights / load
+                after[chosen] = solution @ ours.weights / load
             stuck[part], sense[part] = guess
-            new[part], limits[part] = found * scale, limit * scale
+            new[part], limits[part] = solution * scale, limit * scale
             shares[k - 1] = share = np.where(begins, after, shares[k - 1])
             touched = touched | live
         displaced = fixed - swept * (share / 3.0 + after / 6.0)

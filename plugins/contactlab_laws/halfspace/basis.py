@@ -52,14 +52,14 @@ class Basis(NamedTuple):
     def compliance(self, order: int, source: int) -> Array:
         """Return the displacement of ``order`` at inner edges for a unit traction of ``source``."""
         fields = displacement(order, source, self.edges[:-1, None], self.edges[None, 1:])
-        found = np.asarray(fields @ self.coefficients[source])
-        begin = min(order, len(found) - 1)
+        matrix = np.asarray(fields @ self.coefficients[source])
+        begin = min(order, len(matrix) - 1)
         if order == source and begin:
             # Where the mode is left out a traction of it yields as the point does by itself, or
             # nothing would tell how large it is.
             places = np.arange(begin)
-            found[places, places] = np.diag(self.compliance(0, 0))[:begin]
-        return found
+            matrix[places, places] = np.diag(self.compliance(0, 0))[:begin]
+        return matrix
 
 
 @lru_cache(maxsize=16)

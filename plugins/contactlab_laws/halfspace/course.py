@@ -119,8 +119,8 @@ def _phases(normal: NormalMotion, places: Array, top: int) -> Array:
     single = not normal.scene.shape
 
     def radius(phase: Array) -> Array:
-        found = normal.at(phase[..., 0] if single else phase).contact.radius
-        return np.asarray(found, float).reshape(phase.shape)
+        radii = normal.at(phase[..., 0] if single else phase).contact.radius
+        return np.asarray(radii, float).reshape(phase.shape)
 
     impacts = 1 if single else normal.scene.shape[0]
     table = np.broadcast_to(np.linspace(0.0, math.pi, SEARCHED)[:, None], (SEARCHED, impacts))

@@ -76,7 +76,7 @@ class Impacts(NamedTuple):
     Attributes
     ----------
     change : array, shape (impacts,)
-        Of psi.
+        Change of psi since first touch at the end of the impact.
     work : array, shape (impacts,)
         Friction work over M_t times the square of the unit of velocity.
     residual : array, shape (impacts,)
@@ -86,7 +86,8 @@ class Impacts(NamedTuple):
     path : Course
         The normal motions without friction.
     departures : array, shape (3, K + 1, impacts), or None
-        Of approach, rate and force from ``path``, where traction changes the pressure.
+        Departures of approach, rate and force from ``path``; None unless traction changes the
+        pressure.
     """
 
     change: Array
@@ -144,11 +145,11 @@ def followed(
     Parameters
     ----------
     options : Options
-        Of the law.
+        Options of the law.
     normal : NormalMotion
-        Of all impacts, of shape () or (impacts,).
+        Normal motion of the impacts, of shape () or (impacts,).
     matter : Matter
-        Of all impacts.
+        Dimensionless numbers of the impacts.
     """
     plain, drags, parts = kinds(options, matter)
     for key in np.unique(np.stack((plain, drags, parts)), axis=1).T.tolist():
@@ -174,13 +175,13 @@ def parts_of(chi: float, least: int, rings: int) -> int:
 def along_one_direction(normal: NormalMotion, matter: Matter, rings: int, parts: int) -> Impacts:
     """Return impacts whose tractions are along one direction, functions of the radius."""
     path = course(normal, rings, parts)
-    found = follow_all(rings, path, matter.psi1, matter.chi, matter.stiffness)
+    motion = follow_all(rings, path, matter.psi1, matter.chi, matter.stiffness)
     return Impacts(
-        change=found.change[-1],
-        work=found.work,
-        residual=np.zeros(found.work.shape),
-        impulse=np.broadcast_to(path.impulse, found.share.shape),
-        share=found.share,
+        change=motion.change[-1],
+        work=motion.work,
+        residual=np.zeros(motion.work.shape),
+        impulse=np.broadcast_to(path.impulse, motion.share.shape),
+        share=motion.share,
         path=path,
     )
 

@@ -58,7 +58,8 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
         Whether to keep tractions and slips.
     """
     # In every step the share of Coulomb's limit that acts is linear in the impulse of the friction
-    # load, so that gross slip is exact. The first step has one share throughout.
+    # load, so that gross slip is exact. The first step has one share throughout. ``early`` and
+    # ``late`` are the weights of the shares at its two ends in the displacement of a step.
     table, course = pressure.table, pressure.course
     count, along = len(course.inside), table.along
     change, shares, forces, impulse = np.zeros((4, count))
@@ -82,12 +83,12 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
             known = min(number, memory.shape[2])
             start[:, :, :known] = memory[:, :, :known]
             step = Step(target, contact.limit, contact.load, slowing, contact.yielding)
-            found = settle(table, step, start)
-            new[:, :, :number], memory = found.traction, found.memory
-            share, force = found.share, found.force
-            residual = max(residual, found.residual)
-            applications += found.applications
-            surface = table.displaced(found.traction)[:2] + contact.dragged
+            solution = settle(table, step, start)
+            new[:, :, :number], memory = solution.traction, solution.memory
+            share, force = solution.share, solution.force
+            residual = max(residual, solution.residual)
+            applications += solution.applications
+            surface = table.displaced(solution.traction)[:2] + contact.dragged
             if not touched:
                 shares[k - 1], touched = share, True
         displaced = fixed - slowing * share

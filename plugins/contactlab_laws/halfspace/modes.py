@@ -81,8 +81,8 @@ class Modes:
         modes = (self.to @ traction).transpose(1, 0, 2).reshape(self.angles + 1, -1, 1)
         full = self.compliance[:, :, :, :, :number]
         blocks = full.reshape(self.angles + 1, self.parts * self.count, self.parts * number)
-        found = (blocks @ modes).reshape(self.angles + 1, self.parts, self.count)
-        return np.asarray(self.back @ found.transpose(1, 0, 2))
+        blocks_out = (blocks @ modes).reshape(self.angles + 1, self.parts, self.count)
+        return np.asarray(self.back @ blocks_out.transpose(1, 0, 2))
 
     def work(self, traction: Array, slip: Array) -> float:
         """Return the integral of traction times slip over the contact, over 2 pi."""

@@ -20,25 +20,25 @@ class Own(NamedTuple):
     impulses: dict[int, Array]
 
 
-def own_motion(normal: NormalMotion, found: dict[int, tuple[Impacts, int]]) -> Own:
-    """Return the normal motion of impacts, with departures where ``found`` has them.
+def own_motion(normal: NormalMotion, followed: dict[int, tuple[Impacts, int]]) -> Own:
+    """Return the normal motion of impacts, with departures where ``followed`` has them.
 
     Parameters
     ----------
     normal : NormalMotion
-        Without friction, of one impact or a batch.
-    found : dict of int to (Impacts, int)
-        For each impact that has departures, by its number in the batch: the impacts that it was
-        followed with, and its place among them.
+        Normal motion without friction, of one impact or a batch.
+    followed : dict of int to (Impacts, int)
+        Impacts with departures by their numbers in the batch: the group in which each was
+        followed, and its place in that group.
     """
     scene, shape = normal.scene, normal.scene.shape
-    longest = max(len(each.path.inside) for each, _ in found.values())
+    longest = max(len(each.path.inside) for each, _ in followed.values())
     columns, impulses = np.empty((4, longest - 1, math.prod(shape))), {}
     for item, place_in_batch in enumerate(np.ndindex(shape)):
         one = normal.take(place_in_batch) if shape else normal
         phase, departures = np.linspace(0.0, math.pi, longest), None
-        if item in found:
-            impacts, place = found[item]
+        if item in followed:
+            impacts, place = followed[item]
             assert impacts.departures is not None
             departures = impacts.departures[:, :, place]
             phase = impacts.path.phase[:, 0]

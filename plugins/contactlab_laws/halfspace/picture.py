@@ -42,7 +42,7 @@ class Pictures:
     Parameters
     ----------
     options : Options
-        Of the law.
+        Options of the law.
     every : NormalMotion
         Motion of one impact or of a batch.
     left : array of bool
@@ -65,7 +65,7 @@ class Pictures:
         Parameters
         ----------
         load_impulse : float or array
-            Of the batch shape.
+            Integral of the load at the instant of each impact, in N s, of the batch shape.
         """
         shape = self._every.scene.shape
         if not self._kept:
@@ -109,13 +109,13 @@ class Pictures:
         kind = kinds(options, matter)
         path = course(one, options.rings, int(kind.parts[0]))
         if kind.plain[0]:
-            found = follow_all(
+            motion = follow_all(
                 options.rings, path, matter.psi1, matter.chi, matter.stiffness, fields=True
             )
-            rows = np.array([(traction[0], slip[0]) for traction, slip, _ in found.fields])
+            rows = np.array([(traction[0], slip[0]) for traction, slip, _ in motion.fields])
             values = np.zeros((5, len(rows) + 1, options.angles, options.rings))
             values[0, 1:], values[2, 1:] = rows[:, 0, None], rows[:, 1, None]
-            values[4, 1:] = np.array([limit[0] for _, _, limit in found.fields])[:, None]
+            values[4, 1:] = np.array([limit[0] for _, _, limit in motion.fields])[:, None]
             return Picture(path.impulse[:, 0], table_of(options.rings).points, values)
         coupling = options.coupling if kind.dragged[0] else "none"
         pressure = pressure_of(path, matter, 0, options.rings, options.angles, coupling)

@@ -45,7 +45,7 @@ class Prescribed:
     ----------
     table : Modes
     course : Course
-        Of one impact.
+        Normal motion of one impact.
     stiffness : float
         Unit of force times that of time over M_n v1; 5/4 for elastic Hertz contacts.
     """

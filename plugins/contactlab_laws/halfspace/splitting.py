@@ -33,7 +33,7 @@ TINY = 1e-300
 
 
 class Step(NamedTuple):
-    """What a step is solved for.
+    """The equations of a step: targets, limit and compliances.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Step(NamedTuple):
     limit : array, shape (rings,), or None
         Coulomb's limit, or None if pressure is a part of the answer.
     load : float
-        What the share of Coulomb's limit is taken of, if pressure is prescribed.
+        Friction load of the step, if pressure is prescribed.
     slowing : float
         Displacement along x that a share of 1 takes away.
     yielding : float
@@ -105,8 +105,8 @@ def settle(table: Modes, step: Step, start: Array) -> Settled:
         if joint:
             wanted[2] -= (step.yielding * force) * metric
         columns = (to @ wanted).transpose(1, 0, 2).reshape(size, parts * number, 1)
-        found = (resolvent @ columns).reshape(size, parts, number).transpose(1, 0, 2)
-        change = back @ found
+        resolved = (resolvent @ columns).reshape(size, parts, number).transpose(1, 0, 2)
+        change = back @ resolved
         change -= x
         applied += 1
         largest = float(np.abs(change).max())

@@ -56,7 +56,8 @@ def advance_all(bundle: Bundle, steps: ScaledSteps, velocity: float) -> tuple[Ar
     return np.array(forces), 0.5 * float(work.sum())
 
 
-#: Of each step: whether no spring moves for a part of it, limits, minus the limits, weights.
+#: One row for each step: True unless some spring moves for only a part of the step, limits, minus
+#: the limits, weights.
 Rows = list[tuple[bool, Array, Array, Array]]
 
 

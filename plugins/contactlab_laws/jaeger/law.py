@@ -12,62 +12,22 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import (
     AllStepsResponse,
-    AllStepsTangentialLaw,
     Increment,
     NormalContact,
     NormalMotion,
     Steps,
     TangentialResponse,
-    WholeImpact,
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab_laws.differences.table import springs
 from contactlab_laws.jaeger import all_steps, step
 from contactlab_laws.jaeger.bundle import Array, Bundle
-from contactlab_laws.jaeger.gross_slip import gross_slip
+from contactlab_laws.jaeger.partial_slip import PartialSlip, Scales
 from contactlab_laws.jaeger.pressure import hemisphere
 
 #: Most numbers in a table of a whole run (16 MB); longer runs go step by step.
 LARGEST_RUN = 2_000_000
-
-
-class Scales(NamedTuple):
-    """Units of the scaled variables in SI; floats, or arrays of the batch shape.
-
-    Attributes
-    ----------
-    radius : float or array
-        a, the largest contact radius, in m.
-    displacement : float or array
-        kappa R/(mu a²), in 1/m: scaled displacement per metre; 0 without friction.
-    force : float or array
-        mu P_max, in N.
-    normal_force : float or array
-        P_max of a Hertz contact of radius a, in N.
-    work : float or array
-        mu P_max times mu a²/(kappa R), in J.
-    """
-
-    radius: Real
-    displacement: Real
-    force: Real
-    normal_force: Real
-    work: Real
-
-    @classmethod
-    def of(cls, scene: Scene, normal: NormalMotion) -> Scales:
-        """Return the scales of the largest contact, theory §1."""
-        pair, radius, friction = scene.pair, normal.maximum_radius, scene.friction_coefficient
-        peak = (4.0 / 3.0) * pair.effective_modulus * radius**3 / pair.radius
-        slip = friction * radius**2 / (pair.stiffness_ratio * pair.radius)
-        per_slip = (friction > 0.0) / (slip + (friction == 0.0))
-        return cls(radius, per_slip, friction * peak, peak, friction * peak * slip)
-
-    def pressure(self, radius: Any, load: Any) -> Any:
-        """Return p, the load at a radius over that of a Hertz contact: 1 under Hertz's law."""
-        cube = self.normal_force * radius**3
-        return load / (cube + (cube == 0.0))
 
 
 class State(NamedTuple):
@@ -78,11 +38,9 @@ class State(NamedTuple):
     memory: step.SpringState
 
 
-class ProfileLaw(AllStepsTangentialLaw):
+class ProfileLaw(PartialSlip):
     """A law of independent springs; a subclass gives their positions."""
 
-    offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
-    needs: ClassVar[frozenset[str]] = frozenset({"radius"})
     expected_failures: ClassVar[Mapping[str, str]] = {
         "coulomb_at_a_point_damped": "each spring is limited separately: that is Coulomb's law "
         "at a point only while the stuck part is a disc, as in elastic Hertz impacts",
@@ -92,18 +50,10 @@ class ProfileLaw(AllStepsTangentialLaw):
     def bundle(self) -> Bundle:
         """Return the springs, cached for each number of springs."""
 
-    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return the whole-impact answers, with those of gross slip by (44) and (46)."""
-        return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
-
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, of separately limited springs, and of the pressure."""
         own = (*springs(scene, normal), *hemisphere(normal))
         return (*super().cautions(scene, normal), *own)
-
-    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""
-        return scene.pair.tangential_stiffness(normal.maximum_radius)
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return contacts without traction."""
@@ -180,13 +130,11 @@ class ProfileLaw(AllStepsTangentialLaw):
             return np.asarray(value)[..., None]
 
         deflection, limit = of_all(memory.deflection), of_all(memory.limit)
-        with np.errstate(divide="ignore"):
-            unit = np.where(np.asarray(scales.displacement) > 0, 1.0 / scales.displacement, 0.0)
         slips = (limit > 0.0) & (np.abs(deflection) >= limit)
         return {
             "radius": np.broadcast_to(column(scales.radius) * np.sqrt(squares), deflection.shape),
-            "displacement": column(unit) * deflection,
-            "limit": column(unit) * limit,
+            "displacement": column(scales.metres) * deflection,
+            "limit": column(scales.metres) * limit,
             "stuck": (limit > 0.0) & ~slips,
             "slipping": (slips * np.sign(deflection)).astype(np.int8),
         }

@@ -51,8 +51,12 @@ def viscosity_number(coefficient: float) -> float:
 
     if coefficient == 1.0:
         return 0.0
+    elastic = rebound(0.0)  # 1 but for the tolerance: a coefficient may be nearer to 1
     number = brentq(
-        lambda trial: rebound(trial) - coefficient, 0.0, STRONGEST / coefficient, xtol=TOLERANCE
+        lambda trial: rebound(trial) / elastic - coefficient,
+        0.0,
+        STRONGEST / coefficient,
+        xtol=TOLERANCE,
     )
     return float(number)
 

@@ -71,10 +71,15 @@ def refined(steps: int, needed: Any) -> Any:
     if isinstance(needed, float) and needed <= steps:
         return float(steps)
     sequence = [float(steps)]
-    while sequence[-1] < min(float(np.nanmax(needed)), MOST_STEPS):
+    while sequence[-1] < min(_most(needed), MOST_STEPS):
         sequence.append(min(math.ceil(sequence[-1] * RAISE), MOST_STEPS))
     sequence.append(np.inf)
     return np.array(sequence)[np.searchsorted(sequence, needed)]
+
+
+def _most(needed: Any) -> float:
+    """Return the largest of the numbers that are not NaN."""
+    return needed if isinstance(needed, float) else float(np.fmax.reduce(needed, axis=None))
 
 
 def refusal(steps: int, needed: float) -> str:
@@ -155,7 +160,7 @@ class FixedSteps(Integrator):
     ) -> tuple[str, ...]:
         """Return a sentence if the steps are too few: the steps taken instead, or needed."""
         needed = needed_steps(normal, tangential)
-        most = needed if isinstance(needed, float) else float(np.nanmax(needed))
+        most = _most(needed)
         if most <= self.steps:
             return ()
         share = for_share(np.broadcast_to(needed > self.steps, scene.shape))

@@ -67,15 +67,15 @@ def march_tied(
         with faults.blaming(normal.law):
             steps = _steps(normal, ends, fractions, rows.max(axis=1).tolist())
         return march(normal, law, steps, observer)
-    found = []
+    motions = []
     for index in range(rows.shape[1]):
         where = (group == index).reshape(shape)
         part = normal.take(where)
         own = np.broadcast_to(ends, (len(ends), *shape))[:, where]
         with faults.blaming(normal.law):
             steps = _steps(part, own, fractions[:, where], rows[:, index].tolist())
-        found.append((where, march(part, law, steps, None)))
-    return TangentialMotion.merged(found, shape)
+        motions.append((where, march(part, law, steps, None)))
+    return TangentialMotion.merged(motions, shape)
 
 
 def _ends(law: SteppedTangentialLaw, marks: Any, shape: tuple[int, ...]) -> Array:

@@ -78,7 +78,9 @@ def advance(
     """Return force and friction work after the step, and the springs."""
 
     def flat(value: Real) -> Array:
-        return np.broadcast_to(value, state.shape).reshape(-1)
+        array = np.asarray(value, dtype=np.float64)
+        same = array.shape == state.shape  # broadcasting takes longer than a small step
+        return (array if same else np.broadcast_to(array, state.shape)).reshape(-1)
 
     limit = state.friction_coefficient * flat(after.friction_load)
     force, work, memory = moved(

@@ -49,7 +49,7 @@ ERROR = 1e-9
 #: Powers of each coordinate in a patch; cells are found in a grid of 2^DEEPEST by 2^DEEPEST.
 NODES, DEEPEST = 12, 6
 SIZE = 1 << DEEPEST
-#: What is left out along each coordinate changes g by less; half of 12 terms by 12 are left.
+#: Terms left out along each coordinate change g by less; about half of 12 by 12 terms stay.
 SMALL = 1e-11
 #: Fewer impacts than this are computed one by one; so many are taken together at most.
 FEW, BLOCK = 40, 1 << 16
@@ -88,11 +88,11 @@ class Table:
         cuts = Cuts(stored.arrays["stuck"], stored.arrays["slip"])
         forth = chebyshev_of_values(NODES) @ nodes(NODES)[:, None] ** np.arange(NODES)
         back = powers_of_chebyshev(NODES, stretch=2.0, shift=1.0)
-        found = forth @ terms @ forth.T
-        sizes = np.abs(found)
+        chebyshev = forth @ terms @ forth.T
+        sizes = np.abs(chebyshev)
         count = np.array([needed(sizes.sum(axis=axis), SMALL) for axis in (2, 1)])
         kept = np.arange(NODES) < count[..., None]
-        found *= kept[0, :, :, None] & kept[1, :, None, :]
+        chebyshev *= kept[0, :, :, None] & kept[1, :, None, :]
         scales = np.exp2(cells[:, 1:3].T.astype(np.float64))  # int16 would give float32
         origins = cells[:, 3:].T / scales
         power_a, power_b = scales[..., None] ** np.arange(NODES)  # of two: nothing is rounded
@@ -106,7 +106,7 @@ class Table:
             grid,
             Patches(
                 origins[:, order],
-                (back @ found @ back.T * scale)[order],
+                (back @ chebyshev @ back.T * scale)[order],
                 count[:, order].tolist(),
                 (terms * scale)[order],
             ),

@@ -73,13 +73,13 @@ class Patches:
             x, y = a[who], b[who]
             x -= origin_a[stretch]
             y -= origin_b[stretch]
-            found = slice(patch[who[0]], patch[who[-1]] + 1)
-            rows, columns = (max(needed[found]) for needed in self.needed)
+            run = slice(patch[who[0]], patch[who[-1]] + 1)
+            rows, columns = (max(needed[run]) for needed in self.needed)
             y_powers, sums = powers(y, room[0, :columns, : x.size]), room[1, :rows, : x.size]
             start = 0
             for terms, stop in zip(
-                self.terms[found, :rows, :columns],
-                np.minimum(stops[found] - first, x.size).tolist(),
+                self.terms[run, :rows, :columns],
+                np.minimum(stops[run] - first, x.size).tolist(),
                 strict=True,
             ):
                 if stop > start:
@@ -119,9 +119,9 @@ class Patches:
     @cached_property
     def single(self) -> list[Callable[[float, float], float]]:
         """The value of each patch as a function of plain floats a and b."""
-        found: list[Callable[[float, float], float]] = []
-        found += (_Rows(self, patch, found) for patch in range(len(self.terms)))
-        return found
+        slopes: list[Callable[[float, float], float]] = []
+        slopes += (_Rows(self, patch, slopes) for patch in range(len(self.terms)))
+        return slopes
 
 
 class _Rows:

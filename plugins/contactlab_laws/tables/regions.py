@@ -86,14 +86,14 @@ class Places(NamedTuple):
     measure: Array
 
     def taken(self, part: slice | Rows) -> Places:
-        """Return some of them, in views if ``part`` is a slice."""
+        """Return some of the places, as views if ``part`` is a slice."""
         columns: Any = (column[part] for column in self)
         return Places(*columns)
 
     def parts(self) -> list[tuple[int, Rows]]:
-        """Return regions, and which of the places are in each."""
-        found = [(region, (self.region == region).nonzero()[0]) for region in range(REGIONS)]
-        return [(region, part) for region, part in found if part.size]
+        """Return each region that has places, and the rows of its places."""
+        places = [(region, (self.region == region).nonzero()[0]) for region in range(REGIONS)]
+        return [(region, part) for region, part in places if part.size]
 
 
 def slip_cut(terms: Array, t: Array) -> Array:

@@ -35,7 +35,7 @@ MINOR = 0.01
 
 @attrs.define
 class Progress:
-    """What is done and what is left; may be kept in a file."""
+    """Cells done and cells left, with their terms; may be kept in a file."""
 
     cuts: Cuts
     todo: list[Cell]
@@ -109,8 +109,8 @@ def build(path: Path, *, tolerance: float = TOLERANCE, workers: int = 1) -> None
     cells = np.array([progress.done[k] for k in order], dtype=np.int16)
     terms = np.array([progress.terms[k] for k in order])
     stuck, slip = progress.cuts
-    found = {"stuck": stuck, "slip": slip, "cells": cells, "terms": terms}
-    write(path, Stored.today(tolerance=tolerance, **found))
+    arrays = {"stuck": stuck, "slip": slip, "cells": cells, "terms": terms}
+    write(path, Stored.today(tolerance=tolerance, **arrays))
     kept.unlink()
 
 
@@ -152,7 +152,7 @@ def _shared(share: Callable[..., Iterable[Array]], workers: int, psi1: Array, ch
     Returns
     -------
     array
-        Of ``exact``, parts joined along the first axis.
+        Answers of ``exact``, in the order of ``psi1``.
     """
     parts = 8 * workers
     return np.concatenate(

@@ -30,7 +30,7 @@ def slope(cell: Cell, cuts: Cuts, solve: Callable[[Array, Array], Array]) -> Arr
     Parameters
     ----------
     cell : Cell
-        One that begins at psi1 = 1.
+        A cell of the table that begins at psi1 = 1.
     cuts : Cuts
     solve : callable
         Exact psi2 of (psi1, chi).

@@ -149,9 +149,9 @@ def _errors(name: str, error: Array, draws: Draws, chosen: NDArray[np.bool_]) ->
     Parameters
     ----------
     name : str
-        Of the region, of the curve, or "all".
+        Name of the region or of the curve, or "all".
     error : array, shape (draws,)
-        Of psi2, over the greater of 1 and psi1.
+        Absolute error of psi2, over the greater of 1 and psi1.
     draws : Draws
         psi1 and chi of each.
     chosen : array of bool, shape (draws,)

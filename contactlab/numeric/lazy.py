@@ -1,0 +1,27 @@
+"""Public names of a package that are imported on first use."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from typing import Any
+
+
+def imported_on_use(package: str, modules: Mapping[str, str]) -> Callable[[str], Any]:
+    """Return the function ``__getattr__`` of a package.
+
+    Parameters
+    ----------
+    package : str
+        Name of the package, its ``__name__``.
+    modules : mapping of str to str
+        For each public name, the module in ``contactlab`` that defines it.
+    """
+
+    def __getattr__(name: str) -> Any:  # noqa: N807
+        """Return a public name, imported on first use."""
+        if name not in modules:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        return getattr(import_module(f"contactlab.{modules[name]}"), name)
+
+    return __getattr__

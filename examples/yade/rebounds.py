@@ -1,0 +1,118 @@
+"""Impacts in YADE against the exact rebound, under its own friction and under contactlab's kernel.
+
+Run with the Python that has contactlab; YADE has one of its own, and a compiler is needed.
+
+Examples
+--------
+  python rebounds.py
+  python rebounds.py --yade yade --springs 0 4 8 12
+"""
+
+import argparse
+import json
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import contactlab
+
+HERE = Path(__file__).resolve().parent
+YOUNG, MU, RADIUS = 1e9, 0.3, 0.01
+POISSON = (0.0, 0.3, 0.49)
+SIZES = 0.005 * 2.0 ** np.linspace(0.0, 1.0, 10, endpoint=False)  # largest contact radius over R*
+DURATION = 1e-4  # of every contact, in s
+#: The kernel as a function that a library exports.
+EXPORTED = """
+#include "contactlab_springs.h"
+double springs_step(double *state, int n, const double *moved, const double *normal, double radius,
+                    double limit, double unit, double modulus, double *force)
+{ return contactlab_springs_step(state, n, moved, normal, radius, limit, unit, modulus, force); }
+"""
+
+
+def library(folder):
+    """Compile the kernel in a folder, and return the library."""
+    words = [sys.executable, "-m", "contactlab", "kernel", "--out", folder]
+    subprocess.run(words, check=True, capture_output=True)
+    (folder / "springs.c").write_text(EXPORTED)
+    made = folder / "libspringskernel.so"
+    words = ["cc", "-std=c99", "-O3", "-fPIC", "-shared", folder / "springs.c", "-o", made, "-lm"]
+    subprocess.run(words, check=True)
+    return made
+
+
+def pairs(angles):
+    """Return psi1, kappa, and what YADE is told of each pair."""
+    random, table = np.random.default_rng(1), []
+    for poisson in POISSON:
+        kappa = 2.0 * (1.0 - poisson) / (2.0 - poisson)
+        for size in SIZES:
+            for psi1 in np.linspace(0.02, 7.0 * kappa + 0.3, angles):
+                radius, modulus = 0.5 * RADIUS, YOUNG / (2.0 * (1.0 - poisson**2))
+                overlap = size**2 * radius
+                speed = 2.9432751843 * overlap / DURATION
+                mass = 16.0 * modulus * np.sqrt(radius) * overlap**2.5 / (15.0 * speed**2)
+                table.append((psi1, kappa, {
+                    "poisson": poisson, "speed": speed, "slip": psi1 * MU * speed / kappa,
+                    "density": 2.0 * mass / (4.0 / 3.0 * np.pi * RADIUS**3),
+                    "share": random.uniform(), "gap": speed * DURATION * random.uniform(0.02, 0.1),
+                }))  # fmt: skip
+    return table
+
+
+def main():
+    """Print a table of errors of psi2."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--yade", default="yade", help="the command that runs YADE")
+    parser.add_argument("--steps", type=int, default=50, help="steps a contact")
+    parser.add_argument("--springs", type=int, nargs="+", default=[0, 4, 8, 12])
+    parser.add_argument("--angles", type=int, default=40)
+    asked = parser.parse_args()
+    psi1, kappa, told = zip(*pairs(asked.angles), strict=True)
+    psi1, kappa = np.array(psi1), np.array(kappa)
+    speed, slip, share, density = (
+        np.array([each[name] for each in told]) for name in ("speed", "slip", "share", "density")
+    )
+    mass = density * 4.0 / 3.0 * np.pi * RADIUS**3
+    first = 0.25 * mass * (slip**2 * ((1.0 - share) ** 2 + 0.4 * share**2) + speed**2)
+    exact = contactlab.rebound(psi1, 1.75 * kappa)
+    run = {
+        "young": YOUNG, "mu": MU, "radius": RADIUS, "pairs": told,
+        "time_step": DURATION / asked.steps, "steps": int(1.3 * asked.steps) + 3,
+    }  # fmt: skip
+    print(f"{'springs':>12} {'worst':>8} {'rms':>8} {'work/loss':>12}")
+    for springs in asked.springs:
+        with tempfile.TemporaryDirectory() as name:
+            file = Path(name) / "pairs.json"
+            file.write_text(json.dumps(run))
+            words = [*shlex.split(asked.yade), "-n", "-x", HERE / "impacts.py", file]
+            words += [library(Path(name)), str(springs)]
+            found = {**os.environ, "PYTHONPATH": str(HERE)}
+            done = subprocess.run(
+                words, cwd=name, capture_output=True, text=True, check=False, env=found
+            )
+            if not file.with_suffix(".out").exists():
+                raise RuntimeError(f"{asked.yade}:\n{done.stdout[-3000:]}\n{done.stderr[-1000:]}")
+            answer = json.loads(file.with_suffix(".out").read_text())
+        one, other = np.array(answer["bodies"]).reshape(-1, 2, 6).transpose(1, 0, 2)
+        parted = other[:, 0] - one[:, 0]
+        assert np.allclose(parted, speed, rtol=5e-3), "an impact is not over, or lost energy"
+        slip = one[:, 1] - other[:, 1] + RADIUS * (one[:, 5] + other[:, 5])
+        error = kappa * slip / (MU * speed) - exact
+        rms = np.sqrt(np.mean(error**2))
+        squares = [
+            (b[:, :3] ** 2 + 0.4 * RADIUS**2 * b[:, 3:] ** 2).sum(axis=1) for b in (one, other)
+        ]
+        lost = np.sum(first - 0.5 * mass * sum(squares))
+        work = f"{answer['work'] / lost:12.4f}" if springs else ""
+        name = springs or "none: YADE"
+        print(f"{name:>12} {np.abs(error).max():8.3f} {rms:8.3f} {work}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

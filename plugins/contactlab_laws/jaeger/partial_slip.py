@@ -1,0 +1,71 @@
+"""What stepped laws of partial slip share: their scales, claims, gross slip and stiffness."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from contactlab.contracts import AllStepsTangentialLaw, NormalMotion, WholeImpact
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
+from contactlab_laws.jaeger.gross_slip import gross_slip
+
+
+class Scales(NamedTuple):
+    """Units of the scaled variables in SI; floats, or arrays of the batch shape.
+
+    Attributes
+    ----------
+    radius : float or array
+        a, the largest contact radius, in m.
+    displacement : float or array
+        kappa R/(mu a²), in 1/m: scaled displacement per metre; 0 without friction.
+    force : float or array
+        mu P_max, in N.
+    normal_force : float or array
+        P_max of a Hertz contact of radius a, in N.
+    work : float or array
+        mu P_max times mu a²/(kappa R), in J.
+    """
+
+    radius: Real
+    displacement: Real
+    force: Real
+    normal_force: Real
+    work: Real
+
+    @classmethod
+    def of(cls, scene: Scene, normal: NormalMotion) -> Scales:
+        """Return the scales of the largest contact, theory §1."""
+        pair, radius, friction = scene.pair, normal.maximum_radius, scene.friction_coefficient
+        peak = (4.0 / 3.0) * pair.effective_modulus * radius**3 / pair.radius
+        slip = friction * radius**2 / (pair.stiffness_ratio * pair.radius)
+        per_slip = (friction > 0.0) / (slip + (friction == 0.0))
+        return cls(radius, per_slip, friction * peak, peak, friction * peak * slip)
+
+    def pressure(self, radius: Any, load: Any) -> Any:
+        """Return p, the load at a radius over that of a Hertz contact: 1 under Hertz's law."""
+        cube = self.normal_force * radius**3
+        return load / (cube + (cube == 0.0))
+
+    @property
+    def metres(self) -> Real:
+        """Metres of displacement per scaled unit, 1/``displacement``; 0 without friction."""
+        with np.errstate(divide="ignore"):
+            return np.where(np.asarray(self.displacement) > 0, 1.0 / self.displacement, 0.0)
+
+
+class PartialSlip(AllStepsTangentialLaw):
+    """Base of laws that divide the contact into parts, each of them stuck or slipping."""
+
+    offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
+    needs: ClassVar[frozenset[str]] = frozenset({"radius"})
+
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return the whole-impact answers, with those of gross slip by (44) and (46)."""
+        return (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
+
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
+        """Return 2 G* a, Mindlin's stiffness of the largest contact fully stuck."""
+        return scene.pair.tangential_stiffness(normal.maximum_radius)

@@ -1,0 +1,30 @@
+"""YADE with the kernel rebounds as contactlab does; run where YADE is installed."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parents[1] / "examples" / "yade"
+PAGE = (FOLDER / "README.md").read_text("utf-8")
+
+
+def test_the_page_lists_every_file():
+    files = {path.name for path in FOLDER.iterdir() if path.is_file()} - {"README.md"}
+    assert files == set(re.findall(r"^\| `(\w+\.py)` \|", PAGE, re.MULTILINE))
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("yade") is None, reason="YADE is not installed")
+def test_impacts_in_yade():
+    words = [sys.executable, FOLDER / "rebounds.py", "--angles", "4", "--springs", "0", "8"]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    own, kernel = [line.split() for line in done.stdout.splitlines()[1:]]
+    assert own[:2] == ["none:", "YADE"]
+    assert float(own[2]) > 0.3
+    springs, worst, rms, work = map(float, kernel)
+    assert (springs, worst <= 0.025, rms <= 0.007) == (8, True, True)
+    assert work == pytest.approx(1.0, abs=0.005)
