@@ -207,6 +207,15 @@ def test_plain_splitting_takes_over_where_mixing_stalls(monkeypatch):
     assert plain.psi2 == pytest.approx(mixed.psi2, abs=1e-5)
 
 
+def test_an_error_that_is_not_declared_is_estimated():
+    """Over 32 and 64 rings: the law refuses 16 times as many."""
+    law = simulation(rings=16, extrapolate=False)
+    result = law.run(Scene.nondimensional(psi1=1.0, chi=CHI), estimate_error=True)
+    error = abs(result.psi2 - contactlab.rebound(1.0, CHI))
+    told = float(str(result).partition("about ")[2].partition(",")[0])
+    assert error < told < 4.0 * error
+
+
 def test_the_residual_stands_in_every_plan():
     plan = simulation(rings=8).run(finite_element_case(0.98)).plan
     assert "residual" in str(plan)
