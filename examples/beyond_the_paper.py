@@ -6,13 +6,15 @@ rigid plane coupling of pressure and slip moves psi2 by 0.1, and finite elements
 the experiment of Kharaz, Gorham & Salman (2001) the coupled solution is further from the measured
 restitution at small angles; the published series do not agree with each other there.
 
-Writes pictures named ``beyond-....png`` in the current folder.
+Writes pictures named ``beyond-....png``, and one that moves, in the current folder.
 """
 
 from importlib import resources
 from pathlib import Path
 
 import numpy as np
+from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from contactlab import Scene, Simulation, create, read_scene, rebound
@@ -154,7 +156,7 @@ def from_above(axes, row):
         axes.quiver(x[where], y[where], u, v, color=colour, angles="xy", scale_units="xy",
                     scale=1.0, width=0.009, minlength=0.5)  # fmt: skip
     axes.set_title(rf"$t/t_\mathrm{{c}}$ = {time[row]:.2f}", fontsize="medium")
-    axes.set(xlim=(-1.08, 1.08), ylim=(-1.08, 1.08), aspect="equal")
+    axes.set(xlim=(-1.18, 1.18), ylim=(-1.08, 1.08), aspect="equal")
     axes.axis("off")
     return stuck[touching].mean()
 
@@ -165,6 +167,22 @@ with styled():
         stick = from_above(axes, row)
         print(f"t/t_c = {time[row]:.2f}: {stick:4.0%} of the points in contact stick")
     save_figure(figure, Path("beyond-vectors.png"))
+
+# %%
+# The same impact as a moving picture.
+with styled():
+    figure = Figure(figsize=(3.6, 3.8))
+    FigureCanvasAgg(figure)
+    stage = figure.add_subplot()
+
+    def show(row):
+        """Draw one frame."""
+        stage.clear()
+        from_above(stage, row)
+
+    rows = [int(np.abs(time - each).argmin()) for each in np.linspace(0.05, 0.97, 47)]
+    film = FuncAnimation(figure, show, rows, init_func=lambda: None)
+    film.save("beyond-vectors.gif", PillowWriter(fps=10), dpi=100)
 
 # %%
 # **An experiment.** A sphere of aluminium oxide meets glass. By the balance of moments the spin

@@ -17,8 +17,11 @@ PLUGIN = EXAMPLES / "third_party_plugin"
 
 FIGURES = tuple(f"figure-{number}.png" for number in range(1, 5))
 BEYOND = tuple(
-    f"beyond-{name}.png"
-    for name in ("axisymmetry", "experiment", "finite-elements", "map", "vectors")
+    f"beyond-{name}"
+    for name in (
+        *("axisymmetry.png", "experiment.png", "finite-elements.png", "map.png"),
+        *("vectors.gif", "vectors.png"),
+    )
 )
 #: Script, a word it prints, and the picture or pictures it writes.
 SCRIPTS = {

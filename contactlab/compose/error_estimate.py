@@ -16,8 +16,9 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab.outcome.result import ImpactResult
 
-#: A single count is multiplied by the first factor and by its square, several counts together by
-#: the second: the finest run costs about sixteen times the first.
+#: A single count is multiplied by the first factor and by its square, several counts together, or
+#: one that a law accepts no further, by the second: the finest run costs about sixteen times the
+#: first.
 ALONE, TOGETHER = 4, 2
 #: A tolerance is divided by this times the square of the factor of the counts, as for a method of
 #: second order. Steps are doubled until a tolerance is kept: a lesser change might change no step.
@@ -77,6 +78,8 @@ def _distance(laws: Laws, scene: Scene, resolution: float | None, change: Any) -
     options = _options(laws, resolution)
     counts = {kind: value for kind, value in options.items() if isinstance(value, int)}
     factor = ALONE if len(options) == len(counts) == 1 else TOGETHER
+    if _finer(laws, options, factor**2) is None:  # a law may refuse what is much finer
+        factor = TOGETHER
     answers = []
     refined = {times: _finer(laws, options, times) for times in (factor, factor**2)}
     for times, finer in refined.items():

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from functools import lru_cache, partial
 from typing import Any
 
+import attrs
 import numpy as np
 
 from contactlab.compose.composition import PREFERRED, exact, fixed_steps, misfit
@@ -19,7 +20,13 @@ from contactlab.compose.names import full_name, kind_of
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
-from contactlab.contracts import Law, NormalLaw, SteppedTangentialLaw, TangentialLaw
+from contactlab.contracts import (
+    Law,
+    NormalLaw,
+    SteppedTangentialLaw,
+    TangentialLaw,
+    WholeImpactTangentialLaw,
+)
 from contactlab.contracts.error_model import range_of
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
@@ -55,13 +62,16 @@ def reference_for(law: TangentialLaw, normal: NormalLaw) -> Reference:
 
     Under a normal law other than elastic Hertz contact there is no exact solution. A law that
     converges to the continuum is then judged by another law with the same limit, or else by itself
-    at high resolution, a rigid body by the impulse of the friction load.
+    at high resolution, a rigid body by the impulse of the friction load. A law of whole impacts
+    that has a resolution is judged by itself at twice that.
     """
     elastic = "elastic_hertz" in normal.offers
     if "no_friction" in law.offers:
         return lambda *_: 0.0
     if "rigid" in law.offers:
         return rigid if elastic else partial(_rigid_under, normal)
+    if isinstance(law, WholeImpactTangentialLaw) and law.resolution is not None:
+        return partial(finer, normal)
     if converges(law):
         return continuum if elastic else partial(_other_law, normal, judging_laws(normal, law))
     return itself if elastic else lambda *_: None
@@ -161,6 +171,17 @@ def fine_under(scene: Scene, normal: NormalLaw, law: Any) -> float | None:
             return change
         before = change
     return None
+
+
+@lru_cache(maxsize=4096)
+def finer(normal: NormalLaw, scene: Scene, law: Any) -> float | None:
+    """Return the change by a law of whole impacts at twice its resolution, in m/s; None if none."""
+    try:
+        fine = attrs.evolve(law, **{law.resolution: 2 * getattr(law, law.resolution)})
+    except ValueError:  # the law does not accept the finer value
+        return None
+    result = Simulation(normal=normal, tangential=fine).run(scene)
+    return float(result.motion.slip_velocity_change) if result.status else None
 
 
 def itself(scene: Scene, law: TangentialLaw) -> float | None:

@@ -28,7 +28,8 @@ ANGLES = (0.3, 0.9, 1.2, 2.0, 3.5)
 FAR = 3.0
 #: Errors of psi2 over max(1, psi1) below this are rounding.
 ROUNDING = 1e-11
-#: Factors of a finer resolution: a number is multiplied by FINER, a tolerance divided by TIGHTER.
+#: Factors of a finer resolution: a number is multiplied by FINER, or by 2 if the law accepts no
+#: more; a tolerance is divided by TIGHTER.
 FINER, TIGHTER = 4, 1e3
 #: Nodes of the quadrature of a motion in closed form, and the bound of the error of the quadrature.
 NODES, QUADRATURE = 200, 1e-12
@@ -85,7 +86,7 @@ def _better(way: Way, impact: Scene) -> tuple[float | None, str]:
     if law == way.law and integrator == way.integrator:
         return None, ""
     change = way._replace(law=law, integrator=integrator).run(impact).change
-    return float(np.asarray(change)), f"the same with {FINER} times the resolution"
+    return float(np.asarray(change)), "the same with a finer resolution"
 
 
 def _finer(law: Any) -> Any:
@@ -93,11 +94,13 @@ def _finer(law: Any) -> Any:
     if law.resolution is None:
         return law
     value = getattr(law, law.resolution)
-    finer = FINER * value if isinstance(value, int) else value / TIGHTER
-    try:
-        return attrs.evolve(law, **{law.resolution: finer})
-    except ValueError:  # the law does not accept the finer value
-        return law
+    for factor in (FINER, 2):
+        finer = factor * value if isinstance(value, int) else value / TIGHTER
+        try:
+            return attrs.evolve(law, **{law.resolution: finer})
+        except ValueError:  # the law does not accept the finer value
+            continue
+    return law
 
 
 @check(ClosedFormNormalLaw)

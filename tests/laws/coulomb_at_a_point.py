@@ -2,7 +2,7 @@
 
 ``coulomb_at_a_point.csv`` holds the figures before and after: ``python -m
 tests.laws.coulomb_at_a_point`` prints, for every pair of laws that fit, the largest difference of
-psi2 from the rings of ``contactlab_laws.rings`` over ``SCENES``.
+psi2 from the law of the half-space along one direction over ``SCENES``.
 """
 
 import numpy as np
@@ -10,8 +10,6 @@ import numpy as np
 import contactlab
 from contactlab import Scene, Simulation
 from contactlab.compose.composition import misfit
-from contactlab.compose.normal_motion import normal_motion
-from contactlab_laws.rings.courses import solve
 
 #: psi1 and chi of the scenes: every pair.
 PSI1 = (0.5, 1.0, 1.5, 2.0, 2.5, 3.5)
@@ -58,15 +56,10 @@ def scene():
     return Scene.nondimensional(psi1=psi1.ravel(), chi=chi.ravel())
 
 
-def motion(law):
-    """The normal motion that all the scenes have in units of their own."""
-    return normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0))
-
-
 def reference(law):
-    """psi2 of the scenes by rings."""
-    whole = scene()
-    return solve(np.asarray(whole.psi1), np.asarray(whole.chi), motion(law))
+    """psi2 of the scenes by the half-space, with Coulomb's law at every point."""
+    half_space = contactlab.create("tangential.halfspace", angles=1, rings=64)
+    return np.asarray(Simulation(normal=law, tangential=half_space).run(scene()).psi2)
 
 
 def limit(law, name):

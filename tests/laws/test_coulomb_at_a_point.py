@@ -14,7 +14,7 @@ from table_builders.damped import differences
 from tests.laws.coulomb_at_a_point import NORMAL, TANGENTIAL, limit, reference
 
 RECORDED = Path(__file__).with_name("coulomb_at_a_point.csv")
-#: Half of what rings and extrapolated laws may be off by themselves, and what annuli are.
+#: Half of what the half-space and extrapolated laws may be off by themselves, and what annuli are.
 NUMERICAL, ANNULI = 5e-4, 2.5e-3
 #: The scene of most tests below.
 OBLIQUE = Scene.nondimensional(psi1=2.0, chi=49 / 34)
@@ -133,11 +133,11 @@ def test_sizes_hold_between_what_was_measured(name, e):
     chi = draw.uniform(0.8, 1.8, 80)
     psi1 = draw.uniform(0.6, 2.0 * chi * (1.0 + e) + 0.2)
     law = contactlab.create(f"normal.{name}", restitution=e)
-    known = differences.by_rings(law, psi1, chi)
+    known = differences.pointwise(law, psi1, chi)
     found = np.abs(differences.springs(law, psi1, chi) - known).max()
     assert found < caution(law, "springs")
     if name != "tsuji":
-        others = differences.by_rings(contactlab.create("normal.tsuji", restitution=e), psi1, chi)
+        others = differences.pointwise(contactlab.create("normal.tsuji", restitution=e), psi1, chi)
         assert np.abs(others - known).max() < chosen(Simulation(normal=law).plan(OBLIQUE))
 
 

@@ -5,12 +5,14 @@ import pytest
 from numpy.polynomial.polynomial import polyval
 
 import contactlab
+from contactlab import Scene, Simulation
 from contactlab.compose.rebound import BEYOND_ERROR, DAMPED_ERROR
-from contactlab_laws.rings.courses import by_rings
+from contactlab_laws.rings.courses import by_rings, tsuji
 from contactlab_laws.tables.damped import BORDERS, depth, inner, rebound, section
 from contactlab_laws.tables.damped import CHI as RANGE_OF_CHI
 from table_builders.damped import build
-from table_builders.damped.build import solve
+from table_builders.damped.build import by_half_space
+from table_builders.damped.checks import solve
 from table_builders.damped.coordinates import restitution
 from tests.laws.test_rings import REFERENCES
 
@@ -22,20 +24,35 @@ def test_table_is_rings_to_its_error(e):
     """At random impacts; ``python -m table_builders damped verify`` draws more."""
     draw = np.random.default_rng(round(1e4 * e))
     psi1, chi = draw.uniform(0.0, 9.0, 12), draw.uniform(0.8, 1.8, 12)
-    assert rebound(psi1, chi, e) == pytest.approx(solve(psi1, chi, e), abs=2e-4)
+    found = solve(psi1, chi, e, counts=(72, 96, 120, 144))
+    assert rebound(psi1, chi, e) == pytest.approx(found, abs=2e-4)
 
 
 @pytest.mark.slow
-def test_table_is_finer_rings_to_its_error():
-    """At 480 random impacts, a third of them close to e = 1; rings in other numbers, and more."""
-    draw = np.random.default_rng(19)
-    for number in range(24):
+def test_table_is_the_half_space():
+    """At 500 random impacts, a third of them close to e = 1; by other rings than the table's."""
+    draw, law = np.random.default_rng(22), contactlab.create
+    friction = law("tangential.halfspace", angles=1, rings=64)
+    for number in range(25):
         e = float(draw.uniform(0.5, 1.0))
         if number % 3 == 0:
             e = 1.0 - 10.0 ** float(draw.uniform(-5.0, -1.0))
         psi1, chi = draw.uniform(0.0, 9.0, 20), draw.uniform(0.8, 1.8, 20)
-        finer = solve(psi1, chi, e, counts=(64, 96, 128))
-        assert rebound(psi1, chi, e) == pytest.approx(finer, abs=5e-4)
+        simulation = Simulation(normal=law("normal.tsuji", restitution=e), tangential=friction)
+        found = simulation.run(Scene.nondimensional(psi1=psi1, chi=chi)).check().psi2
+        assert contactlab.rebound(psi1, chi, restitution=e) == pytest.approx(found, abs=2e-4)
+
+
+@pytest.mark.slow
+def test_table_is_another_march_to_its_error():
+    """At 240 random impacts, a third of them close to e = 1; rings extrapolated from others."""
+    draw = np.random.default_rng(19)
+    for number in range(12):
+        e = float(draw.uniform(0.5, 1.0))
+        if number % 3 == 0:
+            e = 1.0 - 10.0 ** float(draw.uniform(-5.0, -1.0))
+        psi1, chi = draw.uniform(0.0, 9.0, 20), draw.uniform(0.8, 1.8, 20)
+        assert rebound(psi1, chi, e) == pytest.approx(solve(psi1, chi, e), abs=3e-4)
 
 
 @pytest.mark.parametrize(("name", "e", "chi"), REFERENCES)
@@ -96,7 +113,7 @@ def test_error_beside_the_cuts(e):
     offsets = np.array([-0.01, -0.003, -1e-5, 1e-5, 0.001, 0.003, 0.01])
     psi1 = (cuts[None] + offsets[:, None, None]).ravel()
     chi = np.broadcast_to(chi, (len(offsets), *cuts.shape)).ravel()
-    finer = solve(psi1, chi, e, counts=(64, 80, 96, 112, 128, 160))
+    finer = by_half_space(tsuji(e), psi1, chi, rings=128)
     assert rebound(psi1, chi, e) == pytest.approx(finer, abs=DAMPED_ERROR)
 
 

@@ -86,12 +86,14 @@ def test_with_no_word_from_the_user_psi2_is_extrapolated():
     assert np.abs(result.energy.relative_imbalance).max() < 1e-3
 
 
-def test_the_limit_of_many_swings_takes_more_steps():
-    chi = np.array([10.0, 100.0])
-    result = simulation().run(Scene.nondimensional(psi1=1.0, chi=chi))
-    error = np.abs(result.psi2 - contactlab.rebound(1.0, chi))
+@pytest.mark.parametrize(("chi", "bound"), [(5.0, 3e-3), (10.0, 4e-3), (100.0, 0.02)])
+def test_the_limit_of_many_swings_takes_more_steps(chi, bound):
+    """With fewer steps psi2 was 0.08 off at chi = 100, psi1 = 1.2, where 0.01 was declared."""
+    psi1 = np.array([0.3, 0.9, 1.2, 1.5, 2.5, 6.0, 15.0])
+    result = simulation().run(Scene.nondimensional(psi1=psi1, chi=chi))
+    error = np.abs(result.psi2 - contactlab.rebound(psi1, chi))
     assert (error <= result.plan.psi2_error).all()
-    assert error.max() < 0.02
+    assert error.max() < bound
 
 
 @pytest.mark.parametrize("poisson", LIKE_BODIES)
@@ -203,6 +205,15 @@ def test_plain_splitting_takes_over_where_mixing_stalls(monkeypatch):
     monkeypatch.undo()
     mixed = simulation(coupling="one_way", rings=8).run(finite_element_case(0.98))
     assert plain.psi2 == pytest.approx(mixed.psi2, abs=1e-5)
+
+
+def test_an_error_that_is_not_declared_is_estimated():
+    """Over 32 and 64 rings: the law refuses 16 times as many."""
+    law = simulation(rings=16, extrapolate=False)
+    result = law.run(Scene.nondimensional(psi1=1.0, chi=CHI), estimate_error=True)
+    error = abs(result.psi2 - contactlab.rebound(1.0, CHI))
+    told = float(str(result).partition("about ")[2].partition(",")[0])
+    assert error < told < 4.0 * error
 
 
 def test_the_residual_stands_in_every_plan():

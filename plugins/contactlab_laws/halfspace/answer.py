@@ -20,8 +20,10 @@ LARGEST_RESIDUAL = 1e-6
 #: Slip velocity, in psi over max(1, Lam, 4 chi), from which the answer is gross slip: all that it
 #: leaves out is smaller by this squared.
 GRAZING = 1e6
-#: Least declared error times rings², for numbers of rings whose answers agree by chance.
-LEAST_ERROR = 0.1
+#: Least declared error times rings² over chi and 3 psi1 (up to 1), for numbers of rings whose
+#: answers agree by chance: this times chi², from ``LEAST`` to 1. Beyond chi = 2.5 slip comes and
+#: goes more often.
+GROWTH, LEAST = 0.07, 0.1
 #: Largest error by eight angles: eight and sixteen differ by less, for Lam up to 2.
 ANGLES_ERROR = 3e-4
 
@@ -78,7 +80,9 @@ def answered(options: Options, normal: NormalMotion) -> Answered:
         error[items], shares = math.nan, fine.share
         if coarse is not None:
             off = fine.change - coarse.change
-            error[items] = np.abs(off) + LEAST_ERROR / options.rings**2
+            chi, slow = matter.chi[items], np.minimum(3.0 * np.abs(matter.psi1[items]), 1.0)
+            by_chance = slow * chi * np.clip(GROWTH * chi**2, LEAST, 1.0)
+            error[items] = np.abs(off) + by_chance / options.rings**2
             residual[items] = np.maximum(fine.residual, coarse.residual)
             if coupled:
                 error[items] += ANGLES_ERROR
@@ -118,7 +122,8 @@ def _whole_impact(
     unit: Any = 1.0 / np.atleast_1d(scene.psi_scale)
     mass: Any = np.atleast_1d(scene.pair.tangential_mass)
     momentum: Any = np.atleast_1d(scene.pair.normal_mass * scene.normal_speed)
-    change, work = unit * solved.change, mass * unit**2 * solved.work
+    # Under huge friction unit² may exceed what a float holds, and the work is as small.
+    change, work = unit * solved.change, mass * (unit * (unit * solved.work))
     friction = np.broadcast_to(scene.friction_coefficient, change.shape)
     units = np.broadcast_to(unit, change.shape), np.broadcast_to(momentum, change.shape)
     chi = np.broadcast_to(scene.chi, change.shape)

@@ -71,6 +71,7 @@ def follow_all(
     # In every step the share of Coulomb's limit that acts is linear in the impulse of the friction
     # load, so that gross slip is exact. The first step has one share throughout.
     table, moments, edges = table_of(count), basis(count, 1).work[0], basis(count, 1).edges
+    cubes, hemispheres = edges**3, np.sqrt(np.maximum(edges[:, None] ** 2 - edges[:-1] ** 2, 0.0))
     impacts = len(psi1)
     change, shares = np.zeros((2, len(course.inside), impacts))
     zero = np.zeros((impacts, count))
@@ -79,17 +80,21 @@ def follow_all(
     touched, kept, places = np.zeros(impacts, dtype=bool), [], np.arange(count)
     gains = 2.0 * chi * np.diff(course.impulse, axis=0)
     durations = np.diff(course.time, axis=0) + np.zeros(impacts)
+    acting = course.pressure > 0.0
+    some, whole = np.any(acting, axis=1), np.all(acting, axis=1)
     smaller = [table.within(number) for number in range(count + 1)]
     for k, number in enumerate(course.inside[1:].tolist(), start=1):
         duration, gain, share = durations[k - 1], gains[k - 1], shares[k - 1]
         after = 2.0 * share - shares[k - 2] if k > 2 else share
         new, limits = np.zeros((2, impacts, count))
         fixed, swept = displaced + duration * (psi1 + change[k - 1]), duration * gain
-        live = course.pressure[k] > 0.0
-        if number and live.any():
-            ours, chosen = smaller[number], slice(None) if live.all() else live
+        live = acting[k]
+        if number and some[k]:
+            ours, chosen = smaller[number], slice(None) if whole[k] else live
             part = chosen, slice(number)
-            limit, load = _pressure(edges, number, float(course.share[k]))
+            outer, inner = float(course.share[k]), 1.0 - float(course.share[k])
+            limit = outer * hemispheres[number, :number] + inner * hemispheres[number - 1, :number]
+            load = float(outer * cubes[number] + inner * cubes[number - 1])
             scale = (course.pressure[k] + np.zeros(impacts))[chosen, None]
             resting = rest(slips, duration[:, None], vectors=False)[part] / scale
             guess, begins = (stuck[part], sense[part]), live & ~touched
@@ -112,11 +117,3 @@ def follow_all(
         if fields:
             kept.append((new, slip, limits))
     return Axisymmetric(change, shares, 6.0 * chi * stiffness * work, kept)
-
-
-def _pressure(edges: Array, number: int, share: float) -> tuple[Array, float]:
-    """Return the pressure of Hertz's contact within ``number`` rings, and its force."""
-    points, outer, inner = edges[:number], edges[number], edges[number - 1]
-    pressure = share * np.sqrt(outer**2 - points**2)
-    pressure += (1.0 - share) * np.sqrt(np.maximum(inner**2 - points**2, 0.0))
-    return pressure, float(share * outer**3 + (1.0 - share) * inner**3)

@@ -21,9 +21,9 @@ from contactlab_laws.halfspace.pressure import Answering, Prescribed
 #: Steps from one ring to the next: of tractions along one direction, of vectors, and of pressure
 #: that answers to traction. With more the error of the rings is larger than that of the steps.
 ALONG, VECTORS, ANSWERING = 4, 1, 2
-#: Least steps of an impact over sqrt(chi): about seven in a radian of the stuck contact's swing.
-SWING = 20.0
-
+#: Least steps of an impact over sqrt(chi), over half the rings too: with fewer the swing of the
+#: stuck contact is not followed, and the error does not fall as 1/rings².
+SWING = 22.0
 
 #: Effective Poisson's ratio below which tractions along one direction stay so.
 ROUNDING = 1e-12
@@ -132,7 +132,8 @@ def kinds(options: Options, matter: Matter) -> Kinds:
     plain = ~dragged & ((np.abs(matter.poisson) < ROUNDING) | (options.angles == 1))
     answering = dragged & (options.coupling == "two_way")
     least = np.where(plain, ALONG, np.where(answering, ANSWERING, VECTORS))
-    parts = [parts_of(*each, options.rings) for each in zip(matter.chi, least, strict=True)]
+    fewest = options.rings // 2 if options.extrapolate else options.rings
+    parts = [parts_of(*each, fewest) for each in zip(matter.chi, least, strict=True)]
     return Kinds(plain, dragged, np.array(parts))
 
 

@@ -12,7 +12,7 @@ radius r0 carries, (4/3) E* r0³/R, and the impulse of the friction load in unit
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -176,23 +176,24 @@ def settle(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) ->
     # A ring that sticks is displaced by ``aim``. A ring that slips has the traction ``limit`` along
     # its slip, aim less displacement. ``stuck`` and ``sense`` hold a first guess of the division,
     # and then the division of the answer.
-    traction = np.empty(aim.shape)
-    left = np.arange(len(aim))
+    traction, every = np.empty(aim.shape), np.arange(len(aim))
+    left: Any = slice(None)  # views are cheaper than copies, and most steps need one try
     slack = ROUNDING * (float(limit.max()) + float(np.abs(aim).max()))
+    largest = limit + slack
     for tried in range(MOST_TRIES):
         still, sign, wanted = stuck[left], sense[left], aim[left]
         pulls = _divided(table, wanted, limit, still, sign)
         slip = wanted - pulls @ table.compliance.T
-        wrong = np.where(still, np.abs(pulls) > limit + slack, slip * sign < -slack)
+        wrong = np.where(still, np.abs(pulls) > largest, slip * sign < -slack)
         if tried >= GENTLE:  # one at a time, the outermost first
             last = wrong.shape[1] - 1 - wrong[:, ::-1].argmax(axis=1)
             wrong &= np.arange(wrong.shape[1]) == last[:, None]
         sense[left] = np.where(wrong & still, np.sign(pulls), sign)
         stuck[left] = still ^ wrong
         traction[left] = pulls
-        left = left[wrong.any(axis=1)]
-        if not left.size:
+        if not wrong.any():
             return traction
+        left = every[left][wrong.any(axis=1)]
     raise RuntimeError(f"{left.size} impacts: no division into stick and slip was found")
 
 
@@ -200,15 +201,16 @@ def _divided(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) 
     """Return the tractions of prescribed divisions, shape (impacts, rings)."""
     traction = np.where(stuck, 0.0, sense * limit)
     rest = aim - traction @ table.compliance.T
-    discs = np.all(stuck[:, :-1] >= stuck[:, 1:], axis=1)
+    discs = np.logical_and.reduce(stuck[:, :-1] >= stuck[:, 1:], axis=1)
     held = np.where(stuck, (np.where(stuck, rest, 0.0) @ table.lower.T), 0.0) @ table.upper.T
+    if discs.all():
+        return np.where(stuck, held, traction)
     traction = np.where(stuck & discs[:, None], held, traction)
     others = np.flatnonzero(~discs)
-    if others.size:
-        patterns, which = np.unique(np.packbits(stuck[others], axis=1), axis=0, return_inverse=True)
-        for k in range(len(patterns)):
-            rows = others[which.ravel() == k]
-            ours = np.flatnonzero(stuck[rows[0]])
-            block = table.compliance[np.ix_(ours, ours)]
-            traction[np.ix_(rows, ours)] = np.linalg.solve(block, rest[np.ix_(rows, ours)].T).T
+    patterns, which = np.unique(np.packbits(stuck[others], axis=1), axis=0, return_inverse=True)
+    for k in range(len(patterns)):
+        rows = others[which.ravel() == k]
+        ours = np.flatnonzero(stuck[rows[0]])
+        block = table.compliance[np.ix_(ours, ours)]
+        traction[np.ix_(rows, ours)] = np.linalg.solve(block, rest[np.ix_(rows, ours)].T).T
     return traction

@@ -1,4 +1,4 @@
-"""Building the table: its cuts, and psi2 by rings at its nodes."""
+"""Building the table: its cuts, and psi2 by the law of the half-space at its nodes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab_laws.rings.courses import by_rings, course, tsuji
+from contactlab.contracts import NormalMotion
+from contactlab_laws.halfspace.axisymmetric import follow_all
+from contactlab_laws.halfspace.course import course as halfspace_course
+from contactlab_laws.halfspace.impacts import ALONG
+from contactlab_laws.rings.courses import course, tsuji
 from contactlab_laws.rings.rings import Course, History, march
 from contactlab_laws.tables.damped import BORDERS, CHI, SLIPS
 from contactlab_laws.tables.file import Stored, write
@@ -24,8 +28,9 @@ from table_builders.damped.coordinates import (
 
 Array = NDArray[np.float64]
 
-#: Rings of the impacts at the nodes, and in the search of the cuts.
-COUNTS, RINGS = (72, 96, 120, 144), 72
+#: Rings of the impacts at the nodes, which psi2 is extrapolated from with half as many, and rings
+#: in the search of the cuts.
+FINE, RINGS = 96, 72
 #: Range of the search in psi1 for the first two cuts, in 2 chi (1 + e) - psi1 for the last, and its
 #: number of impacts.
 FIRST, LAST, LOOKED = (0.5, 1.9), (0.3, 1.3), 57
@@ -35,11 +40,22 @@ NARROWEST = 0.02
 CENTRE, WHOLE = 0.995, 0.9999
 
 
-def solve(psi1: Array, chi: Array, e: float, *, counts: tuple[int, ...] = COUNTS) -> Array:
-    """Return psi2 of impacts of one restitution, by rings: Coulomb's law at every point."""
+def solve(psi1: Array, chi: Array, e: float) -> Array:
+    """Return psi2 of impacts of one restitution, with Coulomb's law at every point."""
     shape = np.broadcast_shapes(psi1.shape, chi.shape)
     psi1, chi = (np.broadcast_to(each, shape).ravel() for each in (psi1, chi))
-    return by_rings(psi1, chi, e, counts=counts).reshape(shape)
+    return by_half_space(tsuji(e), psi1, chi).reshape(shape)
+
+
+def by_half_space(motion: NormalMotion, psi1: Array, chi: Array, *, rings: int = FINE) -> Array:
+    """Return psi2 of impacts, shape (impacts,), that have a normal motion in units of their own."""
+    fine, coarse = (
+        follow_all(
+            count, halfspace_course(motion, count, ALONG), psi1, chi, np.ones(psi1.shape)
+        ).change[-1]
+        for count in (rings, rings // 2)
+    )
+    return np.asarray(psi1 + fine + (fine - coarse) / 3.0)
 
 
 def cuts_at(e: float, chi: Array, *, rings: int = RINGS) -> Array:

@@ -5,13 +5,16 @@ from __future__ import annotations
 import time
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.compose.rebound import DAMPED_ERROR, DAMPED_RESTITUTION
+from contactlab_laws.rings.courses import by_rings
 from contactlab_laws.tables.damped import CHI, SHIPPED, rebound
 from contactlab_laws.tables.file import read
-from table_builders.damped.build import solve
 
-#: Numbers of rings in the comparison: others than those of the table, and more.
+Array = NDArray[np.float64]
+
+#: Numbers of rings in the comparison, by another march than that of the table.
 COUNTS = (64, 96, 128)
 #: Impacts that are timed, and runs; the fastest run counts.
 TIMED, RUNS = 1_000_000, 5
@@ -19,6 +22,13 @@ TIMED, RUNS = 1_000_000, 5
 DRAWS = 12
 #: psi1 of a draw is at most this.
 LARGEST = 9.0
+
+
+def solve(psi1: Array, chi: Array, e: float, *, counts: tuple[int, ...] = COUNTS) -> Array:
+    """Return psi2 of impacts of one restitution by rings: Coulomb's law at every point."""
+    shape = np.broadcast_shapes(psi1.shape, chi.shape)
+    psi1, chi = (np.broadcast_to(each, shape).ravel() for each in (psi1, chi))
+    return by_rings(psi1, chi, e, counts=counts).reshape(shape)
 
 
 def verify(count: int, seed: int) -> int:
@@ -33,7 +43,7 @@ def verify(count: int, seed: int) -> int:
             e = 1.0 - 10.0 ** float(draw.uniform(-5.0, -1.0))
         size = max(count // DRAWS, 1)
         psi1, chi = draw.uniform(0.0, LARGEST, size), draw.uniform(*CHI, size)
-        off = np.abs(rebound(psi1, chi, e) - solve(psi1, chi, e, counts=COUNTS))
+        off = np.abs(rebound(psi1, chi, e) - solve(psi1, chi, e))
         at = int(off.argmax())
         worst = max(worst, float(off[at]))
         rms = float(np.sqrt(np.mean(off**2)))

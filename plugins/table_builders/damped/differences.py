@@ -20,15 +20,15 @@ from contactlab.compose.simulation import Simulation
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
 from contactlab_laws.differences.table import FILE, key
-from contactlab_laws.rings.courses import solve
 from contactlab_laws.rings.rings import Array
+from table_builders.damped.build import by_half_space
 
 #: The impacts: least and number of psi1, up to slip throughout and 1 more, at each chi; as many
 #: again in ``NARROW``, the range of psi1 with the largest error of springs.
 LEAST, COUNT, CHI = 0.2, 24, (0.8, 1.0, 1.2, 49.0 / 34.0, 1.6, 1.8)
 NARROW = (0.7, 2.0)
-#: Numbers of rings; springs, extrapolated from this number and half of it, with four steps each.
-RINGS, SPRINGS = (48, 64, 80), 120
+#: Springs, extrapolated from this number and half of it, with four steps each.
+SPRINGS = 120
 #: Laws whose restitution is an option, and its values.
 CALIBRATED = ("tsuji", "hunt_crossley", "kuwabara_kono", "linear", "walton_braun")
 RESTITUTION = (1.0, 0.99, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3, 0.1)
@@ -62,16 +62,15 @@ def springs(law: NormalLaw, psi1: Array, chi: Array) -> Array:
     return np.asarray(psi2[1] + (psi2[1] - psi2[0]) / 3.0)
 
 
-def by_rings(law: NormalLaw, psi1: Array, chi: Array) -> Array:
-    """Return psi2 with Coulomb's law at every point, shape (impacts,)."""
-    motion = normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0))
-    return solve(psi1, chi, motion, counts=RINGS)
+def pointwise(law: NormalLaw, psi1: Array, chi: Array) -> Array:
+    """Return psi2 with Coulomb's law at every point, shape (impacts,), by the half-space."""
+    return by_half_space(normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0)), psi1, chi)
 
 
 @cache
 def tsuji(e: float) -> Array:
     """Return psi2 of the impacts under Tsuji's law."""
-    return by_rings(REGISTRY.create("normal.tsuji", restitution=e), *impacts(e))
+    return pointwise(REGISTRY.create("normal.tsuji", restitution=e), *impacts(e))
 
 
 def laws() -> Iterator[Any]:
@@ -89,7 +88,7 @@ def row(law: NormalLaw) -> list[str]:
     motion = normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0))
     e = round(-float(motion.final_rate), 6)
     psi1, chi = impacts(e)
-    exact = by_rings(law, psi1, chi)
+    exact = pointwise(law, psi1, chi)
     sizes = (np.abs(each - exact).max() for each in (springs(law, psi1, chi), tsuji(e)))
     return [key(law), f"{e:g}", *(f"{size:.1e}" for size in sizes)]
 
