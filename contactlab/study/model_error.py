@@ -22,6 +22,9 @@ from contactlab.study.stability_references import continuum, converges, referenc
 
 Array = NDArray[np.float64]
 
+#: Numerical error of any answer, over the range of psi2.
+ROUNDING = 1e-12
+
 
 @attrs.frozen(kw_only=True, eq=False)
 class ModelError:
@@ -33,8 +36,9 @@ class ModelError:
         Name without the kind.
     chis : tuple of float
     error : array, shape (chis,)
-        Largest difference of psi2 over the incidences, over the range of psi2. Incidences where
-        the law has no exact answer do not count; NaN where no incidence has one.
+        Largest difference of psi2 over the incidences, over the range of psi2. Incidences do not
+        count where the law has no exact answer, or where the numerical error that it declares, or
+        that twice the resolution shows, is larger; NaN where no incidence counts.
     """
 
     law: str
@@ -43,7 +47,7 @@ class ModelError:
 
 
 def model_error(law: str, chis: Sequence[float], incidences: Sequence[float]) -> ModelError | None:
-    """Return the model error of a law; None for one that converges to the continuum.
+    """Return the model error of a law; None for one whose limit is, or may be, the continuum.
 
     Parameters
     ----------
@@ -56,7 +60,10 @@ def model_error(law: str, chis: Sequence[float], incidences: Sequence[float]) ->
     if converges(tangential):
         return None
     errors = [[_error(tangential, psi1, chi) for psi1 in incidences] for chi in chis]
-    return ModelError(law=law, chis=tuple(chis), error=np.fmax.reduce(errors, axis=1))
+    largest = np.fmax.reduce(errors, axis=1)
+    if np.isnan(largest).all():
+        return None
+    return ModelError(law=law, chis=tuple(chis), error=largest)
 
 
 def _error(law: TangentialLaw, psi1: float, chi: float) -> float:
@@ -64,9 +71,17 @@ def _error(law: TangentialLaw, psi1: float, chi: float) -> float:
     scene = Scene.nondimensional(psi1=psi1, chi=chi)
     normal = Simulation(tangential=law).normal
     exact, own = continuum(scene, law), reference_for(law, normal)(scene, law)
-    if own is None and isinstance(law, WholeImpactTangentialLaw):
+    unit, width, _ = range_of(scene)
+    uncertain = 0.0
+    if isinstance(law, WholeImpactTangentialLaw):
         result = Simulation(tangential=law).run(scene)
-        own = float(result.motion.slip_velocity_change) if result.status else None
-    if own is None or exact is None:
+        answer = float(result.motion.slip_velocity_change) if result.status else None
+        if own is None:
+            own = answer
+        elif law.resolution is not None:  # its own limit lies about as far off
+            doubling = abs(own - answer) if answer is not None else np.inf
+            declared = float(np.nan_to_num(result.plan.psi2_error)) * unit
+            uncertain = max(doubling, declared, ROUNDING * width)
+    if own is None or exact is None or abs(own - exact) < uncertain:
         return np.nan
-    return abs(own - exact) / float(range_of(scene).width)
+    return abs(own - exact) / float(width)
