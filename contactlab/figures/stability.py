@@ -19,6 +19,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Colormap, ListedColormap, LogNorm
 from matplotlib.figure import Figure
+from matplotlib.path import Path as Line
 
 from contactlab.figures.files import save_figure
 from contactlab.figures.style import ORDERED_MAP, WIDTHS, Look, Width, label, law_style, styled
@@ -100,6 +101,8 @@ def error_over_steps(axes: Axes, drawn: ErrorMap) -> Axes:
     colours, norm = error_colours(drawn.converges)
     chi, steps = np.array(drawn.chis), np.array(drawn.steps, dtype=float)
     axes.set_facecolor(REFUSED_COLOUR)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
     axes.pcolormesh(_edges(chi), _edges(steps), drawn.error, cmap=colours, norm=norm)
     within = drawn.error[np.isfinite(drawn.error)]
     shown = [level for level in CONTOURS if within.size and within.min() < level < within.max()]
@@ -107,10 +110,11 @@ def error_over_steps(axes: Axes, drawn: ErrorMap) -> Axes:
         line = "white" if drawn.converges else "black"
         contours = axes.contour(chi, steps, drawn.error, shown, colors=line, linewidths=1.0)
         axes.clabel(
-            contours, fmt=lambda level: f"$10^{{{round(math.log10(level))}}}$", fontsize="x-small"
+            contours,
+            fmt=lambda level: f"$10^{{{round(math.log10(level))}}}$",
+            fontsize="x-small",
+            manual=[_middle(path) for path in contours.get_paths()],
         )
-    axes.set_xscale("log")
-    axes.set_yscale("log")
     axes.set_title(f"{drawn.law.replace('_', ' ')} / {drawn.integrator}", fontsize="medium")
     if np.isnan(drawn.error).any():
         axes.text(
@@ -118,6 +122,14 @@ def error_over_steps(axes: Axes, drawn: ErrorMap) -> Axes:
             fontsize="x-small", color="#555555",
         )  # fmt: skip
     return axes
+
+
+def _middle(path: Line) -> tuple[float, float]:
+    """Return the middle of the longest piece of a contour line: one label a line."""
+    pieces: Any = path.to_polygons(closed_only=False)
+    longest = max(pieces, key=len)
+    x, y = longest[len(longest) // 2]
+    return float(x), float(y)
 
 
 def _bars(figure: Figure, panels: Sequence[list[Axes]], kinds: Sequence[bool]) -> None:
@@ -148,7 +160,8 @@ def model_errors(axes: Axes, models: Sequence[ModelError]) -> Axes:
         axes.plot(item.chis, error, label=item.law.replace("_", " "), **look)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_ylim(0.7 * LEAST_MODEL, 1.5)
+    least = min((float(np.nanmin(item.error)) for item in models), default=LEAST_MODEL)
+    axes.set_ylim(0.7 * max(LEAST_MODEL, least), 1.5)
     axes.set_xlabel(label("chi"))
     axes.set_ylabel("model error of $\\psi_2$\nover its possible range")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
