@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any
 
 import attrs
@@ -26,6 +26,9 @@ Array = NDArray[np.float64]
 
 #: Longer tables are not cached: 64 tables of three columns of 8 bytes are 6 MB at most.
 LONGEST_KEPT = 4000
+#: Nodes of Gauss's rule that give T to rounding, and steps of Newton's method from the first guess,
+#: sqrt(T) times 1 at first touch and 1.295 at the greatest compression, which is 1 % off at most.
+NODES, NEWTON, AT_THE_TOP = 16, 4, 0.295
 
 
 def velocity_factor(root: Real) -> Real:
@@ -34,35 +37,43 @@ def velocity_factor(root: Real) -> Real:
     return ((1.0 + u * (1.0 + u * (1.0 + u * (1.0 + u)))) / (1.0 + u)) ** 0.5
 
 
-def scaled_time(root: Real, rate: Real) -> Real:
-    """Return T at sqrt(zeta) = ``root`` and V = ``rate``: incomplete beta functions, theory §3."""
-    from scipy.special import betainc  # not before a motion is asked for its time
+@cache
+def _gauss() -> tuple[Array, Array]:
+    """Return nodes and weights of Gauss's rule in [0, 1]."""
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    return 0.5 * (nodes + 1.0), 0.5 * weights
 
-    # T = 0.4 B(0.4, 0.5) I(sin² th), sin² th = u⁵, cos² th = V². Near the greatest compression,
-    # where u⁵ rounds to 1, the complement in V² is used.
-    quarter = np.where(
-        np.abs(rate) > 0.5,
-        betainc(0.4, 0.5, np.minimum(root**5, 1.0)),
-        1.0 - betainc(0.5, 0.4, np.minimum(np.square(rate), 1.0)),
-    )
-    half = 0.5 * DURATION_CONSTANT
-    return np.where(np.asarray(rate) >= 0.0, half * quarter, half * (2.0 - quarter))
+
+def _slope(phase: Array) -> Array:
+    """Return dT/dx = 2u/g(u), theory §3."""
+    u = np.sin(phase)
+    return 2.0 * u / velocity_factor(u)
+
+
+def rising_time(phase: Array) -> Array:
+    """Return T at a phase x up to pi/2: the integral of dT/dx."""
+    nodes, weights = _gauss()
+    mean: Array = np.einsum("...j,j->...", _slope(np.multiply.outer(phase, nodes)), weights)
+    return phase * mean
 
 
 def scaled_motion(phase: Array) -> tuple[Array, Array, Array]:
     """Return u = sqrt(zeta), V and T at ``phase``."""
     u = np.maximum(np.sin(phase), 0.0)
-    rate = np.cos(phase) * velocity_factor(u)
-    return u, rate, np.asarray(scaled_time(u, rate))
+    rising = rising_time(np.minimum(phase, np.pi - phase))
+    instant = np.where(phase <= 0.5 * np.pi, rising, DURATION_CONSTANT - rising)
+    return u, np.cos(phase) * velocity_factor(u), instant
 
 
 def phase_at_fraction(fraction: Array) -> tuple[Array]:
-    """Return the phase at ``fraction`` of the duration, by the inverse of ``scaled_time``."""
-    from scipy.special import betaincinv
-
-    half = np.minimum(fraction, 1.0 - fraction)
-    rising = np.arcsin(betaincinv(0.4, 0.5, 2.0 * half) ** 0.2)
-    return (np.where(fraction <= 0.5, rising, np.pi - rising),)
+    """Return the phase at ``fraction`` of the duration, by Newton's method for ``rising_time``."""
+    share = np.minimum(fraction, 1.0 - fraction)
+    instant = DURATION_CONSTANT * share
+    phase = np.sqrt(instant) * (1.0 + AT_THE_TOP * 2.0 * share)
+    for _ in range(NEWTON):
+        off = rising_time(phase) - instant
+        phase = phase - off / np.maximum(_slope(phase), np.finfo(np.float64).tiny)
+    return (np.where(fraction <= 0.5, phase, np.pi - phase),)
 
 
 def remembered(function: Callable[[Array], tuple[Array, ...]], at: Real) -> tuple[Array, ...]:
