@@ -36,28 +36,27 @@ law as a kernel in C and JavaScript is in ``kernels/``, which has no Python.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from contactlab.compose.collision import Collision, collide
-from contactlab.compose.hookspecs import hookimpl
-from contactlab.compose.load_path import load_path
-from contactlab.compose.rebound import rebound
-from contactlab.compose.registry import REGISTRY, PluginError
-from contactlab.compose.simulation import Simulation
-from contactlab.contracts.status import Status
-from contactlab.impact import material as materials
-from contactlab.impact.bodies import HalfSpace, Sphere
-from contactlab.impact.encounter import Encounter
-from contactlab.impact.material import Material
-from contactlab.impact.scene import Scene
 from contactlab.numeric.lazy import imported_on_use
-from contactlab.outcome.energy import EnergyLedger
-from contactlab.outcome.result import ImpactError, ImpactResult
 
 if TYPE_CHECKING:
+    from contactlab.compose.collision import Collision, collide
+    from contactlab.compose.hookspecs import hookimpl
+    from contactlab.compose.load_path import load_path
+    from contactlab.compose.rebound import rebound
+    from contactlab.compose.registry import PluginError
+    from contactlab.compose.simulation import Simulation
+    from contactlab.contracts.status import Status
     from contactlab.fitting import fit
-    from contactlab.scene_file import SceneFile
+    from contactlab.impact import material as materials
+    from contactlab.impact.bodies import HalfSpace, Sphere
+    from contactlab.impact.encounter import Encounter
+    from contactlab.impact.material import Material
+    from contactlab.impact.scene import Scene
+    from contactlab.outcome.energy import EnergyLedger
+    from contactlab.outcome.result import ImpactError, ImpactResult
+    from contactlab.scene_file import read_scene
 
 __version__ = "0.1.0"
 
@@ -102,26 +101,43 @@ def create(name: str, **options: Any) -> Any:
     PluginError
         If the plug-in fails to load; the message has its traceback.
     """
+    from contactlab.compose.registry import REGISTRY
+
     return REGISTRY.create(name, **options)
 
 
-def read_scene(path: str | Path) -> SceneFile:
-    """Return the scene or sweep, the laws and the measured values of a TOML file.
+#: Where the public names are: ``import contactlab`` imports none of them.
+MODULES = {
+    "Collision": "compose.collision",
+    "Encounter": "impact.encounter",
+    "EnergyLedger": "outcome.energy",
+    "HalfSpace": "impact.bodies",
+    "ImpactError": "outcome.result",
+    "ImpactResult": "outcome.result",
+    "Material": "impact.material",
+    "PluginError": "compose.registry",
+    "Scene": "impact.scene",
+    "Simulation": "compose.simulation",
+    "Sphere": "impact.bodies",
+    "Status": "contracts.status",
+    "collide": "compose.collision",
+    "fit": "fitting",
+    "hookimpl": "compose.hookspecs",
+    "load_path": "compose.load_path",
+    "materials": "impact.material",
+    "read_scene": "scene_file",
+    "rebound": "compose.rebound",
+    # the public submodules
+    "contracts": "contracts",
+    "figures": "figures",
+    "fitting": "fitting",
+    "study": "study",
+    "testing": "testing",
+}
 
-    Parameters
-    ----------
-    path : str or Path
-        Path of the file.
-
-    Raises
-    ------
-    ValueError
-        If the file cannot be read, is not TOML, or has an unknown key or a refused value. The
-        message names key, value, rule and remedy.
-    """
-    from contactlab import scene_file  # imported on use, to keep ``import contactlab`` fast
-
-    return scene_file.read_scene(path)
+__getattr__ = imported_on_use(__name__, MODULES)
 
 
-__getattr__ = imported_on_use(__name__, {"fit": "fitting"})
+def __dir__() -> list[str]:
+    """Return the public names, those that are not imported yet among them."""
+    return sorted({*globals(), *MODULES})

@@ -29,11 +29,26 @@ def test_import_is_lean():
     assert laws == []
 
 
+def test_a_public_name_is_imported_on_its_first_use():
+    """``import contactlab`` takes as long as Python's own start, without NumPy."""
+    lines = (
+        "import sys, contactlab",
+        "assert not {'numpy', 'attr', 'contactlab.compose', 'contactlab.impact'} & set(sys.modules)",
+        "contactlab.Sphere",
+        "assert 'contactlab.impact' in sys.modules and 'contactlab.compose' not in sys.modules",
+        "assert set(contactlab.__all__) <= set(dir(contactlab))",
+        "assert all(getattr(contactlab, name) is not None for name in contactlab.__all__)",
+        "assert contactlab.contracts.__name__ == 'contactlab.contracts'",
+        "assert not hasattr(contactlab, 'spam')",
+    )
+    subprocess.run([sys.executable, "-c", "\n".join(lines)], check=True)
+
+
 def test_listing_the_laws_imports_none():
     heavy, laws = loaded(
         PROBE.replace(
             "import contactlab\n",
-            "import contactlab\nassert contactlab.compose.registry.REGISTRY.names()\n",
+            "from contactlab.compose.registry import REGISTRY\nassert REGISTRY.names()\n",
         )
     )
     assert heavy == []
