@@ -24,7 +24,8 @@ def loaded(code):
 
 
 def test_import_is_lean():
-    heavy, laws = loaded(PROBE)
+    names = "from contactlab import Encounter, Scene, Simulation, collide, load_path, rebound\n"
+    heavy, laws = loaded(PROBE.replace("import contactlab\n", names))
     assert heavy == []
     assert laws == []
 
@@ -33,7 +34,8 @@ def test_a_public_name_is_imported_on_its_first_use():
     """``import contactlab`` takes as long as Python's own start, without NumPy."""
     lines = (
         "import sys, contactlab",
-        "assert not {'numpy', 'attr', 'contactlab.compose', 'contactlab.impact'} & set(sys.modules)",
+        "rooms = {'contactlab.compose', 'contactlab.impact'}",
+        "assert not rooms & set(sys.modules) and 'numpy' not in sys.modules",
         "contactlab.Sphere",
         "assert 'contactlab.impact' in sys.modules and 'contactlab.compose' not in sys.modules",
         "assert set(contactlab.__all__) <= set(dir(contactlab))",
