@@ -103,10 +103,10 @@ def advance_batch(
     whole = np.where(square > before, bundle.squares.searchsorted(before), touching)
     limits = _columns(limit)
     old, new, trial = np.zeros((3, len(limit), items))
-    forces, works = np.empty((2, len(square), items))
-    change, displacement = np.zeros((2, items))
+    forces = np.empty((len(square), items))
+    change, displacement, work, total = np.zeros((4, items))
     last = 0  # springs that touched at the end of the step before
-    for first, now, parts, most, least, weight, drift, kick, force, work in zip(
+    for first, now, parts, most, least, weight, drift, kick, force in zip(
         whole.tolist(),
         touching.tolist(),
         _columns(part),
@@ -116,7 +116,6 @@ def advance_batch(
         steps.drift,
         steps.kick,
         forces,
-        works,
         strict=True,
     ):
         rows = max(now, last)
@@ -137,10 +136,12 @@ def advance_batch(
         held += kept
         moved *= held
         weight.dot(moved, out=work)
+        total += np.maximum(work, 0.0, out=work)
         if now < rows:
             old[now:rows] = 0.0
         old, new, last = new, old, now
-    return forces, 0.5 * np.maximum(works, 0.0, out=works).sum(axis=0)
+    total *= 0.5
+    return forces, total
 
 
 def _columns(table: Array) -> Array:
