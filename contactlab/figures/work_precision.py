@@ -26,7 +26,12 @@ BAND_COLOUR = "#EDEDED"
 APART, LETTER, GAP = 12.0, 4.4, 5.0
 #: Laws whose curve has the number of parts beside each point, and colours kept for some laws.
 NUMBERED = "springs"
-COLOURS = {"springs": LAW_COLOURS[1], "annulus": LAW_COLOURS[0], "sharp_annulus": LAW_COLOURS[5]}
+COLOURS = {
+    "springs": LAW_COLOURS[1],
+    "annulus": LAW_COLOURS[0],
+    "sharp_annulus": LAW_COLOURS[5],
+    "halfspace": LAW_COLOURS[3],
+}
 EXACT_COLOUR = LAW_COLOURS[2]
 
 
@@ -51,7 +56,7 @@ class Other(NamedTuple):
 #: of 8 springs there at 84 ns. The plain code is the paper's annuli written without any table.
 OTHERS = (
     Other("LAMMPS mindlin", 0.269, 50 * 57e-9, math.nan),
-    Other("LAMMPS, 8 springs", 0.006, 50 * 84e-9, math.nan),
+    Other("8 in LAMMPS", 0.006, 50 * 84e-9, math.nan),
     Other("plain NumPy", 1.8e-3, math.nan, 11.9e-3),
 )
 #: Sources of the hollow marks, left and right.

@@ -79,6 +79,17 @@ def test_an_order_is_a_slope_and_a_flat_ladder_has_none():
     assert np.isnan(work_precision._order(flat))
 
 
+def test_a_law_that_comes_nearer_is_no_other_model():
+    """It need not claim the continuum as its limit: rings of a half-space do not."""
+
+    def ladder(*errors):
+        rows = [attrs.evolve(row(error=each), converges=False) for each in errors]
+        return {each.converges for each in work_precision._with_nearer(rows)}
+
+    assert ladder(8e-4, 2e-4) == {True}
+    assert ladder(0.40, 0.38) == ladder(0.1) == {False}
+
+
 def test_failed_and_slow_resolutions_are_gaps_never_dropped(monkeypatch):
     monkeypatch.setattr(work_precision, "SLOW_QUICK", 0.0)
     found = bench([Method(tangential="springs", integrator="symplectic")], quick=True)
