@@ -83,7 +83,16 @@ def left_out(*given: Any) -> bool | None:
     return True if (given[3].__doc__ or "").startswith("Alias for field number") else None
 
 
+def not_followed(_: Any, module: str, name: str) -> str | None:
+    """Leave the source of ``fit`` to the page of its room, to which that file leads back.
+
+    A page of source leads back to one module, the first that documents a name of it.
+    """
+    return module if (module, name) == ("contactlab", "fit") else None
+
+
 def setup(app: Any) -> None:
     """Have the attributes taken apart after napoleon has read the docstrings."""
+    app.connect("viewcode-follow-imported", not_followed)
     app.connect("autodoc-skip-member", left_out)
     app.connect("autodoc-process-docstring", attributes_apart, priority=900)
