@@ -137,7 +137,7 @@ class Collision:
 
     @cached_property
     def plan(self) -> Plan:
-        """What is computed, what is left out, and the cautions."""
+        """The plan of the collision: what is computed, what is left out, and the cautions."""
         passed = ~np.asarray(self.collided)
         if passed.all():
             return collision_plan(Plan.nothing(passed.shape), None, passed)

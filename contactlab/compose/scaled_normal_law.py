@@ -14,7 +14,7 @@ from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import locked
+from contactlab.numeric.arrays import flat, locked
 from contactlab.numeric.checks import shown
 
 Array = NDArray[np.float64]
@@ -113,6 +113,4 @@ class ScaledNormalLaw:
 
     def _per_item(self, entry: Any) -> Any:
         """Return a scalar or an array of the scene's shape as an array of shape (items,)."""
-        array = np.array(entry, dtype=np.float64)
-        same = array.shape == self.shape  # broadcasting takes longer than a small batch
-        return (array if same else np.broadcast_to(array, self.shape)).reshape(-1)
+        return flat(np.array(entry, dtype=np.float64), self.shape)

@@ -103,7 +103,8 @@ class PathTangentialLaw(TangentialLaw):
         Parameters
         ----------
         velocity, inertia : float
-            Of the module's table, at first touch; positive and finite.
+            psi and 2.5 chi at first touch, as the table of this module has them; positive and
+            finite.
         motion : ClosedFormMotion
             The normal motion, of one impact.
         tolerance : float

@@ -82,6 +82,13 @@ def spread(value: Any, shape: tuple[int, ...]) -> Any:
     return np.array(np.broadcast_to(value, shape))
 
 
+def flat(value: Any, shape: tuple[int, ...]) -> Any:
+    """Return ``value``, of ``shape`` or broadcast to it, as an array of one axis, maybe a view."""
+    array = np.asarray(value, dtype=np.float64)
+    same = array.shape == shape  # broadcasting takes longer than a small step
+    return (array if same else np.broadcast_to(array, shape)).reshape(-1)
+
+
 def filled(value: Any, shape: tuple[int, ...]) -> Any:
     """Return ``value`` for one impact, or an object array of ``shape`` filled with it."""
     return np.full(shape, value, dtype=object) if shape else value

@@ -18,6 +18,7 @@ import numpy as np
 
 from contactlab.contracts import Increment, NormalContact, TangentialResponse
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import flat
 from contactlab.numeric.checks import Real
 from contactlab_laws.jaeger.bundle import Array
 
@@ -57,17 +58,14 @@ class State(NamedTuple):
 
 def start(scene: Scene, springs: int) -> State:
     """Return contacts without traction."""
-    items, pair = math.prod(scene.shape), scene.pair
-
-    def flat(value: Real) -> Array:
-        return np.broadcast_to(value, scene.shape).reshape(-1)
-
+    shape, pair = scene.shape, scene.pair
+    items = math.prod(shape)
     none, rows = np.zeros(items), np.zeros((springs, items))
     return State(
-        scene.shape,
-        flat(pair.radius),
-        flat(2.0 * pair.effective_shear_modulus),
-        flat(scene.friction_coefficient),
+        shape,
+        flat(pair.radius, shape),
+        flat(2.0 * pair.effective_shear_modulus, shape),
+        flat(scene.friction_coefficient, shape),
         Memory(none, none, rows, rows),
     )
 
@@ -76,25 +74,20 @@ def advance(
     state: State, increment: Increment, after: NormalContact
 ) -> tuple[TangentialResponse, State]:
     """Return force and friction work after the step, and the springs."""
-
-    def flat(value: Real) -> Array:
-        array = np.asarray(value, dtype=np.float64)
-        same = array.shape == state.shape  # broadcasting takes longer than a small step
-        return (array if same else np.broadcast_to(array, state.shape)).reshape(-1)
-
-    limit = state.friction_coefficient * flat(after.friction_load)
+    shape = state.shape
+    limit = state.friction_coefficient * flat(after.friction_load, shape)
     force, work, memory = moved(
         state.memory,
-        flat(increment.displacement),
-        flat(after.radius),
+        flat(increment.displacement, shape),
+        flat(after.radius, shape),
         limit,
         unit=state.unit,
         modulus=state.modulus,
     )
     state = state._replace(memory=memory)
-    if not state.shape:
+    if not shape:
         return TangentialResponse(force.item(), work.item()), state
-    return TangentialResponse(force.reshape(state.shape), work.reshape(state.shape)), state
+    return TangentialResponse(force.reshape(shape), work.reshape(shape)), state
 
 
 def moved(
