@@ -275,7 +275,7 @@ def test_fields_and_extremes():
     assert motion.status is Status.NON_FINITE
 
 
-@pytest.mark.parametrize("chi", [0.05, 0.3, 0.7, CHI, 3.0, 30.0, 1e4])
+@pytest.mark.parametrize("chi", [0.05, 0.3, 0.7, CHI, 3.0, 30.0])
 def test_both_forms_of_an_impact_near_rest_agree_where_they_meet(chi):
     """As departures from rest, and as impacts: the same velocities, friction work and forces."""
     bound = min(NEAR_REST, NEVER_STOPS / math.sqrt(2.0 * chi))
