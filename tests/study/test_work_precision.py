@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from contactlab import Simulation
 from contactlab.cli import bench as cli_bench
+from contactlab.cli import progress
 from contactlab.cli.bench import markdown
 from contactlab.cli.main import main
 from contactlab.compose import composition
@@ -138,6 +139,12 @@ def test_two_forms_of_one_table_are_refused(capsys):
 def test_budget_ends_it_and_says_so(capsys):
     assert main(["bench", "--quick", "--law", "coulomb", "--budget", "1e-6"]) == 0
     assert "not complete" in capsys.readouterr().out
+
+
+def test_the_line_of_progress_says_what_is_counted(capsys, monkeypatch):
+    monkeypatch.setattr(progress, "QUIET", 0.0)
+    assert main(["bench", "--quick", "--law", "coulomb", "--progress"]) == 0
+    assert "bench: 100 %" in capsys.readouterr().err
 
 
 def test_command_writes_table_csv_and_picture(tmp_path, capsys):

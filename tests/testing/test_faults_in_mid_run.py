@@ -19,6 +19,7 @@ from contactlab.contracts import (
     Stretch,
     TangentialResponse,
 )
+from contactlab.testing.faulty_laws import SpoiledHertz
 
 AT = 7
 #: The normal motion is solved in a few long steps.
@@ -314,3 +315,13 @@ def test_a_fault_harms_no_other_run():
     for answer, _, _ in TANGENTIAL.values():
         Simulation(tangential=Friction(answer=answer), integrator="symplectic").run(SCENE)
     assert sound.run(SCENE).psi2 == before
+
+
+def test_a_part_of_a_spoiled_motion_is_as_spoiled():
+    """The kit takes single impacts of batches along it."""
+    law = SpoiledHertz()
+    part = law.motion(BATCH).take(1)
+    sound = contactlab.create("normal.hertz").motion(BATCH).take(1)
+    assert part.law is law
+    assert part.at(0.5).approach == sound.at(0.5).approach
+    assert np.isnan(part.at(2.0).approach)
