@@ -19,9 +19,9 @@ from contactlab_laws.jaeger.all_steps import ScaledSteps
 #: Least and most steps in a block, which grows while no test fails.
 SHORTEST, LONGEST = 4, 128
 #: Moves of the edge in one step; more are left to the search.
-MOST_MOVES = 4
+MOST_MOVES = 12
 #: Divisions tried on one step before it is left to ``one.advance``.
-MOST_TRIES = 8
+MOST_TRIES = 2
 
 
 class BlockMarch:
@@ -106,7 +106,7 @@ class BlockMarch:
                 filled = stuck
             row[0], row[1 : stuck + 1] = total, lag[:stuck]
             for _ in range(MOST_MOVES):
-                np.dot(row, responses[stuck], out=answer)
+                row.dot(responses[stuck], out=answer)
                 if stuck and abs(answer.item(stuck)) > limit.item(stuck - 1):
                     if stuck == now and answer.item(stuck) * sign < 0.0:
                         sign = -sign

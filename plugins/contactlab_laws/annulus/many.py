@@ -45,8 +45,11 @@ def advance(
     total = (states.total + moved).reshape(-1, 1)
     limit = np.asarray(pressure)[..., None] * hertz_pressure(table, radius)
     limit = np.broadcast_to(limit, (*shape, size)).reshape(-1, size)
-    contact = limit > 0.0
-    signs = np.where(contact, states.signs.reshape(-1, size), 0.0)
+    contact, touched = limit > 0.0, states.contact.reshape(-1, size)
+    # First guess of the division: annuli new in contact do as the outermost annulus did.
+    signs = states.signs.reshape(-1, size)
+    outermost = signs[np.arange(len(signs)), touched.sum(axis=1) - 1]
+    signs = np.where(contact, np.where(touched, signs, outermost[:, None]), 0.0)
     traction, new_lag = np.full_like(lag, np.nan), np.full_like(lag, np.nan)
     # NaN would pass every test as "not wrong": items with NaN are left out and answer NaN.
     left = np.flatnonzero(np.isfinite(limit.sum(axis=1) + total[:, 0]))

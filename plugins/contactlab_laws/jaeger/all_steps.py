@@ -95,55 +95,53 @@ def advance_batch(
     """Return forces (K, items) and friction works (items,) of impacts that share one contact."""
     # Springs lead, so that a row is contiguous over the batch. A spring out of contact has limit
     # and deflection 0; each step takes only the springs that touch at its start or end.
+    # The work of a step, twice the sum of slip times mean w, is here the force before and after
+    # times the displacement, less the energy stored: the same sum, as slip = old w + part D - w.
+    # All weights are those of the step, so that energy that a change of weights makes or loses is
+    # missing in the books, as it is in a sum of slips.
     square = steps.radius * steps.radius
     before = np.concatenate(([0.0], square[:-1]))
-    throughout, part, limit, weights = of_each(bundle, before, square, steps.pressure)
-    part = np.concatenate((np.ones((throughout, len(square))), part))
+    rows, parts, _ = _geometry(bundle, steps)
     touching = bundle.squares.searchsorted(square)
     whole = np.where(square > before, bundle.squares.searchsorted(before), touching)
-    limits = _columns(limit)
-    old, new, trial = np.zeros((3, len(limit), items))
+    deflection, squared = np.zeros((2, parts.shape[1], items))  # w and w²
     forces = np.empty((len(square), items))
-    change, displacement, work, total = np.zeros((4, items))
+    change, displacement, energy, work, total = np.zeros((5, items))
     last = 0  # springs that touched at the end of the step before
-    for first, now, parts, most, least, weight, drift, kick, force in zip(
+    for (_, most, least, weight), part, first, now, drift, kick, force in zip(
+        rows,
+        parts,
         whole.tolist(),
         touching.tolist(),
-        _columns(part),
-        limits,
-        -limits,
-        np.ascontiguousarray(weights.T),
         steps.drift,
         steps.kick,
         forces,
         strict=True,
     ):
-        rows = max(now, last)
-        same = first if first < now else rows  # springs with the whole displacement
-        held, moved, kept, weight = old[:rows], trial[:rows], new[:rows], weight[:rows]
+        count = max(now, last)
+        same = first if first < now else count  # springs with the whole displacement
+        moved, stored, weight = deflection[:count], squared[:count], weight[:count]
         np.add(velocity, change, out=displacement)
         displacement *= drift
-        np.add(held[:same], displacement, out=moved[:same])
-        if same < rows:
-            np.multiply(parts[same:rows], displacement, out=moved[same:])
-            moved[same:] += held[same:]
-        np.minimum(moved, most[:rows], out=kept)  # faster than clip
-        np.maximum(kept, least[:rows], out=kept)
-        weight.dot(kept, out=force)
+        weight.dot(moved, out=work)
+        weight.dot(stored, out=energy)
+        moved[:same] += displacement
+        if same < count:  # the others, new in contact, were at 0
+            np.multiply(part[same:count, None], displacement, out=moved[same:])
+        np.minimum(moved, most[:count, None], out=moved)  # faster than clip
+        np.maximum(moved, least[:count, None], out=moved)
+        weight.dot(moved, out=force)
+        work += force
+        if same < count:
+            work -= (weight[same:] * (1.0 - part[same:count])).dot(moved[same:])
+        work *= displacement
+        work += energy
+        np.multiply(moved, moved, out=stored)
+        weight.dot(stored, out=energy)
+        work -= energy
+        total += np.maximum(work, 0.0, out=work)
         np.multiply(force, kick, out=displacement)
         change -= displacement
-        moved -= kept  # the slip
-        held += kept
-        moved *= held
-        weight.dot(moved, out=work)
-        total += np.maximum(work, 0.0, out=work)
-        if now < rows:
-            old[now:rows] = 0.0
-        old, new, last = new, old, now
+        last = now
     total *= 0.5
     return forces, total
-
-
-def _columns(table: Array) -> Array:
-    """Return K columns of a table (springs, K), shape (K, springs, 1)."""
-    return np.ascontiguousarray(table.T)[:, :, None]

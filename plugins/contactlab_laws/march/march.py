@@ -24,7 +24,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import filled, locked, spread
+from contactlab.numeric.arrays import filled, keep_freed_memory, locked, spread
 from contactlab.numeric.checks import Real, shown
 from contactlab_laws.march.division import one_by_one
 
@@ -35,6 +35,8 @@ def march(
     """Return the tangential motion along ``steps``: all at once if the law can, else one by one."""
     if (complaint := _unsound(normal, steps)) is not None:
         return TangentialMotion.nothing(normal.scene.shape, Status.NON_FINITE, complaint)
+    if normal.scene.shape:
+        keep_freed_memory()
     stepwise = observer is not None and getattr(observer, "stepwise", True)
     # A law that changes the normal motion is asked for it at its last state.
     together = not stepwise and not _moves(law)
