@@ -137,14 +137,13 @@ def test_any_incidence_and_inertia(psi1, chi):
 
 @pytest.mark.parametrize("chi", [1e6, 1e9, 1e12])
 @pytest.mark.parametrize("psi1", [1e-3, 1.2, 100.0, "chi"])
-def test_what_cannot_be_solved_is_given_up_soon(psi1, chi):
-    """Panels are forecast: without that, three times 3000 of them took 3 to 7 s."""
+def test_what_cannot_be_solved_is_given_up(psi1, chi):
     scene = Scene.nondimensional(psi1=chi if psi1 == "chi" else psi1, chi=chi)
     result = Simulation().run(scene)
     assert result.status is Status.UNRESOLVED
-    assert "3000 are allowed" in result.motion.detail
+    assert "More than 3000 panels" in result.motion.detail
     assert f"chi = {chi:.3g}" in result.motion.detail
-    assert result.counters["solves"] <= 3000
+    assert 2900 < result.counters["solves"] <= 3000
 
 
 def test_each_impact_of_a_batch_says_what_failed_in_it():

@@ -17,7 +17,6 @@ import numpy as np
 
 from contactlab.contracts import ClosedFormMotion, LostPathError, ScaledContact, Stretch
 from contactlab.numeric.lobatto import Array, first_fall, row, value_at
-from contactlab_laws.fronts.forecast import too_many
 from contactlab_laws.fronts.memory import Drawn, Locked, Piece
 from contactlab_laws.fronts.panel import NODES, GrossStretch, Panel, PanelStretch
 
@@ -44,6 +43,8 @@ SWEEPS, TRIES = 4, 60
 #: A panel in time begins with this part of the time in which the piece would be spent.
 HINT_PART = 0.7
 LARGEST, ROUNDING, TINY = 1e100, 5e-16, 1e-300
+#: Panels of an impact, about a second; below OFTEN in chi it is not oscillation that takes so many.
+PANEL_CAP, OFTEN = 3000, 1e3
 SQUARES = NODES.points[1:] ** 2
 HALF = 0.5 * math.pi
 
@@ -82,7 +83,7 @@ class Impact:
         self.place = self.radius = 0.0
         self.memory: list[Piece] = []
         self.stretches: list[Stretch] = []
-        self.panels, self.begun, self.hint = 0, 0.0, math.inf
+        self.panels, self.hint = 0, math.inf
 
     def follow(self) -> Iterator[Stretch]:
         """Yield the stretches to the end of contact."""
@@ -376,11 +377,16 @@ class Impact:
         return left if left < 1.3 * self.longest else self.longest
 
     def _count(self) -> None:
-        """Count a panel; give up if too many would be needed."""
-        self.begun = self.begun if self.panels else self.x
+        """Count a panel; give up at the cap."""
+        if self.panels == PANEL_CAP:
+            why = f"at chi = {0.5 * self.ratio:.3g} the contact oscillates about sqrt(chi) times"
+            if self.ratio < 2.0 * OFTEN:
+                why = "slip changes too often, or stick is lost within too short a time"
+            raise LostPathError(
+                f"More than {PANEL_CAP} panels would be needed: {why}. A law of steps, such as "
+                "springs under symplectic, can go on, with the error of its steps."
+            )
         self.panels += 1
-        if complaint := too_many(self.panels, self.begun, self.x, 0.5 * self.ratio):
-            raise LostPathError(complaint)
 
     def _nodes(self, length: float) -> tuple[Array, ScaledContact, Array]:
         """Return nodes from here on, the contact there, and integration over T to each."""

@@ -14,26 +14,14 @@ from numpy.typing import NDArray
 from contactlab_laws.tables.file import Stored, read
 from contactlab_laws.tables.patches import (
     Patches,
-    Slopes,
     chebyshev_of_values,
     compiled_polynomial,
     needed,
     nodes,
-    polynomial,
     powers_of_chebyshev,
 )
 from contactlab_laws.tables.regions import (
-    CUT_END,
-    CUT_TOP,
-    LARGEST_CHI,
     REGIONS,
-    SLIP_BACK,
-    SLIP_LATE,
-    SLIP_LONG,
-    SMALL_FAR,
-    SMALL_NEAR,
-    STUCK_BACK,
-    STUCK_ON,
     Cuts,
     Places,
     SingleCuts,
@@ -53,10 +41,8 @@ SIZE = 1 << DEEPEST
 SMALL = 1e-11
 #: Fewer impacts than this are computed one by one; so many are taken together at most.
 FEW, BLOCK = 40, 1 << 16
-#: A place nearer to a cut than this, in its region's root, is taken to be this far: the limit.
-NEAREST = 1e-9
-#: Least t beside psi1 = 1, where the derivative by psi1 is a limit: delta is 1e-15 epsilon there.
-LEAST_T = 1e-3
+#: Imaginary step for derivatives: its square vanishes, its fifth root is 1e-6.
+STEP = 1e-30
 
 
 @attrs.frozen(eq=False)
@@ -71,11 +57,14 @@ class Table:
     patches : Patches
         Numbered by how many powers they need, so that those that are sorted need as many as their
         neighbours.
+    exact : Patches
+        The same with all powers, for derivatives.
     """
 
     cuts: Cuts
     grid: NDArray[np.int16]
     patches: Patches
+    exact: Patches
 
     @classmethod
     def of(cls, stored: Stored) -> Table:
@@ -101,20 +90,17 @@ class Table:
         rank = np.empty(order.size, dtype=np.int16)
         rank[order] = np.arange(order.size)
         grid = rank[_grid(cells).ravel()]
+        origins, count, all_needed = origins[:, order], count[:, order], np.full_like(count, NODES)
         return cls(
             cuts,
             grid,
-            Patches(
-                origins[:, order],
-                (back @ chebyshev @ back.T * scale)[order],
-                count[:, order].tolist(),
-                (terms * scale)[order],
-            ),
+            Patches(origins, (back @ chebyshev @ back.T * scale)[order], count.tolist()),
+            Patches(origins, (terms * scale)[order], all_needed.tolist()),
         )
 
     def found(self, here: Places) -> NDArray[np.int16]:
         """Return the patches of places."""
-        i, j = (here.a * SIZE).astype(np.int32), (here.b * SIZE).astype(np.int32)
+        i, j = (SIZE * here.a.real).astype(np.int32), (SIZE * here.b.real).astype(np.int32)
         np.minimum(i, SIZE - 1, out=i)
         np.minimum(j, SIZE - 1, out=j)
         i += here.region * SIZE
@@ -223,66 +209,20 @@ def _partial_slip(table: Table, here: Places) -> Array:
 
 @np.errstate(under="ignore")  # as of ``values``
 def gradient(table: Table, speed: Array, chi: Array) -> tuple[Array, Array]:
-    """Return (d psi2/d psi1, d psi2/d chi) for psi1 = speed >= 0 and 0 < chi <= LARGEST_CHI."""
-    # Distances from psi1 = 1 and from a cut enter as roots, whose slopes are infinite; there g has
-    # no low powers, exactly none, so that the products keep their digits.
-    by_psi1, by_chi = np.ones_like(speed), np.full_like(speed, -4.0)  # eq. (45)
-    for first in range(0, speed.size, BLOCK):
+    """Return (d psi2/d psi1, d psi2/d chi) for psi1 = speed >= 0 and 0 < chi <= LARGEST_CHI.
+
+    By a complex step: the imaginary part of psi2 at psi1 + ih, and at chi + ih, over h. Distances
+    from psi1 = 1 and from a cut enter as roots, whose slopes are infinite; there g has no low
+    powers, exactly none, so that their products keep their digits.
+    """
+    count, step = speed.size, 1j * STEP
+    p, x = np.concatenate((speed + step, speed)), np.concatenate((chi + 0.0 * step, chi + step))
+    slopes = _full_slip(p, x).imag
+    for first in range(0, 2 * count, BLOCK):
         block = slice(first, first + BLOCK)
-        here = places(speed[block], chi[block], table.cuts)
-        if not here.who.size:
-            continue
-        np.maximum(here.b, NEAREST, out=here.b)
-        for region, part in here.parts():
-            if region == SMALL_NEAR:
-                here.a[part] = np.maximum(here.a[part], LEAST_T)
-        slopes = table.patches.slopes(table.found(here), here.a, here.b)
-        for region, part in here.parts():
-            who = first + here.who[part]
-            local = Slopes(*(column[part] for column in slopes))
-            by_psi1[who], by_chi[who] = _of_psi2(region, here.taken(part), local, table.cuts)
-    return by_psi1, by_chi
-
-
-def _of_psi2(region: int, here: Places, slopes: Slopes, cuts: Cuts) -> tuple[Array, Array]:
-    """Return both derivatives of psi2 = psi1 (-1 + measure g) in one region."""
-    a, b, speed, measure = here.a, here.b, here.speed, here.measure
-    g, by_a, by_b = slopes
-    value = measure * g - 1.0
-    if region == SMALL_FAR:  # measure delta; a = epsilon/delta, b = delta
-        return value - speed * (g + measure * by_b - a * by_a), -2.0 * speed * by_a
-    side = -1.0 if region == SMALL_NEAR else 1.0  # of epsilon in chi, and of delta in psi1
-    by_main, by_chi = _main(region, a, b, by_a, by_b, cuts)
-    if region in (STUCK_BACK, STUCK_ON):
-        return value + speed * measure * by_main, speed * (2.0 * g + measure * by_chi)
-    # the main coordinate depends on delta/epsilon = t^5: epsilon times its derivatives
-    if region == SLIP_LATE:
-        by_delta, by_epsilon = by_main, -(1.0 + a) * by_main
-    else:
-        t = a if region == SMALL_NEAR else a * CUT_END
-        t = CUT_END + a * (1.0 - CUT_END) if region == SLIP_LONG else t
-        by_delta, by_epsilon = 0.2 * by_main / t**4, -0.2 * t * by_main
-    by_chi = 2.0 * side * (g + by_epsilon) + measure * by_chi
-    return value + side * speed * by_delta, speed * by_chi
-
-
-def _main(
-    region: int, a: Array, b: Array, by_a: Array, by_b: Array, cuts: Cuts
-) -> tuple[Array, Array]:
-    """Return the derivatives of g by the main coordinate (psi1, t or delta/epsilon) and by chi."""
-    if region == SMALL_NEAR:
-        return by_a, -2.0 * by_b
-    if region in (SLIP_LONG, SLIP_LATE):
-        stretch = 1.0 / (1.0 - CUT_END) if region == SLIP_LONG else 1.0
-        return stretch * by_a, by_b / (LARGEST_CHI - 0.5)
-    stuck = region in (STUCK_BACK, STUCK_ON)
-    terms = cuts.stuck if stuck else cuts.slip
-    main = a if stuck else a * CUT_END
-    cut, moves = polynomial(terms, main), polynomial(terms[1:] * np.arange(1, terms.size), main)
-    along = by_a if stuck else by_a / CUT_END
-    if region in (STUCK_BACK, SLIP_BACK):
-        by_chi = by_b / (cut - 0.5)
-        return along - b * moves * by_chi, by_chi
-    top = LARGEST_CHI if stuck else CUT_TOP
-    by_chi = by_b / (2.0 * b) / (top - cut)
-    return along - (1.0 - b * b) * moves * by_chi, by_chi
+        here = places(p[block], x[block], table.cuts)
+        if here.who.size:
+            g = table.exact.values(table.found(here), here.a, here.b)
+            slopes[block][here.who] = (here.speed * (here.measure * g - 1.0)).imag
+    slopes /= STEP
+    return slopes[:count], slopes[count:]

@@ -6,9 +6,9 @@ and its coordinates there, the table knows.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import cache, cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import attrs
 import numpy as np
@@ -26,14 +26,6 @@ STRETCH = 8192
 COMPILED = 100
 
 
-class Slopes(NamedTuple):
-    """Values and their derivatives by a and b."""
-
-    g: Array
-    by_a: Array
-    by_b: Array
-
-
 @attrs.frozen(eq=False, slots=False)
 class Patches:
     """Polynomials by patch.
@@ -45,14 +37,11 @@ class Patches:
         By powers of a (rows) and b; 0 where they are left out.
     needed : list of list of int
         Powers of a and of b that are left in each patch.
-    exact : array, shape (patches, n, m), optional
-        All terms, for derivatives.
     """
 
     origins: Array
     terms: Array
     needed: list[list[int]]
-    exact: Array | None = None
 
     def values(self, patch: Numbers, a: Array, b: Array) -> Array:
         """Return the values at places, shape (places,)."""
@@ -66,7 +55,7 @@ class Patches:
         origin_a, origin_b = (np.repeat(origin, counts) for origin in self.origins)
         g = np.empty_like(a)
         # room for all stretches: new memory for each would take longer than the rest
-        room = np.empty((2, max(self.terms.shape[1:]), min(STRETCH, g.size)))
+        room = np.empty((2, max(self.terms.shape[1:]), min(STRETCH, g.size)), a.dtype)
         for first in range(0, g.size, STRETCH):
             stretch = slice(first, first + STRETCH)
             who = order[stretch]
@@ -92,36 +81,19 @@ class Patches:
         """Return values at places in any order."""
         x, y = a - self.origins[0, patch], b - self.origins[1, patch]
         rows, columns = self.terms.shape[1:]
-        y_powers = np.ascontiguousarray(powers(y, np.empty((columns, y.size))).T)[..., None]
-        sums = np.empty((x.size, rows, 1))
+        y_powers = powers(y, np.empty((columns, y.size), y.dtype)).T.copy()[..., None]
+        sums = np.empty((x.size, rows, 1), x.dtype)
         for first in range(0, x.size, GATHERED):
             part = slice(first, first + GATHERED)
             np.matmul(self.terms[patch[part]], y_powers[part], out=sums[part])
         return _horner(np.ascontiguousarray(sums[..., 0].T), x)
 
-    def slopes(self, patch: Numbers, a: Array, b: Array) -> Slopes:
-        """Return values and derivatives at places, from all terms."""
-        assert self.exact is not None
-        rows, columns = self.exact.shape[1:]
-        result = Slopes(np.empty_like(a), np.empty_like(a), np.empty_like(a))
-        order = np.argsort(patch, kind="stable")
-        of_a, of_b = (np.arange(1, count)[:, None] for count in (rows, columns))
-        for number, part in _stretches(patch):
-            who, terms = order[part], self.exact[number]
-            x = powers(a[who] - self.origins[0, number], np.empty((rows, who.size)))
-            y = powers(b[who] - self.origins[1, number], np.empty((columns, who.size)))
-            sums = terms @ y
-            result.g[who] = np.einsum("kn,kn->n", sums, x)
-            result.by_a[who] = np.einsum("kn,kn->n", sums[1:], x[:-1] * of_a)
-            result.by_b[who] = np.einsum("kn,kn->n", terms[:, 1:] @ (y[:-1] * of_b), x)
-        return result
-
     @cached_property
     def single(self) -> list[Callable[[float, float], float]]:
         """The value of each patch as a function of plain floats a and b."""
-        slopes: list[Callable[[float, float], float]] = []
-        slopes += (_Rows(self, patch, slopes) for patch in range(len(self.terms)))
-        return slopes
+        single: list[Callable[[float, float], float]] = []
+        single += (_Rows(self, patch, single) for patch in range(len(self.terms)))
+        return single
 
 
 class _Rows:
@@ -170,15 +142,6 @@ def compiled_polynomial(terms: Array) -> Callable[[float], float]:
     text = _horner_text(terms[::-1].tolist(), "x")
     function: Callable[[float], float] = _compiled("x", f"return {text}")
     return function
-
-
-def _stretches(patch: Numbers) -> Iterator[tuple[int, slice]]:
-    """Yield patches and the stretches of a sorted array that belong to them."""
-    stop = 0
-    for number, count in enumerate(np.bincount(patch).tolist()):
-        start, stop = stop, stop + count
-        for first in range(start, stop, STRETCH):
-            yield number, slice(first, min(first + STRETCH, stop))
 
 
 def powers(argument: Array, out: Array) -> Array:

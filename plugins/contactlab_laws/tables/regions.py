@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,16 +85,6 @@ class Places(NamedTuple):
     chi: Array
     measure: Array
 
-    def taken(self, part: slice | Rows) -> Places:
-        """Return some of the places, as views if ``part`` is a slice."""
-        columns: Any = (column[part] for column in self)
-        return Places(*columns)
-
-    def parts(self) -> list[tuple[int, Rows]]:
-        """Return each region that has places, and the rows of its places."""
-        places = [(region, (self.region == region).nonzero()[0]) for region in range(REGIONS)]
-        return [(region, part) for region, part in places if part.size]
-
 
 def slip_cut(terms: Array, t: Array) -> Array:
     """Return chi of the cut of the slip regions, of which some powers are missing."""
@@ -141,7 +131,7 @@ def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
     Parameters
     ----------
     speed, chi : array, shape (impacts,)
-        abs(psi1) and chi; no units.
+        abs(psi1) and chi; no units. Complex for derivatives: then real parts are told apart first.
     cuts : Cuts
         Polynomials of the boundaries between regions.
     """
@@ -150,8 +140,9 @@ def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
     near, far, stuck, early, late = map(slice, [0, *stops], stops)
     who = np.argsort(kind, kind="stable")[: stops[-1]]
     p, x = speed[who], chi[who]
-    region, (a, b) = np.empty(who.size, dtype=np.int32), np.empty((2, who.size))
-    measure = np.abs(2.0 * x - 1.0)
+    region, (a, b) = np.empty(who.size, dtype=np.int32), np.empty((2, who.size), x.dtype)
+    measure = 2.0 * x - 1.0
+    measure[measure.real < 0.0] *= -1.0
     region[near], b[near] = SMALL_NEAR, measure[near]
     a[near] = ((1.0 - p[near]) / b[near]) ** 0.2
     region[far], b[far] = SMALL_FAR, 1.0 - p[far]

@@ -134,8 +134,7 @@ def judge(table: Table, draws: Draws, truth: Array) -> list[Errors]:
     error = np.abs(values(table, draws.psi1, draws.chi) - truth) / np.maximum(1.0, draws.psi1)
     region = np.full(error.size, len(NAMES))
     here = places(draws.psi1, draws.chi, table.cuts)
-    for number, part in here.parts():
-        region[here.who[part]] = number
+    region[here.who] = here.region
     groups = [(name, (region == k) & (draws.kind < 0)) for k, name in enumerate(NAMES)]
     groups.append(("slips throughout", (region == len(NAMES)) & (draws.kind < 0)))
     groups += [(name, draws.kind == k) for k, name in enumerate(BESIDE_NAMES)]
