@@ -24,7 +24,8 @@ from contactlab.outcome.columns import json_value
 from contactlab.outcome.files import write_table
 from contactlab.outcome.tables import time
 from contactlab.study.bench_methods import methods
-from contactlab.study.work_precision import Benchmark, Row, bench
+from contactlab.study.benchmark import Benchmark, Row
+from contactlab.study.work_precision import bench
 
 #: Reason for an incomplete report.
 BUDGET = "the budget ran out"

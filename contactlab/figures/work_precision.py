@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from contactlab.figures.style import LAW_COLOURS, QUIET
-from contactlab.study.work_precision import Benchmark, Row
+from contactlab.study.benchmark import Benchmark, Row
 
 #: Integrator that a law is drawn under: the first that ran it.
 USUAL = ("symplectic", "events", "adaptive", "paper")

@@ -102,7 +102,10 @@ def test_bug_is_not_hidden(run, monkeypatch):
 def test_reader_that_has_gone_is_no_error():
     read, write = os.pipe()
     os.close(read)
-    done = subprocess.run([*COMMAND, *PSI], stdout=write, stderr=subprocess.PIPE, check=False)
+    buffered = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    done = subprocess.run(
+        [*COMMAND, *PSI], stdout=write, stderr=subprocess.PIPE, env=buffered, check=False
+    )
     os.close(write)
     assert done.returncode == module.BROKEN_PIPE
     assert done.stderr == b""

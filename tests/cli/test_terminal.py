@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import contactlab
-from contactlab.cli.terminal import fitted, fitting, safe
+from contactlab.cli.terminal import Printed, fitted, fitting, safe
 
 PACKAGE = Path(contactlab.__file__).parent
 COMMAND = [sys.executable, "-m", "contactlab"]
@@ -24,6 +24,12 @@ def test_what_a_terminal_obeys_is_written_out():
     assert shown.isprintable()
     assert shown.startswith(r"\x1b[31mred\x1b]0;title\x07 \x9b2J \u202e")
     assert safe("a\tb\nc µ") == "a\tb\nc µ"
+
+
+def test_a_stream_that_fits_texts_returns_their_length():
+    screen = io.StringIO()
+    assert Printed(screen).write(EVIL) == len(EVIL)
+    assert screen.getvalue() == safe(EVIL)
 
 
 def test_symbols_in_letters():

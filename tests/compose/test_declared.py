@@ -36,6 +36,28 @@ def test_the_whole_impact_law_of_a_stranger_is_not_exact():
     assert "numerical error of psi2: not estimated; not declared" in str(one)
 
 
+@pytest.mark.parametrize(
+    "laws",
+    [
+        {},
+        {"tangential": contactlab.create("tangential.fronts", table=False)},
+        {"normal": "tsuji", "tangential": "stronge"},
+        {"tangential": "halfspace"},
+    ],
+    ids=["default", "fronts", "stronge", "halfspace"],
+)
+def test_as_much_is_declared_for_either_sense_of_slip(laws):
+    simulation = Simulation(**laws)
+    sides = [
+        float(simulation.plan(Scene.nondimensional(psi1=psi1, chi=1.44)).psi2_error)
+        for psi1 in (3.0, -3.0)
+    ]
+    assert sides[0] > 0.0
+    assert sides[0] == sides[1]
+    both = simulation.plan(Scene.nondimensional(psi1=[3.0, -3.0], chi=1.44)).psi2_error
+    assert both == pytest.approx(sides[0], rel=1e-12)
+
+
 class SilentMotion(NormalMotion):
     """Hertz's motion, without a word of its accuracy."""
 

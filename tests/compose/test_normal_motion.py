@@ -207,6 +207,22 @@ def test_in_a_batch_only_those_that_never_end(damping):
         assert result.psi2[index] == pytest.approx(alone.psi2, rel=1e-8)
 
 
+def test_an_infinite_radius_is_no_answer():
+    """The normal motion does not feel the radius, and its steps go on."""
+
+    class Boundless(Tsuji):
+        def respond(self, state, approach, rate):
+            contact, state = super().respond(state, approach, rate)
+            if approach > 1e-6:
+                contact = contact._replace(radius=np.inf)
+            return contact, state
+
+    result = Simulation(normal=Boundless(), tangential="springs").run(scene())
+    assert result.status is Status.NON_FINITE
+    assert "Boundless" in result.motion.detail
+    assert "the answer " in result.motion.detail
+
+
 @pytest.mark.parametrize("bad", ["overlap", "force"])
 def test_one_nan_is_not_out_of_contact(bad):
     """It compares as no overlap: an impact ended in mid-approach, and was called a success."""

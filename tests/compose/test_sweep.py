@@ -9,7 +9,7 @@ import sys
 import time
 import types
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
-from multiprocessing import get_context
+from multiprocessing import get_context, get_start_method
 from pathlib import Path
 
 import attrs
@@ -21,7 +21,7 @@ from contactlab import Scene, Simulation, Status
 from contactlab.compose import sweep as sweeping
 from contactlab.compose import workers as workers_module
 from contactlab.compose.registry import REGISTRY
-from contactlab.compose.workers import processes
+from contactlab.compose.workers import _new_pool, processes
 from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.contracts.whole_impact import no_force
 from tests.laws.ending_laws import Ending, Raising
@@ -272,6 +272,20 @@ def test_a_poisoned_impact_of_ten_thousand_loses_its_chunk_only(monkeypatch, tmp
     assert set(np.flatnonzero(died) // 100) == {impact // 100 for impact in poisoned}
     assert died.sum() == 100 * len(poisoned)
     assert result.psi2[~died] == pytest.approx(psi1[~died])
+
+
+def mark(word):
+    os.environ["MARK"] = word
+
+
+def marked():
+    return get_start_method(), os.environ.get("MARK")
+
+
+def test_a_fresh_pool_has_the_settings_of_the_broken_one():
+    settings = {"mp_context": get_context("spawn"), "initializer": mark, "initargs": ("told",)}
+    with ProcessPoolExecutor(1, **settings) as pool, _new_pool(pool) as fresh:
+        assert fresh.submit(marked).result() == ("spawn", "told")
 
 
 def test_an_executor_that_loses_a_chunk_loses_no_other(monkeypatch):

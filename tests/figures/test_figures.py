@@ -14,13 +14,14 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.image import imread
 from matplotlib.text import Text
 
 import contactlab.figures
 from contactlab import Scene, Simulation, create
 from contactlab.figures import paper, results, style
 from contactlab.figures.comparison import all_laws, laws_over_sweep
-from contactlab.figures.files import save
+from contactlab.figures.files import as_svg, save, save_figure
 from contactlab.scene_file import read_scene
 from contactlab.study import paper_figures
 from contactlab.study.comparison import compare
@@ -274,3 +275,34 @@ def test_measured_values_are_drawn_beside_all_laws():
     drawn = {tuple(line.get_ydata()) for line in upper.lines}
     assert tuple(first.values) in drawn
     assert tuple(other.values) not in drawn
+
+
+@pytest.mark.parametrize("width", style.WIDTHS)
+def test_a_picture_is_as_wide_as_its_column(tmp_path, width):
+    save(tmp_path / "p.png", lambda axes: axes.plot([0.0, 1.0]), width=width)
+    pixels = imread(tmp_path / "p.png").shape[1]
+    assert pixels == pytest.approx(style.WIDTHS[width] * style.RESOLUTION, abs=1)
+
+
+def test_a_figure_of_ones_own_is_written_as_finely(tmp_path):
+    save_figure(Figure(figsize=(2.0, 1.0)), tmp_path / "own.png")
+    assert imread(tmp_path / "own.png").shape[:2] == (style.RESOLUTION, 2 * style.RESOLUTION)
+
+
+def test_a_picture_of_a_page_is_as_wide_as_one_on_its_own():
+    svg = as_svg(lambda axes: axes.plot([0.0, 1.0]))
+    assert f'width="{72.0 * style.figure_size(None)[0]:g}pt"' in svg
+
+
+def test_stacked_axes_share_the_abscissa_of_their_column(tmp_path, monkeypatch):
+    """In a narrow column the axes of the second column stand below those of the first."""
+    kept = []
+    options = {"rows": 2, "columns": 2, "heights": (2.0, 1.0), "width": "one"}
+    drawn(lambda axes: kept.append(axes), tmp_path, monkeypatch, **options)
+    ((first, second), (below, other)) = kept[0]
+    shared = first.get_shared_x_axes()
+    assert shared.joined(first, below)
+    assert not shared.joined(first, second)
+    assert second.get_shared_x_axes().joined(second, other)
+    tops = [axes.get_position().y1 for axes in (first, below, second, other)]
+    assert tops == sorted(tops, reverse=True)

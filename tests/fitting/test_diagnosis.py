@@ -10,6 +10,7 @@ from contactlab.fitting.measurements import read_measurements
 from contactlab.fitting.model import Model, scene_of
 from contactlab.fitting.parameters import Setup, parameter_named
 from contactlab.fitting.problem import Problem
+from contactlab.fitting.readings import readings
 from tests.fitting.impacts import ANGLES, BODIES, restitution, scene, table
 
 SCATTER = 0.004 * np.random.default_rng(5).standard_normal(len(ANGLES))
@@ -40,6 +41,20 @@ def test_a_spin_without_its_sign_is_found():
     (note,) = fit(spins(-1.0), BODIES).notes
     assert note.startswith("rebound_spin looks as if of the opposite sign")
     assert fit(spins(1.0), BODIES).notes == ()
+
+
+def test_a_shift_by_a_row_is_judged_by_the_same_rows_as_the_table():
+    """Each way drops one row at an end; the table that it is compared with drops the same."""
+    problem = problem_of(table(restitution(0.12)))
+    shifts = [each for each in readings(problem, ["angle_deg"]) if "a row too" in each.words]
+    (before,) = problem.measured.values()
+    for low, shift in zip((True, False), shifts, strict=True):
+        (values,), (rest,) = shift.problem.measured.values(), shift.rest.values()
+        held, dropped = (slice(1, None), 0) if low else (slice(None, -1), -1)
+        assert np.isnan(rest[dropped])
+        assert np.array_equal(rest[held], before[held])
+        shifted = before[1:] if low else before[:-1]
+        assert np.array_equal(values[~np.isnan(values)], shifted)
 
 
 def test_an_impact_far_from_the_others_is_found():

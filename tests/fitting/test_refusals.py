@@ -155,7 +155,7 @@ def test_a_law_that_is_not_that_of_the_data_ends_at_the_end_of_a_range():
         ({"parameters": "friction_coefficient"}, "must be a list of names"),
         ({"parameters": []}, "must be a list of names"),
         ({"parameters": ["friction_coefficient"] * 2}, "twice"),
-        ({"simulation": "coulomb"}, "must be a Simulation"),
+        ({"simulation": "coulomb"}, "simulation = 'coulomb': must be a Simulation"),
         ({"quantities": ["rebound_spin"]}, "was not measured"),
         ({"bootstrap": -1}, "bootstrap"),
         ({"parameters": ["restitution"]}, "it is an option of normal.hunt_crossley, "),

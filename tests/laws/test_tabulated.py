@@ -10,7 +10,7 @@ from numpy.polynomial.polynomial import polyder, polygrid2d, polyval, polyval2d
 import contactlab
 from contactlab import Simulation, rebound
 from contactlab.compose import rebound as rebounds
-from contactlab.study.work_precision import scenes
+from contactlab.study.bench_methods import scenes
 from contactlab_laws.tables import elastic, patches
 from contactlab_laws.tables.elastic import NODES, SHIPPED, shipped
 from contactlab_laws.tables.file import read

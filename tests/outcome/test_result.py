@@ -8,6 +8,7 @@ import pytest
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab.cli.describe import describe
+from contactlab.outcome.tables import sections
 from tests.laws.normal_laws import Damped, LinearSpring
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
@@ -141,3 +142,17 @@ def test_failures_are_counted_sentence_by_sentence():
     assert len(told) == 2
     assert told[0].endswith("(2 impacts)")
     assert not told[1].endswith("impacts)")
+
+
+def test_the_table_of_a_ball_on_a_ball_has_the_target_at_rest_before():
+    """What the sphere loses the target gains: momentum of both along normal and surface."""
+    ball, target = Sphere(RADIUS, STEEL), Sphere(2.0 * RADIUS, STEEL)
+    scene = Scene(ball, target, FRICTION, SPEED, TANGENTIAL, SPIN)
+    result = Simulation(tangential="coulomb").run(scene).check()
+    rows = {name: numbers for name, *numbers, _ in sections(result)[0].rows}
+    for name in ("normal velocity", "tangential velocity"):
+        before, after = rows[name]
+        still, moved = rows[f"target: {name}"]
+        assert still == 0.0
+        assert target.mass * abs(moved) == pytest.approx(ball.mass * abs(before - after), rel=1e-9)
+    assert rows["target: spin"][0] == 0.0

@@ -88,6 +88,13 @@ def test_arrows_of_the_drawing_point_along_the_motion_of_the_sphere(reported, ba
     assert np.degrees(before) == pytest.approx(15.0, abs=0.2)  # as the file says
 
 
+def test_the_surface_of_the_drawing_is_as_wide_as_the_drawing(reported, ball):
+    (drawing,) = re.findall(r"<svg viewBox='(\S+) \S+ (\S+) \S+' role='img'", reported(ball))
+    (surface,) = re.findall(r"<rect x='(\S+)' y='0' width='(\S+)'", reported(ball))
+    assert surface == drawing
+    assert float(drawing[0]) == -0.5 * float(drawing[1])
+
+
 def test_a_measured_sweep_has_its_residuals(reported, measured):
     text = reported(measured, "--tangential", "coulomb,frictionless")
     assert "rms difference" in text

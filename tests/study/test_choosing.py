@@ -8,7 +8,7 @@ import pytest
 import contactlab
 from contactlab import Simulation
 from contactlab.cli.guide import text
-from contactlab.study.work_precision import scenes
+from contactlab.study.bench_methods import scenes
 
 SECTION = text("choosing").partition("## Error and cost")[2].partition("\n## ")[0]
 ROW = re.compile(

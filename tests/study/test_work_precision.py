@@ -17,7 +17,8 @@ from contactlab.compose import composition
 from contactlab.figures.work_precision import work_precision as draw
 from contactlab.study import work_precision
 from contactlab.study.bench_methods import Method, methods, scenes
-from contactlab.study.work_precision import Benchmark, Row, bench
+from contactlab.study.benchmark import Benchmark, Row
+from contactlab.study.work_precision import bench
 
 
 def row(method="a", error=1.0, time=1.0, failed=0, options="steps=10"):

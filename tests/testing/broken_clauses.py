@@ -468,6 +468,16 @@ class WorkOfOneSense(Answering):
         return response._replace(friction_work=share * response.friction_work), state
 
 
+class PushesAtFirst(Sound):
+    """A force below a fifth of Coulomb's limit drives the slip; a larger one opposes it."""
+
+    def advance(self, state, increment, before, after):
+        response, new = super().advance(state, increment, before, after)
+        limit = state.friction_coefficient * after.friction_load
+        sense = np.where(abs(response.force) < 0.2 * limit, -1.0, 1.0)[()]
+        return response._replace(force=sense * response.force), new
+
+
 class StiffensUnderLoad(Sound):
     """A sheared force that grows with the load, as far as friction goes."""
 
@@ -623,6 +633,7 @@ BROKEN = [
     (ReportsItsEndlessness, "bounded", "Unyielding is asked without end"),
     (EndsTheEndless, "bounded", "A run with endless events is reported as a success"),
     (WorkOfOneSense, "odd_in_slip", "Reversed slip gives a friction work that differs by"),
+    (PushesAtFirst, "opposes_slip", "A first, positive slip meets a force of -"),
     (StiffensUnderLoad, "normal_load_alone", "Pressing on a contact that is sheared adds"),
     (SpoilsTheOthers, "non_finite", "of one contact of a batch changes the force of the others"),
     (ThrowsAtTheEnd, "last_step", "mu P_max as the load falls to zeta = 1e-06"),

@@ -16,8 +16,6 @@ from tests.testing import broken_normal as normal
 from tests.testing import broken_rigid as rigid
 from tests.testing import fresh_faults
 
-pytestmark = pytest.mark.slow
-
 README = Path(__file__).parents[2] / "README.md"
 
 
