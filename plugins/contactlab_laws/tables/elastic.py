@@ -138,15 +138,17 @@ def rebound(psi1: Any, chi: Any, *, derivatives: bool = False) -> Any:
     """
     if psi1.__class__ is float and not derivatives:
         return _single()(psi1, chi)
-    if psi1.size < FEW and not derivatives:
-        one_by_one = map(_single(), psi1.ravel().tolist(), chi.ravel().tolist())
-        return np.array(list(one_by_one)).reshape(psi1.shape)
-    speed, shape = np.abs(psi1).ravel(), psi1.shape
-    psi2 = values(shipped(), speed, chi.ravel()).reshape(shape)
-    np.negative(psi2, out=psi2, where=psi1 < 0.0)
+    flat, ratios, shape = psi1.ravel(), chi.ravel(), psi1.shape
+    if flat.size < FEW:
+        psi2 = np.array(list(map(_single(), flat.tolist(), ratios.tolist())))
+    else:
+        psi2 = values(shipped(), np.abs(flat), ratios)
+        np.negative(psi2, out=psi2, where=flat < 0.0)
+    psi2 = psi2.reshape(shape)
     if not derivatives:
         return psi2
-    by_psi1, by_chi = (each.reshape(shape) for each in gradient(shipped(), speed, chi.ravel()))
+    slopes = gradient(shipped(), np.abs(flat), ratios)
+    by_psi1, by_chi = (each.reshape(shape) for each in slopes)
     return psi2, by_psi1, by_chi * np.copysign(1.0, psi1)
 
 

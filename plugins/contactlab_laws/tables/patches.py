@@ -89,7 +89,7 @@ class Patches:
         for first in range(0, a.size, GATHERED):
             part = slice(first, first + GATHERED)
             np.matmul(self.terms.take(patch[part], axis=0), y_powers[part], out=sums[part])
-        return np.einsum("nk,kn->n", sums[..., 0], x_powers[:rows])
+        return np.asarray(np.einsum("nk,kn->n", sums[..., 0], x_powers[:rows]))
 
     @cached_property
     def single(self) -> list[Callable[[float, float], float]]:
