@@ -29,7 +29,7 @@ def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
         kw_only=True,
         converter=attrs.Converter(_checked, takes_field=True),
         eq=key,
-        metadata={"vector": True, "unit": unit},
+        metadata={"unit": unit},
     )
 
 
