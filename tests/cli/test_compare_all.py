@@ -16,8 +16,6 @@ from contactlab.study.comparison import compare
 from contactlab.study.scores import DEFAULT_SCENE, candidates, pressed_force
 from tests.laws.normal_laws import Damped
 
-pytestmark = pytest.mark.slow
-
 CHI = 49.0 / 34.0
 
 
@@ -38,6 +36,7 @@ def without_annuli(monkeypatch):
     monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "tangential.annulus")
 
 
+@pytest.mark.slow
 def test_every_law_has_a_row_under_an_integrator_that_suits_it(run, sweep, without_annuli):
     ran = run("compare", sweep, "--all", "--json")
     rows = {row["law"]: row for row in json.loads(ran.out)["scores"]}
@@ -96,6 +95,7 @@ def test_a_law_that_the_files_integrator_does_not_run_gets_another(run, sweep):
     assert "these would fit" in asked.err
 
 
+@pytest.mark.slow
 def test_table_and_figure(run, sweep, tmp_path, without_annuli):
     path = tmp_path / "all.png"
     ran = run("compare", sweep, "--all", "--figure", path)

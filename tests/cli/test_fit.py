@@ -8,8 +8,6 @@ import pytest
 from contactlab.fitting import estimation
 from tests.cli.conftest import EXAMPLES
 
-pytestmark = pytest.mark.slow
-
 KHARAZ = EXAMPLES / "kharaz2001.toml"
 E_T = ("--quantity", "tangential_restitution")
 
@@ -85,7 +83,6 @@ def test_a_parameter_has_a_row_with_its_intervals(run, impacts):
     assert told == pytest.approx(expected, rel=1e-4)
 
 
-@pytest.mark.slow
 def test_restitution_of_a_damped_law_comes_out_of_kharaz(run):
     """Of e_t and the rebound angle: nearer to 1 than the 0.98 that is quoted beside them."""
     ran = run("fit", KHARAZ, "--normal", "tsuji", "--fit", "friction_coefficient,restitution",

@@ -10,7 +10,6 @@ from contactlab.study.stability_cases import cases
 from contactlab.study.stability_judge import ANSWERED, judge
 from tests.cli.conftest import EXAMPLES
 
-pytestmark = pytest.mark.slow
 BALL, MEASURED = EXAMPLES / "steel_ball.toml", EXAMPLES / "kharaz2001.toml"
 
 
@@ -22,6 +21,7 @@ def test_compare(run):
     assert max(map(abs, off)) < 1e-4
 
 
+@pytest.mark.slow
 def test_bench(run, tmp_path):
     table = tmp_path / "bench.csv"
     assert run("bench", "--quick", "--law", "tangential.halfspace", "--csv", table).status == 0
@@ -44,6 +44,7 @@ def test_fit(run):
     assert friction == pytest.approx(0.0932, abs=5e-4)
 
 
+@pytest.mark.slow
 def test_stability_judges_it_by_itself_at_twice_its_resolution():
     """A fifth of the quick cases; ``contactlab stability --law tangential.halfspace`` has all."""
     method = Method(tangential="halfspace", integrator="events")

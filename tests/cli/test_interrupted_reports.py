@@ -14,8 +14,6 @@ from contactlab.study import paper_figures, validation, work_precision
 from contactlab.study.bench_methods import Method
 from tests.cli.conftest import interrupting
 
-pytestmark = pytest.mark.slow
-
 STEPPED = [Method(tangential="springs", integrator="symplectic")]
 
 

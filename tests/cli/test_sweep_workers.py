@@ -55,7 +55,6 @@ main(sys.argv[1:])
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("workers", [(), ("--workers", "2")])
 def test_killed_and_resumed_it_writes_the_same_file(run, tmp_path, workers):
     whole, killed, kept = tmp_path / "a.npz", tmp_path / "b.npz", tmp_path / "b.npz.kept"

@@ -6,11 +6,10 @@ import attrs
 import numpy as np
 import pytest
 
+import contactlab
 from contactlab.scene_file import read_scene
 from contactlab.study import validation
 from tests.cli.conftest import EXAMPLES
-
-pytestmark = pytest.mark.slow
 
 SOURCES = {source.name: source for source in validation.SOURCES}
 
@@ -24,6 +23,15 @@ def rms(one, law, series=0):
     return one.comparison.agreements[series].rms(law)
 
 
+@pytest.mark.parametrize("chi", validation.REFERENCE_PSI2)
+def test_the_reference_values_are_those_of_the_exact_law(chi):
+    """Of theory §5, to ten digits."""
+    integrator = contactlab.create("integrator.events", tolerance=1e-12)
+    scene = contactlab.Scene.nondimensional(psi1=validation.REFERENCE_PSI1, chi=chi)
+    result = contactlab.Simulation(integrator=integrator).run(scene).check()
+    assert result.psi2 == pytest.approx(validation.REFERENCE_PSI2[chi], abs=6e-11)
+
+
 def test_the_mean_readings_are_those_of_the_example():
     packaged = SOURCES["kharaz2001"].read()
     example = read_scene(EXAMPLES / "kharaz2001.toml")
@@ -35,6 +43,7 @@ def test_the_mean_readings_are_those_of_the_example():
     assert packaged.scene.pair == example.scene.pair
 
 
+@pytest.mark.slow
 def test_every_installed_law_is_told(gathered):
     for one in gathered.values():
         told = set(one.laws) | set(one.left_out)
@@ -42,6 +51,7 @@ def test_every_installed_law_is_told(gathered):
         assert np.isfinite([rms(one, law) for law in one.laws]).all()
 
 
+@pytest.mark.slow
 def test_the_experiment_is_met_to_its_bound_by_partial_slip_alone(gathered):
     one = gathered["kharaz2001"]
     for law in ("fronts", "springs, tsuji restitution=0.98"):
@@ -50,6 +60,7 @@ def test_the_experiment_is_met_to_its_bound_by_partial_slip_alone(gathered):
     assert 0.0 < one.scatter(one.comparison.agreements[0]) < 0.002
 
 
+@pytest.mark.slow
 def test_what_is_said_of_the_experiment_holds(gathered):
     """e_t tan(angle)/tan(rebound angle) is the restitution; the two figures have it near 1."""
     one = gathered["kharaz2001"]
@@ -62,6 +73,7 @@ def test_what_is_said_of_the_experiment_holds(gathered):
     assert 0.02 < one.comparison.agreements[0].largest("fronts") < 0.035
 
 
+@pytest.mark.slow
 def test_finite_elements_are_nearest_to_the_exact_law_and_miss_it_about_psi1_1(gathered):
     one = gathered["finite-elements"]
     series = one.comparison.agreements[0]
@@ -74,6 +86,7 @@ def test_finite_elements_are_nearest_to_the_exact_law_and_miss_it_about_psi1_1(g
     assert series.difference("fronts")[-3:] == pytest.approx([-0.03] * 3, abs=0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["codes-test4-oxide", "codes-test4-alloy", "codes-mfix"])
 def test_curves_of_codes_are_those_of_the_capped_spring(gathered, name):
     """Simulations, not experiments: the cap is right by construction, to the reading."""

@@ -239,7 +239,6 @@ def test_one_nan_is_not_out_of_contact(bad):
     assert "Blind" in result.motion.detail
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("slip", [0.02, 0.3, 2.0])
 @pytest.mark.parametrize("law", [Plastic(), WidePlastic()])
 def test_laws_of_partial_slip_agree_under_a_plastic_contact(law, slip):

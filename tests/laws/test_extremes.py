@@ -10,8 +10,6 @@ from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
 from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.outcome.motion import Motion, sound
 
-pytestmark = pytest.mark.slow
-
 CHI = 49 / 34
 FRICTION = (0.0, 1e-308, 1e-300, 1e-12, 1e3, 1e12, 1e300)
 PSI1 = (0.0, 1e-308, 1e-300, 1e-12, 1.0, 1e15, 1e16, 1e300)
@@ -135,6 +133,7 @@ def test_any_incidence_and_inertia(psi1, chi):
         assert -2.0 * psi1 * (1.0 + 1e-9) <= found <= 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("chi", [1e6, 1e9, 1e12])
 @pytest.mark.parametrize("psi1", [1e-3, 1.2, 100.0, "chi"])
 def test_what_cannot_be_solved_is_given_up(psi1, chi):
@@ -146,6 +145,7 @@ def test_what_cannot_be_solved_is_given_up(psi1, chi):
     assert 2900 < result.counters["solves"] <= 3000
 
 
+@pytest.mark.slow
 def test_each_impact_of_a_batch_says_what_failed_in_it():
     result = Simulation().run(Scene.nondimensional(psi1=0.5, chi=[1e6, 2.0, 1e7]))
     assert list(result.failures) == [0, 2]
@@ -153,6 +153,7 @@ def test_each_impact_of_a_batch_says_what_failed_in_it():
     assert "at chi = 1e+07" in result.failures[2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("psi1", "chi"), [(0.3, 5e4), (1.9e5, 1e5), (3.9e6, 1e6)])
 def test_heavy_inertia_that_can_be_solved_still_is(psi1, chi):
     """To ten times the tolerance, and beyond chi = 1e4 in a third fewer solves than before."""

@@ -13,8 +13,6 @@ from contactlab.study.stability_references import itself
 from contactlab_laws.march.fixed import needed_steps
 from tests.laws.exact_laws import CHI, order, rms, simulation
 
-pytestmark = pytest.mark.slow
-
 #: psi2 that compiled codes give, steps converged, chi = 49/34, to three decimals.
 CODES = read_scene(DEFAULT_SCENE).measured
 FORMS = ("displacement", "increment", "increment_rescaled")
@@ -46,6 +44,7 @@ def test_a_factor_is_a_stiffness_of_the_bodies(form):
     assert found.psi2 == pytest.approx(expected.psi2 / factor, abs=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ALL_FORMS)
 @pytest.mark.parametrize("damping", [0.0, 0.3])
 def test_second_order_in_steps(form, damping):
@@ -121,6 +120,7 @@ def test_friction_work_under_a_steady_load(form):
     assert work == pytest.approx(4.0 - taken, rel=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("integrator", ["paper", "symplectic"])
 @pytest.mark.parametrize(
     ("chi", "psi1"), [(3.0, 1.2), (30.0, 0.95), (1014.0, 0.3), (2175.0, 0.3), (1e4, 0.95)]

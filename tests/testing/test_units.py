@@ -11,8 +11,6 @@ from contactlab.testing import CheckFailedError, Verdict, check_law, checks_for,
 from contactlab.testing.units import ODD_UNITS, Units, factor, in_units
 from tests.laws.normal_laws import Damped
 
-pytestmark = pytest.mark.slow
-
 
 @attrs.frozen(kw_only=True)
 class Viscous(SteppedTangentialLaw):

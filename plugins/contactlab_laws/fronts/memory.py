@@ -101,22 +101,22 @@ class Locked(Piece):
     Places are radii.
     """
 
-    def __init__(
-        self, sign: int, gone: float, lack: float, rest: float, inner: float, outer: float
-    ) -> None:
-        self.frame, self.locked, self.rest = -sign, sign, rest
+    rest = 0.0
+
+    def __init__(self, sign: int, gone: float, lack: float, inner: float, outer: float) -> None:
+        self.frame, self.locked = -sign, sign
         self.gone, self.base, self.inner = -gone, -lack, inner
         self.cut(outer)
 
     def curve(self, place: Array) -> tuple[Array, Array, Array, Array]:
         """Return m = -2c² and J = (4/3) c³ from where they were."""
-        square, two = place * place, 2.0 - self.rest
-        lack = self.base + (2.0 / 3.0 * two) * square * place
-        return self.gone - two * square, lack, -4.0 * place, place
+        square = place * place
+        lack = self.base + (4.0 / 3.0) * square * place
+        return self.gone - 2.0 * square, lack, -4.0 * place, place
 
     def front(self, contact: ScaledContact, gone: Array, place: Array) -> Front:
         """Return the front in closed form."""
-        level = np.minimum(gone - self.rest * contact.approach, self.highest)
+        level = np.minimum(gone, self.highest)
         square = 0.5 * np.maximum(self.gone - level, 0.0)
         c = np.sqrt(square)
         old, lack, _, _ = self.curve(c)

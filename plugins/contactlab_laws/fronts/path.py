@@ -20,8 +20,9 @@ from contactlab.numeric.lobatto import Array, first_fall, row, value_at
 from contactlab_laws.fronts.memory import Drawn, Locked, Piece
 from contactlab_laws.fronts.panel import NODES, GrossStretch, Panel, PanelStretch
 
-#: Below this psi1 an impact is held as the departure from rest, which keeps relative accuracy.
-NEAR_REST = 1e-3
+#: Below this psi1 an impact is held as the departure from rest, which keeps relative accuracy; and
+#: below this psi1 sqrt(2 chi), where psi changes too slowly for any slip to stop before the end.
+NEAR_REST, NEVER_STOPS = 1e-3, 0.3
 #: Longest panels in x, and radians of the fastest oscillation in them: the normal motion's
 #: nearest singularity in x lies at 0.22 + 0.86 i (theory §3).
 LONGEST, SWING = 1.4, 8.0
@@ -71,7 +72,8 @@ class Impact:
         self.drive = (self.ratio - 1.0) / motion.scaled_mass  # 1.25 (2 chi - 1)
         self.spring = 1.5 * inertia  # 3.75 chi
         self.longest = min(LONGEST, SWING / math.sqrt(self.spring * FASTEST))
-        self.rest = 1.0 if velocity < NEAR_REST else 0.0
+        near = velocity < NEAR_REST and velocity * math.sqrt(self.ratio) < NEVER_STOPS
+        self.rest = 1.0 if near else 0.0
         self.free = 1.0 - self.rest
         self.sign, self.x, self.change, self.work = 1, 0.0, 0.0, 0.0
         # k, J and m; near rest k - V, J - (2/3) P and m + zeta
@@ -295,8 +297,7 @@ class Impact:
         self.x = x
         if not stops:
             return None
-        now = self._now()
-        self.lack, self.gone = -self.rest * (2.0 / 3.0) * now.force, self.rest * now.approach
+        self.lack = self.gone = 0.0
         return self._stopped(0.0)
 
     # --------------------------------------------------------------------- what comes after
@@ -329,12 +330,12 @@ class Impact:
 
     def _stopped(self, front: float) -> Phase:
         """K is 0: the slip zone locks; in unloading the edge slips the other way at once."""
+        if self.rest:
+            raise LostPathError("slip stops, though psi is too small for that")
         now = self._now()
         if self.memory:
             self.memory[-1].cut(self.place)
-        gone, lack = self.gone - self.rest * now.approach, self.lack
-        lack += self.rest * (2.0 / 3.0) * now.force
-        self.memory.append(Locked(self.sign, gone, lack, self.rest, front, now.radius))
+        self.memory.append(Locked(self.sign, self.gone, self.lack, front, now.radius))
         self._at_zero()
         if now.rate > 0.0:
             return self._stuck
