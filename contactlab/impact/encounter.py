@@ -114,9 +114,9 @@ class Encounter:
         if np.ndarray in map(type, values) or max(_DIMENSIONS(self)) > 1:
             shapes = {name: getattr(self, name).shape[:-1] for name in VECTORS}
             shapes |= {
-                path.replace(".material", ""): np.shape(value)
+                path.replace(".material", ""): value.shape
                 for path, value in zip(paths, values, strict=True)
-                if value is not None
+                if isinstance(value, np.ndarray)
             }
             shape = batch.common_shape(
                 shapes,
