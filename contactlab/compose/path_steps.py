@@ -84,10 +84,10 @@ def followed(
         points, wanted = _with_marks(points, motion, marks)
         contacts = _pressed(normal, scene, points)
         motion = _motion(normal, scene, points, contacts)
-    with faults.blaming(tangential):
+    with faults.blaming(tangential) as blamed:
         nothing = NormalContact(*(locked(0.0 * entry) for entry in contacts[0]))
         state = tangential.start(scene, motion)
-        answers, states = advanced(tangential, state, nothing, _steps(points, contacts))
+        answers, states = advanced(tangential, state, nothing, _steps(points, contacts, blamed))
     for number, answer in enumerate(answers, 1):
         for entry in answer[:2]:
             if faults.malformed(entry, scene.shape):
@@ -118,9 +118,10 @@ def _pressed(normal: NormalLaw, scene: Scene, points: Points) -> list[NormalCont
     moved = np.diff(points.approach, axis=0, prepend=0.0)
     rates = np.divide(moved, drift, out=np.zeros_like(moved), where=drift > 0.0)
     contacts = []
-    with faults.blaming(normal):
+    with faults.blaming(normal) as blamed:
         state = normal.start(scene)
-        for approach, rate in zip(_rows(points.approach), _rows(rates), strict=True):
+        rows = zip(_rows(points.approach), _rows(rates), strict=True)
+        for blamed.step, (approach, rate) in enumerate(rows, 1):
             contact, state = normal.respond(state, locked(approach), locked(rate))
             complete = contact.complete
             contacts.append(NormalContact(*(_plain(entry) for entry in complete)))
@@ -145,14 +146,14 @@ def _motion(
 
 
 def _steps(
-    points: Points, contacts: list[NormalContact]
+    points: Points, contacts: list[NormalContact], blamed: faults.blaming
 ) -> Iterable[tuple[Increment, NormalContact]]:
-    """Iterate over the steps; the first one presses only."""
+    """Iterate over the steps, and count them; the first one presses only."""
     drift = np.diff(points.time, axis=0, prepend=0.0)
     moved = np.diff(points.displacement, axis=0, prepend=points.displacement[:1])
     velocity = np.divide(moved, drift, out=np.zeros_like(moved), where=drift > 0.0)
-    rows = (_rows(each) for each in (moved, velocity, drift))
-    for by, speed, time, after in zip(*rows, contacts, strict=True):
+    rows = zip(*(_rows(each) for each in (moved, velocity, drift)), contacts, strict=True)
+    for blamed.step, (by, speed, time, after) in enumerate(rows, 1):
         # The force acts on no body: the path is prescribed.
         yield Increment(locked(by), locked(speed), after.friction_load, 0.0 * time, time), after
 

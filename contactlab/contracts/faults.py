@@ -31,21 +31,26 @@ class blaming:  # noqa: N801 a context manager with a lower-case name, as in con
     ----------
     law : Law
         The law that runs in the context; the error names it.
+
+    Attributes
+    ----------
+    step : int
+        Number of the present step, from 1; the error names it too.
     """
 
-    __slots__ = ("law",)
+    __slots__ = ("law", "step")
 
     def __init__(self, law: Law) -> None:
-        self.law = law
+        self.law, self.step = law, 1
 
-    def __enter__(self) -> None:
-        pass
+    def __enter__(self) -> blaming:
+        return self
 
     def __exit__(self, kind: object, error: BaseException | None, where: object) -> None:
         if error is None or isinstance(error, KeyboardInterrupt | LawFaultError):
             return
         # SystemExit too: a plug-in must not end the process
-        raise LawFaultError(Status.LAW_RAISED, sentence(self.law, raised(error), 1)) from error
+        raise LawFaultError(Status.LAW_RAISED, sentence(self.law, raised(error), self.step)) from error
 
 
 def malformed(value: Any, shape: tuple[int, ...]) -> bool:

@@ -150,7 +150,9 @@ def test_of_two_entries_that_vary_the_longer_is_the_abscissa(tmp_path, speeds_fi
     for points, friction in zip(drawn, (0.05, 0.2), strict=True):
         rigid = 1.0 - 2.0 * friction / np.tan(np.radians(points[:, 0]))
         np.testing.assert_allclose(points[:, 1], np.maximum(rigid, 5.0 / 7.0), atol=1e-9)
-    differences(Figure().subplots(), comparison, "tangential_restitution")
+    axes = differences(Figure().subplots(), comparison, "tangential_restitution")
+    assert "angle" in axes.get_xlabel()
+    assert "law" in axes.get_ylabel()
 
 
 def test_csv_tells_every_entry_that_varies(run, tmp_path):

@@ -202,6 +202,18 @@ def test_steps_of_a_path_end_at_marks():
     assert batch.friction_force[:, 1] == pytest.approx(1e6 * moved, rel=1e-9)
 
 
+def test_a_path_with_marks_may_begin_in_contact():
+    """It is pressed from touch to its first point at the displacement of that point."""
+    law = Marked()
+    depth = np.concatenate((np.linspace(0.0, DEEP, 11), np.linspace(DEEP, 0.0, 11)[1:]))[3:]
+    moved = np.linspace(0.0, FULL, 21)[3:]
+    path = load_path(SCENE, depth, moved, tangential=law)
+    motion, *ends = law.ends
+    for phase in (0.5, 1.5, 3.0):
+        assert np.abs(np.array(ends) - motion.at(phase).approach).min() < 1e-12 * DEEP
+    assert path.friction_force == pytest.approx(1e6 * (moved - moved[0]), rel=1e-9, abs=1e-15)
+
+
 @attrs.frozen(kw_only=True)
 class Fails(Marked):
     """NaN, an exception or no answer from a tenth of FULL on, where mu is 0.5 or more."""
@@ -238,6 +250,7 @@ def test_a_failure_costs_its_path_only(way, status):
     path = load_path(scenes, np.full(21, DEEP), moved, tangential=Fails(way=way))
     assert list(path.status) == [Status.SUCCESS, status]
     assert "Fails" in path.detail
+    assert "At step 4:" in path.detail
     assert path.friction_force[:, 0] == pytest.approx(moved, abs=1e-20)
     assert np.isnan(path.friction_force[-1, 1])
     assert np.isfinite(path.friction_force[0, 1]) == (way != "raise")

@@ -67,6 +67,29 @@ def test_a_batch_of_coupled_and_central_impacts_is_its_impacts():
     assert np.array_equal(swept.normal_restitution, batch.normal_restitution)
 
 
+@attrs.frozen(kw_only=True)
+class Touchy(Exchanging):
+    """Raises for impacts of psi1 from 1 to 1.5, alone or in a batch."""
+
+    def start(self, scene, normal):
+        if np.any((scene.psi1 > 1.0) & (scene.psi1 < 1.5)):
+            raise ArithmeticError("such an impact")
+        return super().start(scene, normal)
+
+
+def test_impacts_beside_one_that_fails_keep_their_normal_motions():
+    psi1 = np.array([0.6, 1.2, 2.0, 3.0])
+    result = Simulation(tangential=Touchy(), integrator="symplectic").run(
+        Scene.nondimensional(psi1=psi1, chi=CHI)
+    )
+    assert list(result.failures) == [1]
+    sound = Simulation(tangential=Exchanging(), integrator="symplectic")
+    for index in (0, 2, 3):
+        alone = sound.run(Scene.nondimensional(psi1=float(psi1[index]), chi=CHI)).check()
+        assert result.normal_restitution[index] == pytest.approx(alone.normal_restitution)
+        assert result.motion.duration[index] == pytest.approx(alone.motion.duration)
+
+
 def test_a_history_shows_the_normal_motion_that_came_of_friction():
     impact = Scene.nondimensional(psi1=1.2, chi=CHI)
     result = Simulation(tangential=Exchanging(), integrator="symplectic").run(impact, history=True)

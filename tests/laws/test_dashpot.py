@@ -63,17 +63,17 @@ def test_closed_form_is_what_respond_gives(name, e):
     given = scene()
     closed, solved = normal_motion(law, given), normal_motion(_Stepwise(law), given)
     for entry in ("duration", "final_rate", "total_load_impulse"):
-        assert getattr(closed, entry) == pytest.approx(getattr(solved, entry), rel=1e-7), entry
+        assert getattr(closed, entry) == pytest.approx(getattr(solved, entry), rel=1e-9), entry
     for entry in ("maximum_approach", "maximum_radius", "maximum_force"):
-        assert getattr(closed, entry) == pytest.approx(getattr(solved, entry), rel=2e-6), entry
+        assert getattr(closed, entry) == pytest.approx(getattr(solved, entry), rel=1e-8), entry
     shares = np.linspace(0.05, 0.95, 19)
     one, other = closed.at(closed.phase(shares)), solved.at(solved.phase(shares))
-    for entry, scale in (
-        ("time", closed.duration), ("approach", closed.maximum_approach), ("rate", 1.0),
-        ("load_impulse", closed.total_load_impulse),
+    for entry, bound in (
+        ("time", 1e-9 * closed.duration), ("approach", 1e-9 * closed.maximum_approach),
+        ("rate", 1e-9), ("load_impulse", 2e-8 * closed.total_load_impulse),
     ):  # fmt: skip
-        assert getattr(one, entry) == pytest.approx(getattr(other, entry), abs=2e-7 * scale), entry
-    assert one.contact.force == pytest.approx(other.contact.force, abs=1e-6 * closed.maximum_force)
+        assert getattr(one, entry) == pytest.approx(getattr(other, entry), abs=bound), entry
+    assert one.contact.force == pytest.approx(other.contact.force, abs=1e-9 * closed.maximum_force)
 
 
 def test_a_batch_and_a_part_of_it_move_as_each_alone():
