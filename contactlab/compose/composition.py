@@ -18,6 +18,7 @@ from contactlab.contracts.tangential import (
     TangentialLaw,
     WholeImpactTangentialLaw,
 )
+from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 
 #: Defaults are plug-in names: of a list the first that is installed and fits. Coulomb's law at
@@ -49,6 +50,11 @@ class Laws(NamedTuple):
     normal: NormalLaw
     tangential: TangentialLaw
     integrator: Integrator
+
+    def accept(self, scene: Scene) -> None:
+        """Let a law that cannot run the scene refuse it."""
+        for each in self:
+            each.accept(scene)
 
 
 def law(kind: str, value: object, **options: Any) -> Any:

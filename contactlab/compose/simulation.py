@@ -71,7 +71,8 @@ class Simulation:
         history : bool or "fields"
             The same as in ``run``.
         """
-        laws = self._accepting(_scene(scene))
+        laws = self.laws
+        laws.accept(_scene(scene))
         with np.errstate(under="ignore"):
             prepared = solve.prepare(laws, scene, _history(history))
         return _complete(prepared.plan, scene)
@@ -102,7 +103,8 @@ class Simulation:
             a batch is requested whose impacts have different instants.
         """
         started = time.perf_counter()
-        laws, recorder = self._accepting(_scene(scene)), None
+        laws, recorder = self.laws, None
+        laws.accept(_scene(scene))
         if _history(history):
             recorder = Recorder(scene.shape, with_fields=history == "fields")
         plan, motion = solve.outcome(laws, scene, history, recorder)
@@ -176,7 +178,8 @@ class Simulation:
                 "must be a sequence, or a one-dimensional batch",
                 "for one impact use run",
             )
-        laws = self._accepting(batch)
+        laws = self.laws
+        laws.accept(batch)
         plan, motion = swept(
             laws, batch, progress=progress, chunk=chunk, executor=executor, keep=keep
         )
@@ -197,13 +200,6 @@ class Simulation:
             One impact or a batch.
         """
         return solve.normal_or_failed(self.laws, scene)
-
-    def _accepting(self, scene: Scene) -> Laws:
-        """Return the three laws, or let the law that cannot run ``scene`` refuse it."""
-        laws = self.laws
-        for law in laws:
-            law.accept(scene)
-        return laws
 
     @property
     def laws(self) -> Laws:
