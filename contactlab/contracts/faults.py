@@ -50,7 +50,9 @@ class blaming:  # noqa: N801 a context manager with a lower-case name, as in con
         if error is None or isinstance(error, KeyboardInterrupt | LawFaultError):
             return
         # SystemExit too: a plug-in must not end the process
-        raise LawFaultError(Status.LAW_RAISED, sentence(self.law, raised(error), self.step)) from error
+        raise LawFaultError(
+            Status.LAW_RAISED, sentence(self.law, raised(error), self.step)
+        ) from error
 
 
 def malformed(value: Any, shape: tuple[int, ...]) -> bool:
