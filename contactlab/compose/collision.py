@@ -95,7 +95,7 @@ class Collision:
             why = "must be the result of encounter.scene"
             raise refuse("result", result, why, "run that: simulation.run(encounter.scene)")
         moved = impulses.moved(encounter, _columns(encounter, result))
-        return _collision(encounter, moved, known=result)
+        return cls(encounter=encounter, **moved, known=result)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the vectors of both bodies after the collision as plain lists."""
@@ -336,7 +336,7 @@ def collide(
     if simulation is None:
         strict = separating == "refuse"
         moved = impulses.moved(encounter, restitution=e, strict=strict)
-        return _collision(encounter, moved, restitution=e)
+        return Collision(encounter=encounter, **moved, restitution=e)
     if np.any(e != 1.0):
         remedy = "give it to the normal law: create('normal.tsuji', restitution=0.9)"
         raise refuse("restitution", restitution, "stands in place of a simulation", remedy)
@@ -344,7 +344,8 @@ def collide(
     if separating == "refuse" and not np.all(met):
         raise encounter.separate()
     if not np.any(met):
-        return _collision(encounter, impulses.moved(encounter), simulation=simulation)
+        moved = impulses.moved(encounter)
+        return Collision(encounter=encounter, **moved, simulation=simulation)
     if np.all(met):
         scene = encounter.scene
     else:  # the index of an impact is its place in the whole batch
@@ -352,7 +353,7 @@ def collide(
         scene = encounter.take(met).scene.numbered(places)
     result = _run(simulation, scene)
     moved = impulses.moved(encounter, _columns(encounter, result, met))
-    return _collision(encounter, moved, simulation=simulation, known=result)
+    return Collision(encounter=encounter, **moved, simulation=simulation, known=result)
 
 
 def _joined(parts: list[tuple[Any, Plan]]) -> Plan:
@@ -384,11 +385,6 @@ def _columns(encounter: Encounter, result: ImpactResult, met: Any = True) -> Arr
     for k, quantity in enumerate(quantities):
         columns[k, met] = quantity
     return columns.reshape(3, -1)
-
-
-def _collision(encounter: Encounter, moved: impulses.Moved, **rest: Any) -> Collision:
-    """Return the collision whose bodies are ``moved``."""
-    return Collision(encounter=encounter, **moved._asdict(), **rest)
 
 
 def _rim(body: Sphere, spin: Array, normal: Array) -> Array:

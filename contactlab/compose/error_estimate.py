@@ -55,7 +55,8 @@ def estimated(laws: Laws, result: ImpactResult) -> Real:
     marched = successes & result.plan.marched
     resolutions = np.where(marched, _resolution(laws, scene) if np.any(marched) else 0.0, np.nan)
     change = np.asarray(result.motion.slip_velocity_change)
-    for resolution in [*np.unique(resolutions[marched]).tolist(), None]:
+    # not np.unique, which imports numpy.ma
+    for resolution in [*sorted(set(resolutions[marched].tolist())), None]:
         where = successes & ~marched
         if resolution is not None:
             where = marched & (resolutions == resolution)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from contactlab.impact.encounter import Contact, Encounter
 from contactlab.impact.scene import LEAST_IMPULSE
 from contactlab.numeric.arrays import chosen, every, locked
 from contactlab.numeric.checks import Real, refuse
-from contactlab.numeric.vectors import LEAST, components
+from contactlab.numeric.vectors import LEAST, components, three
 
 Array = NDArray[np.float64]
 
@@ -21,19 +21,8 @@ Array = NDArray[np.float64]
 END_OF_DAMPED = 1e4
 #: Velocities and spins of both bodies.
 VECTORS = ("velocity", "spin", "target_velocity", "target_spin")
-
-
-class Moved(NamedTuple):
-    """Both bodies after an encounter; see ``Collision``."""
-
-    velocity: Array
-    spin: Array
-    target_velocity: Array
-    target_spin: Array
-    normal_velocity: Real
-    slip_velocity_change: Real
-    friction_work: Real
-    collided: Any
+#: Attributes of a ``Collision``, by name.
+Moved: TypeAlias = dict[str, Any]
 
 
 def rebounding(
@@ -113,12 +102,8 @@ def moved(
         push, drag = pair.normal_mass * (after - contact.approach), pair.tangential_mass * change
         _push([array[where] for array in flat], part, contact, push, drag)
     after, change, work = (locked(each) if shape else float(each) for each in numbers)
-    velocity, spin, target_velocity, target_spin = map(locked, vectors)
-    return Moved(
-        velocity,
-        spin,
-        target_velocity,
-        target_spin,
+    return dict(
+        zip(VECTORS, map(locked, vectors), strict=True),
         normal_velocity=after,
         slip_velocity_change=change,
         friction_work=work,
@@ -129,30 +114,37 @@ def moved(
 def _alone(encounter: Encounter, restitution: Any, strict: bool) -> Moved:
     """Return both bodies after a single encounter, in plain numbers."""
     contact, pair = encounter.contact(), encounter.pair
-    collided = contact.approach >= LEAST
-    after, change, work, psi2 = contact.approach, 0.0, 0.0, 0.0
+    _, _, approach, slip = contact
+    collided, after, change, work = approach >= LEAST, approach, 0.0, 0.0
+    normal_mass, tangential_mass = pair.normal_mass, pair.tangential_mass
     if collided:
-        chi, mass = float(pair.inertia_ratio), float(pair.tangential_mass)
-        unit = float(encounter.friction_coefficient * contact.approach / pair.stiffness_ratio)
+        chi, unit = pair.inertia_ratio, encounter.friction_coefficient * approach
+        unit /= pair.stiffness_ratio
         end = 4.0 * chi + 1.0 if restitution == 1.0 else END_OF_DAMPED
-        psi1 = end if contact.slip >= end * unit else contact.slip / unit
-        psi2 = float(rebound(psi1, chi, restitution=float(restitution)))
-        change = (psi2 - psi1) * unit
-        work = max(-mass * change * (contact.slip + 0.5 * change), 0.0)
-        after = -float(restitution) * contact.approach
-        _check(encounter, pair.normal_mass * contact.approach, change)
+        psi1 = end if slip >= end * unit else slip / unit
+        change = (rebound(psi1, chi, restitution=restitution) - psi1) * unit
+        work = max(-tangential_mass * change * (slip + 0.5 * change), 0.0)
+        after = -restitution * approach
+        _check(encounter, normal_mass * approach, change)
     elif strict:
         raise encounter.separate()
-    push, drag = pair.normal_mass * (after - contact.approach), pair.tangential_mass * change
-    velocity, spin, target_velocity, target_spin = _pushed(
-        encounter, contact, float(push), float(drag)
-    )
-    return Moved(velocity, spin, target_velocity, target_spin, after, change, work, collided)
+    push, drag = normal_mass * (after - approach), tangential_mass * change
+    velocity, spin, target_velocity, target_spin = _pushed(encounter, contact, push, drag)
+    return {
+        "velocity": velocity,
+        "spin": spin,
+        "target_velocity": target_velocity,
+        "target_spin": target_spin,
+        "normal_velocity": after,
+        "slip_velocity_change": change,
+        "friction_work": work,
+        "collided": collided,
+    }
 
 
-def _pushed(part: Encounter, contact: Contact, push: float, drag: float) -> list[Array]:
+def _pushed(part: Encounter, contact: Contact, push: Any, drag: Any) -> list[Array]:
     """Return ``VECTORS`` of a single encounter after both impulses, in N s."""
-    (n1, n2, n3), (t1, t2, t3) = contact.normal, contact.along
+    (n1, n2, n3), (t1, t2, t3), _, _ = contact
     vectors = []
     for body, velocity, spin, sense in (
         (part.sphere, part.velocity, part.spin, 1.0),
@@ -162,23 +154,22 @@ def _pushed(part: Encounter, contact: Contact, push: float, drag: float) -> list
             vectors += [velocity, spin]
             continue
         (v1, v2, v3), (w1, w2, w3) = velocity.tolist(), spin.tolist()
-        mass, radius, gyration = float(body.mass), float(body.radius), float(body.gyration_ratio)
+        mass, radius, gyration = body.mass, body.radius, body.gyration_ratio
         ahead, aside = sense * push / mass, sense * drag / mass
         # divided step by step: the moment of inertia of a tiny body underflows
         turn = drag / mass / (gyration * gyration * radius)
-        moved = (
-            v1 + (ahead * n1 + aside * t1),
-            v2 + (ahead * n2 + aside * t2),
-            v3 + (ahead * n3 + aside * t3),
-        )
-        turned = (
-            w1 + turn * (n2 * t3 - n3 * t2),
-            w2 + turn * (n3 * t1 - n1 * t3),
-            w3 + turn * (n1 * t2 - n2 * t1),
-        )
-        vectors += [np.array(moved), np.array(turned)]
-    for vector in vectors:
-        vector.flags.writeable = False
+        vectors += [
+            three(
+                v1 + (ahead * n1 + aside * t1),
+                v2 + (ahead * n2 + aside * t2),
+                v3 + (ahead * n3 + aside * t3),
+            ),
+            three(
+                w1 + turn * (n2 * t3 - n3 * t2),
+                w2 + turn * (n3 * t1 - n1 * t3),
+                w3 + turn * (n1 * t2 - n2 * t1),
+            ),
+        ]
     return vectors
 
 

@@ -126,7 +126,7 @@ def _drawn(
     size: tuple[float, float],
 ) -> Figure:
     """Return a drawn figure; ``size`` is in inches, other arguments are those of ``save``."""
-    figure = Figure(figsize=size)
+    figure = Figure(figsize=size, dpi=RESOLUTION)  # as it is written: text is measured once
     FigureCanvasAgg(figure)
     if columns > 1 and size[0] < NARROW:
         axes = _stacked(figure, rows=rows, columns=columns, heights=heights)

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: Points along a curve beside which its name may stand, and points that stand for a curve.
+#: Places along a curve beside which its name may stand, and most points that stand for a curve.
 PLACES, POINTS = 48, 1500
 #: Boxes that are compared with all points of a curve at once: what a processor's cache holds.
-BOXES = 16
+BOXES = 32
 #: Distances in points: least between two names, least between a name and any curve, and those
 #: that are tried between a name and its own curve.
 BETWEEN, LEAST, GAPS = 2.5, 1.5, (2.5, 5.0, 9.0)
@@ -57,10 +57,15 @@ def name_curves(
     """
     figure = axes.get_figure(root=True)
     assert figure is not None
-    figure.draw_without_rendering()  # limits and layout come first
+    # limits and layout come first
+    if (layout := figure.get_layout_engine()) is not None:
+        layout.execute(figure)
+    else:
+        figure.draw_without_rendering()
     unit = figure.dpi / 72.0
-    dots = {line: _dots(line) for line in axes.lines if len(np.atleast_1d(line.get_xdata())) > 2}
-    rules = [_dots(line) for line in axes.lines if line not in dots]
+    curved = [line for line in axes.lines if len(np.atleast_1d(line.get_xdata())) > 2]
+    dots = {line: _dots(line, unit) for line in curved}
+    rules = [_dots(line, unit) for line in axes.lines if line not in dots]
     taken = [_box(text.get_window_extent()) for text in axes.texts if text.get_text()]
     if (legend := axes.get_legend()) is not None:
         taken.append(_box(legend.get_window_extent()))
@@ -104,15 +109,21 @@ def name_curves(
     return True
 
 
-def _dots(line: Line2D) -> Array:
-    """Return many points along a line, shape (n, 2), in dots."""
+def _dots(line: Line2D, unit: float) -> Array:
+    """Return points along a line, ``unit`` dots apart if that is not too many, shape (n, 2)."""
     xy = np.asarray(line.get_transform().transform(line.get_xydata()), dtype=np.float64)
     xy = xy[np.isfinite(xy).all(axis=1)]
     if len(xy) < 2:
         return xy
     along = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(xy, axis=0).T))))
-    fine = np.linspace(0.0, along[-1], POINTS)
+    count = int(min(max(along[-1] / unit, PLACES), POINTS))
+    fine = np.linspace(0.0, along[-1], count)
     return np.column_stack([np.interp(fine, along, column) for column in xy.T])
+
+
+def _places(points: Array) -> Array:
+    """Return ``PLACES`` points of a curve or some more, evenly spaced."""
+    return points[:: max(len(points) // PLACES, 1)]
 
 
 def _box(extent: Any) -> Array:
@@ -122,7 +133,7 @@ def _box(extent: Any) -> Array:
 
 def _crowd(dots: dict[Line2D, Array], line: Line2D) -> float:
     """Return how near the other curves are: minus the greatest distance to the nearest."""
-    places = dots[line][:: POINTS // PLACES]
+    places = _places(dots[line])
     others = [points for other, points in dots.items() if other is not line]
     if not others:
         return 0.0
@@ -132,7 +143,7 @@ def _crowd(dots: dict[Line2D, Array], line: Line2D) -> float:
 
 def _distances(places: Array, points: Array) -> Array:
     """Return the distance of each place from the nearest point."""
-    return np.asarray(np.sqrt(((places[:, None] - points[None, ::4]) ** 2).sum(axis=2)).min(axis=1))
+    return np.asarray(np.sqrt(((places[:, None] - points[None]) ** 2).sum(axis=2)).min(axis=1))
 
 
 def _off(boxes: Array, points: Array) -> Array:
@@ -193,7 +204,7 @@ class _Room(NamedTuple):
             for side in (-1.0, 1.0)
             for shift in (-0.5, 0.0, 0.5)
         ]
-        centres = (self.own[:: POINTS // PLACES, None] + np.array(offsets)).reshape(-1, 2)
+        centres = (_places(self.own)[:, None] + np.array(offsets)).reshape(-1, 2)
         centres = centres[self._free(_boxes(centres, size))]
         if not len(centres):
             return None
@@ -210,7 +221,7 @@ class _Room(NamedTuple):
         """Return the best centre of the name away from its curve, and where its line begins."""
         best, place = np.inf, None
         size, unit, pad = self.size, self.unit, LEAST * self.unit
-        for point in self.own[:: POINTS // PLACES]:
+        for point in _places(self.own):
             distances = (_distances(point[None], points)[0] for points in self.others)
             if min(distances, default=9e9) < APART * unit:
                 continue

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cache
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import attrs
@@ -11,10 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
+from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import NON_NEGATIVE, Real, first_of, instance, quantity, refuse
-from contactlab.numeric.vectors import LEAST, NOTHING, components, difference, square_root, vector
+from contactlab.numeric.vectors import (
+    LEAST,
+    NOTHING,
+    components,
+    difference,
+    moving,
+    square_root,
+    vector,
+)
 
 Array = NDArray[np.float64]
 
@@ -40,6 +51,9 @@ class Contact(NamedTuple):
     slip: Any
 
 
+#: Fields of an encounter that are vectors.
+VECTORS = ("normal", "velocity", "spin", "target_velocity", "target_spin")
+_DIMENSIONS = attrgetter(*(f"{name}.ndim" for name in VECTORS))
 #: The bodies of the last single encounter, and their pair.
 _last: Any = (None, None, None)
 
@@ -95,17 +109,22 @@ class Encounter:
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
 
     def __attrs_post_init__(self) -> None:
-        shapes = {name: value.shape[:-1] for name, value in self._vectors().items()}
-        shapes |= {name: getattr(value, "shape", ()) for name, value in self._numbers().items()}
-        shape = ()
-        if any(shapes.values()):
+        paths, numbers = _numbers(isinstance(self.target, Sphere))
+        values, shape = numbers(self), ()
+        if np.ndarray in map(type, values) or max(_DIMENSIONS(self)) > 1:
+            shapes = {name: getattr(self, name).shape[:-1] for name in VECTORS}
+            shapes |= {
+                path.replace(".material", ""): value.shape
+                for path, value in zip(paths, values, strict=True)
+                if isinstance(value, np.ndarray)
+            }
             shape = batch.common_shape(
                 shapes,
                 what="Encounter: the batch shapes",
                 remedy="give one vector, or as many as there are encounters",
             )
         object.__setattr__(self, "shape", shape)
-        if isinstance(self.target, HalfSpace) and np.any(self.target_spin):
+        if isinstance(self.target, HalfSpace) and moving(self.target_spin):
             raise refuse(
                 "target_spin",
                 self.target_spin,
@@ -121,23 +140,6 @@ class Encounter:
             first = self.normal[tuple(where[0])].tolist() if where.size else self.normal.tolist()
             raise refuse("normal", first, rule, "two bodies at one place have no normal")
 
-    def _vectors(self) -> dict[str, Array]:
-        """Return every vector, by name."""
-        return {name: getattr(self, name) for name in _fields(Encounter, "vector")}
-
-    def _numbers(self) -> dict[str, Real]:
-        """Return every number, by name."""
-        numbers = {"friction_coefficient": self.friction_coefficient}
-        for name, body in (("sphere", self.sphere), ("target", self.target)):
-            material = body.material
-            parts: list[Any] = [body, material] if isinstance(body, Sphere) else [material]
-            for part in parts:
-                kind: Any = type(part)
-                for entry in _fields(kind, "unit"):
-                    if getattr(part, entry) is not None:
-                        numbers[f"{name}.{entry}"] = getattr(part, entry)
-        return numbers
-
     def take(self, part: Any) -> Encounter:
         """Return the encounters that ``part`` indexes.
 
@@ -150,10 +152,10 @@ class Encounter:
         for name in ("sphere", "target", "friction_coefficient"):
             value = batch.taken(getattr(self, name), self.shape, part)
             object.__setattr__(taken, name, value)
-        for name, value in self._vectors().items():
-            vectors = value
-            if value.ndim > 1:
-                vectors = np.broadcast_to(value, (*self.shape, 3))[part]
+        for name in VECTORS:
+            vectors = getattr(self, name)
+            if vectors.ndim > 1:
+                vectors = np.broadcast_to(vectors, (*self.shape, 3))[part]
             object.__setattr__(taken, name, vectors)
         example = np.empty(self.shape, dtype=bool)[part] if self.shape else ()
         object.__setattr__(taken, "shape", np.shape(example))
@@ -212,7 +214,7 @@ class Encounter:
     def _rim(self) -> tuple[Any, Any, Any]:
         """Return R1 omega1 + R2 omega2 in m/s, whose cross product with the normal is slip."""
         rim = [self.sphere.radius * component for component in components(self.spin)]
-        if isinstance(self.target, Sphere) and self.target_spin.any():
+        if isinstance(self.target, Sphere) and moving(self.target_spin):
             radius = self.target.radius
             for k, component in enumerate(components(self.target_spin)):
                 rim[k] = rim[k] + radius * component
@@ -260,6 +262,11 @@ class Encounter:
 
 
 @cache
-def _fields(kind: Any, word: str) -> tuple[str, ...]:
-    """Return the names of the fields of ``kind`` that have ``word`` in their metadata."""
-    return tuple(field.name for field in attrs.fields(kind) if word in field.metadata)
+def _numbers(two_spheres: bool) -> tuple[list[str], Callable[[Encounter], Any]]:
+    """Return the path of every number of an encounter, and the function that returns them all."""
+    paths = ["friction_coefficient"]
+    parts: dict[str, Any] = {"sphere": Sphere, "sphere.material": Material}
+    parts |= {"target": Sphere if two_spheres else HalfSpace, "target.material": Material}
+    for part, kind in parts.items():
+        paths += [f"{part}.{one.name}" for one in attrs.fields(kind) if "unit" in one.metadata]
+    return paths, attrgetter(*paths)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import struct
 from typing import Any
 
 import attrs
@@ -14,8 +15,7 @@ from contactlab.numeric.checks import Rule, first_of, key, real, refuse
 Array = NDArray[np.float64]
 
 NOTHING = (0.0, 0.0, 0.0)
-_ZERO = np.zeros(3)
-_ZERO.flags.writeable = False
+_THREE, _PLAIN = struct.Struct("3d"), (float, int, np.float64)
 #: Largest number in a vector, and least length of a normal and least speed of approach. The
 #: squares of these bounds are finite and positive in floating point.
 LARGEST, LEAST = 1e100, 1e-100
@@ -29,7 +29,7 @@ def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
         kw_only=True,
         converter=attrs.Converter(_checked, takes_field=True),
         eq=key,
-        metadata={"vector": True, "unit": unit},
+        metadata={"unit": unit},
     )
 
 
@@ -37,23 +37,24 @@ def _checked(value: object, field: attrs.Attribute[Any]) -> Array:
     """Return vectors, shape (..., 3), as a read-only copy."""
     if value is NOTHING:
         return _ZERO
-    vectors = _alone(value)
-    if vectors is None:
-        vectors = _many(value, field)
+    numbers: Any = value.tolist() if type(value) is np.ndarray and value.shape == (3,) else value
+    if type(numbers) in (list, tuple) and len(numbers) == 3:  # three plain numbers, the fast path
+        x, y, z = numbers
+        plain = type(x) in _PLAIN and type(y) in _PLAIN and type(z) in _PLAIN
+        within = plain and -LARGEST <= x <= LARGEST and -LARGEST <= y <= LARGEST
+        if within and -LARGEST <= z <= LARGEST:
+            return three(x, y, z)
+    vectors = _many(value, field)
     vectors.flags.writeable = False
     return vectors
 
 
-def _alone(value: Any) -> Array | None:
-    """Return ``value`` as a vector if it is three plain numbers, the fast path; else None."""
-    numbers = value.tolist() if type(value) is np.ndarray and value.shape == (3,) else value
-    if type(numbers) not in (list, tuple) or len(numbers) != 3:
-        return None
-    for number in numbers:
-        plain = isinstance(number, float) or type(number) is int
-        if not (plain and -LARGEST <= number <= LARGEST):
-            return None
-    return np.array(numbers, dtype=np.float64)
+def three(x: float, y: float, z: float) -> Array:
+    """Return a read-only vector; ``np.array`` takes longer."""
+    return np.frombuffer(_THREE.pack(x, y, z))
+
+
+_ZERO = three(*NOTHING)
 
 
 def _many(value: Any, field: attrs.Attribute[Any]) -> Array:
@@ -89,6 +90,11 @@ def components(vectors: Array) -> tuple[Any, Any, Any]:
     return x, y, z
 
 
+def moving(vectors: Array) -> bool:
+    """Return whether any vector is not zero."""
+    return vectors is not _ZERO and bool(vectors.any())
+
+
 def square_root(square: Any) -> Any:
     """Return the square root of an array, or of a float as a float."""
     return math.sqrt(square) if isinstance(square, float) else np.sqrt(square)
@@ -97,7 +103,7 @@ def square_root(square: Any) -> Any:
 def difference(minuend: Array, subtrahend: Array) -> tuple[Any, Any, Any]:
     """Return the components of ``minuend - subtrahend``."""
     x, y, z = components(minuend)
-    if not subtrahend.any():
+    if not moving(subtrahend):
         return x, y, z
     a, b, c = components(subtrahend)
     return x - a, y - b, z - c

@@ -137,29 +137,34 @@ def rebound(psi1: Any, chi: Any, *, derivatives: bool = False) -> Any:
         Whether to return (psi2, d psi2/d psi1, d psi2/d chi); arrays only.
     """
     if psi1.__class__ is float and not derivatives:
-        single = _single()
-        return single(psi1, chi) if psi1 >= 0.0 else -single(-psi1, chi)
-    speed, shape = np.abs(psi1).ravel(), psi1.shape
-    psi2 = values(shipped(), speed, chi.ravel()).reshape(shape)
-    np.negative(psi2, out=psi2, where=psi1 < 0.0)
+        return _single()(psi1, chi)
+    flat, ratios, shape = psi1.ravel(), chi.ravel(), psi1.shape
+    if flat.size < FEW:
+        psi2 = np.array(list(map(_single(), flat.tolist(), ratios.tolist())))
+    else:
+        psi2 = values(shipped(), np.abs(flat), ratios)
+        np.negative(psi2, out=psi2, where=flat < 0.0)
+    psi2 = psi2.reshape(shape)
     if not derivatives:
         return psi2
-    by_psi1, by_chi = (each.reshape(shape) for each in gradient(shipped(), speed, chi.ravel()))
+    slopes = gradient(shipped(), np.abs(flat), ratios)
+    by_psi1, by_chi = (each.reshape(shape) for each in slopes)
     return psi2, by_psi1, by_chi * np.copysign(1.0, psi1)
 
 
 @cache
 def _single() -> Callable[[float, float], float]:
-    """Return the function of psi1 >= 0 and chi that gives psi2 of one impact in plain floats."""
+    """Return the function of psi1 and chi that gives psi2 of one impact in plain floats."""
     table = shipped()
     cuts = SingleCuts(*map(compiled_polynomial, table.cuts))
     grid, patches, last = table.grid.tolist(), table.patches.single, SIZE - 1
 
-    def single(speed: float, chi: float) -> float:
+    def single(psi1: float, chi: float) -> float:
+        speed = abs(psi1)
         full = speed - 4.0 * chi
         here = place(speed, chi, cuts)
         if here is None:
-            return full
+            return full if psi1 >= 0.0 else -full
         region, a, b, measure = here
         i, j = int(a * SIZE), int(b * SIZE)
         i, j = i if i < SIZE else last, j if j < SIZE else last
@@ -168,7 +173,8 @@ def _single() -> Callable[[float, float], float]:
         # no impact gains energy, nor more impulse than full slip gives: not even by an error
         psi2 = psi2 if psi2 > full else full
         psi2 = psi2 if psi2 < speed else speed
-        return psi2 if psi2 >= -speed else -speed
+        psi2 = psi2 if psi2 >= -speed else -speed
+        return psi2 if psi1 >= 0.0 else -psi2
 
     return single
 
@@ -176,8 +182,6 @@ def _single() -> Callable[[float, float], float]:
 @np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
 def values(table: Table, speed: Array, chi: Array) -> Array:
     """Return psi2 for psi1 = speed >= 0 and 0 < chi <= LARGEST_CHI, shape (impacts,)."""
-    if speed.size < FEW and table is shipped():
-        return np.array(list(map(_single(), speed.tolist(), chi.tolist())))
     psi2 = np.empty_like(speed)
     for first in range(0, speed.size, BLOCK):
         part = slice(first, first + BLOCK)

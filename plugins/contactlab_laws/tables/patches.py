@@ -79,14 +79,17 @@ class Patches:
 
     def _gathered(self, patch: Numbers, a: Array, b: Array) -> Array:
         """Return values at places in any order."""
-        x, y = a - self.origins[0, patch], b - self.origins[1, patch]
+        at = np.concatenate((a, b))
+        at -= self.origins.take(patch, axis=1).reshape(-1)
         rows, columns = self.terms.shape[1:]
-        y_powers = powers(y, np.empty((columns, y.size), y.dtype)).T.copy()[..., None]
-        sums = np.empty((x.size, rows, 1), x.dtype)
-        for first in range(0, x.size, GATHERED):
+        room = np.empty((max(rows, columns), at.size), at.dtype)
+        x_powers, y_powers = powers(at, room).reshape(-1, 2, a.size).swapaxes(0, 1)
+        y_powers = y_powers[:columns].T.copy()[..., None]
+        sums = np.empty((a.size, rows, 1), at.dtype)
+        for first in range(0, a.size, GATHERED):
             part = slice(first, first + GATHERED)
-            np.matmul(self.terms[patch[part]], y_powers[part], out=sums[part])
-        return _horner(np.ascontiguousarray(sums[..., 0].T), x)
+            np.matmul(self.terms.take(patch[part], axis=0), y_powers[part], out=sums[part])
+        return np.asarray(np.einsum("nk,kn->n", sums[..., 0], x_powers[:rows]))
 
     @cached_property
     def single(self) -> list[Callable[[float, float], float]]:

@@ -136,18 +136,21 @@ def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
         Polynomials of the boundaries between regions.
     """
     kind = _kinds(speed, chi)
-    stops = [int(np.count_nonzero(kind <= last)) for last in range(FULL)]
+    who = np.argsort(kind, kind="stable")
+    stops = kind[who].searchsorted(range(1, FULL + 1)).tolist()
     near, far, stuck, early, late = map(slice, [0, *stops], stops)
-    who = np.argsort(kind, kind="stable")[: stops[-1]]
+    who = who[: stops[-1]]
     p, x = speed[who], chi[who]
     region, (a, b) = np.empty(who.size, dtype=np.int32), np.empty((2, who.size), x.dtype)
     measure = 2.0 * x - 1.0
     measure[measure.real < 0.0] *= -1.0
-    region[near], b[near] = SMALL_NEAR, measure[near]
-    a[near] = ((1.0 - p[near]) / b[near]) ** 0.2
-    region[far], b[far] = SMALL_FAR, 1.0 - p[far]
-    np.divide(measure[far], b[far], out=a[far])
-    a[stuck], measure[far] = p[stuck], b[far]
+    if far.stop:  # an empty part takes as long as a small one
+        region[near], b[near] = SMALL_NEAR, measure[near]
+        a[near] = ((1.0 - p[near]) / b[near]) ** 0.2
+        region[far], b[far] = SMALL_FAR, 1.0 - p[far]
+        np.divide(measure[far], b[far], out=a[far])
+        measure[far] = b[far]
+    a[stuck] = p[stuck]
     b[stuck], above = _across(x[stuck], polynomial(cuts.stuck, a[stuck]), LARGEST_CHI)
     region[stuck] = STUCK_BACK
     region[stuck][above] = STUCK_ON
