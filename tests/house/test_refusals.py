@@ -10,8 +10,11 @@ ROOT = Path(contactlab.__file__).parents[1]
 
 def refusals(text):
     """Return the arguments of every call of ``refuse`` in a file."""
+    if "refuse(" not in text:
+        return []
     calls = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)]
-    return [call.args for call in calls if ast.unparse(call.func).split(".")[-1] == "refuse"]
+    names = [getattr(call.func, "attr", getattr(call.func, "id", "")) for call in calls]
+    return [call.args for call, name in zip(calls, names, strict=True) if name == "refuse"]
 
 
 def wrong(text):
