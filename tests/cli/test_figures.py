@@ -99,6 +99,8 @@ def test_figure_1_forces_stay_inside_the_friction_limit(simulation):
     data = figure_1(simulation)
     normal, *tangential = data.curves
     assert normal.y.max() == pytest.approx(1.0, abs=1e-3)
+    assert (normal.name, np.isnan(normal.parameter)) == ("P/P_max", True)
+    assert {curve.name for curve in tangential} == {"F/(mu P_max)"}
     assert len(tangential) >= 4
     for curve in tangential:
         assert np.all(np.abs(curve.y) <= normal.y + 0.05)

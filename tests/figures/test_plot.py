@@ -27,6 +27,7 @@ def test_a_batch_is_psi2_over_psi1_in_order(axes, many):
     (line,) = axes.lines
     np.testing.assert_array_equal(line.get_xdata(), [0.0, 1.0, 3.0, 5.0])
     np.testing.assert_array_equal(line.get_ydata(), [0.0, 0.0, 0.0, 1.0])
+    assert line.get_marker() == ""
     assert "psi_1" in axes.get_xlabel()
 
 
@@ -40,7 +41,7 @@ def test_any_columns_angles_in_degrees_too(axes, many):
 def test_impacts_that_share_an_abscissa_are_points(axes):
     scene = Scene.nondimensional(psi1=[1.0, 1.0, 2.0], chi=[1.0, 1.4, 1.0])
     Simulation(tangential="coulomb").run(scene).plot(axes=axes)
-    assert axes.lines[0].get_linestyle() == "None"
+    assert (axes.lines[0].get_linestyle(), axes.lines[0].get_marker()) == ("None", ".")
 
 
 def test_the_numerical_error_is_a_band_where_it_can_be_seen(axes, many):
@@ -61,6 +62,9 @@ def test_one_impact_is_its_force_over_time(axes):
     assert force.max() == pytest.approx(
         result.history.tangential_force.max() / result.motion.maximum_force
     )
+    upper, lower = (line.get_ydata() for line in axes.lines[-3:-1])
+    np.testing.assert_array_equal(upper, -lower)
+    assert upper.max() == pytest.approx(1.0, abs=1e-3)
     assert draw_history(Figure().subplots(), result.history).get_xlabel() == "time (s)"
 
 

@@ -84,6 +84,15 @@ def test_a_name_in_degrees_does_not_overrule_a_heading_in_radians():
     assert found.errors["slip_restitution"] == 0.1
 
 
+def test_chosen_quantities_keep_their_errors_and_no_others():
+    columns = {"angle_deg": [10.0, 20.0], "slip_restitution": [0.1, 0.2]}
+    columns |= {"slip_restitution_error": [0.01, 0.02], "normal_restitution": [0.9, 0.9]}
+    columns |= {"normal_restitution_error": [0.03, 0.03]}
+    chosen = read_measurements(columns).only(["slip_restitution"])
+    assert list(chosen.measured) == list(chosen.errors) == ["slip_restitution"]
+    assert chosen.errors["slip_restitution"].tolist() == [0.01, 0.02]
+
+
 def test_a_published_table_is_read_by_a_mapping(tmp_path):
     """The headings of a file of Kharaz and others' spins (2001): words, degrees, rad/s."""
     path = tmp_path / "spin.csv"

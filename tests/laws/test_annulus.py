@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create
-from contactlab_laws.annulus import tables
+from contactlab_laws.annulus import many, tables
 from contactlab_laws.march.division import endpoints
 from tests.laws import plain
 from tests.laws.exact_laws import CHI, grid, marched_change, order, rms, simulation
@@ -84,7 +84,10 @@ def test_worst_error_at_50_annuli_and_500_steps():
     assert rms(error) > 1e-4  # else these are not the paper's annuli
 
 
-def test_a_batch_gives_what_its_impacts_give_one_by_one():
+@pytest.mark.parametrize("passes", [200, 1])
+def test_a_batch_gives_what_its_impacts_give_one_by_one(passes, monkeypatch):
+    """Too few passes settle no division: those impacts are then marched one by one."""
+    monkeypatch.setattr(many, "MOST_PASSES", passes)
     psi1 = np.array([0.05, 0.8, -1.3, 2.2, 4.1])
     chi = np.array([CHI, 0.7, 1.4, 2.0, CHI])
     together = impact(psi1, chi, 20, 100)

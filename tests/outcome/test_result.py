@@ -1,6 +1,7 @@
 """What a result says, against the mechanics of rigid bodies and of Hertz, worked out by hand."""
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -142,6 +143,12 @@ def test_failures_are_counted_sentence_by_sentence():
     assert len(told) == 2
     assert told[0].endswith("(2 impacts)")
     assert not told[1].endswith("impacts)")
+
+
+def test_the_run_time_is_that_of_the_run():
+    before = time.perf_counter()
+    result = Simulation(tangential="coulomb").run(Scene.nondimensional(psi1=1.0, chi=1.0))
+    assert 0.0 < result.run_time < time.perf_counter() - before
 
 
 def test_the_table_of_a_ball_on_a_ball_has_the_target_at_rest_before():
