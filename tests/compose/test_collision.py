@@ -231,7 +231,8 @@ def test_lists_tuples_and_arrays_are_the_same_vector():
         met = meeting(velocity=kind([0.5, 0.0, -1.0]), normal=kind([0, 0, -1]))
         assert np.array_equal(met.velocity, wanted.velocity[0])
         assert (met.velocity.dtype, met.shape, met.normal.dtype) == (np.float64, (), np.float64)
-        for vector in (met.velocity, met.target_velocity):  # all that are left out share one zero
+        # all that are left out share one zero
+        for vector in (met.velocity, met.target_velocity, wanted.velocity):
             with pytest.raises(ValueError, match="read-only"):
                 vector[0] = 1.0
     for bad in ([math.nan, 0, 0], [1e101, 0, 0], [10**400, 0, 0], ["1", 0, 0]):

@@ -262,3 +262,15 @@ def test_values_of_the_wrong_kind_are_refused_with_what_was_meant():
         Sphere(0.01, "steel")
     with pytest.raises(ValueError, match=r"for a file use read_scene\(path\)"):
         Simulation().run("scene.toml")
+
+
+@pytest.mark.parametrize("psi1", [0.0, 9.0])
+def test_fields_are_followed_where_the_impact_is_known_as_a_whole(psi1):
+    """Without slip, and in slip throughout: the closed form has no tractions."""
+    scene = Scene.nondimensional(psi1=psi1, chi=1.0)
+    simulation = Simulation(tangential="springs")
+    assert not simulation.plan(scene).marched.any()
+    result = simulation.run(scene, history="fields").check()
+    assert result.plan.marched.all()
+    assert set(result.history.fields) >= {"radius", "displacement", "limit"}
+    assert len(result.history.fields["limit"]) == len(result.history.time)
