@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -69,6 +70,7 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
         if (np.nan_to_num(comparison.values("psi2", name) - comparison.scene.psi1) == 0.0).all():
             continue
         (close if np.nanmax(difference) < AS_GOOD_AS * size else drawn).append(name)
+    close = _by_law(Counter(name.split()[0] for name in close))
     drawn.sort(key=lambda name: -float(np.nanmax(np.abs(comparison.difference(quantity, name)))))
     families = list(dict.fromkeys(name.split()[0] for name in sorted(drawn)))
     words = f"{first}, the reference"
@@ -120,9 +122,7 @@ def _named(
     if points:
         upper.legend(handles=points, fontsize="small", **CODES_AT)
     first, *others = groups
-    words = [
-        f"{name}, {len(groups[name])} forms" if len(groups[name]) > 1 else name for name in others
-    ]
+    words = _by_law({name: len(groups[name]) for name in others})
     lines = [groups[name][0] for name in (first, *others)]
     if close:
         upper.text(
@@ -136,6 +136,11 @@ def _named(
     short = [verbatim(name.partition(" ")[2] or name) for name in forms]
     name_curves(lower, [below[name] for name in forms], short)
     return True
+
+
+def _by_law(forms: Mapping[str, int]) -> list[str]:
+    """Return the name of each law, with the number of its forms if there are several."""
+    return [f"{name}, {count} forms" if count > 1 else name for name, count in forms.items()]
 
 
 def _legend_of_all(upper: Axes, lower: Axes) -> None:
