@@ -338,6 +338,8 @@ def test_steps_are_divided_once_for_equal_motions():
     law = contactlab.create("normal.hertz")
     one, other = (normal_motion(law, scene(slip)) for slip in (1.0, 3.0))
     assert midpoints(one, 40) is midpoints(other, 40)
+    shared = (*midpoints(one, 40).contact, *midpoints(one, 40)[1:])
+    assert not any(column.flags.writeable for column in shared)
     assert endpoints(one, 40) is not midpoints(one, 40)
     batch = normal_motion(law, scene(np.array([1.0, 3.0])))
     assert midpoints(batch, 40).drift.shape == (40, 1)

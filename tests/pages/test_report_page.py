@@ -60,6 +60,8 @@ def test_one_impact_in_one_file(reported, ball):
     for heading in ("scene", "answer", "laws compared", "plan", "Sources", "How this was made"):
         assert re.search(f"<h2>[^<]*{heading}</h2>", text)
     assert text.count("<svg") == 2  # the drawing and the forces
+    assert re.search("<h3>left out</h3><ul><li>[^<]+</li>", text)
+    assert not re.search("<ul></ul>", text)
     assert "2 m/s" in text
     assert "Wear 38" in text
     assert "estimated" in text

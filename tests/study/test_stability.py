@@ -339,6 +339,11 @@ def test_every_family_of_the_issue_is_there():
     assert families >= {
         "psi1", "regimes", "chi", "friction", "poisson", "speed", "radius", "mass", "types",
     }  # fmt: skip
+    labels = {scene.label for scene in extreme_scenes()}
+    assert labels >= {
+        "v1=1e-165 m/s", "v1=10000 m/s", "R=1e-09 m", "R=1 m", "R=1e+09 m",
+        "R=1e-09 m, v1=1e-165 m/s", "R=1e+09 m, v1=10000 m/s", "m2/m1=1e-12", "m2/m1=1e+12",
+    }  # fmt: skip
     of_sizes = {one.label for one in extreme_scenes(quick=True) if one.family in ("radius", "mass")}
     assert of_sizes <= {one.label for one in normal_scenes()}
     method = Method(tangential="annulus", integrator="symplectic")
