@@ -72,6 +72,16 @@ def test_known_errors_weigh_and_are_widened_if_too_small(wrong):
     assert any("times the errors given" in note for note in found.notes) == (chi_square > 2.0)
 
 
+def test_errors_of_one_quantity_alone_are_no_errors_of_all():
+    slope = 2.0 / np.tan(np.radians(SLIPPING))
+    pulls = 0.002 * np.array([1.0, -1.2, 0.9, -0.8, 1.1, -1.0])
+    errors = np.full(len(SLIPPING), 0.002)
+    data = table(1.0 - 0.1 * slope + pulls, SLIPPING, tangential_restitution_error=errors)
+    assert fit(data, BODIES).reduced_chi_square is not None
+    data["slip_restitution"] = 1.0 - 0.35 * slope + pulls
+    assert fit(data, BODIES).reduced_chi_square is None
+
+
 def test_a_law_s_restitution_is_the_mean_of_those_measured():
     measured = np.array([0.81, 0.84, 0.79, 0.83, 0.82])
     data = {
