@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scene
 from contactlab.cli import compare as command
 from contactlab.cli import progress
+from contactlab.cli.drawing import draw_all
 from contactlab.figures.comparison import differences, laws_over_sweep
 from contactlab.figures.files import save_figure
 from contactlab.study.comparison import compare
@@ -119,6 +120,12 @@ def test_a_dollar_in_a_label_begins_no_formula(run, measured, tmp_path):
     measured.write_text(text, encoding="utf-8")
     ran = run("compare", measured, *BOTH, "--figure", tmp_path / "figure.png")
     assert (ran.status, ran.err) == (0, "")
+
+
+def test_every_law_in_one_picture(tmp_path, short_sweep):
+    laws = {name: Simulation(tangential=name) for name in ("coulomb", "fronts")}
+    draw_all(tmp_path / "all.png", compare(read_scene(short_sweep), laws), "psi2")
+    assert (tmp_path / "all.png").read_bytes().startswith(b"\x89PNG")
 
 
 def curves(axes):

@@ -93,6 +93,7 @@ def test_plan_says_what_is_left_out_and_why():
     for psi1 in (0.0, 1.2, 7.0):
         assert "no march to take them from" in str(rigid.plan(scene(psi1), history="fields"))
     assert "rigid bodies: slip until it stops" in str(rigid.plan(scene()))
+    assert "central impact" in str(rigid.plan(scene(0.0)))
     assert "makes no force" in str(
         Simulation(tangential="frictionless", integrator="paper").plan(scene())
     )

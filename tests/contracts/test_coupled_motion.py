@@ -121,16 +121,31 @@ class Softened(WholeImpactTangentialLaw):
     """No force, and a normal motion that keeps 0.9 of the speed; fast impacts keep all of it."""
 
     api_version: ClassVar[int] = 2
+    rate: ClassVar[float] = 0.9
 
     def whole_impacts(self, scene, normal):
         one = np.ones((1, *scene.shape))
         motion = SampledMotion(
-            normal.law, scene, time=2.0 * one, approach=0.0 * one, rate=-0.9 * one,
+            normal.law, scene, time=2.0 * one, approach=0.0 * one, rate=-self.rate * one,
             contact=NormalContact(0.0 * one, 0.0 * one, 0.0 * one),
         )  # fmt: skip
         slow = np.abs(scene.slip_velocity) < 2.0
         answer = {"slip_velocity_change": 0.0, "friction_work": 0.0, "reason": "a test"}
         return WholeImpact(where=slow, normal=motion, **answer), WholeImpact(where=True, **answer)
+
+
+@attrs.frozen(kw_only=True)
+class Hastened(Softened):
+    """A normal motion that ends with 1.3 of the speed."""
+
+    rate: ClassVar[float] = 1.3
+
+
+def test_bodies_that_gain_energy_from_a_coupling_are_told():
+    scenes = Scene.nondimensional(psi1=np.array([1.0, 3.0]), chi=CHI)
+    result = Simulation(tangential=Hastened()).run(scenes)
+    assert list(result.status) == [Status.UNBALANCED, Status.SUCCESS]
+    assert "The bodies gain" in result.failures[0]
 
 
 def test_a_whole_impact_answer_may_have_a_normal_motion():

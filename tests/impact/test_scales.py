@@ -46,6 +46,7 @@ def simulation(name):
         ({"mu": 1e-150, "speed": 1e-140, "slip": 1e-290}, "friction_coefficient"),
         ({"mu": 1e-200, "speed": 1e-100, "slip": 1e-300}, "friction_coefficient"),
         ({"mu": 1e-150, "speed": 1e-134, "slip": 1e-284}, "friction_coefficient"),
+        ({"mu": 1e-280, "speed": 1e-5, "slip": 1e-278}, "friction_coefficient"),
     ],
 )
 def test_refused_with_argument_and_remedy(numbers, argument):

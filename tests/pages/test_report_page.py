@@ -218,6 +218,7 @@ def test_a_work_beside_a_known_one_is_kept_in_words():
     both = bibtex([f"{known}; Somebody, J. Odd Res. 1 (1900)"])
     assert "maw1976" in both
     assert "Odd Res" in both
+    assert "@misc{source1," in both
     other = bibtex(["Thornton, J. Odd Res. 1 (1991), doi:10.9999/odd, ch. 1"])
     assert "thornton1991" not in other
 

@@ -347,8 +347,10 @@ def test_every_family_of_the_issue_is_there():
     of_sizes = {one.label for one in extreme_scenes(quick=True) if one.family in ("radius", "mass")}
     assert of_sizes <= {one.label for one in normal_scenes()}
     method = Method(tangential="annulus", integrator="symplectic")
-    listed = {case.family for case in cases(method)}
-    assert listed >= {"steps", "parts"}
+    listed = list(cases(method))
+    assert {case.family for case in listed} >= {"steps", "parts"}
+    marched = {case.family for case in listed if not case.planned}
+    assert marched >= {"psi1", "friction", "regimes"}
 
 
 def test_a_case_runs_under_the_normal_law_that_it_names(monkeypatch):

@@ -236,6 +236,7 @@ def test_errors_are_of_the_runs_that_are_timed():
     ]
     assert row.error_rms == pytest.approx(np.sqrt(np.mean(np.square(errors))), rel=1e-3)
     assert 1e-13 < row.error_rms < 1e-10
+    assert row.force_error_rms < 1e-6
     assert np.isnan(row.books_worst)  # closed by construction, not checked
 
 

@@ -136,6 +136,14 @@ class NamesNobody(Steps):
         return attrs.evolve(motion, detail="Something was raised.") if raised else motion
 
 
+class NamesNobodyAtTheStart(Steps):
+    """Says who raised in a step, and not who raised before the first one."""
+
+    def alter(self, motion, scene, observer):
+        first = motion.status is Status.LAW_RAISED and motion.detail.startswith("At step 0")
+        return attrs.evolve(motion, detail="Something was raised.") if first else motion
+
+
 class IgnoresItsSteps(STEPS):
     """As many steps as it likes, whatever is asked; it claims no order."""
 
@@ -199,6 +207,7 @@ BROKEN = [
     (AlwaysSucceeds, "faults_reported", "A fault in Hertz and FailingSpring reads as success"),
     (ReadsNanAsTheEnd, "normal_faults_reported", "A fault in SpoiledHertz and"),
     (NamesNobody, "faults_named", "FailingSpring raised, and is not named"),
+    (NamesNobodyAtTheStart, "faults_named", "FailingSpring raised, and is not named"),
     (HeedsItsObserver, "observer_changes_nothing", "Watched, the friction_work is 0.5"),
     (KeepsItsObserverWaiting, "observer_changes_nothing", "The observer was not called"),
     (OneStatusForAll, "impacts_batch", "status has not the batch's shape"),
