@@ -22,3 +22,9 @@ def test_a_file_is_no_folder(run, tmp_path):
     assert refused.status == 2
     assert "is a file; give a folder" in refused.err
     assert (tmp_path / "kernel").read_text() == "mine"
+
+
+def test_a_folder_must_be_named(run):
+    ran = run("kernel")
+    assert ran.status == 2
+    assert "--out" in ran.err

@@ -288,6 +288,10 @@ def test_the_plan_says_what_passes_through():
     assert "spin about the normal: friction makes no moment about it" in str(spinning.plan)
     assert "the energy books: closed by construction" in str(spinning.plan)
     assert not spinning.energy.checked
+    away = meeting(normal=[DOWN, (0, 0, 1)])
+    for laws, followed in (({}, False), ({"tangential": "springs"}, True)):
+        checked = collide(away, Simulation(**laws), separating="pass").energy.checked
+        assert checked.tolist() == [followed, True]
 
 
 def test_a_failure_is_a_status():
