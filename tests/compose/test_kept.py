@@ -169,3 +169,17 @@ def test_a_fingerprint_knows_every_number_and_class():
     ]
     assert len({kept.fingerprint(tree) for tree in trees}) == len(trees)
     assert kept.fingerprint(scene()) == kept.fingerprint(scene())
+
+
+def test_files_of_others_are_not_counted(tmp_path):
+    """Only two numbers after the word are a piece."""
+    for name in (
+        "impacts-0-40",
+        "impacts-40-60",
+        "impacts-60-last",
+        "impacts-old",
+        "impacts-1-2-3",
+    ):
+        (tmp_path / f"{name}.npz").touch()
+    assert kept.count(tmp_path) == 60
+    assert kept.count(tmp_path / "nowhere") == 0

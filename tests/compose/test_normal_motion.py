@@ -11,7 +11,7 @@ from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalContact, NormalLaw
 from contactlab.contracts.motion import MOST_SHARED
-from contactlab_laws.march.division import endpoints, midpoints
+from contactlab_laws.march.division import LONGEST_KEPT, endpoints, midpoints
 from tests.laws.exact_laws import order
 from tests.laws.normal_laws import Damped, ForceFree, LinearSpring
 from tests.laws.outside_laws import Adhesive, LinearDashpot, Plastic, RescaledSpring, Tsuji
@@ -349,6 +349,9 @@ def test_steps_are_divided_once_for_equal_motions():
     for count in range(10, 10 + 2 * MOST_SHARED):
         midpoints(one, count)
     assert len(one.shared) <= MOST_SHARED
+    kept = len(one.shared)
+    assert midpoints(one, LONGEST_KEPT + 1) is not midpoints(one, LONGEST_KEPT + 1)
+    assert len(one.shared) == kept
 
 
 @pytest.mark.parametrize("law", ["springs", "annulus", "sharp_annulus"])

@@ -77,6 +77,12 @@ def test_where_it_says_it_slips_throughout(form):
         assert capped.tolist() == [True, False]
 
 
+def test_a_damped_spring_is_marched_wherever_it_slips():
+    scene = Scene.nondimensional(psi1=20.0, chi=CHI)
+    assert not simulation("mindlin_cap", steps=50).plan(scene).marched.any()
+    assert simulation("mindlin_cap", steps=50, damping=0.3).plan(scene).marched.all()
+
+
 @pytest.mark.parametrize("form", ALL_FORMS)
 def test_batch_and_single_agree_and_are_odd(form):
     sim = simulation("mindlin_cap", steps=50, form=form)
