@@ -173,13 +173,7 @@ def test_a_fingerprint_knows_every_number_and_class():
 
 def test_files_of_others_are_not_counted(tmp_path):
     """Only two numbers after the word are a piece."""
-    for name in (
-        "impacts-0-40",
-        "impacts-40-60",
-        "impacts-60-last",
-        "impacts-old",
-        "impacts-1-2-3",
-    ):
-        (tmp_path / f"{name}.npz").touch()
+    for part in ("0-40", "40-60", "60-last", "old", "1-2-3"):
+        (tmp_path / f"impacts-{part}.npz").touch()
     assert kept.count(tmp_path) == 60
     assert kept.count(tmp_path / "nowhere") == 0
