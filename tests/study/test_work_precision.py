@@ -246,3 +246,11 @@ def test_scenes_lie_where_solid_spheres_do_and_others_are_named_apart():
     for scene in scenes(elsewhere=True):
         assert not 1.17 <= scene.chi <= 1.75
         assert abs(scene.psi1) < max(1.0, 4.0 * scene.chi - 1.0)
+
+
+def test_scenes_for_laws_with_options_in_si_have_the_same_psi1_and_chi():
+    for sized, plain in zip(scenes(sized=True), scenes(), strict=True):
+        assert sized.pair.normal_mass < 0.1  # kg, not the unit of the paper's scenes
+        assert sized.psi1 == pytest.approx(plain.psi1, rel=1e-12)
+        assert sized.chi == pytest.approx(plain.chi, rel=1e-12)
+    assert all(scene.pair.normal_mass == 1.0 for scene in scenes()[:-1])
