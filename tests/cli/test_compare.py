@@ -151,6 +151,7 @@ def test_of_two_entries_that_vary_the_longer_is_the_abscissa(tmp_path, speeds_fi
     comparison = compare(read_scene(path), {"rigid": Simulation(tangential="coulomb")})
     axes = laws_over_sweep(Figure().subplots(), comparison, "tangential_restitution")
     assert "angle" in axes.get_xlabel()
+    assert "restitution" in axes.get_ylabel()
     assert "friction_coefficient" in axes.get_title()
     drawn = curves(axes)
     assert len(drawn) == 2

@@ -163,3 +163,9 @@ def test_the_table_of_a_ball_on_a_ball_has_the_target_at_rest_before():
         assert still == 0.0
         assert target.mass * abs(moved) == pytest.approx(ball.mass * abs(before - after), rel=1e-9)
     assert rows["target: spin"][0] == 0.0
+
+
+def test_the_table_of_a_scene_without_bodies_has_the_velocities_of_the_contact():
+    result = Simulation(tangential="coulomb").run(Scene.nondimensional(psi1=5.0, chi=1.0)).check()
+    names = [name for name, *_ in sections(result)[0].rows]
+    assert names == ["local angle psi", "local tangential velocity", "normal velocity"]
