@@ -134,9 +134,3 @@ def test_linear_stiffness_sets_the_duration():
     motion = normal_motion(law, scene())
     mass = motion.scene.pair.normal_mass
     assert motion.duration == pytest.approx(np.pi * (mass / 1e5) ** 0.5, rel=1e-12)
-
-
-def test_two_options_that_say_the_same_are_not_both_given():
-    words = r"restitution, damping = \(0\.9, 0\.2\): only one .*; each follows from the other"
-    with pytest.raises(ValueError, match=words):
-        contactlab.create("normal.hunt_crossley", restitution=0.9, damping=0.2)

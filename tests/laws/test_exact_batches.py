@@ -148,7 +148,7 @@ def test_statuses_are_those_of_the_impacts():
     result = together(psi1, chi)
     assert list(result.failures) == [7]
     assert result.status[7] is Status.UNRESOLVED
-    assert "3000 are allowed" in result.motion.detail[7]
+    assert "More than 3000 panels" in result.motion.detail[7]
     chi[7] = 1.0
     good = np.delete(np.arange(60), 7)
     assert np.abs(together(psi1, chi).psi2 - result.psi2)[good].max() < 1e-10
