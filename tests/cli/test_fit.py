@@ -57,6 +57,7 @@ def test_tables(run, impacts):
     assert ran.status == 0
     assert "friction_coefficient" in ran.out
     assert "bootstrap from" in ran.out
+    assert "laws by fit" in ran.out
     ranked = ran.out.partition("laws by fit")[2].splitlines()[3:5]
     behind = [float(row.split()[1]) for row in ranked]
     assert behind[0] == 0.0 <= behind[1]

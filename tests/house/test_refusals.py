@@ -19,11 +19,10 @@ def refusals(text):
 
 def wrong(text):
     """Return calls whose value is a text of the source, which can only be a name or a rule."""
-    texts = ast.JoinedStr, ast.Constant
     return [
-        ast.unparse(arguments[0])
-        for arguments in refusals(text)
-        if isinstance(arguments[1], texts) and isinstance(ast.literal_eval(arguments[1]), str)
+        ast.unparse(name)
+        for name, value, *_ in refusals(text)
+        if isinstance(value, ast.JoinedStr) or isinstance(getattr(value, "value", None), str)
     ]
 
 
@@ -36,5 +35,6 @@ def test_name_and_value_are_never_exchanged():
 
 def test_an_exchange_is_found():
     assert wrong('raise refuse(value, "name", "must be positive")') == ["value"]
+    assert wrong('raise refuse("name", f"must be at least {least}", value)') == ["'name'"]
     assert wrong('raise checks.refuse("name", value, "must be positive")') == []
     assert wrong('raise refuse("name", None, "must be given")') == []

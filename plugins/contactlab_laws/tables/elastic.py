@@ -220,7 +220,7 @@ def gradient(table: Table, speed: Array, chi: Array) -> tuple[Array, Array]:
     powers, exactly none, so that their products keep their digits.
     """
     count, step = speed.size, 1j * STEP
-    p, x = np.concatenate((speed + step, speed)), np.concatenate((chi + 0.0 * step, chi + step))
+    p, x = np.concatenate((speed + step, speed)), np.concatenate((chi, chi + step))
     slopes = _full_slip(p, x).imag
     for first in range(0, 2 * count, BLOCK):
         block = slice(first, first + BLOCK)
