@@ -21,7 +21,8 @@ def test_a_clause_has_its_share_before_the_colon():
     assert str(clause) == "steps (2 of 3 impacts): at most 0.2"
     assert str(clause.take(slice(2, 3))) == "steps: at most 0.2"
     assert str(Clause("words", where(True, False))) == "words (1 of 2 impacts)"
-    assert str(Clause("never: {:g}", where(False), (where(0.5),)).words) == "never: nan"
+    for flags, value in ((False, 0.5), (True, NAN)):  # of no impact, or of one without a number
+        assert Clause("never: {:g}", where(flags), (where(value),)).words == "never: nan"
 
 
 @pytest.mark.parametrize(
