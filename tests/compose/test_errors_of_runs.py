@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Scene, Simulation
+from contactlab import Scene, Simulation, Status
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from contactlab.outcome.plan import PSI2_ERROR
 from tests.compose.test_error_estimate import Tight, Wanders
@@ -17,11 +17,22 @@ from tests.laws.tangential_laws import Creator
 SYMPLECTIC = type(contactlab.create("integrator.symplectic"))
 
 
-@pytest.mark.parametrize("psi1", [5.0, [5.0, 6.0]])
-def test_where_a_tolerance_cannot_be_tightened_the_law_alone_is_refined(psi1):
+@attrs.frozen(kw_only=True)
+class TightWhereFast(type(contactlab.create("integrator.adaptive"))):
+    """The adaptive integrator, for which no tolerance below 1e-3 can be kept from psi1 = 5.5 on."""
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        motion = super().integrate(normal, tangential, scene, observer)
+        where = np.asarray(scene.psi1 > 5.5) & (self.tolerance < 1e-3)
+        return motion.failing(where, Status.UNRESOLVED, "The tolerance is not kept.")
+
+
+@pytest.mark.parametrize("integrator", [Tight, TightWhereFast])
+@pytest.mark.parametrize("psi1", [6.0, [5.0, 6.0]])
+def test_where_a_tolerance_cannot_be_tightened_the_law_alone_is_refined(psi1, integrator):
     """As if the integrator had no tolerance: the distance, and half the last change."""
     scene = Scene.nondimensional(psi1=psi1, chi=1.0)
-    simulation = Simulation(tangential=Wanders(), integrator=Tight(tolerance=1e-2))
+    simulation = Simulation(tangential=Wanders(), integrator=integrator(tolerance=1e-2))
     found = simulation.run(scene, estimate_error=True).check().psi2_error_estimate
     assert found == pytest.approx(np.full(scene.shape, 0.1 * (0.4 + 0.15) * 4.0), rel=1e-2)
 
