@@ -143,3 +143,12 @@ def test_a_ball_that_passes_is_told_by_its_words():
     assert alone.check(cautions=True) is alone
     hit = collide(sliding())
     assert repr(hit).endswith("; SUCCESS)")
+
+
+def test_the_least_length_of_a_normal():
+    """Its square is a normal float; the first of a batch that is too short is named."""
+    short = (0.0, 0.0, 1e-100)
+    assert met(normal=short).contact().approach == 2.0
+    assert met(normal=[short, (0.0, 0.0, 1.0)]).contact().approach.tolist() == [2.0, 2.0]
+    with pytest.raises(ValueError, match=r"not zero \(the first of 1 has index \[1\]\);"):
+        met(normal=[short, (0.0, 0.0, 0.0)])

@@ -132,6 +132,9 @@ def test_the_greatest_force_of_a_dashpot_lies_before_the_greatest_approach():
         assert sample.approach == pytest.approx(size * place(times), rel=1e-8, abs=1e-14)
         assert sample.rate == pytest.approx(size * rate(times), rel=1e-8)
         assert sample.contact.force == pytest.approx(size * force(times), rel=1e-7, abs=1e-6)
+        gone = MASS * size * (1.0 - rate(times))
+        assert sample.load_impulse == pytest.approx(gone, rel=1e-6, abs=1e-9)
+        assert sample.time == pytest.approx(times * np.ones_like(gone), rel=1e-9)
 
 
 def test_a_closed_form_that_is_none_is_named():

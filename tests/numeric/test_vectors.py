@@ -27,7 +27,9 @@ def refusal(**given):
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("axis", [0, 1, 2])
-@pytest.mark.parametrize("form", [list, tuple, np.array, lambda v: np.array([v, v])])
+@pytest.mark.parametrize(
+    "form", [list, tuple, np.array, lambda v: np.array([v, v]), lambda v: [v, v]]
+)
 def test_numbers_are_accepted_up_to_the_largest(form, axis, sign):
     row = [1.0, 2.0, 3.0]
     row[axis] = sign * LARGEST
