@@ -152,3 +152,17 @@ def test_the_least_length_of_a_normal():
     assert met(normal=[short, (0.0, 0.0, 1.0)]).contact().approach.tolist() == [2.0, 2.0]
     with pytest.raises(ValueError, match=r"not zero \(the first of 1 has index \[1\]\);"):
         met(normal=[short, (0.0, 0.0, 0.0)])
+
+
+@pytest.mark.parametrize("batch", [False, True])
+def test_the_least_speed_of_approach(batch):
+    """At the bound they meet: in gross slip of mu = 1/10 each half of the impulse counts."""
+    speed = 1e-100
+    rows = [(speed, 1.0, 0.0), (math.nextafter(speed, 0.0), 1.0, 0.0)]
+    given = [sliding(velocity=rows)] if batch else [sliding(velocity=row) for row in rows]
+    made = [collide(each, separating="pass") for each in given]
+    assert [bool(one) for each in made for one in np.ravel(each.collided)] == [True, False]
+    changes = [one for each in made for one in np.ravel(each.slip_velocity_change).tolist()]
+    assert changes == [pytest.approx(-speed), 0.0]
+    rates = [one for each in made for one in np.ravel(each.normal_velocity).tolist()]
+    assert rates == [-speed, rows[1][0]]
