@@ -7,7 +7,6 @@ import pytest
 
 from contactlab import Scene, Simulation, Sphere, collide, create, rebound
 from contactlab.compose import rebound as rebounds
-from contactlab.compose.rebound import CHI as CHI_RULE
 from contactlab.compose.rebound import (
     BEYOND_ERROR,
     DAMPED_ERROR,
@@ -17,6 +16,7 @@ from contactlab.compose.rebound import (
     _in_table,
     damped_error,
 )
+from contactlab.compose.rebound import CHI as CHI_RULE
 from tests.compose.test_collision import STEEL, meeting
 
 CHI = 49.0 / 34.0
