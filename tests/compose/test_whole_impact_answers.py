@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation
+from contactlab import Scene, Simulation, Status
 from contactlab.compose.answers import INSTANTS
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse, WholeImpactTangentialLaw
 from contactlab.contracts.whole_impact import WholeImpact, no_force
@@ -151,3 +151,53 @@ def test_an_answer_without_a_course_does_not_serve_a_history(batch):
             for history in (False, True, "fields")
         ]
         assert marched == [False, not course, True]
+
+
+@attrs.frozen(kw_only=True)
+class Unsure(WholeImpactTangentialLaw):
+    """Knows no slip where it is fast, and says so; counts what it looked up."""
+
+    api_version: ClassVar[int] = 2
+
+    def whole_impacts(self, scene, normal):
+        known = no_force(scene, where=True, reason="known")
+        fast = np.abs(scene.slip_velocity) > 1.0
+        status = np.where(fast, Status.UNRESOLVED, Status.SUCCESS)
+        return (
+            attrs.evolve(
+                known,
+                status=status if scene.shape else status.item(),
+                detail="No entry." if np.any(fast) else "",
+                counter="looked up",
+            ),
+        )
+
+
+def test_an_answer_may_be_a_failure_and_may_be_counted():
+    simulation = Simulation(tangential=Unsure(), integrator="symplectic")
+    results = [
+        simulation.run(Scene.nondimensional(psi1=psi1, chi=CHI)) for psi1 in (0.5, 2.0, [0.5, 2.0])
+    ]
+    slow, fast, both = results
+    assert (slow.status, slow.motion.detail) == (Status.SUCCESS, "")
+    assert (fast.status, fast.motion.detail) == (Status.UNRESOLVED, "No entry.")
+    assert both.status.tolist() == [Status.SUCCESS, Status.UNRESOLVED]
+    assert both.motion.detail.tolist() == ["", "No entry."]
+    assert [dict(each.counters) for each in results] == [
+        {"looked up": 1}, {"looked up": 1}, {"looked up": 2},
+    ]  # fmt: skip
+    assert dict(run(2.0, history=False).counters) == {}
+
+
+def test_an_answer_goes_beside_a_march_of_the_others():
+    """Central impacts are known, and others are marched: their steps alone are counted."""
+    simulation = Simulation(tangential="springs", integrator="symplectic")
+    psi1 = [0.0, 1.2, 20.0, 0.7]
+    batch = simulation.run(Scene.nondimensional(psi1=psi1, chi=CHI)).check()
+    assert batch.plan.marched.tolist() == [False, True, False, True]
+    alone = [simulation.run(Scene.nondimensional(psi1=one, chi=CHI)).check() for one in psi1]
+    assert batch.psi2 == pytest.approx([one.psi2 for one in alone], abs=1e-12)
+    assert batch.counters["steps"] == alone[1].counters["steps"]
+    assert "steps" not in alone[0].counters
+    work = [one.motion.friction_work for one in alone]
+    assert batch.motion.friction_work == pytest.approx(work, rel=1e-11, abs=1e-15)
