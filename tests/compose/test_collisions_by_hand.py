@@ -106,6 +106,8 @@ def test_two_balls_in_gross_slip(laws, batch):
     assert np.ravel(books.start)[0] == pytest.approx(0.5 + 0.1 * 1600.0)
     assert np.ravel(books.end)[0] == pytest.approx(0.5 + 0.1 * 39.0**2)
     assert np.ravel(books.imbalance)[0] == pytest.approx(0.0, abs=1e-9)
+    assert np.asarray(books.checked).dtype == bool
+    assert np.all(books.checked == (laws is not None))  # without laws the books close themselves
     assert made.to_dict() == {
         name: np.asarray(getattr(made, name)).tolist()
         for name in (
