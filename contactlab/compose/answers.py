@@ -83,8 +83,6 @@ def answers(
     left = separated(normal)
     given = []
     for known in tangential.whole_impacts(scene, normal):
-        if known.where is False:
-            continue
         where = left & np.broadcast_to(known.where, shape)
         if not always:
             where &= _serves(known, scene, history, accuracy)

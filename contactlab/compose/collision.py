@@ -123,10 +123,8 @@ class Collision:
             return self.known
         scene = self._met.scene
         if isinstance(self.restitution, float):
-            return _run(self._simulation(self.restitution), scene)
-        parts = [
-            (mask, _run(self._simulation(value), scene.take(mask))) for mask, value in self._parts
-        ]
+            return _run(_simulation(self.restitution), scene)
+        parts = [(mask, _run(_simulation(value), scene.take(mask))) for mask, value in self._parts]
         return ImpactResult(
             scene=scene,
             plan=_joined([(mask, part.plan) for mask, part in parts]),
@@ -145,20 +143,11 @@ class Collision:
         if self.known is not None:
             plan = self.known.plan
         elif isinstance(self.restitution, float):
-            plan = self._planned(met.scene, self.restitution)
+            plan = _planned(met.scene, self.restitution)
         else:
-            parts = [
-                (mask, self._planned(met.scene.take(mask), value)) for mask, value in self._parts
-            ]
+            parts = [(mask, _planned(met.scene.take(mask), value)) for mask, value in self._parts]
             plan = _joined(parts)
         return collision_plan(plan, met, passed)
-
-    def _planned(self, scene: Scene, restitution: float) -> Plan:
-        """Return the plan of impacts of one restitution."""
-        plan = self._simulation(restitution).plan(scene)
-        if self.simulation is None and restitution != 1.0:
-            return by_rebound(plan, scene.chi, restitution)
-        return plan
 
     @property
     def _parts(self) -> list[tuple[Any, float]]:
@@ -262,14 +251,6 @@ class Collision:
             raise refuse("encounter", self.encounter, "no bodies met: all separate")
         return self.encounter.take(self.collided)
 
-    def _simulation(self, restitution: float) -> Simulation:
-        """Return the laws, or laws with the answers of ``contactlab.rebound``."""
-        if self.simulation is not None:
-            return self.simulation
-        if restitution != 1.0:
-            return damped(restitution)
-        return Simulation()
-
 
 def collide(
     encounter: Encounter,
@@ -354,6 +335,17 @@ def collide(
     result = _run(simulation, scene)
     moved = impulses.moved(encounter, _columns(encounter, result, met))
     return Collision(encounter=encounter, **moved, simulation=simulation, known=result)
+
+
+def _simulation(restitution: float) -> Simulation:
+    """Return laws with the answers of ``contactlab.rebound``."""
+    return Simulation() if restitution == 1.0 else damped(restitution)
+
+
+def _planned(scene: Scene, restitution: float) -> Plan:
+    """Return the plan of impacts of one restitution."""
+    plan = _simulation(restitution).plan(scene)
+    return plan if restitution == 1.0 else by_rebound(plan, scene.chi, restitution)
 
 
 def _joined(parts: list[tuple[Any, Plan]]) -> Plan:

@@ -40,8 +40,6 @@ def rebounding(
         unit: Any = part.friction_coefficient * contact.approach / pair.stiffness_ratio
         psi1: Any = np.fmin(np.divide(contact.slip, unit), end)
         psi1 = chosen(contact.approach >= LEAST, psi1, 0.0)
-        if not part.shape:
-            psi1, chi = float(psi1), float(chi)
         psi2: Any = rebound(psi1, chi, restitution=restitution)
         change = (psi2 - psi1) * unit
         work = -pair.tangential_mass * change * (contact.slip + 0.5 * change)

@@ -159,7 +159,9 @@ def json_value(value: Any) -> Any:
     if isinstance(value, Status):
         return value.name
     if isinstance(value, np.ndarray):
-        return [json_value(item) for item in value.tolist()]
+        value = value.tolist()
+    if isinstance(value, list):
+        return [json_value(item) for item in value]
     if isinstance(value, float | np.floating):
         return float(value) if np.isfinite(value) else None
     return value

@@ -326,4 +326,4 @@ def _largest(value: Any, where: Mask) -> Any:
     if not isinstance(value, np.ndarray):
         return value
     chosen = value[np.broadcast_to(where, value.shape)]
-    return float(np.nanmax(chosen)) if chosen.size else math.nan
+    return float(np.fmax.reduce(chosen, initial=math.nan))  # NaN if no entry is known

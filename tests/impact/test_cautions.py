@@ -39,6 +39,19 @@ def test_the_shift_is_that_of_the_table_of_the_guide(sign):
         assert found == pytest.approx(shifts, rel=0.12, abs=4e-3)
 
 
+def test_at_the_entries_of_the_table_the_shift_is_theirs():
+    """Read with another reader: psi1, chi, nu, then a column for each Lambda."""
+    path = Path(contactlab.__file__).parent / "impact" / "coupling.csv"
+    lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line[0] != "#"]
+    strengths = [float(name.split("=")[1]) for name in lines[0].split(",")[3:]]
+    entries = np.loadtxt(lines[1:], delimiter=",")
+    psi1, chi, nu = (column[:, None] for column in entries[:, :3].T)
+    scene = Scene.nondimensional(
+        psi1=psi1, chi=chi, poisson_ratio=nu, coupling_number=np.array(strengths)
+    )
+    assert coupling_shift(scene) == pytest.approx(np.abs(entries[:, 3:]), rel=1e-9, abs=1e-12)
+
+
 def test_between_the_entries_the_shift_is_their_mean():
     assert float(coupling_shift(coupled(0.0, 1.0))) == 0.0
     edges = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0]

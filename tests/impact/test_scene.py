@@ -9,6 +9,7 @@ import pytest
 from contactlab import HalfSpace, Material, Scene, Sphere
 from contactlab.impact import hertz as closed_forms
 from contactlab.impact.hertz import hertz_scales
+from contactlab.impact.scene import entry_unit
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 BALL = Sphere(0.01, STEEL)
@@ -164,3 +165,59 @@ def test_an_impact_of_a_grid_has_the_numbers_of_its_row_and_column():
     assert (one.psi1, one.chi) == (pytest.approx(1.5), pytest.approx(3.0))
     some = grid.take(np.array([[False, True, False], [False, False, True]]))
     assert some.chi == pytest.approx([2.0, 3.0])
+
+
+def test_what_all_scenes_of_a_batch_share_stays_a_plain_number():
+    batch = Scene.stack([scene(tangential_velocity=slip) for slip in (0.5, 1.0)])
+    assert type(batch.normal_speed) is float
+    assert batch.tangential_velocity.tolist() == [0.5, 1.0]
+    alike = Scene.stack([scene(), scene()])
+    assert alike.shape == (2,)
+    assert alike.normal_speed.tolist() == [1.5, 1.5]
+    assert type(alike.tangential_velocity) is float
+    part = alike.take(np.array([True, False]))
+    assert (part.shape, part.normal_speed.tolist(), part.index.tolist()) == ((1,), [1.5], [0])
+
+
+def test_parts_of_a_batch_of_shared_numbers_keep_their_shape_and_places():
+    """A spin for each of three impacts, of which none differs in a number that is taken."""
+    batch = scene(tangential_velocity=np.array([[0.5], [1.0]]), spin=np.zeros((1, 3)))
+    assert batch.shape == (2, 3)
+    assert batch.take(slice(0, 2)) is batch
+    assert batch.take((1, 2)).index == 5
+    assert batch.take(slice(1, 2)).index.tolist() == [[3, 4, 5]]
+    assert batch.take(np.eye(2, 3, dtype=bool)).tangential_velocity.tolist() == [0.5, 1.0]
+    renamed = batch.numbered(np.arange(6).reshape(2, 3) + 10)
+    assert renamed.take((0, 1)).index == 11
+    assert renamed == batch
+    yielding = Scene(
+        Sphere(0.01, Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0,
+                              yield_stress=[1e9, 2e9, 3e9])), PLATE, 0.2, 1.5,
+    )  # fmt: skip
+    assert yielding.take(slice(1, 3)).shape == (2,)
+
+
+def test_psi_of_a_velocity():
+    """kappa/(mu v1), eq. (29), with kappa = 14/17: of numbers, arrays, and without friction."""
+    unit = 14.0 / 17.0 / (0.2 * 1.5)
+    assert scene().psi_scale == pytest.approx(unit)
+    assert scene().psi(2.0) == pytest.approx(2.0 * unit)
+    assert scene().psi(np.array([0.0, 2.0])) == pytest.approx([0.0, 2.0 * unit])
+    batch = scene(normal_speed=[1.5, 3.0])
+    assert batch.psi_scale == pytest.approx([unit, 0.5 * unit])
+    assert batch.psi(2.0) == pytest.approx([2.0 * unit, unit])
+    assert batch.psi(0.0).tolist() == [0.0, 0.0]
+    free = scene(friction_coefficient=0.0)
+    assert (free.psi_scale, free.psi(0.0), free.psi(-1.0)) == (math.inf, 0.0, -math.inf)
+    mixed = scene(friction_coefficient=[0.0, 0.2])
+    assert mixed.psi(1.0) == pytest.approx([math.inf, unit])
+    assert type(scene().psi1) is float
+
+
+def test_the_units_of_entries():
+    units = {
+        "sphere.radius": "m", "normal_speed": "m/s", "spin": "rad/s", "speed": "m/s",
+        "angle_deg": "deg", "psi1": "1", "target.material.density": "kg/m³", "mass": "kg",
+        "sphere.material.young_modulus": "Pa", "friction_coefficient": "1",
+    }  # fmt: skip
+    assert {name: entry_unit(name) for name in units} == units

@@ -13,7 +13,7 @@ import textwrap
 import pytest
 
 from contactlab.outcome import files
-from contactlab.outcome.files import distinct, unwritable, written
+from contactlab.outcome.files import content, distinct, unwritable, write_table, written
 
 OLD = "old and whole\n"
 
@@ -150,3 +150,51 @@ def test_two_outputs_that_are_one_file_are_refused(old, tmp_path, monkeypatch):
     for spelling in same:
         with pytest.raises(ValueError, match=r"--out.*--history.*the same file"):
             distinct({"--out": old, "--history": spelling})
+
+
+def test_the_content_of_a_file_or_why_it_cannot_be_read(tmp_path, monkeypatch):
+    monkeypatch.setattr(files, "LARGEST", 3_000_000)
+    path = tmp_path / "a.toml"
+    path.write_bytes(b"x" * 3_000_000)
+
+    def read(path):
+        return content(path, kind="a scene", remedy="write one")
+
+    def refusal(path):
+        with pytest.raises(ValueError, match=" ") as caught:
+            read(path)
+        return str(caught.value)
+
+    assert len(read(path)) == 3_000_000
+    path.write_bytes(b"x" * 3_000_001)
+    assert refusal(path) == f"{path}: is too large: 3 MB, a scene has at most 3"
+    assert refusal(tmp_path) == f"{tmp_path}: cannot be read: is not a regular file"
+    missing, long = tmp_path / "none.toml", tmp_path / ("a" * 300)
+    assert refusal(missing) == f"{missing}: no such file; write one"
+    assert refusal(long) == f"{long}: cannot be read: {os.strerror(errno.ENAMETOOLONG)}"
+
+
+def test_an_error_of_another_file_keeps_its_name(old):
+    """An error without a number, or about another file, is not about this one."""
+    for error in (OSError("odd"), OSError(errno.ENOENT, "none", "other.csv")):
+        with pytest.raises(OSError, match=r"odd|other\.csv") as caught, written(old):
+            raise error
+        assert caught.value is error
+        assert str(old) not in str(error)
+    assert names(old.parent) == ["result.csv"]
+
+
+def test_a_table_is_written_with_its_headings(tmp_path):
+    write_table(tmp_path / "a.csv", ["a", "b (m)"], [(1.5, "x,y"), (2, "é")])
+    assert (tmp_path / "a.csv").read_bytes() == 'a,b (m)\r\n1.5,"x,y"\r\n2,é\r\n'.encode()
+    with pytest.raises(OSError, match=" ") as caught, written(tmp_path / "none" / "a.csv"):
+        pass
+    folder = tmp_path / "none"
+    assert str(caught.value) == f"{folder / 'a.csv'}: there is no folder {folder}"
+
+
+def test_outputs_that_are_the_same_file_are_told_by_their_names(tmp_path):
+    path = tmp_path / "a.csv"
+    with pytest.raises(ValueError, match=" ") as caught:
+        distinct({"--out": path, "--none": None, "--figure": str(path)})
+    assert str(caught.value) == f"--out, --figure: {path} is the same file; give two"

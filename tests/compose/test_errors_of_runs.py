@@ -1,0 +1,198 @@
+"""Estimates where no tolerance is kept, bounds of the books, and the law that a failure names."""
+
+from typing import ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Scene, Simulation, Status
+from contactlab.contracts import (
+    SteppedTangentialLaw,
+    TangentialResponse,
+    WholeImpactTangentialLaw,
+)
+from contactlab.contracts.whole_impact import from_change
+from contactlab.numeric.checks import count
+from contactlab.outcome.plan import PSI2_ERROR
+from tests.compose.test_error_estimate import Tight, Wanders
+from tests.laws.normal_laws import LinearSpring
+from tests.laws.tangential_laws import Creator
+
+SYMPLECTIC = type(contactlab.create("integrator.symplectic"))
+
+
+@attrs.frozen(kw_only=True)
+class TightWhereFast(type(contactlab.create("integrator.adaptive"))):
+    """The adaptive integrator, for which no tolerance below 1e-3 can be kept from psi1 = 5.5 on."""
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        motion = super().integrate(normal, tangential, scene, observer)
+        where = np.asarray(scene.psi1 > 5.5) & (self.tolerance < 1e-3)
+        return motion.failing(where, Status.UNRESOLVED, "The tolerance is not kept.")
+
+
+@pytest.mark.parametrize("integrator", [Tight, TightWhereFast])
+@pytest.mark.parametrize("psi1", [6.0, [5.0, 6.0]])
+def test_where_a_tolerance_cannot_be_tightened_the_law_alone_is_refined(psi1, integrator):
+    """As if the integrator had no tolerance: the distance, and half the last change."""
+    scene = Scene.nondimensional(psi1=psi1, chi=1.0)
+    simulation = Simulation(tangential=Wanders(), integrator=integrator(tolerance=1e-2))
+    found = simulation.run(scene, estimate_error=True).check().psi2_error_estimate
+    assert found == pytest.approx(np.full(scene.shape, 0.1 * (0.4 + 0.15) * 4.0), rel=1e-2)
+
+
+@attrs.frozen(kw_only=True)
+class Sure(SYMPLECTIC):
+    """Fixed steps that declare an accuracy."""
+
+    @property
+    def accuracy(self):
+        return 1e-3
+
+
+@pytest.mark.parametrize("psi1", [6.0, [6.0, 6.0]])
+def test_the_bound_of_the_books_is_that_of_the_law_and_ten_accuracies(psi1):
+    for integrator, bound in (("symplectic", "0.001"), (Sure(), "0.011")):
+        simulation = Simulation(tangential=Creator(), integrator=integrator)
+        result = simulation.run(Scene.nondimensional(psi1=psi1, chi=1.44))
+        assert result.failures[0].endswith(f" of the energy at the start; declared: {bound}.")
+
+
+@attrs.frozen(kw_only=True)
+class Blind(SteppedTangentialLaw):
+    """Sees no number where the slip is fast."""
+
+    api_version: ClassVar[int] = 2
+
+    def start(self, scene, normal):
+        return None
+
+    def advance(self, state, increment, before, after):
+        force = increment.velocity * np.where(np.abs(increment.velocity) > 2.0, np.nan, 0.0)
+        return TangentialResponse(force, 0.0 * force), state
+
+
+@pytest.mark.parametrize("psi1", [3.0, [1.0, 3.0]])
+def test_a_failure_names_the_law_with_its_origin(psi1):
+    result = Simulation(tangential=Blind(), integrator="symplectic").run(
+        Scene.nondimensional(psi1=psi1, chi=1.0)
+    )
+    (sentence,) = result.failures.values()
+    assert sentence.endswith(f", from Blind, {Blind.__module__}.Blind (not registered).")
+    if result.scene.shape:
+        assert result.motion.detail.shape == (2,)
+        assert result.motion.detail[0] == ""
+
+
+@attrs.frozen(kw_only=True)
+class Given(LinearSpring):
+    """A spring whose stiffness must be given."""
+
+    stiffness: float = attrs.field()
+    loss: float = 0.5
+
+
+@attrs.frozen(kw_only=True)
+class Usual(LinearSpring):
+    """A spring with two numbers and a word."""
+
+    loss: float = 0.5
+    word: str = "same"
+
+
+def test_the_plan_tells_options_that_have_their_defaults():
+    scene = Scene.nondimensional(psi1=1.0, chi=1.0)
+
+    def said(law):
+        return str(Simulation(normal=law, tangential="coulomb").plan(scene).computed[0])
+
+    end = "integrated from first touch to separation"
+    assert said(Given(stiffness=2.0)) == f"normal motion: Given, {end}"
+    assert said(Usual(stiffness=2.0)) == f"normal motion: Usual, {end}; loss = 0.5 by default"
+    assert said(Usual()) == (f"normal motion: Usual, {end}; stiffness = 1, loss = 0.5 by default")
+
+
+def test_the_error_of_a_solved_motion_is_that_of_its_load_impulse():
+    """1e-7 of 4 chi, beside 1e-12 max(1, |psi1|): alone, in a batch, known or not."""
+    for psi1 in (0.0, 1.2, 9.0):
+        one, many = (
+            Simulation(normal=LinearSpring(), tangential="coulomb").plan(
+                Scene.nondimensional(psi1=each, chi=2.0)
+            )
+            for each in (psi1, [psi1, psi1])
+        )
+        expected = 8e-7 + 1e-12 * max(1.0, psi1)
+        assert one.psi2_error == pytest.approx(expected, rel=1e-9)
+        assert many.psi2_error == pytest.approx([expected] * 2, rel=1e-9)
+        assert [clause.code for clause in one.computed if "error" in str(clause)] == [PSI2_ERROR]
+
+
+def test_the_time_of_a_sweep_is_that_of_the_sweep():
+    result = Simulation(tangential="coulomb").sweep(Scene.nondimensional(psi1=[1.0, 2.0], chi=1.0))
+    assert 0.0 < result.run_time < 60.0
+
+
+@attrs.frozen(kw_only=True)
+class Counting(WholeImpactTangentialLaw):
+    """A whole impact whose error falls as 1/terms; it notes the terms of each run."""
+
+    api_version: ClassVar[int] = 2
+    resolution: ClassVar[str] = "terms"
+    seen: ClassVar[list] = []
+
+    terms: int = count(default=5, most=80)
+
+    def whole_impacts(self, scene, normal):
+        self.seen.append(self.terms)
+        change = -(1.0 - 0.1 / self.terms) * scene.slip_velocity
+        return (from_change(scene, where=True, psi_change=change, psi2_error=0.0, reason="a test"),)
+
+
+@attrs.frozen(kw_only=True)
+class Firm(LinearSpring):
+    """A spring with a resolution that changes nothing."""
+
+    resolution: ClassVar[str] = "parts"
+    parts: int = count(default=3)
+
+
+@pytest.mark.parametrize(
+    ("terms", "normal", "runs"),
+    [
+        (5, "hertz", [5, 20, 80]),  # four times alone, and four times again
+        (6, "hertz", [6, 12, 24]),  # 96 are refused: twice, and twice again
+        (5, Firm(), [5, 10, 20]),  # twice beside another
+        (21, "hertz", [21]),  # 84 are refused too
+    ],
+)
+def test_how_much_finer_the_runs_of_an_estimate_are(terms, normal, runs):
+    Counting.seen.clear()
+    simulation = Simulation(normal=normal, tangential=Counting(terms=terms))
+    found = simulation.run(Scene.nondimensional(psi1=1.0, chi=1.5), estimate_error=True)
+    assert Counting.seen == runs
+    if len(runs) == 1:
+        assert found.psi2_error_estimate == found.plan.psi2_error
+        return
+    first, fine, finest = (0.1 / each for each in runs)
+    expected = first - finest + 0.5 * (fine - finest)
+    assert found.psi2_error_estimate == pytest.approx(expected, rel=1e-9)
+
+
+@attrs.frozen(kw_only=True)
+class Timed(type(contactlab.create("integrator.adaptive"))):
+    """The adaptive integrator, which notes its tolerances."""
+
+    seen: ClassVar[list] = []
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        self.seen.append(self.tolerance)
+        return super().integrate(normal, tangential, scene, observer)
+
+
+def test_a_tolerance_is_divided_by_four_times_the_square_of_the_factor():
+    Timed.seen.clear()
+    simulation = Simulation(tangential=Wanders(), integrator=Timed(tolerance=1e-2))
+    simulation.run(Scene.nondimensional(psi1=5.0, chi=1.0), estimate_error=True).check()
+    assert Timed.seen == pytest.approx([1e-2, 1e-2 / 16.0, 1e-2 / 64.0])

@@ -1,0 +1,186 @@
+"""Where ``rebound`` answers from a table, what it declares of its error, and who may offer one."""
+
+import math
+
+import numpy as np
+import pytest
+
+from contactlab import Scene, Simulation, Sphere, collide, create, rebound
+from contactlab.compose import rebound as rebounds
+from contactlab.compose.rebound import (
+    BEYOND_ERROR,
+    DAMPED_ERROR,
+    FEW,
+    TABULATED_CHI,
+    TOLERANCE,
+    _in_table,
+    damped_error,
+)
+from contactlab.compose.rebound import CHI as CHI_RULE
+from tests.compose.test_collision import STEEL, meeting
+
+CHI = 49.0 / 34.0
+BEYOND = math.nextafter(TABULATED_CHI, 3.0)
+
+
+@pytest.fixture
+def fresh():
+    """Forget which tables are installed, before and after."""
+
+    def forget():
+        rebounds._installed.cache_clear()
+        rebounds._kept_table.cache_clear()
+
+    forget()
+    yield
+    forget()
+
+
+@pytest.mark.parametrize("count", [1, FEW, FEW + 1, 2 * FEW])
+@pytest.mark.parametrize(
+    ("psi1", "chi", "inside"),
+    [
+        (0.0, TABULATED_CHI, True), (-1e300, 5e-324, True), (1.0, BEYOND, False),
+        (1.0, 0.0, False), (1.0, -1.0, False), (1.0, math.nan, False), (1.0, math.inf, False),
+        (math.nan, 1.0, False), (math.inf, 1.0, False), (-math.inf, 1.0, False),
+    ],
+)  # fmt: skip
+def test_a_quick_look_finds_what_the_table_answers(psi1, chi, inside, count):
+    """Of plain numbers, and of the last of few or of many."""
+    assert _in_table(psi1, chi) is inside
+    angles, ratios = np.full(count, 0.5), np.full(count, 1.0)
+    angles[-1], ratios[-1] = psi1, chi
+    assert _in_table(angles, ratios) is inside
+    assert _in_table(angles.reshape(1, -1), ratios.reshape(1, -1)) is inside
+
+
+def test_other_kinds_of_arguments_are_looked_at_closely():
+    one = np.array([1.0, 2.0])
+    assert _in_table(one, one)
+    for psi1, chi in (
+        (1, 1.0), (1.0, 1), (one, 1.0), (1.0, one), (one, one[:1]), (one.astype(int), one),
+        (one, one.astype(np.float32)), (np.array(1.0), np.array(1.0)), (one[:0], one[:0]),
+        ([1.0], [1.0]), (None, None),
+    ):  # fmt: skip
+        assert not _in_table(psi1, chi)
+
+
+def test_answers_in_the_table_and_beyond_are_those_of_the_exact_law():
+    chi = np.array([0.5, 1.0, TABULATED_CHI, BEYOND, 3.0])
+    psi1 = np.array([0.7, -1.3, 2.0, 2.0, -4.0])
+    exact = Simulation(
+        tangential=create("tangential.fronts", table=False),
+        integrator=create("integrator.events", tolerance=1e-9),
+    )
+    expected = exact.run(Scene.nondimensional(psi1=psi1, chi=chi)).check().psi2
+    assert rebound(psi1, chi) == pytest.approx(expected, abs=4e-9)
+    assert rebound(psi1, chi, tolerance=1e-9) == pytest.approx(expected, abs=4e-9)
+    assert rebound(psi1[:2], chi[:2], tolerance=0.9) == pytest.approx(expected[:2], abs=2e-9)
+    assert type(rebound(1, 1)) is float
+    assert rebound(np.array(1.0), 1.0) == rebound(1.0, 1.0)
+
+
+def test_the_ranges_of_chi_and_of_the_tolerance():
+    chi = [5e-324, 1e4, math.nextafter(1e4, 2e4), 0.0, math.nan]
+    assert [bool(CHI_RULE.holds(one)) for one in chi] == [True, True, False, False, False]
+    tolerances = [1e-9, math.nextafter(1.0, 0.0), math.nextafter(1e-9, 0.0), 1.0, math.nan]
+    held = [bool(TOLERANCE.holds(one)) for one in tolerances]
+    assert held == [True, True, False, False, False]
+
+
+def test_derivatives_are_differences():
+    psi1, chi, width = np.array([0.5, -2.0, 3.9]), np.array([1.0, 1.4, 2.2]), 1e-4
+    psi2, by_psi1, by_chi = rebound(psi1, chi, derivatives=True)
+    assert psi2 == pytest.approx(rebound(psi1, chi), abs=1e-15)
+    for found, step in ((by_psi1, (width, 0.0)), (by_chi, (0.0, width))):
+        ahead = rebound(psi1 + step[0], chi + step[1])
+        behind = rebound(psi1 - step[0], chi - step[1])
+        assert found == pytest.approx((ahead - behind) / (2.0 * width), abs=2e-5)
+    alone = rebound(0.5, 1.0, derivatives=True)
+    assert [type(each) for each in alone] == [float] * 3
+    assert alone == pytest.approx((psi2[0], by_psi1[0], by_chi[0]), rel=1e-12)
+    at_the_end = rebound(1.0, TABULATED_CHI, derivatives=True)
+    assert len(at_the_end) == 3
+    nothing = rebound([], 1.0, derivatives=True)
+    assert [each.shape for each in nothing] == [(0,)] * 3
+    assert rebound(np.empty((2, 0)), 1.0).shape == (2, 0)
+
+
+def test_each_restitution_of_an_array_is_its_own():
+    psi1, e = np.array([1.0, -2.0, 3.0, 1.0]), np.array([0.9, 1.0, 0.6, 0.9])
+    together = rebound(psi1, CHI, restitution=e)
+    alone = [
+        rebound(float(one), CHI, restitution=float(each)) for one, each in zip(psi1, e, strict=True)
+    ]
+    assert together == pytest.approx(alone, abs=1e-12)
+    assert together[0] == together[3]
+    assert rebound(psi1, CHI, restitution=e[:, None]).shape == (4, 4)
+
+
+@pytest.mark.parametrize(
+    ("chi", "restitution", "error"),
+    [
+        (0.8, 0.5, DAMPED_ERROR), (1.8, 1.0, DAMPED_ERROR), (0.79, 0.5, BEYOND_ERROR),
+        (1.81, 0.5, BEYOND_ERROR), (0.8, 0.499, BEYOND_ERROR), (10.0, 0.9, BEYOND_ERROR),
+        (10.01, 0.9, math.nan),
+    ],
+)  # fmt: skip
+def test_the_error_that_is_declared_of_a_restitution(chi, restitution, error):
+    assert float(damped_error(chi, restitution)) == pytest.approx(error, nan_ok=True)
+    many = damped_error(np.array([chi, 1.0]), restitution)
+    assert many[0] == pytest.approx(error, nan_ok=True)
+
+
+def test_the_plan_of_a_heavy_core_says_that_no_error_was_measured():
+    """K = 1/5 makes chi = (7/17) 26 = 10.7."""
+    core = Sphere(0.01, STEEL, gyration_ratio=0.2)
+    target = meeting().target
+    plan = collide(meeting(sphere=core, target=type(target)(STEEL)), restitution=0.9).plan
+    lines = str(plan).splitlines()
+    assert "computed: tangential motion: contactlab.rebound with restitution=0.9" in lines
+    assert (
+        "computed: numerical error of psi2: none was measured beyond chi = 10, of "
+        "contactlab.rebound"
+    ) in lines
+    assert math.isnan(plan.psi2_error)
+
+
+@pytest.mark.usefixtures("fresh")
+def test_without_a_table_annuli_answer(monkeypatch):
+    """To the error of the table, which they do not declare."""
+    tabulated = rebound([1.0, -2.0], CHI, restitution=0.9)
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "rebound.damped")
+    annuli = rebound([1.0, -2.0], CHI, restitution=0.9)
+    assert 0.0 < np.abs(annuli - tabulated).max() < 2.0 * DAMPED_ERROR
+    assert np.isnan(damped_error(CHI, 0.9))
+    assert np.isnan(damped_error(np.array([CHI, 1.0]), 0.9)).tolist() == [True, True]
+
+
+@pytest.mark.usefixtures("fresh")
+def test_without_a_table_there_are_no_derivatives(monkeypatch):
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "rebound.elastic")
+    assert rebound(1.2, CHI) == pytest.approx(-0.1805193, abs=1e-6)
+    with pytest.raises(ValueError, match=" ") as caught:
+        rebound(1.2, CHI, derivatives=True)
+    assert str(caught.value) == (
+        "derivatives = True: are available from a table only; install a plug-in that offers "
+        "contactlab.rebound: elastic, and do not block it"
+    )
+
+
+@pytest.mark.usefixtures("fresh")
+def test_of_two_strangers_tables_neither_is_taken(install, tmp_path, monkeypatch):
+    for name, answer in (("second", 8.0), ("first", 7.0)):
+        install(name, f"{name}_table", f"def rebound(*_, **__):\n    return {answer}\n")
+        path = tmp_path / f"{name}-1.5.dist-info" / "entry_points.txt"
+        path.write_text(f"[contactlab.rebound]\nelastic = {name}_table:rebound\n")
+    ours = "contactlab:rebound.elastic"
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", ours)
+    with pytest.raises(ValueError, match=" ") as caught:
+        rebound(1.2, CHI)
+    assert str(caught.value) == (
+        "contactlab.rebound: elastic = 'first, second': is offered by several distributions; "
+        "block all but one: CONTACTLAB_BLOCK_PLUGINS"
+    )
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", f"{ours}, first")
+    assert rebound(1.2, CHI) == 8.0

@@ -1,0 +1,207 @@
+"""Both sides of every bound of the scenes: what a float holds, units that look wrong, adhesion."""
+
+import math
+
+import numpy as np
+import pytest
+
+from contactlab import HalfSpace, Material, Scene, Sphere
+from contactlab.impact.adhesion import tabor_caution
+from contactlab.impact.bodies import Pair
+from contactlab.impact.coupling import coupling, coupling_shift
+from contactlab.impact.hertz import rigid_body_rebound, slips_throughout_elastic
+from contactlab.impact.unit_slips import unit_slips
+
+STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+LOST = "normal_speed = {}: the kinetic energy of the impact must be at least 1e-290 J and finite, "
+
+
+def below(value):
+    return math.nextafter(value, 0.0)
+
+
+def bare(friction, slip, *, mass=1.0, speed=1.0):
+    """Return a scene without bodies, kappa = 1: unit of slip ``friction * speed`` m/s."""
+    pair = Pair(
+        radius=1.0, effective_modulus=1.0, effective_shear_modulus=1.0,
+        normal_mass=mass, tangential_mass=1.0,
+    )  # fmt: skip
+    return Scene(None, None, friction, speed, slip, pair=pair)
+
+
+def test_the_least_energy_of_an_impact():
+    """½ m v² is exact with v a power of two."""
+    speed = 2.0**-480
+    mass = 1e-290 * 2.0**961
+    assert 0.5 * mass * speed * speed == 1e-290
+    assert bare(0.0, 0.0, mass=mass, speed=speed).normal_speed == speed
+    with pytest.raises(ValueError, match=" ") as caught:
+        bare(0.0, 0.0, mass=below(mass), speed=speed)
+    assert str(caught.value) == LOST.format(speed) + (
+        "or digits are lost; give larger speeds and masses, or smaller ones, or other units"
+    )
+
+
+@pytest.mark.parametrize(
+    ("held", "lost"),
+    [
+        # slip and its unit are both below the least velocity; the momentum is large
+        ((1e-290, 1e-291, 1e10), (below(1e-290), 1e-291, 1e10)),
+        ((1e-291, 1e-290, 1e10), (1e-291, below(1e-290), 1e10)),
+        ((1e-291, 0.0, 1e10), (1e-291, 5e-324, 1e10)),
+        # the momentum is small, and slip is less than 1e9 of its unit
+        ((1e-285, 1e-285, 1.0), (below(1e-285), 1e-285, 1.0)),
+        ((1e-286, 1e9 * 1e-286, 1.0), (1e-286, below(1e9 * 1e-286), 1.0)),
+        # the ratio of slip and unit
+        ((2.0**-600, 2.0**423, 1.0), (2.0**-602, 2.0**423, 1.0)),
+    ],
+)
+def test_what_a_float_holds_of_slip_and_friction(held, lost):
+    friction, slip, mass = held
+    assert bare(friction, slip, mass=mass).slip_velocity == slip
+    assert bare(0.0, slip, mass=mass).slip_velocity == slip
+    friction, slip, mass = lost
+    with pytest.raises(ValueError, match=" ") as caught:
+        bare(friction, slip, mass=mass)
+    assert str(caught.value) == (
+        f"friction_coefficient = {friction}: with these velocities psi1 of eq. (29) cannot be held "
+        "in floating point; give 0 for no friction, or larger velocities"
+    )
+    with pytest.raises(ValueError, match="cannot be held"):
+        bare(friction, -slip, mass=mass)
+
+
+def test_the_energy_of_slip_is_finite():
+    words = (
+        ": the kinetic energy of slip must be finite; give less; from 4 chi - 1 on psi1 falls by "
+        "4 chi"
+    )
+    assert bare(1.0, 1e154).slip_velocity == 1e154
+    for slip in (1.4e154, -1.4e154):  # the largest float is 1.34e154 squared
+        with pytest.raises(ValueError, match=r"^psi1, chi = \(.*, 0\.5\)") as caught:
+            bare(1.0, slip)
+        assert str(caught.value).endswith(words)
+    with pytest.raises(ValueError, match=r"^tangential_velocity = 1e\+160: ") as caught:
+        Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.1, 1.0, 1e160)
+    assert str(caught.value).endswith(words)
+
+
+def ball(radius=0.5, *, normal=3.0, tangential=4.0, spin=0.0, **material):
+    """Return a ball at 5 m/s on steel."""
+    numbers = {"shear_modulus": 80e9, "poisson_ratio": 0.25, "density": 7850.0}
+    made = Material(**(numbers | material))
+    return Scene(Sphere(radius, made), HalfSpace(STEEL), 0.1, normal, tangential, spin)
+
+
+@pytest.mark.parametrize(
+    ("usual", "suspect", "words"),
+    [
+        ({"radius": below(1.0)}, {"radius": 1.0}, "sphere.radius = 1 m: is it in mm?"),
+        (
+            {"density": 25.0},
+            {"density": 24.9},
+            "sphere.material.density = 24.9 kg/m³: is it in g/cm³?",
+        ),
+        (
+            {"shear_modulus": 1e4},
+            {"shear_modulus": 9999.0},
+            # 2 (1 + 0.25) 9999 = 24997.5
+            "sphere.material.shear_modulus = 9999 Pa (Young's 2.5e+04 Pa): is it in GPa?",
+        ),
+        (
+            {"spin": 80.0},
+            {"spin": -82.0},
+            "spin = 82 rad/s: the surface moves 8.2 times as fast as the centre; is it in turns a "
+            "minute?",
+        ),
+        (
+            {"spin": below(50.0), "normal": 1e-3, "tangential": 0.0},
+            {"spin": 50.0, "normal": 1.0, "tangential": 0.0},
+            "spin = 50 rad/s: the surface moves 25 times as fast as the centre; is it in turns a "
+            "minute?",
+        ),
+    ],
+)
+def test_a_number_looks_wrong_from_a_bound_on(usual, suspect, words):
+    assert unit_slips(ball(**usual)) == []
+    assert unit_slips(ball(**suspect)) == [f"unit: {words}"]
+
+
+@pytest.mark.parametrize(
+    ("intended", "told"),
+    [(5.0, "5"), (45.0029, "45"), (44.9971, "45"), (89.998, "90"), (-30.0, "30"), (45.0031, None),
+     (44.9969, None), (7.0, None), (95.0, None), (0.001, None)],
+)  # fmt: skip
+def test_an_angle_in_radians_is_a_multiple_of_five_degrees(intended, told):
+    angle = math.radians(intended)
+    slope = math.tan(math.radians(angle))
+    found = unit_slips(ball(normal=1.0, tangential=slope))
+    words = f"unit: angle of incidence {abs(angle):.6g}°: {told}° are as many radians; "
+    assert found == ([] if told is None else [f"{words}angle_deg is in degrees"])
+
+
+def soft(radius):
+    """Return a scene of E* = 1 GPa: two bodies of E = 2 GPa and nu = 0, of unlike sizes."""
+    made = Material(young_modulus=2e9, poisson_ratio=0.0, density=1000.0)
+    return Scene(Sphere(radius, made), HalfSpace(made), 0.1, 1.0)
+
+
+def test_tabors_parameter_by_hand():
+    """(R Gamma²/E*²)^(1/3)/h: 1e-3 m, 0.1 J/m² and 1 GPa give (1e-23)^(1/3)/3e-10 = 71.8."""
+    start = "Tabor's parameter is {}, with a range of attraction of 3e-10 m: the theory holds "
+    end = "; see jkr (model, not numerical error)"
+    scene = soft(1e-3)
+
+    def said(given, **bounds):
+        return tabor_caution(given, 0.1, other="jkr", **bounds)
+
+    assert said(scene, most=5.0) == (start.format("72") + "below 5" + end,)
+    assert said(scene, least=100.0) == (start.format("72") + "above 100" + end,)
+    assert said(scene, least=71.0, most=72.0) == ()
+    assert said(scene) == ()
+    assert tabor_caution(scene, 0.0, other="jkr", most=5.0) == ()
+    assert said(Scene.nondimensional(psi1=1.0, chi=1.0), most=0.0) == ()
+    # a thousand times the radius is ten times the parameter
+    both = soft(np.array([1e-3, 1.0]))
+    assert said(both, most=100.0) == (start.format("7.2e+02") + "below 100" + end,)
+    assert said(both, least=100.0) == (start.format("72") + "above 100" + end,)
+    value = float(np.cbrt(1e-3 * (0.1 / scene.pair.effective_modulus) ** 2) / 3e-10)
+    assert said(scene, least=value, most=value) == ()
+    assert said(scene, least=math.nextafter(value, 100.0)) != ()
+
+
+def coupled(strength, *, chi=1.44, psi1=1.0):
+    return Scene.nondimensional(psi1=psi1, chi=chi, poisson_ratio=0.3, coupling_number=strength)
+
+
+def test_the_least_shift_of_coupling_that_is_told():
+    """Up to the first node, Lambda = 0.25, the shift is proportional to Lambda."""
+    unit = float(coupling_shift(coupled(0.25))) / 0.25
+    assert coupling(coupled(0.99e-3 / unit)) == ()
+    (said,) = coupling(coupled(1.01e-3 / unit))
+    assert said == (
+        "unlike bodies: the elastic coupling of pressure and slip is left out, Lambda = kappa "
+        f"beta/mu = {1.01e-3 / unit:.2g}; it moves psi2 by about 0.001 (model, not numerical "
+        "error; by a table of half-space solutions, chi from 0.83 to 2.2)"
+    )
+    assert "by about " in coupling(coupled(3.999))[0]
+    assert "by at least " in coupling(coupled(4.001))[0]
+    for chi, rough in ((2.2, False), (2.21, True), (0.83, False), (0.82, True)):
+        (said,) = coupling(coupled(1.0, chi=chi))
+        assert (f"; a rough guide at chi = {chi})" in said) is rough
+
+
+@pytest.mark.parametrize(("chi", "least"), [(1.0, 3.0), (0.5, 1.0), (0.2, 1.0), (2.0, 7.0)])
+def test_slip_throughout_begins_at_a_bound(chi, least):
+    """|psi1| >= max(1, 4 chi - 1), eqs (44) and (46)."""
+    for sign in (1.0, -1.0):
+        assert slips_throughout_elastic(sign * least, chi)
+        assert not slips_throughout_elastic(sign * below(least), chi)
+    many = slips_throughout_elastic(np.array([least, below(least)]), np.array([chi, chi]))
+    assert many.tolist() == [True, False]
+
+
+def test_rigid_bodies_lose_two_chi_for_each_half_of_the_impact():
+    assert rigid_body_rebound(10.0, 1.5) == 4.0
+    assert rigid_body_rebound(-10.0, 1.5, 0.5) == -5.5
+    assert rigid_body_rebound(np.array([6.0, 6.5]), 1.5).tolist() == [0.0, 0.5]
