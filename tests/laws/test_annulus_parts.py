@@ -150,6 +150,9 @@ def test_circles_carry_the_load_and_half_of_it(annuli):
         ("coulomb", {}, 1e-9),
         ("frictionless", {}, 1e-9),
         ("stronge", {}, 1e-9),
+        ("walton", {}, 1e-9),
+        ("fronts", {}, 1e-8),
+        ("halfspace", {}, 0.02),
     ],
 )
 def test_how_far_the_books_may_miss(name, options, bound):

@@ -151,6 +151,8 @@ def test_too_few_steps_are_raised_or_refused(options, radians, most, sentence, s
     assert [text[: len(sentence or "")] for text in told] == ([sentence] if sentence else [])
     result = simulation.run(SCENE)
     assert result.status is status
+    together = simulation.run(PAIR)
+    assert together.status.tolist() == [status, status]
     if status is Status.TOO_FEW_STEPS:
         assert result.motion.detail == f"steps = {options['steps']}; this scene needs at least 29."
 

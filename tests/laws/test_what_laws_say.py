@@ -212,7 +212,11 @@ CLASSES = {
 
 @pytest.mark.parametrize("name", CLASSES)
 def test_the_class_behind_each_name(name):
-    assert type(create(name)).__name__ == CLASSES[name]
+    """Options are given by name: their order may change."""
+    law = create(name)
+    assert type(law).__name__ == CLASSES[name]
+    with pytest.raises(TypeError, match="positional argument"):
+        type(law)(1)
 
 
 DEFAULTS = {
