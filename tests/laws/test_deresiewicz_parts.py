@@ -53,6 +53,7 @@ def test_a_path_at_constant_load(moves, force, slipped, branch, sense):
     for move in moves:
         state, work = followed(state, step(move))
         assert work >= 0.0
+        assert state.held == 0.0  # at constant load nothing sticks while it grows
     assert state.force == pytest.approx(force, abs=1e-12)
     assert state.sense == sense
     if sense and slipped is not None:

@@ -6,9 +6,10 @@ import pytest
 from contactlab import Scene, Simulation, Status, create
 from contactlab.contracts import LostPathError, ScaledContact
 from contactlab.numeric.lobatto import lobatto
+from contactlab_laws.events.scaled import solve
 from contactlab_laws.fronts import path
 from contactlab_laws.fronts.memory import Drawn, Locked
-from contactlab_laws.fronts.panel import GrossStretch
+from contactlab_laws.fronts.panel import GrossStretch, PanelStretch
 
 CHI = 49 / 34
 
@@ -40,6 +41,16 @@ def test_fewer_moves_take_shorter_panels_to_the_same_answer(monkeypatch):
     found = solved(0.7).check()
     assert found.psi2 == pytest.approx(known.psi2, abs=1e-9)
     assert found.counters["panels"] > known.counters["panels"]
+
+
+@pytest.mark.parametrize("psi1", [1.2, 2.0, 3.0])
+def test_each_panel_is_counted_once(psi1):
+    """Where the front is followed along its memory, without a try that fails."""
+    normal = Simulation().normal_motion(Scene.nondimensional(psi1=psi1, chi=CHI))
+    found = solve(create("tangential.fronts", table=False), normal, 1e-9)
+    panels = [each for each in found.stretches if isinstance(each, PanelStretch)]
+    assert len(panels) > 1
+    assert found.motion.counters["solves"] == len(panels)
 
 
 @pytest.mark.parametrize(

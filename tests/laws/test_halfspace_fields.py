@@ -79,7 +79,7 @@ def test_fields_along_one_direction():
 def test_fields_of_vectors_without_coupling_come_to_those_along_one_direction(monkeypatch):
     """nu = 0: all tractions are along the slip, whichever way they are found."""
     scene = Scene.nondimensional(psi1=1.2, chi=CHI, poisson_ratio=0.0)
-    rings = {"rings": 8, "angles": 2, "extrapolate": False}
+    rings = {"rings": 6, "angles": 2, "extrapolate": False}
     plain = law(**rings).run(scene, history="fields").check().history
     monkeypatch.setattr(impacts, "ROUNDING", -1.0)
     monkeypatch.setattr(impacts, "VECTORS", impacts.ALONG)
