@@ -240,3 +240,16 @@ def test_tolerances_at_the_ends_are_taken(good):
     for bad in (0.99e-12, 1.01e-3, np.array([1e-6])):
         with pytest.raises(ValueError, match="must be one number between 1e-12 and 1e-3"):
             create("integrator.events", tolerance=bad)
+
+
+def test_the_error_aimed_at_is_of_the_larger_of_one_and_psi1():
+    """And the law's own beside it."""
+
+    class Rough(Given):
+        def psi2_error(self, scene, normal, steps):
+            assert steps == math.inf
+            return 0.5
+
+    scene = Scene.nondimensional(psi1=np.array([0.5, -3.0]), chi=1.2)
+    march = create("integrator.events", tolerance=1e-4)
+    assert march.psi2_error(normal(scene), Rough(), scene) == pytest.approx([0.5001, 0.5003])
