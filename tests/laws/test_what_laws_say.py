@@ -52,6 +52,14 @@ def test_answers_to_whole_impacts_and_their_order(name, slip, expected):
     assert reasons(create(f"tangential.{name}"), impact(slip)) == expected
 
 
+@pytest.mark.parametrize("name", ["coulomb", "walton", "stronge", "frictionless", "springs"])
+def test_closed_forms_have_no_error(name):
+    scene = impact(np.array([0.0, 9.0]))
+    motion = Simulation().normal_motion(scene)
+    for answer in create(f"tangential.{name}").whole_impacts(scene, motion):
+        assert np.all(answer.psi2_error == 0.0)
+
+
 def test_without_friction_each_law_answers_in_closed_form():
     for name in ("coulomb", "springs", "annulus", "stronge", "mindlin_cap", "fronts"):
         assert SMOOTH in reasons(create(f"tangential.{name}"), impact(friction=0.0))
