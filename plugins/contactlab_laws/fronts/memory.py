@@ -15,6 +15,7 @@ with ``rest`` = 1 all m here stand for m + zeta, and all J for J - (2/3) P.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,7 +41,7 @@ class Front(NamedTuple):
     place: Array
 
 
-class Piece:
+class Piece(ABC):
     """A piece of the curve between two places, ``inner`` and ``outer``, seen by slip of one sign.
 
     ``locked`` is the sign of the slip out of which the piece locked, 0 if it was drawn while all
@@ -58,13 +59,13 @@ class Piece:
     lack: float
     radius: float
 
+    @abstractmethod
     def curve(self, place: Array) -> tuple[Array, Array, Array, Array]:
         """Return m, J, the slope of m less ``rest`` c², and c at each place."""
-        raise NotImplementedError
 
+    @abstractmethod
     def front(self, contact: ScaledContact, gone: Array, place: Array) -> Front:
         """Return the front where m is ``gone``, from a first guess of its place."""
-        raise NotImplementedError
 
     def front_at(self, contact: ScaledContact, gone: float, place: float) -> list[float]:
         """Return the front at one instant."""

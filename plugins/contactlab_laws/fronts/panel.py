@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -57,9 +58,9 @@ class FrontStretch(Stretch):
     work: float
     solves: int
 
+    @abstractmethod
     def front(self, contact: ScaledContact) -> float:
         """Return the radius of the front at one instant."""
-        raise NotImplementedError
 
     def fields(
         self, normal: ClosedFormMotion, contact: ScaledContact, factor: float

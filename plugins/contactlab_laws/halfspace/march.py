@@ -21,15 +21,13 @@ class Followed(NamedTuple):
 
     Attributes
     ----------
-    change, share, force, impulse : array, shape (K + 1,)
-        Change of slip velocity; F over mu times the friction load; friction load; its integral
+    change, share, impulse : array, shape (K + 1,)
+        Change of slip velocity; F over mu times the friction load; integral of the friction load
         over M_n v1.
     work : float
         Friction work over M_t times the square of the unit of velocity.
     residual : float
         Largest residual of all steps.
-    applications : int
-        Applications of the splitting.
     fields : list of (array, array)
         Tractions, shape (parts, angles, rings), and slips, shape (2, angles, rings), at the K
         instants; empty unless asked for.
@@ -37,11 +35,9 @@ class Followed(NamedTuple):
 
     change: Array
     share: Array
-    force: Array
     impulse: Array
     work: float
     residual: float
-    applications: int
     fields: list[tuple[Array, Array]]
 
 
@@ -62,10 +58,10 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
     # ``late`` are the weights of the shares at its two ends in the displacement of a step.
     table, course = pressure.table, pressure.course
     count, along = len(course.inside), table.along
-    change, shares, forces, impulse = np.zeros((4, count))
+    change, shares, impulse = np.zeros((3, count))
     zero = np.zeros((table.parts, table.angles, table.count))
     slips, traction, memory = begun(zero[:2]), zero, zero
-    displaced, work, residual, applications = 0.0, 0.0, 0.0, 0
+    displaced, work, residual = 0.0, 0.0, 0.0
     touched, kept = False, []
     for k in range(1, count):
         duration, gain = float(pressure.duration[k - 1]), 2.0 * chi * pressure.impulse(k)
@@ -87,7 +83,6 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
             new[:, :, :number], memory = solution.traction, solution.memory
             share, force = solution.share, solution.force
             residual = max(residual, solution.residual)
-            applications += solution.applications
             surface = table.displaced(solution.traction)[:2] + contact.dragged
             if not touched:
                 shares[k - 1], touched = share, True
@@ -101,8 +96,8 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
         passed = pressure.advance(k, force)
         impulse[k] = impulse[k - 1] + passed
         change[k] = change[k - 1] - chi * passed * (shares[k - 1] + share)
-        shares[k], forces[k], traction = share, force, new
+        shares[k], traction = share, new
         if fields:
             kept.append((new, slip))
     scale = 6.0 * chi * pressure.stiffness
-    return Followed(change, shares, forces, impulse, scale * work, residual, applications, kept)
+    return Followed(change, shares, impulse, scale * work, residual, kept)

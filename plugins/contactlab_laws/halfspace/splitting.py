@@ -68,7 +68,6 @@ class Settled(NamedTuple):
         F over the friction load, and the friction load.
     residual : float
         Over the largest pressure.
-    applications : int
     """
 
     traction: Array
@@ -76,7 +75,6 @@ class Settled(NamedTuple):
     share: float
     force: float
     residual: float
-    applications: int
 
 
 def settle(table: Modes, step: Step, start: Array) -> Settled:
@@ -118,7 +116,7 @@ def settle(table: Modes, step: Step, start: Array) -> Settled:
             break
         change *= RELAXATION
         now = mixing.next(now, change) if applied <= MIXED else now + change
-    return Settled(x.copy(), now, share, force, residual, applied)
+    return Settled(x.copy(), now, share, force, residual)
 
 
 class _Mixing:

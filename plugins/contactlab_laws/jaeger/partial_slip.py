@@ -52,8 +52,9 @@ class Scales(NamedTuple):
     @property
     def metres(self) -> Real:
         """Metres of displacement per scaled unit, 1/``displacement``; 0 without friction."""
-        with np.errstate(divide="ignore"):
-            return np.where(np.asarray(self.displacement) > 0, 1.0 / self.displacement, 0.0)
+        scaled: Any = np.asarray(self.displacement)
+        metres: Real = (scaled > 0.0) / (scaled + (scaled == 0.0))
+        return metres
 
 
 class PartialSlip(AllStepsTangentialLaw):

@@ -74,7 +74,8 @@ def refined(steps: int, needed: Any) -> Any:
     while sequence[-1] < min(_most(needed), MOST_STEPS):
         sequence.append(min(math.ceil(sequence[-1] * RAISE), MOST_STEPS))
     sequence.append(np.inf)
-    return np.array(sequence)[np.searchsorted(sequence, needed)]
+    # No number is enough for NaN, which sorts behind infinity.
+    return np.array(sequence)[np.minimum(np.searchsorted(sequence, needed), len(sequence) - 1)]
 
 
 def _most(needed: Any) -> float:

@@ -70,7 +70,7 @@ def _all_at_once(
         fault = faults.LawFaultError(Status.UNSETTLED, detail)
     elif not _finite(change):
         step = int((~np.isfinite(force)).reshape(count, -1).any(axis=1).argmax())
-        detail = faults.sentence(law, f"force {shown(force[step])}", step + 1)
+        detail = faults.sentence(law, f"force {_number(force[step])}", step + 1)
         fault = faults.LawFaultError(Status.NON_FINITE, detail)
     if observer is not None:
         if fault is not None:
@@ -194,6 +194,11 @@ def _ended(
     )
 
 
+def _number(value: Any) -> str:
+    """Return a number, or the numbers of a batch, for a sentence."""
+    return shown(value if np.ndim(value) else float(value))
+
+
 def _finite(value: Any) -> bool:
     """Return whether all numbers are finite."""
     return math.isfinite(value) if isinstance(value, float) else bool(np.isfinite(value).all())
@@ -211,6 +216,5 @@ def _unsound(normal: NormalMotion, steps: Steps) -> str | None:
         if not np.isfinite(column).all():
             bad = ~np.isfinite(column).reshape(len(column), -1).all(axis=1)
             count: int = int(bad.argmax())
-            value: Any = shown(column[count])
-            return faults.sentence(normal.law, value, count + 1, steps.time[count])
+            return faults.sentence(normal.law, _number(column[count]), count + 1, steps.time[count])
     return None

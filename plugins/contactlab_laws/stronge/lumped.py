@@ -26,10 +26,6 @@ class Half(NamedTuple):
         """Return the normal force p."""
         return math.sin(x) if self.closing else math.cos(x)
 
-    def slope(self, x: float) -> float:
-        """Return dp/d theta."""
-        return math.cos(x) if self.closing else -math.sin(x) / self.scale
-
     def impulse(self, start: float, stop: float) -> float:
         """Return the integral of p over theta."""
         part = (

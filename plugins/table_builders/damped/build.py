@@ -95,7 +95,7 @@ def _largest(share: Array, top: int) -> Array:
 
 def _reaching(psi1: Array, share: Array, slipping: float) -> float:
     """Return psi1 where ``share`` comes to 1 for good, by the line through two values before."""
-    k = max(int(np.flatnonzero(share < slipping).max(initial=1)) + 1, 2)
+    k = int(np.flatnonzero(share < slipping).max(initial=1)) + 1
     if k == len(psi1):
         return float(psi1[-1])
     rise = max((share[k - 1] - share[k - 2]) / (psi1[k - 1] - psi1[k - 2]), 1e-3)
