@@ -47,6 +47,8 @@ def test_the_rule_of_a_restitution_for_each_impact():
 def test_a_root_is_found_to_the_last_bit():
     assert root(lambda x: x * x - 2.0, 0.0, 2.0) == pytest.approx(2.0**0.5, rel=3e-16)
     assert root(lambda x: -1.0 if x < 0.3 else 0.0, 0.0, 1.0) == 0.3
+    # Between neighbours the middle is the even one: below 0.3, and 0.5 itself.
+    assert root(lambda x: -1.0 if x < 0.5 else 0.0, 0.0, 0.9) == 0.5
     assert root(lambda _: -1.0, 0.0, 1.0) == 1.0
     assert root(lambda _: 1.0, 0.25, 1.0) == np.nextafter(0.25, 1.0)
 

@@ -7,16 +7,16 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import contactlab
-from contactlab import Scene
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import Increment, NormalContact
 from contactlab.testing import laws
 from contactlab.testing.coupled_laws import MARKS, SPREAD, Coupled, Exchanging, Marked
+from contactlab.testing.load_paths import scene
 
 CHI = 1.4411764706
 HERTZ = contactlab.create("normal.hertz")
-SCENE = Scene.nondimensional(psi1=-2.0, chi=CHI)
-BATCH = Scene.nondimensional(psi1=np.array([-2.0, 0.0, 3.0]), chi=CHI)
+SCENE = scene(-2.0, CHI)
+BATCH = scene(np.array([-2.0, 0.0, 3.0]), CHI)
 NORMAL = HERTZ.motion(SCENE)
 LOADED = NormalContact(5.0, 0.1, 1e-3, 4.0)
 
