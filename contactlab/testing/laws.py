@@ -235,7 +235,7 @@ class SoftHertz(DampedHertz):
 
 @attrs.frozen(kw_only=True)
 class StronglyDampedHertz(DampedHertz):
-    """``DampedHertz`` with a normal restitution of about a half."""
+    """``DampedHertz`` with a normal restitution of 0.62."""
 
     damping: ClassVar[float] = 0.9
 

@@ -71,7 +71,7 @@ def limited(name: str, law: Any, seconds: float = SECONDS) -> Iterator[None]:
         if running and used >= seconds:
             after = f"{seconds:g} s of computing, its limit"
         elif running and passed >= WAITING * seconds:
-            after = f"{passed:.2g} s, {used:.2g} s of them computing"
+            after = f"{passed:.4g} s, {used:.2g} s of them computing"
         else:
             return
         raise OutOfTimeError(_sentence(name, law, after, frame))

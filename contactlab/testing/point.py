@@ -49,8 +49,8 @@ def _hold(law: Any, normal_law: NormalLaw) -> None:
     try:
         way = next(way for way in ways(law, normal_law) if way.integrator is not None)
     except (NotApplicableError, StopIteration):
-        apply_if(False, f"No integrator runs it under {type(normal_law).__name__}.")
-        return
+        sentence = f"No integrator runs it under {type(normal_law).__name__}."
+        raise NotApplicableError(sentence) from None
     worst, where = -np.inf, ""
     for chi, psi1 in IMPACTS:
         recorder = Recorder((), with_fields=True)

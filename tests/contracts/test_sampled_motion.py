@@ -1,0 +1,160 @@
+"""Normal motions through samples: linear between them, and gathered from parts of a batch."""
+
+import math
+
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Scene
+from contactlab.contracts import NormalContact, NormalMotion, SampledMotion
+from contactlab.contracts.motion import MOST_SHARED
+from contactlab.contracts.sampled_motion import NormalMotions, gathered
+
+LAW = contactlab.create("normal.hertz")
+ONE = Scene.nondimensional(psi1=1.2, chi=1.44)
+TWO = Scene.nondimensional(psi1=np.array([1.2, 2.0]), chi=1.44)
+#: Samples after first touch: the load pulls at 3 s, and is given as it is or left out.
+TIME = np.array([1.0, 3.0, 4.0])
+APPROACH, RATE = np.array([0.6, 0.8, -0.2]), np.array([0.5, -0.2, -0.9])
+FORCE, RADIUS = np.array([4.0, -2.0, 0.0]), np.array([0.7, 0.9, 0.0])
+OVERLAP, LOAD = np.array([0.6, 0.1, -0.1]), np.array([5.0, 1.0, 0.0])
+
+
+def sampled(*, load=LOAD):
+    contact = NormalContact(FORCE, RADIUS, OVERLAP, load)
+    return SampledMotion(LAW, ONE, time=TIME, approach=APPROACH, rate=RATE, contact=contact)
+
+
+def both():
+    """Two impacts; the second one takes twice the time and half of the load."""
+
+    def column(values, factor=1.0):
+        return np.stack((values, factor * values), axis=1)
+
+    contact = NormalContact(column(FORCE), column(RADIUS), column(OVERLAP), column(LOAD, 0.5))
+    return SampledMotion(
+        LAW, TWO, time=column(TIME, 2.0), approach=APPROACH[:, None], rate=column(RATE, 0.8),
+        contact=contact,
+    )  # fmt: skip
+
+
+def test_totals_are_those_of_the_samples():
+    motion = sampled()
+    assert (motion.law, motion.scene) == (LAW, ONE)
+    assert (motion.duration, motion.final_rate) == (4.0, -0.9)
+    assert (motion.maximum_approach, motion.maximum_radius, motion.maximum_force) == (0.8, 0.9, 4.0)
+    # trapezia of 1, 2 and 1 s
+    assert motion.total_load_impulse == 0.5 * 5.0 + 2.0 * 3.0 + 0.5 * 1.0
+    assert type(motion.duration) is type(motion.total_load_impulse) is float
+    assert motion.offers == LAW.offers
+
+
+@pytest.mark.parametrize(
+    ("time", "approach", "rate", "force", "radius", "overlap", "load", "impulse"),
+    [
+        (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0),  # v1 = 1 at first touch
+        (0.5, 0.3, 0.75, 2.0, 0.35, 0.3, 2.5, 1.25),
+        (1.0, 0.6, 0.5, 4.0, 0.7, 0.6, 5.0, 2.5),
+        (2.0, 0.7, 0.15, 1.0, 0.8, 0.35, 3.0, 5.5),
+        (3.5, 0.3, -0.55, -1.0, 0.45, 0.0, 0.5, 8.75),
+        (4.0, -0.2, -0.9, 0.0, 0.0, -0.1, 0.0, 9.0),
+    ],
+)
+def test_a_motion_is_linear_between_its_samples(
+    time, approach, rate, force, radius, overlap, load, impulse
+):
+    sample = sampled().at(math.pi * time / 4.0)
+    assert sample[:3] == pytest.approx((time, approach, rate), abs=1e-15)
+    assert sample.contact == pytest.approx((force, radius, overlap, load), abs=1e-15)
+    assert sample.load_impulse == pytest.approx(impulse, abs=1e-15)
+    assert {type(entry) for entry in (*sample[:3], *sample.contact, sample[4])} == {float}
+
+
+def test_many_phases_give_arrays():
+    sample = sampled().at(np.array([[0.0, 0.25], [0.5, 1.0]]) * math.pi)
+    assert sample.time.tolist() == [[0.0, 1.0], [2.0, 4.0]]
+    assert sample.contact.force == pytest.approx(np.array([[0.0, 4.0], [1.0, 0.0]]))
+    assert sample.load_impulse == pytest.approx(np.array([[0.0, 2.5], [5.5, 9.0]]))
+
+
+def test_the_load_of_a_contact_without_one_is_its_pressure():
+    motion = sampled(load=None)
+    assert motion.at(math.pi * 3.0 / 4.0).contact.friction_load == 0.0
+    assert motion.total_load_impulse == 0.5 * 4.0 + 2.0 * 2.0
+
+
+def test_the_phase_is_proportional_to_time():
+    motion = sampled()
+    assert motion.phase(0.25) == pytest.approx(0.25 * math.pi)
+    assert motion.phase(np.array([0.0, 1.0])).tolist() == [0.0, math.pi]
+    assert motion.at(motion.phase(0.5)).time == pytest.approx(2.0)
+
+
+def test_a_batch_is_its_impacts():
+    motion = both()
+    assert motion.duration.tolist() == [4.0, 8.0]
+    assert motion.final_rate == pytest.approx([-0.9, -0.72])
+    assert motion.maximum_approach.tolist() == [0.8, 0.8]
+    assert motion.total_load_impulse.tolist() == [9.0, 9.0]
+    sample = motion.at(np.array([0.25, 0.5])[:, None] * math.pi)
+    assert sample.time.tolist() == [[1.0, 2.0], [2.0, 4.0]]
+    assert sample.rate == pytest.approx(np.array([[0.5, 0.4], [0.15, 0.12]]))
+    assert sample.contact.friction_load == pytest.approx(np.array([[5.0, 2.5], [3.0, 1.5]]))
+    assert motion.at(0.25 * math.pi).load_impulse == pytest.approx([2.5, 2.5])
+
+
+@pytest.mark.parametrize("part", [1, (1,), slice(1, 2), np.array([False, True]), [1]])
+def test_some_impacts_may_be_taken(part):
+    taken = both().take(part)
+    assert np.ravel(taken.duration).tolist() == [8.0]
+    assert np.ravel(taken.final_rate) == pytest.approx([-0.72])
+    assert np.ravel(taken.total_load_impulse).tolist() == [9.0]
+    sample, one = taken.at(0.5 * math.pi), sampled().at(0.5 * math.pi)
+    assert np.ravel(sample.approach) == pytest.approx([one.approach])
+    assert np.ravel(sample.contact.overlap) == pytest.approx([one.contact.overlap])
+    assert np.shape(sample.time) == taken.scene.shape
+
+
+def test_numbers_are_gathered_from_the_motions_of_parts():
+    first = np.array([True, False, False])
+    middle, last = np.array([False, True, False]), np.array([False, False, True])
+    inner = NormalMotions(
+        (2,), ((np.array([True, False]), None), (np.array([False, True]), sampled()))
+    )
+    parts = NormalMotions((3,), ((first, sampled()), (middle | last, inner)))
+
+    def duration(motion):
+        return motion.duration
+
+    assert gathered(parts, duration, (3,)) == pytest.approx([4.0, math.nan, 4.0], nan_ok=True)
+    assert gathered(both(), duration, (2,)).tolist() == [4.0, 8.0]
+    assert math.isnan(gathered(None, duration, ()))
+    assert np.isnan(gathered(None, duration, (2, 2))).tolist() == [[True, True], [True, True]]
+    some = NormalMotions((3,), ((first, None), (middle | last, both())))
+    assert gathered(some, duration, (3,)) == pytest.approx([math.nan, 4.0, 8.0], nan_ok=True)
+
+
+def test_what_equal_motions_share_is_made_once_and_stays_bounded():
+    motion, made = sampled(), []
+
+    def make():
+        made.append(1)
+        return len(made)
+
+    assert (motion.once("a", make), motion.once("a", make)) == (1, 2)  # nothing is shared
+    motion.shared = {}
+    assert (motion.once("a", make), motion.once("a", make)) == (3, 3)
+    for number in range(1, MOST_SHARED):
+        assert motion.once(number, make) == 3 + number
+    assert len(motion.shared) == MOST_SHARED == 8
+    assert motion.once("a", make) == 3
+    assert motion.once("b", make) == 11
+    assert motion.shared == {"b": 11}
+
+
+def test_what_a_motion_does_not_state():
+    assert NormalMotion.status is contactlab.Status.SUCCESS
+    assert NormalMotion.detail == ""
+    assert math.isnan(NormalMotion.accuracy)
+    assert NormalMotion.shared is None

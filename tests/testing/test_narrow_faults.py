@@ -1,0 +1,296 @@
+"""Faults that show in one quantity alone, and laws just beside the bound of a check."""
+
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+from contactlab.contracts import NormalContact
+from contactlab.testing import Verdict, checks_for, outcome
+from contactlab.testing.declared_errors import _declared, _finer
+from contactlab.testing.load_paths import scene
+from contactlab.testing.ways import ways
+from tests.testing.broken_declarations import Mutable
+from tests.testing.broken_impacts import AllAtOnce
+from tests.testing.broken_laws import Sound
+from tests.testing.broken_normal import Altered, Stepwise
+from tests.testing.fresh_faults import STEPS, Steps
+from tests.testing.fresh_sound import HardSphere, Mindlin, Press, SlipThenRoll
+
+
+def found(law, name):
+    """Verdict and sentence of one check of a law."""
+    told = outcome(law, next(check for check in checks_for(law) if check.name == name))
+    return told.verdict, told.sentence
+
+
+class Paid(HardSphere):
+    """Another friction work than that of its change."""
+
+    def share(self, scene):
+        raise NotImplementedError
+
+    def answer(self, scene, change, work):
+        return super().answer(scene, change, work * self.share(scene))
+
+
+class PaidBySense(Paid):
+    def share(self, scene):
+        return np.where(np.asarray(scene.slip_velocity) < 0.0, 1.01, 1.0)[()]
+
+
+class PaidByTheMetre(Paid):
+    def share(self, scene):
+        return 1.0 + scene.pair.radius
+
+
+class PaidInBatches(Paid):
+    def share(self, scene):
+        return 1.01 if scene.shape == (12,) else 1.0
+
+
+class CostlyInABatch(AllAtOnce):
+    """All steps of a batch at once have one per cent more of friction work."""
+
+    def advance_all(self, scene, normal, steps):
+        answer = super().advance_all(scene, normal, steps)
+        return answer._replace(friction_work=1.01 * answer.friction_work) if scene.shape else answer
+
+
+class WorkByTheMetre(Sound):
+    def advance(self, state, increment, before, after):
+        response, state = super().advance(state, increment, before, after)
+        return response._replace(friction_work=response.friction_work * (1.0 + after.radius)), state
+
+
+class WorkOfOneSense(Steps):
+    def alter(self, motion, scene):
+        share = np.where(np.asarray(scene.slip_velocity) < 0.0, 1.01, 1.0)[()]
+        return attrs.evolve(motion, friction_work=share * motion.friction_work)
+
+
+class WorkOfABatch(Steps):
+    def alter(self, motion, scene):
+        share = 1.01 if scene.shape else 1.0
+        return attrs.evolve(motion, friction_work=share * motion.friction_work)
+
+
+class ShowsWhatIsOver(STEPS):
+    """Shows an instant half a duration after separation."""
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        motion = super().integrate(normal, tangential, scene, last := Last(observer))
+        if observer is not None:
+            observer(last.sample._replace(time=1.5 * normal.duration))
+        return motion
+
+
+class Last:
+    """Hands on every sample, and keeps the last one."""
+
+    def __init__(self, observer):
+        self.observer, self.stepwise = observer, True
+
+    def __call__(self, sample):
+        self.sample = sample
+        if self.observer is not None:
+            self.observer(sample)
+
+
+class ComplexLoad(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(friction_load=contact.force + 0j)
+
+
+class NoRadius(Altered):
+    def alter(self, contact, approach, rate):
+        return contact._replace(radius=None)
+
+
+class HalfAVersion(Sound):
+    api_version: ClassVar[Any] = 2.0
+
+
+class NoVersion(Press):
+    api_version: ClassVar[Any] = None
+
+
+class OffersNumbers(Sound):
+    offers: ClassVar[Any] = frozenset({1})
+
+
+class RunsUnderNumbers(STEPS):
+    normal_contract: ClassVar[Any] = int
+
+
+class TakesMore(Sound):
+    """Takes any new attribute."""
+
+    def __setattr__(self, name, value):
+        if name != "something_new":
+            raise AttributeError(name)
+        object.__setattr__(self, name, value)
+
+
+class TwoWords(Sound):
+    expected_failures: ClassVar[dict] = {"units": "by nature"}
+
+
+NARROW = [
+    (PaidBySense(), "impact_odd", "psi1 = -0.01, chi = 0.4: differs by 4.2e-07 from the mirror"),
+    (PaidByTheMetre(), "impact_units", "psi1 = 0.01, chi = 0.4: in other units psi2 differs by "),
+    (PaidInBatches(), "impact_batch", "Impact 0 of a batch is off by "),
+    (CostlyInABatch(), "all_steps", "A batch of shape (8,): differs by "),
+    (WorkByTheMetre(), "units", "In other units the answer differs by "),
+    (WorkOfOneSense(), "mirror_images", "psi1 = -0.3: the motion is "),
+    (
+        WorkOfABatch(),
+        "impacts_batch",
+        "The friction_work of an impact of a batch is off by 1.0e-02",
+    ),
+    (
+        ShowsWhatIsOver(),
+        "observer_changes_nothing",
+        "The last instant seen is at 1.5 of the durati",
+    ),
+    (ComplexLoad(), "contacts", "friction_load = 0j at approach 0.0, batch shape ()."),
+    (NoRadius(), "contacts", "radius = None at approach 0.0, batch shape ()."),
+    (HalfAVersion(), "api_version", "api_version = 2.0: contactlab has 2."),
+    (NoVersion(), "api_version", "api_version = None: contactlab has 2."),
+    (OffersNumbers(), "contract", "offers = frozenset({1}): must be a frozenset of words."),
+    (
+        RunsUnderNumbers(),
+        "contract",
+        "normal_contract = <class 'int'>: must be a class derived fro",
+    ),
+    (TakesMore(), "immutable", "something_new can be set: freeze the class, attrs.frozen(kw_only"),
+    (TwoWords(), "expected_failures", "'units' needs a reason."),
+]
+
+
+@pytest.mark.parametrize(
+    ("law", "name", "words"), NARROW, ids=[type(law).__name__ for law, _, _ in NARROW]
+)
+def test_a_fault_in_one_quantity_is_caught(law, name, words):
+    verdict, sentence = found(law, name)
+    assert verdict is Verdict.FAILED
+    assert sentence.startswith(words), sentence
+
+
+def test_the_check_of_a_law_that_can_be_changed_leaves_it_as_it_was():
+    law = Mutable()
+    assert found(law, "immutable")[0] is Verdict.FAILED
+    assert law.ratio == 0.7
+
+
+@attrs.frozen(kw_only=True)
+class Wide(Stepwise):
+    """b² over R z is ``share``; with ``pull`` in N the surfaces attract each other."""
+
+    share: float = 1.0
+    pull: float = 0.0
+
+    def alter(self, contact, dashpot, rate):
+        pulled = contact.force - self.pull * (contact.overlap > 0.0)
+        return NormalContact(pulled, self.share**0.5 * contact.radius, contact.overlap)
+
+
+@pytest.mark.parametrize(
+    ("name", "law", "good"),
+    [  # elastic 1, flowing 2, either with 0.02 of room
+        ("radius", Wide(share=0.975), False),
+        ("radius", Wide(share=0.985), True),
+        ("radius", Wide(share=2.015), True),
+        ("radius", Wide(share=2.025), False),
+        ("hertzian_pressure", Wide(share=0.975), False),
+        ("hertzian_pressure", Wide(share=0.985), True),
+        ("hertzian_pressure", Wide(share=1.015), True),
+        ("hertzian_pressure", Wide(share=1.025), False),
+        ("hertzian_pressure", Wide(share=1.5, pull=50.0), True),
+        ("hertzian_pressure", Wide(share=2.025, pull=50.0), False),
+    ],
+)
+def test_the_radius_is_that_of_an_elastic_sphere_or_of_one_that_flows(name, law, good):
+    assert (found(law, name)[0] is Verdict.PASSED) == good
+
+
+class TwoThirds(Mindlin):
+    """The stiffness of Di Renzo and Di Maio."""
+
+    factor: ClassVar[float] = 2.0 / 3.0
+
+    def modulus(self, scene):
+        return self.factor * super().modulus(scene)
+
+
+class Softer(TwoThirds):
+    factor: ClassVar[float] = 0.96
+
+
+class Between(TwoThirds):
+    factor: ClassVar[float] = 0.72
+
+
+@pytest.mark.parametrize(
+    ("law", "verdict"),
+    [
+        (Mindlin(), Verdict.PASSED),
+        (TwoThirds(), Verdict.PASSED),
+        (Softer(), Verdict.FAILED),
+        (Between(), Verdict.FAILED),
+    ],
+)
+def test_a_stiffness_in_proportion_to_the_radius_is_one_of_two(law, verdict):
+    assert found(law, "at_rest_stiffness")[0] is verdict
+
+
+@attrs.frozen(kw_only=True)
+class Fine(Sound):
+    """Declares an error, of a resolution up to ``most``."""
+
+    resolution: ClassVar[str] = "pieces"
+
+    pieces: Any = 10
+    most: float = 1e9
+
+    def __attrs_post_init__(self):
+        if self.pieces > self.most:
+            raise ValueError("too many pieces")
+
+    def psi2_error(self, scene, normal, steps):
+        return 1e-3 + 2.0 / steps
+
+
+@pytest.mark.parametrize(
+    ("law", "finer"),
+    [
+        (Fine(), 40),
+        (Fine(most=39), 20),
+        (Fine(most=19), 10),
+        (Fine(pieces=0.5), 0.0005),
+    ],
+)
+def test_what_is_finer(law, finer):
+    assert _finer(law).pieces == pytest.approx(finer)
+    assert _finer(Sound()) == Sound()
+
+
+class SlipsWithError(SlipThenRoll):
+    def psi2_error(self, scene, normal, steps):
+        return 0.25 + 1.0 / steps
+
+
+def test_the_declared_error_is_that_of_law_and_integrator():
+    [way] = ways(Fine())
+    for psi1 in (0.3, 3.5):
+        assert _declared(way, scene(psi1, 1.0)) == pytest.approx(1e-3 + 2.0 / 200)
+    [exact] = ways(SlipsWithError())
+    tolerance = exact.integrator.accuracy
+    for psi1, size in ((0.3, 1.0), (-3.5, 3.5)):
+        assert _declared(exact, scene(psi1, 1.0)) == pytest.approx(
+            0.25 + tolerance * size, abs=1e-15
+        )
+    [whole] = ways(HardSphere())
+    assert np.isnan(_declared(whole, scene(2.0, 1.0)))
+    assert _declared(whole, scene(0.0, 1.0)) == 0.0  # a central impact, in closed form
