@@ -10,7 +10,7 @@ from contactlab import Encounter, Material, Sphere
 from contactlab.scene_file import LawChoice
 from contactlab.scene_file.entries import ENTRIES, replaced, with_materials, without_rivals
 from contactlab.scene_file.laws import same_law
-from tests.scene_file.test_scene_file_refusals import document
+from tests.scene_file.test_scene_file_refusals import GOOD, document
 
 GROUPS = "[nondimensional]\npsi1 = 1.0\nchi = 1.0\n"
 
@@ -89,8 +89,9 @@ def test_defaults_are_for_what_the_file_leaves_out(read):
     text = document(without=["impact.friction_coefficient"])
     assert read(text, defaults=defaults).scene.friction_coefficient == 0.7
     assert read(GROUPS, defaults=defaults).scene == read(GROUPS).scene
+    impact = [key for key in GOOD if key.startswith("impact")]
     with pytest.raises(ValueError, match="impact = 3: must be a table"):
-        read("impact = 3\n", defaults=defaults)
+        read("impact = 3\n" + document(without=impact), defaults=defaults)
 
 
 def test_replacing_copies_the_tables():
