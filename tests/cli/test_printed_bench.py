@@ -127,3 +127,18 @@ def test_the_benchmark_is_drawn_in_two_panels(tmp_path, monkeypatch, capsys):
     bench._draw(path, benched((), complete=True), look="slides", width="one")
     assert len(saved) == 1
     assert capsys.readouterr().err == "no figure drawn: nothing was measured\n"
+
+
+def test_the_files_of_the_benchmark_are_those_of_its_result(run, monkeypatch, tmp_path):
+    drawn = []
+    found = benched(ROWS)
+    monkeypatch.setattr(bench, "bench", lambda *_, **__: found)
+    monkeypatch.setattr(bench, "methods", lambda _: [])
+    monkeypatch.setattr(bench, "_report", lambda _: "the table")
+    monkeypatch.setattr(bench, "_draw", lambda *given, **look: drawn.append((given, look)))
+    files = tmp_path / "b.csv", tmp_path / "b.png"
+    look = ("--style", "slides", "--width", "two")
+    ran = run("bench", "--csv", files[0], "--figure", files[1], *look)
+    assert ran == (0, "the table\n", "")
+    assert drawn == [((files[1], found), {"look": "slides", "width": "two"})]
+    assert len(files[0].read_text(encoding="utf-8").splitlines()) == 4

@@ -206,3 +206,30 @@ def test_maps_and_models_are_drawn_with_the_look_asked_for(tmp_path, monkeypatch
 )
 def test_options_of_stability_that_cannot_be(run, options, words):
     assert run("stability", *options) == (2, "", f"contactlab stability: error: {words}\n")
+
+
+def test_the_files_of_stability_are_those_of_its_result(monkeypatch, tmp_path):
+    asked = []
+    found = Stability(outcomes=OUTCOMES, regions=(), complete=True)
+    monkeypatch.setattr(stability, "stability", lambda *_, **__: found)
+    monkeypatch.setattr(stability, "methods", lambda _: ["a law"])
+    monkeypatch.setattr(stability, "_draw", lambda *given: asked.append(given))
+    words = arguments(csv=tmp_path / "s.csv", figure=tmp_path / "s.png")
+    assert stability.execute(words) == 1
+    assert asked == [(tmp_path / "s.png", words, ["a law"], found, "the budget ran out")]
+    assert len((tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()) == 9
+
+
+def test_an_interrupted_report_has_the_outcomes_judged_so_far(monkeypatch, capsys):
+    def study(chosen, *, judged, **_):
+        for case in chosen:
+            judged(case)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(stability, "stability", study)
+    monkeypatch.setattr(stability, "methods", lambda _: OUTCOMES[:2])
+    monkeypatch.setattr(stability, "judge", lambda case: case)
+    assert stability.execute(arguments()) == 130
+    out = capsys.readouterr().out
+    assert "2 runs tried" in out
+    assert out.endswith("not complete: interrupted\n")
