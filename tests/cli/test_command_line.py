@@ -10,6 +10,7 @@ import warnings
 import pytest
 
 import contactlab
+from contactlab.cli import arguments
 from contactlab.cli import main as module
 from contactlab.cli import run as run_command
 from contactlab.compose.installed import PluginWarning
@@ -113,3 +114,20 @@ def test_a_command_that_is_not_there(run):
     assert "did you mean" not in run("zzzzz").err
     told = "contactlab run: error: unrecognized arguments: --x=3 (see contactlab run --help)\n"
     assert run("run", "--x=3", "--psi1", 1, "--chi", 1).err == told
+
+
+def test_exit_statuses_are_those_of_a_shell():
+    found = (arguments.OK, arguments.FAILED, arguments.BAD_INPUT, arguments.INTERRUPTED,
+             arguments.BROKEN_PIPE)  # fmt: skip
+    assert found == (0, 1, 2, 128 + 2, 128 + 13)  # of SIGINT and of SIGPIPE
+
+
+def test_a_reader_that_has_gone_is_told_by_the_status(run, monkeypatch):
+    def gone(_):
+        raise BrokenPipeError
+
+    left = []
+    monkeypatch.setattr(run_command, "execute", gone)
+    monkeypatch.setattr(module, "_leave_stdout", lambda: left.append(1))
+    assert run("run") == (141, "", "")
+    assert left == [1]

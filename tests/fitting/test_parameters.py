@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation, create
+from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.fitting import fit, tabulated
 from contactlab.fitting.model import Model, scene_of, simulation_of
 from contactlab.fitting.parameters import Parameter, Setup, _range, parameter_named
@@ -261,3 +262,21 @@ def test_a_parameter_of_ones_own_is_batched_and_has_no_unit():
 
     own = Own(name="own", least=-1.0, most=3.0, starts=(0.0,))
     assert (own.width, own.batched, own.unit) == (4.0, True, "1")
+
+
+def test_a_broken_plug_in_is_no_remedy(monkeypatch):
+    """Laws that cannot be loaded are not among those that have the option."""
+    usual = REGISTRY.law_class
+
+    def broken(name):
+        if name == "normal.tsuji":
+            raise PluginError("broken")
+        if name == "normal.hunt_crossley":
+            raise ValueError("not a law")
+        return usual(name)
+
+    monkeypatch.setattr(REGISTRY, "law_class", broken)
+    with pytest.raises(ValueError, match="it is an option of") as caught:
+        named("restitution")
+    assert "tsuji" not in str(caught.value)
+    assert "hunt_crossley" not in str(caught.value)

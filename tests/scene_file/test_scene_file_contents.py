@@ -52,6 +52,7 @@ def test_about_is_empty_by_default(read):
     file = read(f"[about]\ntitle = 'a'\ncitation = 'b'\nnotes = 'c'\n{GROUPS}")
     assert (file.title, file.citation, file.notes) == ("a", "b", "c")
     assert (dict(file.varied), file.measured, dict(file.scene.axes)) == ({}, (), {})
+    assert "tables" not in repr(file)
 
 
 def test_a_product_varies_the_last_entry_fastest(read):
