@@ -17,24 +17,29 @@ from contactlab.compose.installed import PluginWarning
 from contactlab.contracts.status import Status
 
 
+class Another(Warning):
+    """A warning that is not about plug-ins."""
+
+
 def test_other_warnings_are_shown_as_ever(run, monkeypatch, capsys):
     shown = []
 
     def warn(_):
         warnings.warn("of a plug-in", PluginWarning, stacklevel=2)
         warnings.warn("of a plug-in", PluginWarning, stacklevel=2)
-        warnings.warn("another", UserWarning, stacklevel=2)
+        warnings.warn("another", Another, stacklevel=2)
         return 0
 
     monkeypatch.setattr(run_command, "execute", warn)
     with warnings.catch_warnings():
-        warnings.simplefilter("always")
+        warnings.simplefilter("ignore")
+        warnings.simplefilter("always", Another)
         warnings.showwarning = lambda message, category, *_: shown.append((str(message), category))
         before = warnings.showwarning
         ran = run("run")
         assert warnings.showwarning is before
     assert ran.err == "contactlab: warning: of a plug-in\n" * 2
-    assert shown == [("another", UserWarning)]
+    assert shown == [("another", Another)]
 
 
 @pytest.mark.parametrize(
@@ -131,3 +136,15 @@ def test_a_reader_that_has_gone_is_told_by_the_status(run, monkeypatch):
     monkeypatch.setattr(module, "_leave_stdout", lambda: left.append(1))
     assert run("run") == (141, "", "")
     assert left == [1]
+
+
+@pytest.mark.parametrize(("error", "times"), [(OSError("full"), 1), (ValueError("bad"), 0)])
+def test_after_an_error_of_the_system_stdout_may_not_be_flushed(run, monkeypatch, error, times):
+    def fail(_):
+        raise error
+
+    left = []
+    monkeypatch.setattr(run_command, "execute", fail)
+    monkeypatch.setattr(module, "_leave_stdout", lambda: left.append(1))
+    run("run")
+    assert len(left) == times

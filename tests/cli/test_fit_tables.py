@@ -290,3 +290,21 @@ def test_an_impact_that_a_law_does_not_follow_is_one_line(run, monkeypatch):
     assert run("fit", KHARAZ) == (1, "", "contactlab fit: error: too few steps\n")
     told = "--bootstrap = 100001: must be a whole number from 0 to 100000"
     assert run("fit", KHARAZ, "--bootstrap", 100001).err == f"contactlab fit: error: {told}\n"
+
+
+def test_every_part_of_the_work_has_its_progress(run, monkeypatch):
+    """Searches of the first law, the further laws, and the samples."""
+    counted = []
+
+    def fit(*_, progress, bootstrap=0, **__):
+        progress(1, 2 + bootstrap)
+        return attrs.evolve(made(), samples=bootstrap)
+
+    monkeypatch.setattr(
+        "contactlab.cli.progress.Progress.__call__",
+        lambda me, *count: counted.append((me._what, *count)),
+    )
+    monkeypatch.setattr(command, "fit", fit)
+    monkeypatch.setattr(command, "rank", lambda *_, **__: [])
+    run("fit", KHARAZ, "--laws", "exact,coulomb", "--bootstrap", 7, "--progress")
+    assert counted == [("searches", 1, 2), ("laws", 1, 2), ("bootstrap", 1, 9)]

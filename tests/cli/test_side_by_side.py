@@ -18,13 +18,13 @@ RIGID, LOOSE = (Simulation(tangential=name) for name in ("coulomb", "frictionles
 
 @pytest.fixture
 def timed():
-    """Compare with run times of 2 µs and 5 µs an impact."""
+    """Compare with run times of 2 µs and 5.12 µs an impact."""
 
     def call(file, laws=None):
         comparison = compare(file, laws or {"coulomb": RIGID, "frictionless": LOOSE})
         runs = [
             attrs.evolve(run, run_time_per_impact=seconds)
-            for run, seconds in zip(comparison.runs, (2e-6, 5e-6), strict=False)
+            for run, seconds in zip(comparison.runs, (2e-6, 5.12e-6), strict=False)
         ]
         return attrs.evolve(comparison, runs=tuple(runs))
 
@@ -38,7 +38,7 @@ COST = """\
 cost          run time an impact  relative  impacts followed
 ------------  ------------------  --------  ----------------
 coulomb       2 µs                1         2 of 2
-frictionless  5 µs                2.5       2 of 2"""
+frictionless  5.12 µs             2.6       2 of 2"""
 
 
 def test_measured_values_beside_two_laws(measured, timed):
