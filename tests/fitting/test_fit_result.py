@@ -14,6 +14,8 @@ def test_residuals_and_their_sizes():
     assert found.counts == {"psi2": 2, "rebound_spin": 3}
     assert found.rms == pytest.approx({"psi2": np.sqrt(0.125), "rebound_spin": np.sqrt(10.0 / 3.0)})
     assert found.largest == pytest.approx({"psi2": 0.4, "rebound_spin": 3.0})
+    below = attrs.evolve(found, predicted=found.predicted | {"psi2": np.array([0.4, 0.0, 1.5])})
+    assert below.largest["psi2"] == pytest.approx(2.5)  # of -2.5
     assert found["mu"] == 0.123456
     with pytest.raises(ValueError, match=r"^name = 'nu': was not fitted; fitted: mu$"):
         found["nu"]

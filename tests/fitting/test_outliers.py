@@ -161,10 +161,11 @@ def test_ranks_are_those_of_columns_that_vary():
         "constant": np.full(5, 2.0),
         "nearly": np.array([10.0, 9.5, 9.1, 9.3, 9.0]),
         "three values": np.array([1.0, 2.0, 3.0, 1.0, 2.0]),
+        "a little": np.array([10.0, 9.0, 8.94, 9.3, 9.1]),
         "negative": np.array([-10.0, -9.0, -8.0, -8.5, -8.9]),
     }
     ranks = patterns._ranked(columns, 5)
-    assert list(ranks) == ["shuffled", "negative", patterns.ORDER]
+    assert list(ranks) == ["shuffled", "a little", "negative", patterns.ORDER]
     assert ranks["shuffled"].tolist() == [2.0, 0.0, 3.0, 1.0, 1.0]
     assert ranks["negative"].tolist() == [0.0, 1.0, 4.0, 3.0, 2.0]
     assert ranks[patterns.ORDER].tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
