@@ -222,8 +222,7 @@ def test_the_files_of_stability_are_those_of_its_result(monkeypatch, tmp_path):
 
 def test_an_interrupted_report_has_the_outcomes_judged_so_far(monkeypatch, capsys):
     def study(chosen, *, judged, **_):
-        for case in chosen:
-            judged(case)
+        assert [judged(case) for case in chosen] == list(chosen)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(stability, "stability", study)

@@ -6,6 +6,7 @@ import re
 import attrs
 import numpy as np
 import pytest
+from scipy.stats import f as f_distribution
 
 from contactlab import Simulation
 from contactlab.fitting import slips
@@ -213,3 +214,33 @@ def test_a_tilt_is_told_with_its_sign_and_the_corrected_fit(off):
     assert slips.tilted(*problem_of(few), best) == (1.0, "")  # two degrees of freedom are left
     sound, given = problem_of(columns | {"angle_deg": angles})
     assert slips.tilted(sound, given, np.array([0.1])) == (1.0, "")
+
+
+@pytest.mark.parametrize(
+    ("count", "better", "likely", "told"),
+    [
+        (10, 20.0, 0.01, True),
+        (10, 19.99, 0.01, False),
+        (10, 20.0, 0.0101, False),
+        (40, 80.0 * math.log(2.0) + 0.01, 0.0, True),
+        (40, 80.0 * math.log(2.0) - 0.01, 0.0, False),
+    ],
+)
+def test_a_tilt_halves_the_residuals_and_is_certain(count, better, likely, told, monkeypatch):
+    """Its chance is that of the F test of one parameter more."""
+    columns = {name: np.resize(values, count) for name, values in (POLAR | E_T).items()}
+    problem, given = problem_of(columns)
+    found = iter([100.0, 100.0 - better])
+    monkeypatch.setattr(slips, "_scores", lambda *_: np.array([next(found)]))
+    monkeypatch.setattr(slips, "chance_of", lambda *_: likely)
+    monkeypatch.setattr(slips, "solved", lambda _, at: at + 0.5)
+    chance, sentence = slips.tilted(problem, given, np.array([0.1]))
+    if not told:
+        assert (chance, sentence) == (1.0, "")
+        return
+    square = math.exp(better / count)
+    assert chance == pytest.approx(f_distribution.sf((square - 1.0) * (count - 2), 1, count - 2))
+    assert sentence.startswith("angle_deg looks as if all numbers were 0.5 degrees too large, as")
+    assert sentence.endswith(
+        f"residuals are {math.sqrt(square):.2g} times smaller, and friction_coefficient 0.6"
+    )
