@@ -17,9 +17,9 @@ from contactlab.outcome.tables import answer, closing, largest_imbalance, sectio
 def describe(
     result: ImpactResult,
     *,
-    title: str = "",
+    title: str,
     varied: Mapping[str, Any],
-    collision: Collision | None = None,
+    collision: Collision | None,
 ) -> str:
     """Return the report of one impact or a sweep, with vectors if ``collision`` is given."""
     plan = result.plan

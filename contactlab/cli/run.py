@@ -124,13 +124,13 @@ def draw_map(path: Path, result: ImpactResult, **look: Any) -> None:
 def report(
     result: ImpactResult,
     *,
-    as_json: bool = False,
-    varied: Mapping[str, Any] | None = None,
+    as_json: bool,
+    varied: Mapping[str, Any],
     collision: Collision | None = None,
 ) -> int:
     """Print JSON if ``as_json``, report failures on stderr, and return the exit status."""
     if as_json:
-        swept = {name: json_value(values) for name, values in (varied or {}).items()}
+        swept = {name: json_value(values) for name, values in varied.items()}
         content = export.to_dict(result) | {"varied": swept}
         if collision is not None:
             content["collision"] = collision.to_dict()

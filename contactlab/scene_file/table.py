@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from contactlab.numeric.checks import FINITE, Real, Rule, nearest, real, refuse
+from contactlab.numeric.checks import Real, nearest, real, refuse
 
 Made = TypeVar("Made")
 
@@ -56,7 +56,7 @@ class Table:
         remedy = f"add a table [{self.at(key)}] with {', '.join(known)}"
         return Table(self.require(key, remedy), self.at(key), known=known)
 
-    def number(self, key: str, *, rule: Rule = FINITE, remedy: str) -> Any:
+    def number(self, key: str, *, remedy: str) -> Any:
         """Return a number, or the array of a sweep in its place.
 
         A list in the file is refused: entries that vary belong in ``[sweep]``.
@@ -64,7 +64,7 @@ class Table:
         value = self.require(key, f"write {key} = ...: {ABSENT.get(key, remedy)}")
         if isinstance(value, list):
             raise refuse(self.at(key), value, "must be one number", "put lists in [sweep]")
-        return real(self.at(key), value, rule=rule, remedy=remedy)
+        return real(self.at(key), value, remedy=remedy)
 
     def text(self, key: str, *, default: str | None = None, remedy: str = "") -> str:
         """Return the text at ``key``."""

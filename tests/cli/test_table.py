@@ -1,6 +1,8 @@
 """Tables keep to the width of a terminal."""
 
-from contactlab.cli.table import WIDTH, table
+import pytest
+
+from contactlab.cli.table import WIDTH, _folded, table
 
 
 def test_a_narrow_table_is_as_it_was_given():
@@ -37,3 +39,53 @@ def test_short_headings_stand_on_the_line_above_the_rule():
     lines = table(headings, [["x", *[1.0] * 8]]).splitlines()
     rule = next(number for number, line in enumerate(lines) if line.startswith("--"))
     assert [line.startswith("short") for line in lines[:rule]] == [False] * (rule - 1) + [True]
+
+
+@pytest.mark.parametrize(("wide", "lines"), [(95, 1), (96, 2)])
+def test_headings_are_folded_beyond_a_hundred_characters(wide, lines):
+    """Two blanks are counted after each column, the last one too."""
+    words = "x" * 10, "y" * (wide - 11)
+    text = table([" ".join(words), "z"], [[1.0, 2.0]]).splitlines()
+    assert len(text) == lines + 2
+    if lines == 2:
+        assert [line.split() for line in text[:2]] == [[words[0]], [words[1], "z"]]
+
+
+@pytest.mark.parametrize(
+    ("heading", "width", "lines"),
+    [
+        ("a_rather_long_heading (m/s)", 5, ["a_", "rather_", "long_", "heading", "(m/s)"]),
+        ("a_rather_long_heading (m/s)", 9, ["a_rather_", "long_", "heading", "(m/s)"]),
+        ("a_rather_long_heading (m/s)", 12, ["a_rather_", "long_heading", "(m/s)"]),
+        ("a_rather_long_heading (m/s)", 18, ["a_rather_long_", "heading (m/s)"]),
+        ("one two", 7, ["one two"]),
+        ("one two", 6, ["one", "two"]),
+        ("_x", 1, ["_", "x"]),
+        ("", 3, []),
+    ],
+)
+def test_a_heading_is_split_at_underscores_and_blanks(heading, width, lines):
+    assert _folded(heading, width) == lines
+
+
+@pytest.mark.parametrize(
+    ("first", "text", "lines"),
+    [
+        (4, ("a" * 45, "b" * 46), 1),
+        (4, ("a" * 45, "b" * 47), 2),
+        (80, ("c" * 14, "d" * 15), 1),
+        (80, ("c" * 14, "d" * 16), 2),
+    ],
+)
+def test_a_last_column_of_text_has_the_room_that_is_left(first, text, lines):
+    """What is left of a hundred, but thirty at least."""
+    rows = [["n" * first, " ".join(text)], ["m", "x" * 500]]
+    body = table(["n", "t"], rows).splitlines()[2:]
+    assert body[0].split() == ["n" * first, *(text if lines == 1 else text[:1])]
+    assert body[1].split()[0] == ("m" if lines == 1 else text[1])
+
+
+def test_a_last_column_of_numbers_is_not_wrapped():
+    heading = " ".join(["w" * 60, "v" * 60])
+    assert table(["n", heading], [["x", 1.5]]).splitlines()[-1].split() == ["x", "1.5"]
+    assert table(["n" * 60, "v" * 60], []).splitlines()[-1] == "-" * 60 + "  " + "-" * 60

@@ -1,0 +1,150 @@
+"""The command line itself: warnings, streams, errors, and words that are no options."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+import warnings
+
+import pytest
+
+import contactlab
+from contactlab.cli import arguments
+from contactlab.cli import main as module
+from contactlab.cli import run as run_command
+from contactlab.compose.installed import PluginWarning
+from contactlab.contracts.status import Status
+
+
+class Another(Warning):
+    """A warning that is not about plug-ins."""
+
+
+def test_other_warnings_are_shown_as_ever(run, monkeypatch, capsys):
+    shown = []
+
+    def warn(_):
+        warnings.warn("of a plug-in", PluginWarning, stacklevel=2)
+        warnings.warn("of a plug-in", PluginWarning, stacklevel=2)
+        warnings.warn("another", Another, stacklevel=2)
+        return 0
+
+    monkeypatch.setattr(run_command, "execute", warn)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        warnings.simplefilter("always", Another)
+        warnings.showwarning = lambda message, category, *_: shown.append((str(message), category))
+        before = warnings.showwarning
+        ran = run("run")
+        assert warnings.showwarning is before
+    assert ran.err == "contactlab: warning: of a plug-in\n" * 2
+    assert shown == [("another", Another)]
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (["run", "--psi1", "-1e-3"], ["run", "--psi1=-1e-3"]),
+        (["--psi1", "-1:2:3", "-4"], ["--psi1=-1:2:3", "-4"]),
+        (["--psi1", "-x"], ["--psi1", "-x"]),
+        (["--psi1", "1"], ["--psi1", "1"]),
+        (["-p", "-1"], ["-p", "-1"]),
+        (["-1"], ["-1"]),
+        (["--set", "-inf"], ["--set=-inf"]),
+    ],
+)
+def test_negative_numbers_are_joined_to_their_option(words, expected):
+    assert module._join_negative_numbers(words) == expected
+
+
+@pytest.mark.parametrize(
+    ("words", "needed"),
+    [
+        (["run", "--x"], ("run",)),
+        (["--traceback", "fit", "run"], ("fit",)),
+        (["--version"], ()),
+        (["--help"], module.COMMANDS),
+        (["rum"], module.COMMANDS),
+        ([], ()),
+    ],
+)
+def test_only_the_command_that_is_named_is_needed(words, needed):
+    assert module._needed(words) == needed
+
+
+def test_a_stream_that_cannot_be_flushed_is_left(monkeypatch, tmp_path):
+    """Its descriptor then leads to the null device."""
+    path = tmp_path / "out"
+    with path.open("w", encoding="utf-8") as stream:
+
+        class Full:
+            fileno = staticmethod(stream.fileno)
+
+            def flush(self):
+                raise OSError("no space")
+
+        monkeypatch.setattr(sys, "stdout", Full())
+        module._leave_stdout()
+        os.write(stream.fileno(), b"lost")
+    assert path.read_text(encoding="utf-8") == ""
+    monkeypatch.setattr(sys, "stdout", io.StringIO())
+    module._leave_stdout()  # what can be flushed is left alone
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "words"),
+    [
+        (ValueError("a\n  b"), 2, "contactlab run: error: a b"),
+        (ValueError(), 2, "contactlab run: error: ValueError"),
+        (OSError("full"), 1, "contactlab run: error: full"),
+        (contactlab.ImpactError("x", Status.INTERRUPTED), 130, "contactlab run: error: x"),
+        (contactlab.ImpactError("x", Status.NON_FINITE), 1, "contactlab run: error: x"),
+        (KeyboardInterrupt(), 130, "contactlab: interrupted"),
+    ],
+)
+def test_an_error_is_one_line(run, monkeypatch, error, status, words):
+    def fail(_):
+        raise error
+
+    monkeypatch.setattr(run_command, "execute", fail)
+    assert run("run") == (status, "", f"{words}\n")
+
+
+def test_a_command_that_is_not_there(run):
+    ran = run("rnu")
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err.startswith("contactlab: error: argument COMMAND: invalid choice: 'rnu' (choose ")
+    assert ran.err.endswith("; did you mean 'run'? (see contactlab --help)\n")
+    assert "did you mean" not in run("zzzzz").err
+    told = "contactlab run: error: unrecognized arguments: --x=3 (see contactlab run --help)\n"
+    assert run("run", "--x=3", "--psi1", 1, "--chi", 1).err == told
+
+
+def test_exit_statuses_are_those_of_a_shell():
+    found = (arguments.OK, arguments.FAILED, arguments.BAD_INPUT, arguments.INTERRUPTED,
+             arguments.BROKEN_PIPE)  # fmt: skip
+    assert found == (0, 1, 2, 128 + 2, 128 + 13)  # of SIGINT and of SIGPIPE
+
+
+def test_a_reader_that_has_gone_is_told_by_the_status(run, monkeypatch):
+    def gone(_):
+        raise BrokenPipeError
+
+    left = []
+    monkeypatch.setattr(run_command, "execute", gone)
+    monkeypatch.setattr(module, "_leave_stdout", lambda: left.append(1))
+    assert run("run") == (141, "", "")
+    assert left == [1]
+
+
+@pytest.mark.parametrize(("error", "times"), [(OSError("full"), 1), (ValueError("bad"), 0)])
+def test_after_an_error_of_the_system_stdout_may_not_be_flushed(run, monkeypatch, error, times):
+    def fail(_):
+        raise error
+
+    left = []
+    monkeypatch.setattr(run_command, "execute", fail)
+    monkeypatch.setattr(module, "_leave_stdout", lambda: left.append(1))
+    run("run")
+    assert len(left) == times

@@ -1,0 +1,261 @@
+"""Refusals of the commands in full, and the words that they read."""
+
+from __future__ import annotations
+
+import argparse
+import re
+
+import numpy as np
+import pytest
+
+from contactlab.cli import arguments as shared
+from contactlab.cli.scene import numbers
+from contactlab.cli.sweep import _ranges, _rows
+from contactlab.impact.scene import Scene
+
+RANGE = "a range is START:STOP:COUNT, {}, in contactlab sweep and compare"
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("one", ""),
+        ("0-6", "; " + RANGE.format("0:6:71")),
+        (" 0 to 6.5 ", "; " + RANGE.format("0:6.5:71")),
+        ("-1..2", "; " + RANGE.format("-1.:.2:71")),
+        ("0,6", "; " + RANGE.format("0:6:71")),
+        ("1:5:9", "; " + RANGE.format("1:5:71")),
+        ("+1:-5", "; " + RANGE.format("+1:-5:71")),
+        ("1-2-3", ""),
+    ],
+)
+def test_a_word_that_is_no_number(text, hint):
+    with pytest.raises(argparse.ArgumentTypeError, match="is not a number") as caught:
+        shared.finite(text)
+    told = str(caught.value)
+    if text == "-1..2":  # its dots belong to either number
+        assert told.startswith(f"{text!r} is not a number; a range is START:STOP:COUNT, ")
+    else:
+        assert told == f"{text!r} is not a number{hint}"
+
+
+def test_numbers_are_finite():
+    assert shared.finite("-1e3") == -1000.0
+    for text in ("nan", "inf", "-inf"):
+        with pytest.raises(argparse.ArgumentTypeError, match=f"^'{text}': must be a finite number"):
+            shared.finite(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("1:2:3:4", "'1:2:3:4': write START:STOP:COUNT, or one number"),
+        ("1:2:x", "'1:2:x': COUNT must be a whole number"),
+        ("1:2:1.5", "'1:2:1.5': COUNT must be a whole number"),
+        ("1:2:0", "'1:2:0': COUNT must lie in [1, 1000000]"),
+        ("1:2:1000001", "'1:2:1000001': COUNT must lie in [1, 1000000]"),
+        ("0:6", f"'0:6' is not a number; {RANGE.format('0:6:71')}"),
+        ("x:2:3", "'x' is not a number"),
+        ("1:y:3", "'y' is not a number"),
+    ],
+)
+def test_a_range_that_cannot_be(text, words):
+    with pytest.raises(argparse.ArgumentTypeError, match=f"^{re.escape(words)}$"):
+        numbers(text)
+
+
+def test_a_range_has_both_ends():
+    assert numbers("-1:2:4").tolist() == [-1.0, 0.0, 1.0, 2.0]
+    assert numbers("3:9:1").tolist() == [3.0]
+    assert len(numbers("0:1:1000000")) == 1_000_000
+    assert numbers("1.5") == 1.5
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("tangential.annuli=50", ("tangential.annuli", 50)),
+        (" a.b = 'c' ", ("a.b", "c")),
+        ("a.b=word", ("a.b", "word")),
+        ("a.b= two words ", ("a.b", "two words")),
+        ("a.b=1=2", ("a.b", "1=2")),
+        ("a.b=[1, 2]", ("a.b", [1, 2])),
+        ("a.b=true", ("a.b", True)),
+    ],
+)
+def test_a_setting_is_written_as_in_toml_or_as_a_word(text, expected):
+    assert shared.setting(text) == expected
+
+
+@pytest.mark.parametrize("text", ["a.b", "=3", "a.b=", " = ", "a.b= "])
+def test_a_setting_has_a_name_and_a_value(text):
+    words = f"{text!r}: write it as tangential.annuli=50"
+    with pytest.raises(argparse.ArgumentTypeError, match=f"^{re.escape(words)}$"):
+        shared.setting(text)
+
+
+@pytest.mark.parametrize("value", ["1" * 5000, "[" * 100_000])
+def test_a_value_too_long_or_too_deep_is_told(value):
+    with pytest.raises(argparse.ArgumentTypeError, match=r"^a\.b: "):
+        shared.setting(f" a.b={value}")
+
+
+def test_names_are_a_list_without_repetition():
+    assert shared.names(" a, b ,,c") == ["a", "b", "c"]
+    with pytest.raises(argparse.ArgumentTypeError, match=r"^needs at least one name$"):
+        shared.names(" , ")
+    with pytest.raises(argparse.ArgumentTypeError, match=r"^'a, a': a name is repeated$"):
+        shared.names("a, a")
+
+
+def test_a_column_is_a_heading_and_a_name():
+    assert shared._column(" a = b [deg] = angle ") == ("a = b [deg]", "angle")
+    for text in ("angle", "=angle", "angle=", " = "):
+        with pytest.raises(argparse.ArgumentTypeError, match=r"write HEADING=NAME$"):
+            shared._column(text)
+
+
+def test_a_file_has_one_of_the_suffixes_and_a_folder(tmp_path):
+    convert = shared.file_of(".png", ".pdf")
+    assert convert(str(tmp_path / "a.PDF")) == tmp_path / "a.PDF"
+    with pytest.raises(argparse.ArgumentTypeError, match=r"^'a\.gif': must end in \.png or \.pdf$"):
+        convert("a.gif")
+    with pytest.raises(argparse.ArgumentTypeError, match=r"^'no/such/a\.png': there is no folder"):
+        convert("no/such/a.png")
+
+
+def test_every_file_is_written_though_one_fails(tmp_path, capsys):
+    done = []
+
+    def full(_):
+        raise OSError("no space")
+
+    one, two, three = (tmp_path / name for name in "abc")
+    status = shared.save((one, full), (None, full), (two, done.append), (three, done.append),
+                         progress_wanted=False)  # fmt: skip
+    assert (status, done) == (shared.FAILED, [two, three])
+    assert capsys.readouterr().err == "contactlab: error: no space\n"
+    assert shared.save((one, done.append), progress_wanted=False) == shared.OK
+    assert shared.save((None, full), progress_wanted=False) == shared.OK
+
+
+def test_progress_of_files_counts_those_that_are_written(tmp_path, monkeypatch):
+    counted = []
+    monkeypatch.setattr(
+        "contactlab.cli.progress.Progress.__call__", lambda _, *count: counted.append(count)
+    )
+    shared.save((tmp_path, str), (None, str), (tmp_path, str), progress_wanted=True)
+    assert counted == [(1, 2), (2, 2)]
+
+
+BOTH = "--psi1, --chi: cannot be combined with a scene file; leave out one of them"
+SPHERE = "must be given (chi is 1.4412 for a solid sphere, nu = 0.3)"
+MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["run"], f"a scene file, or --psi1 and --chi: {SPHERE}"),
+        (["run", "--psi1", 1], f"--chi: {SPHERE}"),
+        (["run", "--chi", 1], f"--psi1: {SPHERE}"),
+        (["run", "SWEEP", "--psi1", 1], BOTH),
+        (["run", "SWEEP", "--chi", 1], BOTH),
+        (["run", "SWEEP", "--history", "h.csv"],
+         "--history: needs a single impact, this scene is a sweep; leave out --history"),
+        (["run", "SWEEP", "--stick-slip", "h.png"],
+         "--stick-slip: needs a single impact, this scene is a sweep; leave out --stick-slip"),
+        (["animate", "SWEEP", "--out", "a.gif"],
+         "scene: must be a single impact, not a sweep; leave out [sweep]"),
+        (["sweep"], "--psi1 and --chi: must be given, or a sweep file"),
+        (["sweep", "--psi1", "0:1:2"], "--chi: must be given, or a sweep file"),
+        (["sweep", "--chi", 1], "--psi1: must be given, or a sweep file"),
+        (["sweep", "SWEEP", "--chi", 1], BOTH),
+        (["sweep", "--psi1", "0:1:1001", "--chi", "1:2:1000"],
+         "--psi1, --chi = 1001000: at most 1000000 impacts"),
+        (["sweep", "--psi1", "0:1:2", "--chi", 1, "--resume"],
+         "--resume: needs --out FILE; finished impacts are kept beside this file"),
+        (["sweep", "BALL"], "{ball}: holds a single impact; use contactlab run"),
+        (["compare", "--psi1", 1], f"--chi: {MISSING}"),
+        (["compare", "--chi", 1], f"--psi1: {MISSING}"),
+        (["compare", "SWEEP", "--chi", 1], BOTH),
+        (["compare", "--psi1", "0:1:2", "--chi", "1:2:2"],
+         "--psi1, --chi: one of them may be a range; give the other one number"),
+        (["compare", "--measured", "a.csv"],
+         "--measured: needs a SCENE.toml with the bodies of the experiment"),
+        (["compare", "SWEEP", "--column", "a=b"],
+         "--column: names headings of --measured DATA.csv, which is missing"),
+        (["compare", "BALL", "--all"], "{ball}: --all compares over a sweep; a file needs [sweep], "
+         "and --psi1 a range START:STOP:COUNT"),
+        (["compare", "SWEEP", "--all", "--tangential", "coulomb"], "ALL"),
+        (["compare", "SWEEP", "--all", "--integrator", "paper"], "ALL"),
+        (["compare", "SWEEP", "--all", "--normal", "hertz,jkr"], "ALL"),
+        (["compare", "SWEEP", "--all", "--set", "tangential.annuli=3"], "--set tangential.annuli: "
+         "with --all name one law, such as --set integrator.symplectic.steps=400"),
+        (["compare", "SWEEP", "--tangential", "coulomb", "--set", "tangential.annuli=5"], "--set "
+         "tangential.annuli: none of the laws chosen has this option; known: none"),
+        (["compare", "SWEEP", "--tangential", "annulus", "--set", "tangential.anuli=5"], "--set "
+         "tangential.anuli: none of the laws chosen has this option; did you mean "
+         "'tangential.annuli'? known: tangential.annuli, tangential.displacement"),
+        (["validate", "--figures", "no/such/dir"],
+         "--figures no/such/dir: there is no folder no/such"),
+        (["guide", "qqq"], None),
+        (["guide", "theory", "99"], "section = '99': is not a section of 'theory'; leave it out "
+         "for the whole topic"),
+        (["kernel", "--out", "FILE"], "--out = '{file}': is a file; give a folder"),
+    ],
+)  # fmt: skip
+def test_a_refusal_is_one_line(run, short_sweep, ball, tmp_path, monkeypatch, words, told):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "x"
+    file.write_text("", encoding="utf-8")
+    places = {"SWEEP": short_sweep, "BALL": ball, "FILE": file}
+    ran = run(*(places.get(word, word) for word in words))
+    assert (ran.status, ran.out) == (2, "")
+    head = f"contactlab {words[0]}: error: "
+    if told is None:
+        assert ran.err.startswith(f"{head}topic = 'qqq': is not in the guide; known: getting-sta")
+    elif told == "ALL":
+        assert ran.err == (
+            f"{head}--all takes every tangential law, each under its integrator; leave out "
+            "--tangential and --integrator, and name one normal law at most\n"
+        )
+    else:
+        assert ran.err == f"{head}{told.format(ball=ball, file=file)}\n"
+
+
+def test_a_million_impacts_are_not_too_many():
+    psi1, chi = np.linspace(0.0, 1.0, 1000), np.linspace(1.0, 2.0, 1000)
+    assert _ranges(psi1, chi).shape == (1000 * 1000,)
+    assert _ranges(2.0, np.array([1.0, 3.0])).chi.tolist() == [1.0, 3.0]
+
+
+def test_rows_of_a_sweep_are_psi1_chi_psi2_and_status(run):
+    from contactlab import Simulation
+
+    scene = Scene.nondimensional(psi1=[6.0, 7.0], chi=1.0)
+    rows = _rows(Simulation(tangential="coulomb").sweep(scene))
+    assert [row[:2] + row[3:] for row in rows] == [(6.0, 1.0, "SUCCESS"), (7.0, 1.0, "SUCCESS")]
+    assert [row[2] for row in rows] == pytest.approx([2.0, 3.0])
+    ran = run("sweep", "--psi1", "6:7:2", "--chi", 1, "--tangential", "coulomb", "--csv")
+    assert ran.out.splitlines()[0] == "psi1 (1),chi (1),psi2 (1),status"
+    assert ran.out.splitlines()[1].startswith("6.0,1.0,2.0")
+    table = run("sweep", "--psi1", "6:7:2", "--chi", 1, "--tangential", "coulomb").out
+    assert table == (
+        "psi1  chi  psi2  status\n----  ---  ----  -------\n   6    1     2  SUCCESS\n"
+        "   7    1     3  SUCCESS\n"
+    )
+
+
+@pytest.mark.parametrize(("count", "shown"), [(25, 25), (26, 25), (3, 3)])
+def test_a_file_of_more_than_25_impacts_is_told(run, tmp_path, count, shown):
+    out = tmp_path / "a.csv"
+    ran = run("sweep", "--psi1", f"0:7:{count}", "--chi", 1, "--tangential", "coulomb",
+              "--out", out)  # fmt: skip
+    more = [f"25 of 26 impacts; all of them are in {out}"] if count > 25 else []
+    assert ran.out.splitlines()[shown + 2 :] == more
+    swept = tmp_path / "s.toml"
+    swept.write_text(f"[nondimensional]\nchi = 1\n[sweep]\npsi1 = {{start = 0, stop = 7, count = "
+                     f"{count}}}\n", encoding="utf-8")  # fmt: skip
+    ran = run("sweep", swept, "--tangential", "coulomb", "--out", out)
+    assert ran.out.splitlines()[shown + 2 :] == more

@@ -1,0 +1,234 @@
+"""The report of ``contactlab stability`` as it is printed, of results that are made by hand."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import re
+
+import attrs
+import numpy as np
+import pytest
+
+from contactlab.cli import stability
+from contactlab.study.model_error import ModelError
+from contactlab.study.stability import Stability
+from contactlab.study.stability_judge import RAISED, WRONG, Outcome
+from contactlab.study.stability_map import Region
+
+NAN = math.nan
+
+
+def outcome(family, kind, error=NAN, *, method="a / x", bound=NAN, case="here", note=""):
+    return Outcome(
+        method=method, family=family, case=case, outcome=kind, error=error, bound=bound, note=note
+    )
+
+
+OUTCOMES = (
+    outcome("stiff", "answered", 1.26e-3, bound=0.01),
+    outcome("stiff", "answered", 3.4e-3, bound=0.01),
+    outcome("stiff", "answered", 0.2, bound=0.5),
+    outcome("long", "refused", case="there"),
+    outcome("long", "skipped", method="b"),
+    outcome("long", "skipped", method="b"),
+    outcome("long", RAISED, method="b", case="there", note="ValueError"),
+    outcome("stiff", WRONG, 0.9, method="b", case="stiff one", note="error 0.9 of the range"),
+)
+TABLES = """\
+worst error  stiff  long
+-----------  -----  ----
+a / x        0.003     -
+b                -     -
+
+runs   answered  coarse  refused  skipped  raised  silently wrong
+-----  --------  ------  -------  -------  ------  --------------
+a / x         3       1        1        0       0               0
+b             0       0        0        2       1               1
+"""
+ENDING = """
+Errors are numerical: distances from the law's own exact answer, over the range of psi2.
+Answers whose declared or estimated error is a quarter of the range or more are counted as coarse
+and have no error in the table.
+A law whose exact answer differs from the elastic continuum is listed with its model error."""
+
+
+def region(**counted):
+    failures = tuple(
+        outcome("map", kind, method="a / x", case=f"map {place}", note="odd")
+        for kind, count in counted.items()
+        for place in range(count)
+    )
+    return Region(method="a / x", word="steps", resolutions=(5, 9), chis=(0.5, 3.0, 7.0),
+                  error=np.zeros((2, 3)), state=np.zeros((2, 3), dtype=np.int8), tried=24,
+                  failures=failures)  # fmt: skip
+
+
+def model(law, error):
+    return ModelError(law=law, chis=(0.5, 1.5, 2.5), error=np.array(error))
+
+
+def test_the_tables_of_stability():
+    found = Stability(outcomes=OUTCOMES, regions=(), complete=True)
+    text = stability.report(found)
+    assert text.startswith(TABLES)
+    assert re.search(r"^method +case$", text, re.MULTILINE)
+    rows = [line.split() for line in text.splitlines() if line.startswith("b  ")]
+    assert rows[2:] == [
+        ["b", "there", "raised", "ValueError"],
+        ["b", "stiff", "one", "silently", "wrong", "error", "0.9", "of", "the", "range"],
+    ]
+    assert text.endswith(
+        f"\n\n6 runs tried, 1 silently wrong; 2 more were skipped as too much work.{ENDING}"
+    )
+    assert "map " not in text
+    assert "model error  worst" not in text
+    assert stability.report(attrs.evolve(found, complete=False)).endswith(
+        f"{ENDING}\n\nnot complete: the budget ran out"
+    )
+    assert stability.report(attrs.evolve(found, complete=False), "interrupted").endswith(
+        f"{ENDING}\n\nnot complete: interrupted"
+    )
+    sound = Stability(outcomes=OUTCOMES[:3], regions=(), complete=True)
+    assert not re.search(r"^method +case$", stability.report(sound), re.MULTILINE)
+
+
+def test_the_maps_and_the_model_errors_of_stability():
+    models = (model("hertz", [NAN, -0.12, 0.34]), model("cap", [0.56, 0.1, NAN]),
+              model("none", [NAN] * 3))  # fmt: skip
+    regions = (region(**{RAISED: 2, WRONG: 1}), region())
+    text = stability.report(Stability(outcomes=(), regions=regions, complete=True, models=models))
+    assert (
+        """
+map    against chi  tried  raised  silently wrong
+-----  -----------  -----  ------  --------------
+a / x  steps           24       2               1
+a / x  steps           24       0               0
+
+model error  worst  at chi
+-----------  -----  ------
+hertz          0.3       2
+cap            0.6     0.5
+none             -       -
+
+method  case"""
+        in text
+    )
+    assert "48 runs tried, 1 silently wrong; 0 more" in text
+    listed = [
+        line.split() for line in text.splitlines() if line.startswith("a / x") and "odd" in line
+    ]
+    assert [row[3:5] for row in listed] == [["map", "0"], ["map", "1"], ["map", "0"]]
+
+
+def test_at_most_forty_failures_are_listed_and_all_are_written(tmp_path):
+    found = Stability(outcomes=OUTCOMES, regions=(region(**{RAISED: 50}),), complete=True)
+    text = stability.report(found)
+    assert sum(line.endswith("odd") for line in text.splitlines()) == 38
+    stability._write_csv(tmp_path / "s.csv", found)
+    lines = (tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()
+    assert len(lines) == 1 + 8 + 50
+    assert lines[0].split(",") == [field.name for field in attrs.fields(Outcome)]
+    content = stability._content(found)
+    assert [len(content[name]) for name in ("outcomes", "map", "model_errors")] == [8, 1, 0]
+    assert len(content["map"][0]["failures"]) == 50
+    assert content["map"][0]["failures"][0]["case"] == "map 0"
+    assert content["map"][0]["chis"] == (0.5, 3.0, 7.0)
+    assert (content["tried"], content["silently_wrong"], content["complete"]) == (30, 1, True)
+    assert content["outcomes"][3]["error"] is None
+    json.dumps(content, allow_nan=False)
+
+
+def arguments(**more):
+    plain = {"budget": math.inf, "width": None, "law": None, "quick": True, "progress": False,
+             "csv": None, "figure": None, "json": False, "style": "print"}  # fmt: skip
+    return argparse.Namespace(**(plain | more))
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "complete", "status"),
+    [(OUTCOMES[:3], True, 0), (OUTCOMES[:3], False, 0), (OUTCOMES, True, 1)],
+)
+def test_the_status_of_stability(outcomes, complete, status, monkeypatch, capsys):
+    asked = {}
+
+    def study(chosen, **options):
+        asked.update(options, chosen=chosen)
+        return Stability(outcomes=outcomes, regions=(), complete=complete)
+
+    monkeypatch.setattr(stability, "stability", study)
+    monkeypatch.setattr(stability, "methods", lambda law: [law])
+    assert stability.execute(arguments(law=["springs"], budget=7.0)) == status
+    assert (asked["chosen"], asked["quick"], asked["budget"]) == ([["springs"]], True, 7.0)
+    assert ("not complete: the budget ran out" in capsys.readouterr().out) == (not complete)
+    assert stability.execute(arguments(json=True)) == status
+    assert json.loads(capsys.readouterr().out)["complete"] is complete
+
+
+def test_no_map_is_drawn_of_nothing(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(stability, "error_maps", lambda *_, **__: [])
+    for complete, words in ((True, "there is nothing to map"),
+                            (False, "interrupted before the map was done")):  # fmt: skip
+        nothing = Stability(outcomes=(), regions=(), complete=complete)
+        stability._draw(tmp_path / "t.png", arguments(), [], nothing, "interrupted")
+        assert capsys.readouterr().err == f"no map drawn: {words}\n"
+        assert not (tmp_path / "t.png").exists()
+
+
+def test_maps_and_models_are_drawn_with_the_look_asked_for(tmp_path, monkeypatch):
+    drawn, asked = [], []
+    monkeypatch.setattr(
+        stability, "error_maps", lambda chosen, quick: asked.append((chosen, quick)) or ["map"]
+    )
+    monkeypatch.setattr(
+        "contactlab.figures.stability.draw_stability", lambda *a, **k: drawn.append((a, k))
+    )
+    look = {"look": "slides", "width": "two"}
+    models = (model("cap", [0.5, 0.1, 0.1]),)
+    whole = Stability(outcomes=(), regions=(), complete=True, models=models)
+    path = tmp_path / "m.png"
+    stability._draw(path, arguments(style="slides", width="two"), ["law"], whole, "")
+    stability._draw(
+        path, arguments(style="slides", width="two"), [], attrs.evolve(whole, complete=False), ""
+    )
+    assert drawn == [((path, ["map"], models), look), ((path, [], models), look)]
+    assert asked == [(["law"], True)]
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--width", "one"), "--width one: the map is too wide for one column; use --width two"),
+        (("--budget", "0"), "--budget 0: must be positive, in seconds"),
+        (("--budget", "-1"), "--budget -1: must be positive, in seconds"),
+    ],
+)
+def test_options_of_stability_that_cannot_be(run, options, words):
+    assert run("stability", *options) == (2, "", f"contactlab stability: error: {words}\n")
+
+
+def test_the_files_of_stability_are_those_of_its_result(monkeypatch, tmp_path):
+    asked = []
+    found = Stability(outcomes=OUTCOMES, regions=(), complete=True)
+    monkeypatch.setattr(stability, "stability", lambda *_, **__: found)
+    monkeypatch.setattr(stability, "methods", lambda _: ["a law"])
+    monkeypatch.setattr(stability, "_draw", lambda *given: asked.append(given))
+    words = arguments(csv=tmp_path / "s.csv", figure=tmp_path / "s.png")
+    assert stability.execute(words) == 1
+    assert asked == [(tmp_path / "s.png", words, ["a law"], found, "the budget ran out")]
+    assert len((tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()) == 9
+
+
+def test_an_interrupted_report_has_the_outcomes_judged_so_far(monkeypatch, capsys):
+    def study(chosen, *, judged, **_):
+        assert [judged(case) for case in chosen] == list(chosen)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(stability, "stability", study)
+    monkeypatch.setattr(stability, "methods", lambda _: OUTCOMES[:2])
+    monkeypatch.setattr(stability, "judge", lambda case: case)
+    assert stability.execute(arguments()) == 130
+    out = capsys.readouterr().out
+    assert "2 runs tried" in out
+    assert out.endswith("not complete: interrupted\n")

@@ -1,0 +1,282 @@
+"""Parameters of scenes and laws: their ranges, their starts, and the laws that they change."""
+
+import math
+import re
+
+import attrs
+import numpy as np
+import pytest
+
+from contactlab import Scene, Simulation, create
+from contactlab.compose.registry import REGISTRY, PluginError
+from contactlab.fitting import fit, tabulated
+from contactlab.fitting.model import Model, scene_of, simulation_of
+from contactlab.fitting.parameters import Parameter, Setup, _range, parameter_named
+from contactlab.numeric.checks import FINITE, GYRATION, NON_NEGATIVE, POISSON, POSITIVE, Rule
+from tests.fitting.impacts import ANGLES, BODIES, scene
+from tests.laws.outside_laws import Walton
+
+TSUJI = Simulation(normal="tsuji")
+
+
+def named(name, simulation=None, bodies=BODIES):
+    return parameter_named(name, Setup(bodies, simulation))
+
+
+@pytest.mark.parametrize(
+    ("rule", "value", "least", "most"),
+    [
+        (None, 1.0, -math.inf, math.inf),
+        (FINITE, 0.3, -math.inf, math.inf),
+        (POSITIVE, 0.3, 0.0, math.inf),
+        (POSITIVE, 5e13, 0.0, 5e13),
+        (NON_NEGATIVE, 0.0, 0.0, math.inf),
+        (POISSON, 0.3, -1.0, 0.5),
+        (POISSON, -1.0, -1.0, 0.5),
+        (POISSON, 0.5, -1.0, 0.5),
+        (GYRATION, 0.4, 0.0, 1.0),
+        (Rule(lambda value: value < -2.5, ""), -3.0, -math.inf, -2.5),
+        (Rule(lambda value: abs(value) <= 1e-3, ""), 0.0, -1e-3, 1e-3),
+    ],
+)
+def test_the_range_of_a_rule_about_a_value(rule, value, least, most):
+    found = _range(rule, value)
+    assert found == pytest.approx((least, most), rel=1e-12, abs=1e-15)
+
+
+def test_numbers_of_a_scene_have_ranges_and_starts():
+    friction, kappa = named("friction_coefficient"), named("stiffness_ratio")
+    assert (friction.least, friction.most, friction.width) == (1e-6, 10.0, math.inf)
+    assert (friction.name, friction.unit, friction.batched) == ("friction_coefficient", "1", True)
+    assert len(friction.starts) == 25
+    assert (kappa.least, kappa.most) == pytest.approx((2.0 / 3.0, 4.0 / 3.0))
+    assert kappa.width == pytest.approx(2.0 / 3.0)
+    assert kappa.starts == pytest.approx(2.0 / 3.0 + np.arange(1, 16) / 24.0)
+    assert kappa.batched
+
+
+def test_an_option_has_the_range_of_its_rule_and_starts_where_the_table_holds():
+    tabled = named("restitution", TSUJI)
+    assert (tabled.name, tabled.unit, tabled.batched) == ("normal.restitution", "1", False)
+    assert (tabled.least, tabled.most) == pytest.approx((0.01, 1.0))
+    own = TSUJI.normal.restitution
+    assert tabled.starts == pytest.approx([own, *(0.5 + np.arange(1, 16) / 32.0)])
+    stepped = named("normal.restitution", attrs.evolve(TSUJI, tangential=create_law("coulomb")))
+    assert stepped.starts == pytest.approx([own, *(0.01 + 0.99 * np.arange(1, 16) / 16.0)])
+    free = named("beta", Simulation(tangential=Walton(beta=0.3)))
+    assert (free.name, free.starts[0]) == ("tangential.beta", 0.3)
+
+
+def create_law(name):
+    return create(f"tangential.{name}")
+
+
+def test_the_unit_of_an_option_is_that_of_its_field():
+    jkr = Simulation(normal="jkr", tangential="coulomb")
+    field = next(f for f in attrs.fields(type(jkr.normal)) if f.metadata.get("unit", "1") != "1")
+    assert named(f"normal.{field.name}", jkr).unit == field.metadata["unit"]
+
+
+def test_only_real_options_of_laws_are_fitted_not_those_of_integrators():
+    simulation = Simulation(tangential="springs", integrator="adaptive")
+    for name in ("integrator.tolerance", "tangential.springs", "tolerance"):
+        with pytest.raises(ValueError, match="scene and laws have no such number"):
+            named(name, simulation)
+
+
+def test_a_name_that_is_not_there_is_told_with_what_is():
+    with pytest.raises(ValueError, match="parameters = 'frction'") as caught:
+        named("frction")
+    assert str(caught.value) == (
+        "parameters = 'frction': scene and laws have no such number; did you mean "
+        "'friction_coefficient'? known here: friction_coefficient, stiffness_ratio; options of a "
+        "law are there once it is chosen and they have a number"
+    )
+    empty = Scene.nondimensional(psi1=1.0, chi=1.0)
+    with pytest.raises(ValueError, match="parameters = 'qq'") as caught:
+        named("qq", bodies=empty)
+    assert str(caught.value) == (
+        "parameters = 'qq': scene and laws have no such number; nothing can be fitted here; "
+        "options of a law are there once it is chosen and they have a number"
+    )
+    with pytest.raises(ValueError, match="normal") as caught:
+        named("tangential.restitution", TSUJI)
+    told = str(caught.value)
+    assert "did you mean 'normal.restitution'? " in told
+    assert "known here: friction_coefficient, stiffness_ratio, normal.restitution" in told
+    listed = re.search(r"it is an option of (.*): choose one of them$", told)[1].split(", ")
+    assert {"normal.tsuji", "normal.hunt_crossley"} <= set(listed)
+    assert "normal.hertz" not in listed
+    assert not [name for name in listed if name.startswith("integrator")]
+
+
+def test_two_options_of_one_name_need_their_kinds():
+    """A short name stands for one law's option only."""
+
+    @attrs.frozen(kw_only=True)
+    class Restituting(Walton):
+        restitution: float = 0.4
+
+    both = Simulation(normal="tsuji", tangential=Restituting())
+    with pytest.raises(ValueError, match="parameters = 'restitution'"):
+        named("restitution", both)
+    assert named("tangential.restitution", both).starts[0] == 0.4
+
+
+def test_an_option_is_set_and_the_other_laws_kept():
+    simulation = Simulation(normal="tsuji", tangential="coulomb", integrator="symplectic")
+    setup = Setup(BODIES, simulation)
+    changed = parameter_named("restitution", setup).applied(setup, 0.7)
+    assert changed.scene is BODIES
+    assert changed.simulation.normal.restitution == 0.7
+    assert changed.simulation.tangential == simulation.tangential
+    assert changed.simulation.integrator == simulation.integrator
+
+
+def model(*names, simulation=None, bodies=None):
+    setup = Setup(scene(0.1) if bodies is None else bodies, simulation)
+    return Model(setup=setup, parameters=tuple(parameter_named(name, setup) for name in names))
+
+
+def test_laws_in_words():
+    friction = np.array([0.123456789])
+    assert model("friction_coefficient").laws(friction) == "exact elastic law (tabulated rebound)"
+    tabled = model("restitution", simulation=TSUJI)
+    assert tabled.tabled
+    assert tabled.laws(np.array([0.123456789])) == (
+        "Tsuji(restitution=0.123457), partial slip (tabulated rebound)"
+    )
+    coulomb = Simulation(normal="tsuji", tangential="coulomb")
+    stepped = model("restitution", simulation=coulomb)
+    assert not stepped.tabled
+    words = stepped.laws(np.array([0.5]))
+    assert words == f"Tsuji(restitution=0.5), {coulomb.tangential!r}, {coulomb.integrator!r}"
+
+
+def test_the_table_holds_for_its_own_laws_alone():
+    assert tabulated.holds(None)
+    assert tabulated.holds(TSUJI)
+    assert not tabulated.holds(Simulation(normal="hertz", tangential="coulomb"))
+    assert not tabulated.holds(Simulation(normal="tsuji", tangential="coulomb"))
+    assert not tabulated.holds(Simulation(normal="hunt_crossley"))
+    walton = model("beta", simulation=Simulation(tangential=Walton()))
+    assert not walton.tabled
+
+
+def test_a_point_that_was_seen_is_not_run_again(monkeypatch):
+    one = model("friction_coefficient", "stiffness_ratio")
+    runs = []
+    together = Model._together
+    monkeypatch.setattr(
+        Model,
+        "_together",
+        lambda me, points, names: runs.append(points) or together(me, points, names),
+    )
+    points = np.array([[0.1, 0.8], [0.2, 0.8], [0.1, 0.8]])
+    first = one.predicted(points, ["psi2"])["psi2"]
+    assert [len(run) for run in runs] == [3]
+    np.testing.assert_array_equal(first[0], first[2])
+    again = one.predicted(points[1:], ["psi2"])["psi2"]
+    np.testing.assert_array_equal(again, first[1:])
+    assert len(runs) == 1
+    one.predicted(points[:1], ["psi2", "rebound_spin"])
+    assert len(runs) == 2
+    monkeypatch.setattr("contactlab.fitting.model.REMEMBERED", 1)
+    one.predicted(points[:1], ["psi2"])  # forgotten, and run again
+    assert len(runs) == 3
+
+
+def test_points_with_different_options_of_laws_run_apart():
+    laws = Simulation(tangential=Walton())
+    both = model("friction_coefficient", "beta", simulation=laws, bodies=scene(0.1, ANGLES[:3]))
+    points = np.array([[0.1, 0.2], [0.3, 0.4], [0.3, 0.2]])
+    many = both.predicted(points, ["psi2"])["psi2"]
+    for row, (friction, beta) in zip(many, points, strict=True):
+        impacts = attrs.evolve(scene(0.1, ANGLES[:3]), friction_coefficient=friction)
+        alone = Simulation(tangential=Walton(beta=beta)).sweep(impacts).check().psi2
+        assert row == pytest.approx(alone, abs=1e-14)
+
+
+SPEEDS = {"speed": np.array([2.0, 3.0])}
+
+
+@pytest.mark.parametrize(
+    ("given", "normal", "along"),
+    [
+        ({"angle_deg": np.array([30.0, 60.0])}, [5 * 0.75**0.5, 2.5], [2.5, 5 * 0.75**0.5]),
+        (SPEEDS, [1.2, 1.8], [1.6, 2.4]),
+        (SPEEDS | {"angle_deg": np.array([30.0, 60.0])}, [3.0**0.5, 1.5], [1.0, 1.5 * 3.0**0.5]),
+        ({"normal_speed": np.array([1.0, 2.0])}, [1.0, 2.0], [4.0, 4.0]),
+        ({"tangential_velocity": np.array([1.0, 2.0])}, [3.0, 3.0], [1.0, 2.0]),
+    ],
+)
+def test_measured_entries_take_the_place_of_those_of_a_scene(given, normal, along):
+    """The scene's own: 3 m/s towards the target and 4 m/s along it."""
+    own = attrs.evolve(BODIES, normal_speed=3.0, tangential_velocity=4.0)
+    batch = scene_of(own, given, 2)
+    assert np.broadcast_to(batch.normal_speed, 2) == pytest.approx(normal)
+    assert np.broadcast_to(batch.tangential_velocity, 2) == pytest.approx(along)
+    assert batch.shape == (2,)
+
+
+def test_other_measured_entries_need_a_file():
+    batch = scene_of(BODIES, {"spin": np.array([1.0, 2.0]), "friction_coefficient": np.ones(2)}, 2)
+    assert (batch.spin.tolist(), batch.friction_coefficient.tolist()) == ([1.0, 2.0], [1.0, 1.0])
+    words = "cannot be put into a Scene; give the scene as a TOML file, or velocities alone"
+    with pytest.raises(ValueError, match=rf"^measurements = 'sphere\.radius': {words}$"):
+        scene_of(BODIES, {"sphere.radius": np.array([0.01])}, 1)
+
+
+def test_a_scene_is_one_impact_or_as_many_as_were_measured():
+    assert scene_of(BODIES, {}, 3).normal_speed.tolist() == [1.0, 1.0, 1.0]
+    three = attrs.evolve(BODIES, normal_speed=[1.0, 2.0, 3.0])
+    assert scene_of(three, {}, 3) is three
+    with pytest.raises(
+        ValueError, match=r"^scene = \(3,\): must be one impact, or the 2 that were"
+    ):
+        scene_of(three, {}, 2)
+
+
+def test_laws_are_a_simulation():
+    assert simulation_of(None) is None
+    assert simulation_of(TSUJI) is TSUJI
+    words = "simulation = 3: must be a Simulation; or None for the exact elastic law"
+    with pytest.raises(ValueError, match=f"^{words}$"):
+        simulation_of(3)
+
+
+def test_parameters_are_a_list_of_different_names():
+    data = {"psi1": [1.0], "slip_restitution": [0.1]}
+    for names, words in (
+        ("beta", "parameters = 'beta': must be a list of names; ['friction_coefficient']"),
+        ([], "parameters = []: must be a list of names; ['friction_coefficient']"),
+    ):
+        with pytest.raises(ValueError, match=f"^{re.escape(words)}$"):
+            fit(data | {"psi1": [1.0]}, BODIES, parameters=names)
+
+
+def test_a_parameter_of_ones_own_is_batched_and_has_no_unit():
+    class Own(Parameter):
+        def applied(self, setup, value):
+            return setup
+
+    own = Own(name="own", least=-1.0, most=3.0, starts=(0.0,))
+    assert (own.width, own.batched, own.unit) == (4.0, True, "1")
+
+
+def test_a_broken_plug_in_is_no_remedy(monkeypatch):
+    """Laws that cannot be loaded are not among those that have the option."""
+    usual = REGISTRY.law_class
+
+    def broken(name):
+        if name == "normal.tsuji":
+            raise PluginError("broken")
+        if name == "normal.hunt_crossley":
+            raise ValueError("not a law")
+        return usual(name)
+
+    monkeypatch.setattr(REGISTRY, "law_class", broken)
+    with pytest.raises(ValueError, match="it is an option of") as caught:
+        named("restitution")
+    assert "tsuji" not in str(caught.value)
+    assert "hunt_crossley" not in str(caught.value)
