@@ -108,14 +108,14 @@ UNEQUAL = [
 ]
 
 
-@pytest.mark.parametrize(("left", "right"), EQUAL, ids=str)
+@pytest.mark.parametrize(("left", "right"), EQUAL)
 def test_equal_values(left, right):
     assert same(left, right) is True
     assert same([left], [right]) is True
     assert same({"a": left}, {"a": right}) is True
 
 
-@pytest.mark.parametrize(("left", "right"), UNEQUAL, ids=str)
+@pytest.mark.parametrize(("left", "right"), UNEQUAL)
 def test_unequal_values(left, right):
     assert same(left, right) is False
     assert same([0.0, left], [0.0, right]) is False
