@@ -67,7 +67,7 @@ def test_cases_are_run_by_family_and_by_work_and_the_long_ones_are_skipped(monke
         for family in ("steps", "chi")
         for steps in (int(limit) + 1, 5, int(limit), 7)
     ]
-    monkeypatch.setattr(report, "cases", lambda method, *, quick: iter(listed if quick else []))
+    monkeypatch.setattr(report, "cases", lambda _, *, quick: iter(listed if quick else []))
     monkeypatch.setattr(report, "region_cells", lambda *_, **__: [])
     seen = []
     found = stability([SPRINGS], quick=True, judged=refuse_all(seen))
