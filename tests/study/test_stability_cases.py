@@ -197,3 +197,42 @@ def test_a_broken_normal_law_is_left_out(monkeypatch):
     normals = {case.normal for case in cases(SPRINGS, quick=True)}
     assert "jkr" not in normals
     assert {"tsuji", "dmt", "walton_braun"} < normals
+
+
+def test_these_resolutions_and_extremes_are_tried():
+    """One label of each, of the full set."""
+
+    def tried(method, family, name):
+        labels = [case.label for case in cases(method) if case.family == family]
+        return list(dict.fromkeys(told(label)[name] for label in labels if name in told(label)))
+
+    steps = [1, 2, 3, 4, 5, 7, 10, 20, 50, 100, 1000, 1e4, 1e5, 1e6]
+    assert tried(SPRINGS, "steps", "steps") == steps
+    assert tried(SPRINGS, "parts", "springs") == [1, 2, 3, 5, 10, 100, 1000]
+    exact = Method(tangential="fronts", integrator="events")
+    tolerances = [1.0, 0.1, 1e-2, 1e-3, 1e-5, 1e-8, 1e-12]
+    assert tried(exact, "tolerance", "tolerance") == tolerances
+    chis = [0.05, 0.1, 0.25, 0.499, 0.5, 0.501, 0.75, 1.0, 3.0, 8.0, 30.0, 100.0, 1e3, 1e4]
+    assert tried(exact, "chi", "chi") == chis
+    assert tried(exact, "chi", "psi1") == [0.3, 0.98, 1.2, 2.5]
+    assert tried(exact, "psi1", "psi1") == [0.0, 1e-300, 1e-12, 1e-3, 0.5, -1.2, 1e6, 1e15, 1e16]
+    assert tried(exact, "friction", "mu") == [0.0, 1e-300, 1e-12, 1e3, 1e12, 1e300]
+    assert tried(exact, "poisson", "nu") == [-1.0, 0.0, 0.5]
+    assert tried(exact, "speed", "v1") == [1e-165, 1e-12, 1e-6, 1e-2, 1e2, 1e4]
+    assert tried(exact, "radius", "R") == [1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e9]
+    assert tried(exact, "radius", "v1") == [1e-165, 1e4]
+    assert tried(exact, "mass", "m2/m1") == [1e-12, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e12]
+    ladder = [(0.3, 0.3), (0.5, 1.441), (1.2, 1.441), (3.0, 1.441), (1.2, 30.0), (0.3, 1e3)]
+    labels = [case.label for case in cases(exact) if case.family == "tolerance"]
+    assert list(dict.fromkeys((told(one)["psi1"], told(one)["chi"]) for one in labels)) == ladder
+    plain = [scene.label for scene in normal_scenes()]
+    assert plain[:13] == [
+        "psi1=3", "psi1=1.2 chi=3", "steel ball", "psi1=0", "psi1=1e-12", "psi1=0.5", "psi1=1.2",
+        "psi1=20", "psi1=1e+15", "chi=0.05", "chi=0.5", "chi=30", "chi=1000",
+    ]  # fmt: skip
+    quick = {case.label for case in cases(SPRINGS, quick=True) if case.family == "chi"}
+    assert list(dict.fromkeys(told(label)["chi"] for label in sorted(quick))) == [
+        0.05, 0.5, 100.0, 3.0
+    ]  # fmt: skip
+    sizes = [one.label for one in extreme_scenes(quick=True) if one.family in ("speed", "mass")]
+    assert sizes == ["v1=1e-12 m/s", "v1=10000 m/s", "m2/m1=1e-12", "m2/m1=1e+12"]
