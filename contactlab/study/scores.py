@@ -92,7 +92,10 @@ def candidates(laws: LawChoice) -> Candidates:
             chosen = laws.choose(tangential=name)
             chosen = chosen.set({f"tangential.{key}": word for key, word in words.items()})
             label = " ".join([name, *words.values()])
-            simulations[label] = chosen.suited().simulation()
+            if complaint := composition.misfit(normal, chosen.made("tangential")):
+                left_out[label] = complaint
+            else:
+                simulations[label] = chosen.suited().simulation()
     return Candidates(simulations, left_out)
 
 
