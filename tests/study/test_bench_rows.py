@@ -344,3 +344,34 @@ def test_the_front_ends_where_errors_are_rounding():
         (1e-10, 1.0), (1.1e-11, 2.0), (1.05e-11, 2.5), (1e-11, 3.0), (1e-13, 4.0),
     ))  # fmt: skip
     assert Benchmark(rows=rows, orders={}, complete=True).front() == list(rows[:4])
+
+
+def test_the_function_of_the_table_has_its_errors_and_its_times(monkeypatch):
+    """Off by 0.3 and -0.4 here, by 0.5 elsewhere; the clock goes on by a second at each look."""
+    answers = {1.0: 0.5 + 0.3, 2.0: 1.0 - 0.4, 3.0: 2.0 + 0.5}
+    called = []
+
+    def rebound(psi1, chi):
+        called.append(np.shape(psi1))
+        return psi1 if np.ndim(psi1) else answers[float(psi1)]
+
+    def truth(psi1, change):
+        return Truth(Scene.nondimensional(psi1=psi1, chi=1.5), change, None)
+
+    monkeypatch.setattr(work_precision, "rebound", rebound)
+    monkeypatch.setattr(
+        work_precision, "_truths", lambda *_, **__: [truth(1.0, -0.5), truth(2.0, -1.0)]
+    )
+    monkeypatch.setattr(work_precision, "_elsewhere", lambda **_: [truth(3.0, -1.0)])
+    monkeypatch.setattr(work_precision, "time", Clock(1.0))
+    found = work_precision._rebound_row(quick=True)
+    assert found.error_rms == pytest.approx(np.sqrt(0.125))
+    assert found.error_worst == pytest.approx(0.4)
+    assert found.elsewhere_rms == pytest.approx(0.5)
+    assert found.time_s == pytest.approx(1.0 / (20 * 2))
+    assert found.sweep_time_s == pytest.approx(1.0 / 1000)
+    assert (called.count(()), called.count((1000,))) == (2 + 1 + 5 * 2 * 20, 20)
+    assert (found.method, found.options, found.status, found.failed) == (
+        "rebound()", "", "SUCCESS", 0
+    )  # fmt: skip
+    assert np.isnan([found.force_error_rms, found.books_worst]).all()
