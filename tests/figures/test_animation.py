@@ -302,3 +302,26 @@ def test_what_is_no_single_impact_with_history_is_refused(fault, tmp_path):
         result.history.time = np.array([])
     with pytest.raises(ValueError, match="must have the history of a single impact"):
         animation.animate(tmp_path / "a.gif", result)
+
+
+def test_ghosts_are_in_the_palette_and_in_the_frames(tmp_path, monkeypatch):
+    seen = []
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([0, 0, 0, 255, 255, 255])
+    monkeypatch.setattr(animation, "_palette", lambda _, ghosts: seen.append(ghosts) or palette)
+
+    def frames(result, progress, ghosts):
+        seen.append(ghosts)
+        yield np.zeros((4, 4, 3), dtype=np.uint8)
+
+    monkeypatch.setattr(animation, "_frames", frames)
+    ghosts = {"one": impact()}
+    animation.animate(tmp_path / "a.gif", impact(), ghosts=ghosts)
+    animation.animate(tmp_path / "b.gif", impact())
+    assert seen == [ghosts, ghosts, {}, {}]
+
+
+def test_a_rim_marks_the_largest_contact(axes):
+    Disc(axes, impact())
+    (rim,) = axes.patches
+    assert (rim.get_radius(), rim.center, rim.get_fill()) == (1.0, (0.0, 0.0), False)
