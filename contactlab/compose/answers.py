@@ -43,7 +43,6 @@ class Answer(NamedTuple):
 
 
 def answers(
-    scene: Scene,
     normal: NormalMotion,
     tangential: TangentialLaw,
     *,
@@ -59,15 +58,15 @@ def answers(
 
     Parameters
     ----------
-    scene : Scene
     normal : NormalMotion
-        Normal motion of ``scene``.
+        Normal motion of the scene.
     tangential : TangentialLaw
     history : bool or "fields"
         True if a history was requested, ``"fields"`` if one with fields was.
     accuracy : float or None
         Error of psi2 over max(1, abs(psi1)) that the integrator controls; None for no bound.
     """
+    scene = normal.scene
     shape = scene.shape
     always = isinstance(tangential, WholeImpactTangentialLaw)
     if history == "fields" and not always:

@@ -57,6 +57,8 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
             motion = law.motion(scene)
             if not isinstance(motion, NormalMotion):
                 raise TypeError(f"motion returned {shown(motion)}, which is no NormalMotion")
+            if motion.scene is not scene:
+                raise ValueError("motion returned the motion of another scene")
             return motion
     table = _common(law, scene)
     if table is not None:

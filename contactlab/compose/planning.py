@@ -15,7 +15,6 @@ from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
-from contactlab.impact.scene import Scene
 from contactlab.impact.unit_slips import unit_slips
 from contactlab.numeric.arrays import every, some, spread
 from contactlab.outcome.plan import BOOKS, PSI2_ERROR, TANGENTIAL_MOTION, UNCHECKED, Clause, Plan
@@ -27,36 +26,33 @@ ADVICE = "; run(scene, estimate_error=True) estimates it"
 
 
 def make_plan(
-    scene: Scene,
     normal: NormalMotion,
     laws: Laws,
     known: Sequence[Answer],
     *,
     history: bool | str = False,
 ) -> Plan:
-    """Return what ``scene`` needs of the three laws.
+    """Return what the scene needs of the three laws.
 
     Parameters
     ----------
-    scene : Scene
     normal : NormalMotion
-        Already made: it comes first.
+        Normal motion of the scene.
     laws : Laws
     known : sequence of Answer
         Whole-impact answers; their impacts are not marched.
     history : bool or "fields"
         True if a history was requested, ``"fields"`` if one with fields was.
     """
-    ended, marched = _ended_and_marched(scene, normal, known)
-    error = _error(scene, normal, laws, known, marched)
+    scene = normal.scene
+    ended, marched = _ended_and_marched(normal, known)
+    error = _error(normal, laws, known, marched)
     cautions: tuple[str, ...] = ()  # those of the laws, which are asked now: they may raise
     if some(ended):
         cautions = laws.normal.cautions(scene, normal) + laws.tangential.cautions(scene, normal)
     if some(marched):
-        part = (normal, scene)
-        if not every(marched):
-            part = normal.take(marched), scene.take(marched)
-        cautions += laws.integrator.remarks(part[0], laws.tangential, part[1])
+        part = normal if every(marched) else normal.take(marched)
+        cautions += laws.integrator.remarks(part, laws.tangential, part.scene)
 
     # Kept until the plan is read: neither the normal motion nor the numbers of the answers.
     normal_law = normal.law
@@ -104,11 +100,9 @@ def _defaults(law: Any) -> str:
     return f"; {', '.join(kept)} by default" if kept else ""
 
 
-def _ended_and_marched(
-    scene: Scene, normal: NormalMotion, known: Sequence[Answer]
-) -> tuple[Mask, Mask]:
+def _ended_and_marched(normal: NormalMotion, known: Sequence[Answer]) -> tuple[Mask, Mask]:
     """Return the impacts whose normal motion ends, and the ones among them to be marched."""
-    if not scene.shape:
+    if not normal.scene.shape:
         if normal.status is not Status.SUCCESS:
             return NONE, NONE
         return ONE, NONE if known else ONE
@@ -140,20 +134,18 @@ def _no_history(history: bool | str, marched: Mask, *, fields: bool) -> str | No
     return None
 
 
-def _error(
-    scene: Scene, normal: NormalMotion, laws: Laws, known: Sequence[Answer], marched: Mask
-) -> Any:
+def _error(normal: NormalMotion, laws: Laws, known: Sequence[Answer], marched: Mask) -> Any:
     """Return the declared numerical error of psi2: of one impact a float, of a batch an array.
 
     Parameters
     ----------
-    scene : Scene
     normal : NormalMotion
     laws : Laws
     known : sequence of Answer
     marched : array of bool
         Impacts that no whole-impact answer is for.
     """
+    scene = normal.scene
     rounding = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
     if not (scene.shape or marched):
         return float(rounding + sum(answer.known.psi2_error for answer in known))

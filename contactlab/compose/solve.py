@@ -127,8 +127,8 @@ def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
     normal = normal_or_failed(laws, scene)
     accuracy = laws.integrator.accuracy
     with faults.blaming(laws.tangential):
-        known = answers(scene, normal, laws.tangential, history=history, accuracy=accuracy)
-        return Prepared(normal, known, make_plan(scene, normal, laws, known, history=history))
+        known = answers(normal, laws.tangential, history=history, accuracy=accuracy)
+        return Prepared(normal, known, make_plan(normal, laws, known, history=history))
 
 
 def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:

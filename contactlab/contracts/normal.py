@@ -116,4 +116,9 @@ class ClosedFormNormalLaw(NormalLaw):
         ----------
         scene : Scene
             One impact or a batch.
+
+        Returns
+        -------
+        ClosedFormMotion
+            Its ``scene`` is this very object; with another, the impact has a status LAW_RAISED.
         """

@@ -69,7 +69,7 @@ def loops(scene: Scene, simulations: Mapping[str, Simulation]) -> Loops:
     left_out = {}
     for name, simulation in simulations.items():
         if not isinstance(simulation.tangential, SteppedTangentialLaw):
-            left_out[name] = "it answers to whole impacts or phases, not to steps"
+            left_out[name] = "it answers to whole impacts or along a path of events, not to steps"
             continue
         for which, level in levels.items():
             path = _path(first, depth * level, full * moved, simulation)

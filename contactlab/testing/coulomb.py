@@ -87,7 +87,7 @@ def load_impulse(law: Any) -> None:
         if marches:  # a law that cannot run under this normal law is not asked either
             changes += [
                 (spread(answer.slip_velocity_change, ()), answer.reason)
-                for _, answer in answers(impact, normal, law, history=False)
+                for _, answer in answers(normal, law, history=False)
             ]
         for change, origin in changes:
             apply_if(change != 0.0, "It makes no force in slip throughout.")

@@ -66,7 +66,7 @@ def _declared(way: Way, impact: Scene) -> float:
     """Return the declared error of psi2; NaN if none is declared."""
     normal = normal_motion(way.normal, impact)
     if way.integrator is None:
-        whole = [answer for _, answer in answers(impact, normal, way.law, history=False)]
+        whole = [answer for _, answer in answers(normal, way.law, history=False)]
         return float(np.asarray(whole[0].psi2_error)) if whole else math.nan
     steps = way.integrator.resolution_for(normal, way.law, impact)
     if way.integrator.accuracy is None:

@@ -53,7 +53,7 @@ def answered_impacts(
     for chi, psi1 in itertools.product(CHI, ANGLES):
         impact = scene(psi1, chi)
         normal = normal_motion(normal_law, impact)
-        for _, answer in answers(impact, normal, law, history=False):
+        for _, answer in answers(normal, law, history=False):
             yield AnsweredImpact(psi1, chi, impact, normal, answer)
 
 
@@ -197,7 +197,7 @@ def sliding_impulse(law: Any) -> None:
                     f"{error:.2g} off mu (1 + e) v1 M_n/M_t ({way})."
                     f" Bound: {room:.2g}.",
                 )
-            for _, answer in answers(impact, normal, law, history=False):
+            for _, answer in answers(normal, law, history=False):
                 change = spread(answer.slip_velocity_change, ())
                 error = abs(float(impact.psi(change)) / expected - 1.0)
                 hold(

@@ -315,3 +315,20 @@ def test_a_normal_law_that_gives_no_contact_is_a_status(answer):
     assert result.status is Status.LAW_RAISED
     assert "not a NormalContact" in result.failures[0]
     assert "AnswersInTuples" in result.failures[0]
+
+
+class OfTwiceTheSpeed(HERTZ):
+    """Hertz's law with the motion of another scene: the march would follow that scene."""
+
+    def motion(self, scene):
+        return super().motion(attrs.evolve(scene, normal_speed=2.0 * scene.normal_speed))
+
+
+@pytest.mark.parametrize("psi1", [1.2, np.array([0.5, 1.2])])
+@pytest.mark.parametrize("tangential", ["springs", "coulomb"])
+def test_the_motion_of_another_scene_is_a_status(tangential, psi1):
+    scene = Scene.nondimensional(psi1=psi1, chi=1.44)
+    result = Simulation(normal=OfTwiceTheSpeed(), tangential=tangential).run(scene)
+    assert np.all(np.asarray(result.status, dtype=object) == Status.LAW_RAISED)
+    assert "motion returned the motion of another scene" in result.failures[0]
+    assert "OfTwiceTheSpeed" in result.failures[0]

@@ -174,7 +174,7 @@ class FirstOfTheMotion(HERTZ):
     def motion(self, scene):
         radius = np.ravel(scene.pair.radius)[0] + np.zeros(scene.shape)[()]
         pair = attrs.evolve(scene.pair, radius=radius)
-        return super().motion(attrs.evolve(scene, pair=pair))
+        return attrs.evolve(super().motion(attrs.evolve(scene, pair=pair)), scene=scene)
 
 
 class WritesIntoIt(Stepwise):
