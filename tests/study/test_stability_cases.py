@@ -236,3 +236,24 @@ def test_these_resolutions_and_extremes_are_tried():
     ]  # fmt: skip
     sizes = [one.label for one in extreme_scenes(quick=True) if one.family in ("speed", "mass")]
     assert sizes == ["v1=1e-12 m/s", "v1=10000 m/s", "m2/m1=1e-12", "m2/m1=1e+12"]
+
+
+def test_a_quick_set_tries_some_of_them():
+    def tried(method, family, *names):
+        listed = [told(case.label) for case in cases(method, quick=True) if case.family == family]
+        return list(dict.fromkeys(tuple(one.get(name) for name in names) for one in listed))
+
+    exact = Method(tangential="fronts", integrator="events")
+    assert tried(SPRINGS, "steps", "steps") == [(1,), (2,), (3,), (4,), (5,), (10,), (50,)]
+    assert tried(SPRINGS, "parts", "springs") == [(1,), (2,)]
+    assert tried(exact, "tolerance", "tolerance") == [(1.0,), (1e-3,), (1e-12,)]
+    assert tried(exact, "tolerance", "psi1", "chi") == [(1.2, 1.441), (1.2, 30.0)]
+    assert tried(exact, "chi", "psi1") == [(0.3,), (1.2,)]
+    assert tried(exact, "psi1", "psi1") == [(0.0,), (1e-12,), (0.5,), (1e6,), (1e16,)]
+    labels = [one.label for one in extreme_scenes(quick=True) if one.family == "regimes"]
+    assert labels[:6] == [
+        f"psi1={edge}{side} chi=0.5"
+        for edge in ("1", "4chi-1")
+        for side in ("-1e-09", "+0", "+1e-09")
+    ]  # fmt: skip
+    assert [label.partition(" ")[2] for label in labels[6:]] == ["chi=1.441"] * 6
