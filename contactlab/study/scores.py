@@ -85,9 +85,6 @@ def candidates(laws: LawChoice) -> Candidates:
         except (PluginError, ValueError) as error:
             left_out[name] = str(error)
             continue
-        if complaint := composition.misfit(normal, law):
-            left_out[name] = complaint
-            continue
         for words in _forms(law):
             chosen = laws.choose(tangential=name)
             chosen = chosen.set({f"tangential.{key}": word for key, word in words.items()})

@@ -117,6 +117,7 @@ def test_springs_are_numbered_by_their_parts(drawn):
         assert set(numbers) == {"4", "16"}
         assert numbers["16"].xy[1] == 1e-3
     assert numbers["4"].xy == pytest.approx((100.0, 1e-2))
+    assert numbers["4"].xyann == (-5.0, 0.0)  # on the left of its point
 
 
 def test_axes_titles_and_limits_are_alike(drawn):
