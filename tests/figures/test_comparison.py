@@ -219,6 +219,7 @@ def test_differences_are_from_what_is_measured_or_from_the_first_law():
     np.testing.assert_allclose(axes.lines[1].get_ydata(), 1.0)
     assert axes.lines[1].get_color() == LAW_COLOURS[1]
     assert axes.get_ylabel() == "law $-$ law0"
+    assert axes.get_xlabel() == r"local angle of incidence $\psi_1$"
 
 
 def grid():
