@@ -199,6 +199,7 @@ def test_laws_and_measured_values_over_a_sweep():
     np.testing.assert_allclose(across.get_segments()[0][:, 0], [0.9, 1.1])
     np.testing.assert_allclose(up.get_segments()[1][:, 1], [0.1, 0.9])
     assert (axes.get_xlabel(), axes.get_title()) == (r"local angle of incidence $\psi_1$", "")
+    assert axes.get_ylabel() == r"local angle of reflexion $\psi_2$"
     assert [text.get_text() for text in axes.get_legend().get_texts()] == [
         r"a\$", "b", r"data\$"
     ]  # fmt: skip

@@ -89,6 +89,8 @@ def test_regimes_are_named_between_their_limits(axes):
     assert places["sticks\nat first"] == (0.5, 1.7)
     assert places["slips, sticks, slips"] == pytest.approx((0.5 * 5.764706, 1.7))
     assert places["slips\nthroughout"] == pytest.approx((0.5 * 11.764706, 1.7))
+    regimes = [text for text in axes.texts if text.get_position()[1] == 1.7]
+    assert {(text.get_ha(), text.get_va()) for text in regimes} == {("center", "top")}
     assert axes.get_ylim()[1] == 1.7
     assert axes.get_xlim() == (0.0, 7.0)
     assert axes.get_xlabel() == r"local angle of incidence $\psi_1$"
