@@ -160,7 +160,7 @@ def model_errors(axes: Axes, models: Sequence[ModelError]) -> Axes:
         axes.plot(item.chis, error, label=item.law.replace("_", " "), **look)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    least = min((float(np.nanmin(item.error)) for item in models), default=LEAST_MODEL)
+    least = min(float(np.nanmin(item.error)) for item in models)
     axes.set_ylim(0.7 * max(LEAST_MODEL, least), 1.5)
     axes.set_xlabel(label("chi"))
     axes.set_ylabel("model error of $\\psi_2$\nover its possible range")

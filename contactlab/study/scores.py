@@ -85,14 +85,14 @@ def candidates(laws: LawChoice) -> Candidates:
         except (PluginError, ValueError) as error:
             left_out[name] = str(error)
             continue
-        if complaint := composition.misfit(normal, law):
-            left_out[name] = complaint
-            continue
         for words in _forms(law):
             chosen = laws.choose(tangential=name)
             chosen = chosen.set({f"tangential.{key}": word for key, word in words.items()})
             label = " ".join([name, *words.values()])
-            simulations[label] = chosen.suited().simulation()
+            if complaint := composition.misfit(normal, chosen.made("tangential")):
+                left_out[label] = complaint
+            else:
+                simulations[label] = chosen.suited().simulation()
     return Candidates(simulations, left_out)
 
 

@@ -200,8 +200,7 @@ def _regimes(chi: float, sides: tuple[float, ...]) -> Iterator[Extreme]:
     """Yield scenes at and beside psi1 = 1 and psi1 = 4 chi - 1, where the regime changes."""
     for name, edge in (("1", 1.0), ("4chi-1", 4.0 * chi - 1.0)):
         for side in sides:
-            if edge > 0.0:
-                yield _plain("regimes", f"psi1={name}{side:+g} chi={chi:.4g}", edge + side, chi)
+            yield _plain("regimes", f"psi1={name}{side:+g} chi={chi:.4g}", edge + side, chi)
 
 
 def _ball(

@@ -1,0 +1,201 @@
+"""Sizes, colours, labels and lines of all figures, written out."""
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from contactlab.figures import files, style
+from contactlab.figures.files import as_svg, save, save_figure
+
+GREY = "#8C8C8C"
+
+
+@pytest.fixture
+def axes():
+    return Figure().subplots()
+
+
+@pytest.mark.parametrize(
+    ("width", "size"), [(None, (5.6, 3.9)), ("one", (3.4, 3.4 * 3.9 / 5.6)), ("two", (7.0, 3.9))]
+)
+def test_a_figure_keeps_its_shape_but_for_a_whole_page(width, size):
+    assert style.figure_size(width) == pytest.approx(size)
+
+
+@pytest.mark.parametrize(
+    ("entries", "size"),
+    [
+        ({}, (5.6, 3.9)),
+        ({"heights": (2.0, 1.0)}, (5.6, 3.9 * 1.5)),
+        ({"wide": True}, (5.6 * 1.6, 3.9 * 1.25)),
+        ({"columns": 2}, (5.6 * 1.7, 3.9)),
+        ({"columns": 2, "wide": True}, (5.6 * 1.7, 3.9 * 1.25)),
+        ({"width": "one"}, (3.4, 2.367857)),
+        ({"width": "one", "wide": True}, (3.4, 2.367857 * 1.9)),
+        ({"width": "one", "columns": 2}, (3.4, 2.367857 * 2.0)),
+        ({"width": "two", "wide": True}, (7.0, 3.9 * 1.25)),
+        ({"width": "two", "columns": 3}, (7.0, 3.9 * 0.8)),
+        ({"width": "two", "columns": 2, "heights": (1.0, 3.0)}, (7.0, 3.9 * 0.8 * 4.0 / 3.0)),
+    ],
+)
+def test_a_picture_has_room_for_its_panels_and_its_legend(entries, size, tmp_path, monkeypatch):
+    kept = []
+    monkeypatch.setattr(files, "save_figure", lambda figure, path: kept.append((figure, path)))
+    rows = len(entries.get("heights", (1.0,)))
+    panels = []
+    picture = save(tmp_path / "a.png", panels.append, rows=rows, **entries)
+    ((figure, path),) = kept
+    assert tuple(figure.get_size_inches()) == pytest.approx(size, rel=1e-5)
+    assert figure.dpi == style.RESOLUTION == 200
+    assert picture.path == path == tmp_path / "a.png"
+    columns = entries.get("columns", 1)
+    assert np.shape(panels[0]) == (() if rows == columns == 1 else (rows, columns))
+    if rows > 1 and columns == 1:
+        upper, lower = panels[0][:, 0]
+        assert upper.get_shared_x_axes().joined(upper, lower)
+        ratios = upper.get_gridspec().get_height_ratios()
+        assert tuple(ratios) == entries["heights"]
+
+
+def test_a_stack_labels_the_abscissa_of_its_lowest_axes(tmp_path, monkeypatch):
+    kept = []
+    monkeypatch.setattr(files, "save_figure", lambda *_: None)
+    save(tmp_path / "a.png", kept.append, rows=2, columns=2, heights=(2.0, 1.0), width="one")
+    ((first, second), (below, other)) = kept[0]
+    for axes, labelled in ((first, False), (second, False), (below, True), (other, True)):
+        assert axes.xaxis.get_tick_params()["labelbottom"] is labelled
+    assert tuple(first.get_gridspec().get_height_ratios()) == (2.0, 1.0, 2.0, 1.0)
+    assert below.get_subplotspec().rowspan.start == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "end"), [("a.png", None), ("a.PNG", None), ("a.jpg", ".jpg"), ("a", "")]
+)
+def test_the_suffix_selects_the_format(name, end, tmp_path):
+    figure = Figure(figsize=(0.5, 0.5))
+    if end is None:
+        save_figure(figure, tmp_path / name)
+        assert (tmp_path / name).read_bytes()[:4] == b"\x89PNG"
+        return
+    with pytest.raises(
+        ValueError, match=r"^path = '.*a\w*\.?\w*': must end in \.png, \.pdf, \.svg$"
+    ):
+        save_figure(figure, tmp_path / name)
+    assert not (tmp_path / name).exists()
+
+
+def test_an_element_for_a_page_has_no_date_and_no_heading():
+    heights = (1.0, 1.0)
+    first = as_svg(lambda axes: axes[1, 0].plot([1.0]), rows=2, heights=heights)
+    assert first.startswith("<svg")
+    assert "<dc:date>" not in first
+    assert 'height="561.6pt"' in first  # 7.8 inches
+    assert first == as_svg(lambda axes: axes[1, 0].plot([1.0]), rows=2, heights=heights)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("psi1",), r"local angle of incidence $\psi_1$"),
+        (("angle_deg", "deg"), "angle of incidence from the normal (°)"),
+        (("rebound_spin", "rad/s"), r"rebound spin $\omega_2$ (rad/s)"),
+        (("sphere.radius", "m"), "sphere radius (m)"),
+        (("own_name", "1"), "own name"),
+    ],
+)
+def test_a_label_has_words_and_a_unit(arguments, words):
+    assert style.label(*arguments) == words
+
+
+def test_dollars_are_no_formula():
+    assert style.verbatim("a $b$") == r"a \$b\$"
+
+
+def test_laws_have_colours_and_dashes_of_their_own_in_turn():
+    looks = [style.law_style(number) for number in range(7)]
+    assert [look["color"] for look in looks] == [*style.LAW_COLOURS, style.LAW_COLOURS[0]]
+    assert [look["linestyle"] for look in looks[:4]] == list(style.LAW_DASHES[:4])
+    assert looks[6] == looks[0]
+    assert len(set(style.LAW_COLOURS)) == len(style.LAW_COLOURS) == len(style.LAW_DASHES) == 6
+    assert len(set(map(str, style.LAW_DASHES[:4]))) == 4
+
+
+def test_ordered_colours_end_before_the_palest():
+    viridis = mpl.colormaps["viridis"]
+    assert style.ordered_colours(3) == [viridis(0.0), viridis(0.43), viridis(0.86)]
+    assert style.ordered_colours(1) == [viridis(0.0)]
+
+
+@pytest.mark.parametrize(("half", "shown"), [(0.0159, False), (0.016, True), (0.5, True)])
+@pytest.mark.parametrize("limits", [(-1.0, 3.0), (3.0, -1.0)])
+def test_a_band_is_shown_from_a_width_on(axes, half, shown, limits):
+    """0.004 of the height of 4; one point that wide is enough."""
+    axes.set_ylim(*limits)
+    wide = np.array([np.nan, half, 0.0])
+    assert style.error_band(axes, np.arange(3.0), np.zeros(3), wide, {"color": "red"}) is axes
+    assert bool(axes.collections) is shown
+    if shown:
+        (band,) = axes.collections
+        assert band.get_alpha() == pytest.approx(0.22)
+        assert band.get_label() == "_child0"
+
+
+def test_no_points_have_no_band(axes):
+    style.error_band(axes, np.array([]), np.array([]), np.array([]), {"color": "red"})
+    assert not axes.collections
+
+
+def test_the_friction_limit_is_drawn_on_both_sides(axes):
+    time, force = np.array([0.0, 0.5, 1.0]), np.array([0.0, 1.0, 0.2])
+    assert style.friction_limit(axes, time, force) is axes
+    upper, lower = axes.lines
+    np.testing.assert_array_equal(upper.get_data(), (time, force))
+    np.testing.assert_array_equal(lower.get_data(), (time, -force))
+    assert {line.get_color() for line in axes.lines} == {"black"}
+    (words,) = axes.texts
+    assert (words.get_text(), words.xy) == (r"limit $\pm\mu P$", (0.5, -0.9))
+    assert words.xycoords == ("axes fraction", "data")
+
+
+def test_zero_lies_behind_everything(axes):
+    assert style.zero_line(axes) is axes
+    (line,) = axes.lines
+    assert (list(line.get_ydata()), line.get_color(), line.get_zorder()) == ([0.0, 0.0], GREY, 0)
+
+
+def test_axes_of_forces_run_from_touch_to_separation(axes):
+    assert style.force_axes(axes) is axes
+    assert axes.get_xlim() == (0.0, 1.0)
+    assert axes.get_xlabel() == r"time over duration of contact $t/t_{\mathrm{c}}$"
+    assert axes.get_ylabel() == r"tangential force $F/(\mu P_{\max})$"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "size", "family", "width"),
+    [
+        ((), 11.0, "STIXGeneral", 1.7),
+        (("slides",), 13.0, "DejaVu Sans", 2.6),
+        (("print", "one"), 8.0, "STIXGeneral", 1.2),
+        (("print", "two"), 9.5, "STIXGeneral", 1.7),
+        (("slides", "one"), 8.0, "DejaVu Sans", 1.2),
+    ],
+)
+def test_a_look_lasts_for_its_block(arguments, size, family, width):
+    before = mpl.rcParams["font.size"]
+    with style.styled(*arguments):
+        assert mpl.rcParams["font.size"] == size
+        assert mpl.rcParams["font.family"] == [family]
+        assert mpl.rcParams["lines.linewidth"] == width
+        assert not mpl.rcParams["axes.spines.top"]
+        assert not mpl.rcParams["axes.spines.right"]
+        assert not mpl.rcParams["legend.frameon"]
+        assert mpl.rcParams["figure.constrained_layout.use"]
+        assert mpl.rcParams["axes.axisbelow"]
+    assert mpl.rcParams["font.size"] == before
+
+
+def test_no_printed_letter_is_below_seven_points():
+    """Ticks have the size of the font; "small" is 0.833 of it."""
+    for sizes in style.PRINTED.values():
+        assert min(value for name, value in sizes.items() if "size" in name) >= 7.0

@@ -1,0 +1,236 @@
+"""Laws side by side: values, differences, agreement with measurements, timing, interruption.
+
+A rigid body has psi2 = 0 up to psi1 = 4 chi and psi1 - 4 chi beyond; without friction it is psi1.
+"""
+
+import itertools
+from types import SimpleNamespace
+
+import attrs
+import numpy as np
+import pytest
+
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create
+from contactlab.contracts.status import Status
+from contactlab.scene_file import read_scene
+from contactlab.study import comparison as study
+from contactlab.study.comparison import Agreement, compare
+
+PSI1 = [0.5, 2.0, 6.0]
+LAWS = {"rigid": Simulation(tangential="coulomb"), "smooth": Simulation(tangential="frictionless")}
+SWEEP = Scene.nondimensional(psi1=PSI1, chi=1.0)
+FILE = """
+[nondimensional]
+chi = 1.0
+[sweep]
+psi1 = [0.5, 2.0, 6.0]
+[[measured]]
+quantity = "psi2"
+against = "psi1"
+x = [1.0, 8.0]
+values = [0.1, 3.5]
+source = "made up"
+"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "measured.toml"
+    path.write_text(FILE, encoding="utf-8")
+    return read_scene(path)
+
+
+@pytest.fixture(scope="module")
+def both():
+    return compare(SWEEP, LAWS)
+
+
+def failed(run, *places):
+    """The run of a law, of which the impacts at ``places`` failed."""
+    status = np.array([Status.SUCCESS] * 3, dtype=object)
+    status[list(places)] = Status.UNSETTLED
+    motion = attrs.evolve(run.result.motion, status=status, detail=np.array(["odd"] * 3))
+    return attrs.evolve(run, result=attrs.evolve(run.result, motion=motion))
+
+
+def test_values_and_differences_are_those_of_the_laws(both):
+    assert both.names == ["rigid", "smooth"]
+    np.testing.assert_allclose(both.values("psi2", "rigid"), [0.0, 0.0, 2.0], atol=1e-12)
+    np.testing.assert_allclose(both.difference("psi2", "smooth"), [0.5, 2.0, 4.0])
+    assert (both.difference("psi2", "rigid") == 0.0).all()
+    assert both.failures() == []
+    assert not both.interrupted
+    assert list(both.varied) == ["psi1"]
+    np.testing.assert_array_equal(both.varied["psi1"], PSI1)
+
+
+def test_some_of_the_laws_are_taken_with_their_agreements(file):
+    found = compare(file, LAWS).only(["smooth", "no such law"])
+    assert found.names == ["smooth"]
+    assert list(found.agreements[0].results) == ["smooth"]
+
+
+def test_agreement_is_predicted_less_measured(file):
+    """psi2 of the rigid law is 0 and 4: off by -0.1 and 0.5."""
+    (agreement,) = compare(file, LAWS).agreements
+    np.testing.assert_allclose(agreement.difference("rigid"), [-0.1, 0.5], atol=1e-12)
+    assert agreement.rms("rigid") == pytest.approx(np.sqrt(0.13))
+    assert agreement.largest("rigid") == pytest.approx(0.5)
+    assert agreement.where_largest("rigid") == 8.0
+    assert agreement.largest("smooth") == pytest.approx(4.5)
+    assert agreement.unit == "1"
+    other = attrs.evolve(agreement.measured, values=np.array([0.9, 3.5]))
+    below = Agreement(measured=other, results=agreement.results)
+    assert below.where_largest("rigid") == 1.0
+    assert below.largest("rigid") == pytest.approx(0.9)
+
+
+def test_where_an_impact_failed_is_not_a_number(both):
+    found = attrs.evolve(both, runs=(both.runs[0], failed(both.runs[1], 1)))
+    np.testing.assert_array_equal(found.values("psi2", "smooth"), [0.5, np.nan, 6.0])
+    (sentence,) = found.failures()
+    assert sentence.startswith("smooth (1 of 3): The tangential law found no division")
+    agreement = Agreement(
+        measured=SimpleNamespace(quantity="psi2", values=np.zeros(3), x=np.array(PSI1)),
+        results={"smooth": found.runs[1].result},
+    )
+    assert np.isnan(agreement.where_largest("smooth"))
+    assert np.isnan(agreement.rms("smooth"))
+    told = attrs.evolve(found, agreements=(agreement,)).failures()
+    assert told[0] == sentence
+    assert told[1].startswith("smooth, at the measured values of psi2 (1 of 3): The tan")
+
+
+def test_a_single_failure_has_no_share(both):
+    one = Simulation(tangential="frictionless").run(Scene.nondimensional(psi1=1.0, chi=1.0))
+    motion = attrs.evolve(one.motion, status=Status.UNSETTLED, detail="odd")
+    run = attrs.evolve(both.runs[0], result=attrs.evolve(one, motion=motion))
+    (sentence,) = attrs.evolve(both, runs=(run,)).failures()
+    assert sentence.startswith("rigid: The tangential law found no division")
+
+
+def test_the_numerical_error_is_estimated_or_else_declared(both):
+    run = both.runs[1]
+    plan = run.result.plan.changed(psi2_error=np.array([0.1, 0.2, 0.3]))
+    declared = attrs.evolve(run, result=attrs.evolve(run.result, plan=plan))
+    estimate = np.array([0.01, np.nan, 0.03])
+    result = attrs.evolve(declared.result, psi2_error_estimate=estimate)
+    found = attrs.evolve(both, runs=(both.runs[0], declared))
+    np.testing.assert_array_equal(found.numerical_error("smooth"), [0.1, 0.2, 0.3])
+    found = attrs.evolve(both, runs=(both.runs[0], attrs.evolve(run, result=result)))
+    np.testing.assert_array_equal(found.numerical_error("smooth"), [0.01, 0.2, 0.03])
+    # A band of psi2 is that error; of psi2/psi1, over psi1; of the normal restitution, none.
+    np.testing.assert_allclose(found.band("psi2", "smooth"), [0.01, 0.2, 0.03])
+    np.testing.assert_allclose(found.band("slip_restitution", "smooth"), [0.02, 0.1, 0.005])
+    np.testing.assert_allclose(found.band("normal_restitution", "smooth"), 0.0)
+
+
+def test_a_band_in_si_has_the_scale_of_psi():
+    """The slip velocity is off by the error of psi2 over the scale of psi."""
+    steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
+    scene = Scene(Sphere(0.01, steel), HalfSpace(steel), 0.2, 1.0, np.array([0.1, 0.5]))
+    laws = {"rough": Simulation(tangential=create("tangential.annulus", annuli=3))}
+    found = compare(scene, laws, estimate_error=True)
+    error = found.numerical_error("rough")
+    assert (error > 1e-3).all()
+    kappa = scene.pair.stiffness_ratio
+    np.testing.assert_allclose(
+        found.band("rebound_slip_velocity", "rough"), error * 0.2 / kappa, rtol=1e-9
+    )
+
+
+def test_progress_counts_every_law_and_series(file):
+    seen = []
+    compare(file, LAWS, progress=lambda *count: seen.append(count))
+    assert seen == [(1, 4), (2, 4), (3, 4), (4, 4)]
+
+
+@pytest.mark.parametrize(("after", "kept"), [(0, None), (1, None), (2, ["rigid"]), (3, ["rigid"])])
+def test_interrupted_laws_are_left_out(file, after, kept, monkeypatch):
+    """Each law runs the sweep, then the measured points; the first must be done."""
+    calls = itertools.count()
+    run = study._run
+
+    def interrupted(*words):
+        if next(calls) == after:
+            raise KeyboardInterrupt
+        return run(*words)
+
+    monkeypatch.setattr(study, "_timed", lambda name, simulation, scene, **_: study.LawRun(
+        name=name, result=interrupted(simulation, scene), run_time_per_impact=1.0))  # fmt: skip
+    monkeypatch.setattr(study, "_run", interrupted)
+    if kept is None:
+        with pytest.raises(KeyboardInterrupt):
+            compare(file, LAWS)
+        return
+    found = compare(file, LAWS)
+    assert found.interrupted
+    assert found.names == list(found.agreements[0].results) == kept
+
+
+@pytest.mark.parametrize(
+    ("first", "runs", "time"),
+    [
+        # The least of three after the warm-up; a run of two seconds and more is the only one.
+        (0.5, [0.4, 0.2, 0.3], 0.2), (1.99, [3.0, 2.5, 2.6], 2.5), (2.0, [], 2.0), (7.0, [], 7.0),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("size", [None, 4])
+def test_short_runs_are_repeated(first, runs, time, size):
+    scene = Scene.nondimensional(psi1=1.0 if size is None else [1.0] * size, chi=1.0)
+    times = iter([first, *runs])
+    asked = []
+
+    def run(of, **words):
+        asked.append(words)
+        return SimpleNamespace(run_time=np.nan if words else next(times), status=Status.SUCCESS)
+
+    simulation = SimpleNamespace(run=run, sweep=run)
+    found = study._timed("law", simulation, scene, history=size is None)
+    assert found.run_time_per_impact == pytest.approx(time / (size or 1))
+    assert next(times, None) is None
+    assert asked == [{}] * (1 + len(runs)) + ([{"history": True}] if size is None else [])
+
+
+def test_only_a_single_impact_has_a_history():
+    one = Scene.nondimensional(psi1=1.0, chi=1.0)
+    law = {"springs": Simulation(tangential="springs")}
+    assert compare(one, law, history=True).runs[0].result.history
+    assert not compare(one, law).runs[0].result.history
+    assert not compare(SWEEP, law, history=True).runs[0].result.history
+
+
+def ball(angle=30.0, speed=2.0, spin=0.0, friction=0.2):
+    steel = Material.named("steel")
+    tangent = speed * np.tan(np.radians(angle))
+    return Scene(Sphere(0.01, steel), HalfSpace(steel), friction, speed, tangent, spin)
+
+
+@pytest.mark.parametrize(
+    ("scene", "name", "values"),
+    [
+        (Scene.nondimensional(psi1=2.0, chi=[1.0, 1.5]), "chi", [1.0, 1.5]),
+        (Scene.nondimensional(psi1=[2.0, 2.0], chi=1.0), "psi1", [2.0, 2.0]),
+        (ball(angle=np.array([30.0, 45.0])), "angle_deg", [30.0, 45.0]),
+        (ball(speed=np.array([1.0, 2.0])), "normal_speed", [1.0, 2.0]),
+        (ball(spin=np.array([1.0, 2.0])), "spin", [1.0, 2.0]),
+        (ball(friction=np.array([0.1, 0.2])), "friction_coefficient", [0.1, 0.2]),
+    ],
+)
+def test_the_abscissa_of_a_batch_is_the_first_entry_that_varies(scene, name, values):
+    (found,) = compare(scene, LAWS).varied.items()
+    assert found[0] == name
+    np.testing.assert_allclose(found[1], values)
+
+
+def test_a_single_impact_varies_nothing_and_a_grid_its_axes():
+    assert compare(Scene.nondimensional(psi1=1.0, chi=1.0), LAWS).varied == {}
+    scene = Scene.grid(psi1=[1.0, 2.0], chi=[1.0, 1.5, 2.0])
+    varied = compare(scene, LAWS).varied
+    np.testing.assert_array_equal(varied["psi1"], [1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
+    np.testing.assert_array_equal(varied["chi"], [1.0, 1.5, 2.0] * 2)
+
+
+def test_what_is_no_scene_is_refused():
+    with pytest.raises(ValueError, match="scene = 3: must be a Scene or a SceneFile"):
+        compare(3, LAWS)
