@@ -2,6 +2,7 @@
 
 import json
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,10 +19,11 @@ SCENE = Scene.nondimensional(psi1=np.linspace(-3.0, 9.0, 10), chi=1.5)
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """Return the folder of a sweep of ten impacts in blocks of four."""
+    """Return the folder of a sweep of ten impacts in blocks of four; a short path is told whole."""
     blocks_of(monkeypatch, 4)
-    COULOMB.sweep(SCENE, keep=tmp_path / "kept")
-    return tmp_path / "kept"
+    monkeypatch.chdir(tmp_path)
+    COULOMB.sweep(SCENE, keep="kept")
+    return Path("kept")
 
 
 def refusal(folder, scene=SCENE):
@@ -55,7 +57,7 @@ def test_a_sweep_is_kept_in_a_file_for_each_piece(folder):
     kept.remove(folder)
 
 
-def test_refusals_of_a_folder(folder, tmp_path):
+def test_refusals_of_a_folder(folder):
     start = f"keep = {str(folder)!r}: "
     remedy = "; delete the folder, or keep this sweep in another"
     about = json.loads((folder / "sweep.json").read_text(encoding="utf-8"))
@@ -72,10 +74,10 @@ def test_refusals_of_a_folder(folder, tmp_path):
         assert refusal(folder) == f"{start}sweep.json in it cannot be read: {error}{remedy}"
     (folder / "sweep.json").unlink()
     assert refusal(folder) == f"{start}is not empty, and holds no sweep; name a new folder"
-    path = tmp_path / "file"
+    path = Path("file")
     path.touch()
     assert refusal(path) == f"keep = {str(path)!r}: is a file; name a folder"
-    hidden = tmp_path / "hidden"
+    hidden = Path("hidden")
     hidden.mkdir()
     (hidden / ".file").touch()
     assert len(COULOMB.sweep(SCENE, keep=hidden)) == 10

@@ -139,7 +139,8 @@ def test_failures_are_counted_sentence_by_sentence():
     few = contactlab.create("integrator.symplectic", steps=5, refine=False)
     simulation = Simulation(tangential="springs", integrator=few)
     result = simulation.run(Scene.nondimensional(psi1=[1.2, 0.5, 0.5], chi=[1e3, 30.0, 30.0]))
-    told = [line for line in describe(result, varied={}).splitlines() if line.startswith("status:")]
+    report = describe(result, title="", varied={}, collision=None)
+    told = [line for line in report.splitlines() if line.startswith("status:")]
     assert len(told) == 2
     assert told[0].endswith("(2 impacts)")
     assert not told[1].endswith("impacts)")
