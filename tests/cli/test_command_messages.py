@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -207,7 +208,7 @@ MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
 )  # fmt: skip
 def test_a_refusal_is_one_line(run, short_sweep, ball, tmp_path, monkeypatch, words, told):
     monkeypatch.chdir(tmp_path)
-    file = tmp_path / "x"
+    file = Path("x")
     file.write_text("", encoding="utf-8")
     places = {"SWEEP": short_sweep, "BALL": ball, "FILE": file}
     ran = run(*(places.get(word, word) for word in words))
