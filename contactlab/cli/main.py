@@ -196,7 +196,3 @@ def _is_negative(word: str) -> bool:
 def _one_line(error: BaseException) -> str:
     """Return the message of an error on one line."""
     return " ".join(str(error).split()) or type(error).__name__
-
-
-if __name__ == "__main__":
-    sys.exit(main())

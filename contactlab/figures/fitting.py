@@ -45,7 +45,7 @@ def measured_and_laws(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axe
     x, words = _abscissa(first)
     measured = first.measurements.measured[quantity]
     for number, (name, fit) in enumerate(fits.items()):
-        look = law_style(number) | {"marker": MARKERS[number % 6], "markersize": 3.0}
+        look = law_style(number) | {"marker": MARKERS[number % len(MARKERS)], "markersize": 3.0}
         present = np.isfinite(measured)
         law = fit.predicted[quantity][present]
         axes.plot(*_means(x[present], law), label=_legend(name, fit), markevery=[], **look)
@@ -75,7 +75,7 @@ def residuals(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axes:
             x,
             fit.residuals[quantity],
             yerr=errors,
-            marker=MARKERS[number % 6],
+            marker=MARKERS[number % len(MARKERS)],
             markersize=4.0,
             elinewidth=0.8,
             **look,

@@ -89,3 +89,14 @@ def test_a_last_column_of_numbers_is_not_wrapped():
     heading = " ".join(["w" * 60, "v" * 60])
     assert table(["n", heading], [["x", 1.5]]).splitlines()[-1].split() == ["x", "1.5"]
     assert table(["n" * 60, "v" * 60], []).splitlines()[-1] == "-" * 60 + "  " + "-" * 60
+
+
+def test_a_column_is_of_text_only_if_all_of_it_is():
+    rows = [["x", "a", 1.5], ["y", 2.5, "bb"], ["z", 10.0, 3.0]]
+    assert table(["text", "first", "second"], rows).splitlines() == [
+        "text  first  second",
+        "----  -----  ------",
+        "x         a     1.5",
+        "y       2.5      bb",
+        "z        10       3",
+    ]

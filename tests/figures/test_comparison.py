@@ -275,6 +275,7 @@ def test_forces_of_each_law_lie_within_one_limit():
     assert upper.get_ydata().max() == pytest.approx(1.0, abs=1e-3)
     drawn = {line.get_label(): line for line in lines}
     assert {r"springs\$", "spring"} <= set(drawn)
+    assert len(drawn) == len(lines) == sum(bool(run.result.history) for run in compared.runs)
     for number, run in enumerate(compared.runs):
         if not run.result.history or not run.result.history.time.size:
             assert run.name not in drawn

@@ -1,11 +1,13 @@
 """Faults that show in one quantity alone, and laws just beside the bound of a check."""
 
+import re
 from typing import Any, ClassVar
 
 import attrs
 import numpy as np
 import pytest
 
+import contactlab
 from contactlab.contracts import NormalContact
 from contactlab.testing import Verdict, checks_for, outcome
 from contactlab.testing.declared_errors import _declared, _finer
@@ -294,3 +296,19 @@ def test_the_declared_error_is_that_of_law_and_integrator():
     [whole] = ways(HardSphere())
     assert np.isnan(_declared(whole, scene(2.0, 1.0)))
     assert _declared(whole, scene(0.0, 1.0)) == 0.0  # a central impact, in closed form
+
+
+class TellsOfMore(type(contactlab.create("tangential.annulus"))):
+    """Annuli whose force is right, and whose tractions are told half as large again."""
+
+    def fields(self, state):
+        fields = super().fields(state)
+        return {**fields, "traction": 1.5 * fields["traction"]}
+
+
+def test_tractions_that_are_told_are_held_against_the_limit_at_their_place():
+    """Half of mu p too much; the greatest is at the centre, where p is 3/2 of its mean."""
+    assert found(contactlab.create("tangential.annulus"), "coulomb_at_a_point")[0] is Verdict.PASSED
+    verdict, sentence = found(TellsOfMore(), "coulomb_at_a_point")
+    assert verdict is Verdict.FAILED
+    assert 0.7 <= float(re.search(r"exceeds mu p by (\S+) of the mean", sentence)[1]) <= 0.9
