@@ -115,7 +115,6 @@ class Scene:
         object.__setattr__(self, "shape", shape)
         index = batch.locked(np.arange(math.prod(shape)).reshape(shape)) if shape else 0
         object.__setattr__(self, "index", index)
-        real("tangential_velocity + spin * radius", self.slip_velocity)
         self._check_scales()
 
     def numbers(self) -> dict[str, Real]:
@@ -147,9 +146,10 @@ class Scene:
             lost = (friction > 0.0) & (unit == 0.0)
         if not batch.every(slip_energy < math.inf):
             si = self.sphere is not None
+            turning = " + spin * radius" if np.any(self.spin) else ""
             raise refuse(
-                "tangential_velocity" if si else "psi1, chi",
-                self.tangential_velocity if si else (self.psi1, self.chi),
+                f"tangential_velocity{turning}" if si else "psi1, chi",
+                self.slip_velocity if si else (self.psi1, self.chi),
                 "the kinetic energy of slip must be finite",
                 "give less; from 4 chi - 1 on psi1 falls by 4 chi",
             )

@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import HalfSpace, ImpactError, Material, Scene, Sphere, Status, load_path
+from contactlab import HalfSpace, ImpactError, Material, Scene, Sphere, Status, create, load_path
 from contactlab.contracts import NormalContact, SteppedTangentialLaw, TangentialResponse
 from contactlab.impact.hertz import hertz_scales
 from tests.laws.normal_laws import LinearSpring
@@ -184,3 +184,9 @@ def test_a_law_of_either_kind_may_refuse_the_scene():
         path(law=Choosy())
     with pytest.raises(ValueError, match="nor this one"):
         path(normal=Picky())
+
+
+def test_a_path_of_one_point_has_its_fields():
+    path = load_path(SCENE, [1e-6], [0.0], tangential=create("tangential.springs", springs=5))
+    shapes = {name: values.shape for name, values in path.fields.items()}
+    assert shapes == dict.fromkeys(("radius", "displacement", "limit", "stuck", "slipping"), (1, 5))

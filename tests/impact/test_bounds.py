@@ -86,6 +86,16 @@ def test_the_energy_of_slip_is_finite():
     assert str(caught.value).endswith(words)
 
 
+@pytest.mark.parametrize(
+    ("velocity", "spin", "told"),
+    [(0.0, 1e162, "1e+160"), (0.0, -1e162, "-1e+160"), (1.79e308, 1.7e308, "inf")],
+)
+def test_a_spin_is_told_as_a_part_of_the_slip_velocity(velocity, spin, told):
+    with pytest.raises(ValueError, match="energy of slip must be finite") as caught:
+        Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.1, 1.0, velocity, spin)
+    assert str(caught.value).startswith(f"tangential_velocity + spin * radius = {told}: ")
+
+
 def ball(radius=0.5, *, normal=3.0, tangential=4.0, spin=0.0, **material):
     """Return a ball at 5 m/s on steel."""
     numbers = {"shear_modulus": 80e9, "poisson_ratio": 0.25, "density": 7850.0}
