@@ -9,6 +9,7 @@ from contactlab import Simulation
 from contactlab.pages import explore, html, report
 from contactlab.scene_file import read_scene
 from contactlab.study.comparison import compare
+from tests.study.made_up import LAWS, SERIES, SWEEP
 
 
 def test_text_stands_left_and_numbers_right():
@@ -45,23 +46,6 @@ def test_a_plan_is_up_to_three_lists():
     assert html.plan(none) == "<h3>left out</h3><ul><li>two</li></ul>"
 
 
-SWEEP = """
-[nondimensional]
-chi = 1.0
-[sweep]
-psi1 = [0.5, 2.0, 6.0]
-"""
-MEASURED = """
-[[measured]]
-quantity = "psi2"
-against = "psi1"
-x = [1.0, 8.0]
-values = [0.1, 3.5]
-source = "made up"
-"""
-LAWS = {"rigid": Simulation(tangential="coulomb"), "smooth": Simulation(tangential="frictionless")}
-
-
 @pytest.fixture
 def page(tmp_path):
     def call(text, history=False):
@@ -95,7 +79,7 @@ def test_laws_over_a_sweep_have_a_picture_and_their_largest_difference(page):
 
 def test_measured_values_have_a_picture_and_the_distances(page):
     """The rigid law is off by -0.1 and 0.5, without friction psi2 is by 0.9 and 4.5."""
-    _, compared = page(SWEEP + MEASURED)
+    _, compared = page(SWEEP + SERIES)
     first, table = report._comparison(compared)
     assert "<figcaption>psi2, measured: made up</figcaption>" in first
     assert "<th>law</th><th>rms difference (1)</th><th>largest</th>" in first

@@ -15,34 +15,22 @@ from contactlab.contracts.status import Status
 from contactlab.scene_file import read_scene
 from contactlab.study import comparison as study
 from contactlab.study.comparison import Agreement, compare
+from tests.study.made_up import LAWS, SERIES, SWEEP
 
 PSI1 = [0.5, 2.0, 6.0]
-LAWS = {"rigid": Simulation(tangential="coulomb"), "smooth": Simulation(tangential="frictionless")}
-SWEEP = Scene.nondimensional(psi1=PSI1, chi=1.0)
-FILE = """
-[nondimensional]
-chi = 1.0
-[sweep]
-psi1 = [0.5, 2.0, 6.0]
-[[measured]]
-quantity = "psi2"
-against = "psi1"
-x = [1.0, 8.0]
-values = [0.1, 3.5]
-source = "made up"
-"""
+SCENES = Scene.nondimensional(psi1=PSI1, chi=1.0)
 
 
 @pytest.fixture
 def file(tmp_path):
     path = tmp_path / "measured.toml"
-    path.write_text(FILE, encoding="utf-8")
+    path.write_text(SWEEP + SERIES, encoding="utf-8")
     return read_scene(path)
 
 
 @pytest.fixture(scope="module")
 def both():
-    return compare(SWEEP, LAWS)
+    return compare(SCENES, LAWS)
 
 
 def failed(run, *places):
@@ -197,7 +185,7 @@ def test_only_a_single_impact_has_a_history():
     law = {"springs": Simulation(tangential="springs")}
     assert compare(one, law, history=True).runs[0].result.history
     assert not compare(one, law).runs[0].result.history
-    assert not compare(SWEEP, law, history=True).runs[0].result.history
+    assert not compare(SCENES, law, history=True).runs[0].result.history
 
 
 def ball(angle=30.0, speed=2.0, spin=0.0, friction=0.2):

@@ -21,27 +21,13 @@ from contactlab.study.scores import (
     to_dict,
     write_csv,
 )
-
-LAWS = {"rigid": Simulation(tangential="coulomb"), "smooth": Simulation(tangential="frictionless")}
-FILE = """
-[nondimensional]
-chi = 1.0
-[sweep]
-psi1 = [0.5, 2.0, 6.0]
-[[measured]]
-quantity = "psi2"
-against = "psi1"
-x = [1.0, 8.0]
-values = [0.1, 3.5]
-error = [0.0, 0.2]
-source = "made up"
-"""
+from tests.study.made_up import ERRORS, LAWS, SERIES, SWEEP
 
 
 @pytest.fixture(scope="module")
 def compared(tmp_path_factory):
     path = tmp_path_factory.mktemp("scores") / "measured.toml"
-    path.write_text(FILE, encoding="utf-8")
+    path.write_text(SWEEP + SERIES + ERRORS, encoding="utf-8")
     return compare(read_scene(path), LAWS)
 
 

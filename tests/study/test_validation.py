@@ -24,21 +24,11 @@ from contactlab.study.validation import (
     simulations_over,
     validate,
 )
+from tests.study.made_up import ERRORS, SERIES, SWEEP
 
 RIGID = Simulation(tangential="coulomb")
 SMOOTH = Simulation(tangential="frictionless")
-FILE = """
-[nondimensional]
-chi = 1.0
-[sweep]
-psi1 = [0.5, 2.0, 6.0]
-[[measured]]
-quantity = "psi2"
-against = "psi1"
-x = [1.0, 8.0]
-values = [0.1, 3.5]
-error = [0.0, 0.2]
-source = "made up"
+FILE = f"""{SWEEP}{SERIES}{ERRORS}
 [[measured]]
 quantity = "psi2"
 against = "psi1"
