@@ -85,7 +85,7 @@ def refuse(argument: str, value: object, rule: str, remedy: str = "") -> ValueEr
     return ValueError(f"{argument} = {shown(value)}: {rule}" + (f"; {remedy}" if remedy else ""))
 
 
-def nearest(name: str, known: Iterable[str], *, cutoff: float = 0.5) -> str:
+def nearest(name: str, known: Iterable[str]) -> str:
     """Return "did you mean ...? " with the most similar of ``known``; empty if none is similar.
 
     A symbol counts as similar to its name in this package: mu to friction_coefficient.
@@ -94,7 +94,7 @@ def nearest(name: str, known: Iterable[str], *, cutoff: float = 0.5) -> str:
 
     names = list(known)
     similar = [word for word in SYMBOLS.get(name, ()) if word in names]
-    similar += difflib.get_close_matches(name, names, n=1, cutoff=cutoff)
+    similar += difflib.get_close_matches(name, names, n=1, cutoff=0.5)
     return f"did you mean {similar[0]!r}? " if similar else ""
 
 

@@ -9,7 +9,8 @@ from typing import Any, TypeAlias
 import attrs
 import numpy as np
 
-from contactlab.contracts import Law
+from contactlab.contracts import Law, TangentialMotion
+from contactlab.contracts.status import Status
 from contactlab.testing.limits import SECONDS, OutOfTimeError, limited
 
 Function: TypeAlias = Callable[[Any], None]
@@ -97,6 +98,14 @@ def hold(condition: object, sentence: str) -> None:
     """Raise ``CheckFailedError`` unless the condition is true."""
     if not condition:
         raise CheckFailedError(sentence)
+
+
+def hold_success(motion: TangentialMotion, words: str = "{}") -> None:
+    """Hold that every impact was followed to its end; ``words`` get status and detail of one."""
+    pair = (np.asarray(entry, dtype=object) for entry in (motion.status, motion.detail))
+    for status, detail in np.broadcast(*pair):
+        told = f"{getattr(status, 'name', status)} {detail}".strip()
+        hold(status is Status.SUCCESS, words.format(told))
 
 
 def apply_if(condition: object, sentence: str) -> None:

@@ -12,8 +12,8 @@ from contactlab.contracts import Integrator, Law, NormalLaw, SteppedTangentialLa
 from contactlab.contracts.sampled_motion import gathered
 from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
-from contactlab.testing.check import apply_if, check, hold
-from contactlab.testing.coupled_laws import Exchanging, Marked, succeeded
+from contactlab.testing.check import apply_if, check, hold, hold_success
+from contactlab.testing.coupled_laws import Exchanging, Marked
 from contactlab.testing.integrators import CHI
 from contactlab.testing.load_paths import scene
 
@@ -37,7 +37,7 @@ def marks(integrator: Any) -> None:
         impact, law = batch.take(index), Marked()
         normal = normal_motion(normal_law, impact)
         motion = integrator.integrate(normal, law, impact, None)
-        hold(succeeded(motion.status), f"{motion.status} {motion.detail}")
+        hold_success(motion)
         alone.append(float(np.asarray(motion.slip_velocity_change)))
         ends = np.array([float(np.asarray(after.overlap)) for _, after in law.seen])
         for phase in law.marks(impact, normal):
@@ -65,7 +65,7 @@ def normal_motion_told(integrator: Any) -> None:
     for impact in (scene(ANGLES[1], CHI), scene(np.array(ANGLES), CHI)):
         normal = normal_motion(normal_law, impact)
         motion = integrator.integrate(normal, law, impact, None)
-        hold(succeeded(motion.status), f"{motion.status} {motion.detail}")
+        hold_success(motion)
         hold(motion.normal is not None, "law.normal_motion is not asked: normal is None.")
         after: Any = gathered(motion.normal, lambda part: part.final_rate, impact.shape)
         pair, slip, change = impact.pair, impact.slip_velocity, motion.slip_velocity_change

@@ -16,7 +16,6 @@ from contactlab.contracts import (
     SteppedTangentialLaw,
     TangentialResponse,
 )
-from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab.testing.laws import Yield, Yielding
@@ -123,8 +122,3 @@ class Exchanging(SteppedTangentialLaw):
             rate=rate,
             contact=NormalContact(*columns),
         )
-
-
-def succeeded(status: Any) -> bool:
-    """Return whether every status is a success."""
-    return bool(np.all(np.asarray(status, dtype=object) == Status.SUCCESS))

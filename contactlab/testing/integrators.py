@@ -14,10 +14,9 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import Integrator, TangentialMotion
-from contactlab.contracts.status import Status
 from contactlab.outcome.history import Recorder
 from contactlab.testing import limits
-from contactlab.testing.check import check, hold
+from contactlab.testing.check import check, hold, hold_success
 from contactlab.testing.compare import same
 from contactlab.testing.laws import PressedSpring, Slider, SlidingForEver, Yielding
 from contactlab.testing.load_paths import bodies, scene
@@ -73,7 +72,7 @@ def ends_well(integrator: Any) -> None:
             isinstance(motion, TangentialMotion),
             f"It returns a {type(motion).__name__}, not a TangentialMotion.",
         )
-        hold(motion.status is Status.SUCCESS, f"{motion.status} {motion.detail}")
+        hold_success(motion)
         hold(motion.detail == "", f"A success says {motion.detail!r}.")
         for name in TangentialMotion.numbers():
             value = getattr(motion, name)

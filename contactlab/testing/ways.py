@@ -20,11 +20,10 @@ from contactlab.contracts import (
     TangentialMotion,
     WholeImpactTangentialLaw,
 )
-from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.outcome.history import History, Recorder
 from contactlab.testing import limits
-from contactlab.testing.check import apply_if, hold
+from contactlab.testing.check import apply_if, hold, hold_success
 from contactlab.testing.load_paths import scene, slack
 from contactlab.testing.units import Units
 
@@ -77,8 +76,7 @@ class Way(NamedTuple):
             normal = normal_motion(self.normal, impact)
             _followed(self, normal, impact)
             motion = self.integrator.integrate(normal, self.law, impact, recorder)
-        if not np.all(np.asarray(motion.status) == Status.SUCCESS):
-            hold(False, f"{_which(impact)}: {_detail(motion)} ({self})")
+        hold_success(motion, f"{_which(impact)}: {{}} ({self})")
         unit = impact.pair.tangential_mass / np.square(impact.psi_scale)
         change = impact.psi(motion.slip_velocity_change)
         return Answer(change, motion, motion.friction_work / unit)
@@ -104,14 +102,6 @@ def _which(impact: Scene) -> str:
     if impact.shape:
         return f"A batch of shape {impact.shape}"
     return f"psi1 = {float(impact.psi1):.6g}, chi = {float(impact.chi):.4g}"
-
-
-def _detail(motion: TangentialMotion) -> str:
-    """Return status and detail of the first failed impact."""
-    statuses = np.ravel(np.asarray(motion.status, dtype=object))
-    first = int(np.argmax(statuses != Status.SUCCESS))
-    detail = np.ravel(np.asarray(motion.detail, dtype=object))
-    return f"{statuses[first].name} {detail[min(first, detail.size - 1)]}"
 
 
 def ways(law: TangentialLaw, normal: NormalLaw | None = None) -> list[Way]:

@@ -3,14 +3,15 @@
 import math
 import pickle
 
+import attrs
 import numpy as np
 import pytest
 
 import contactlab
 from contactlab import Scene
-from contactlab.contracts import Increment, NormalContact
+from contactlab.contracts import Increment, NormalContact, TangentialMotion
 from contactlab.testing import faulty_laws as faulty
-from contactlab.testing.coupled_laws import succeeded
+from contactlab.testing.check import CheckFailedError, hold_success
 
 HERTZ = contactlab.create("normal.hertz")
 SCENE = Scene.nondimensional(psi1=-2.0, chi=1.4411764706)
@@ -101,7 +102,13 @@ def test_a_spoiled_motion_is_sound_up_to_its_phase_and_nan_from_there():
 
 def test_success_is_of_all_impacts():
     success, failure = contactlab.Status.SUCCESS, contactlab.Status.NON_FINITE
-    assert succeeded(success) is True
-    assert succeeded(failure) is False
-    assert succeeded(np.array([success, success], dtype=object)) is True
-    assert succeeded(np.array([success, failure], dtype=object)) is False
+    motion = TangentialMotion.nothing((), success, "")
+    hold_success(motion)
+    hold_success(TangentialMotion.nothing((2,), success, ""))
+    with pytest.raises(CheckFailedError, match=r"^NON_FINITE$"):
+        hold_success(TangentialMotion.nothing((), failure, ""))
+    status = np.array([success, failure], dtype=object)
+    with pytest.raises(CheckFailedError, match=r"^NON_FINITE of one$"):
+        hold_success(attrs.evolve(motion, status=status, detail="of one"))
+    with pytest.raises(CheckFailedError, match=r"^None at all$"):
+        hold_success(attrs.evolve(motion, status=None, detail="at all"))
