@@ -170,9 +170,9 @@ def _rows(text: str) -> tuple[list[str], list[tuple[int, list[str]]], bool]:
     """
     lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
     kept = [place for place, (_, line) in enumerate(lines) if not line.lstrip().startswith("#")]
-    first = lines[kept[0]][1] if kept else ""
-    # Above a line of numbers there are headings, which have no decimal comma.
-    above = lines[kept[0] - 1][1] if kept and _is_number(re.split("[,;\t]", first)[0]) else first
+    above = first = lines[kept[0]][1] if kept else ""
+    if kept and kept[0] and _is_number(re.split("[,;\t]", first)[0]):
+        above = lines[kept[0] - 1][1]  # headings, which have no decimal comma
     # Columns are separated by the mark that is most frequent.
     mark = max(",;\t", key=lambda mark: min(first.count(mark), above.count(mark)))
 

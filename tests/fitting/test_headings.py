@@ -193,6 +193,12 @@ def test_a_bad_table_is_refused_in_full(text, words):
     assert str(caught.value) == words
 
 
+@pytest.mark.parametrize("end", ["", "# end\n"])
+def test_a_last_line_does_not_tell_the_mark_of_a_table_without_headings(end):
+    with pytest.raises(ValueError, match=r"^heading '1': is neither"):
+        read_columns(f"1;2\n3;4\n{end}", {})
+
+
 def test_a_first_column_that_no_fit_needs_may_begin_with_a_mark():
     """Of the quantities of a result, not of a measurement: it would be left out anyway."""
     found = read_columns("# status,psi2\n1,0.5\n", {})

@@ -174,7 +174,9 @@ class Instants:
 FAULTS = [
     ({"settled": False}, Status.UNSETTLED, "no division found"),
     ({"force": np.inf, "at": 3}, Status.NON_FINITE, "force inf"),
+    ({"force": np.float64(np.inf), "at": 3}, Status.NON_FINITE, "force inf"),
     ({"work": np.nan}, Status.NON_FINITE, "friction work nan"),
+    ({"work": np.float64(np.nan)}, Status.NON_FINITE, "friction work nan"),
 ]
 
 

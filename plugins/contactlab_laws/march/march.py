@@ -152,7 +152,7 @@ def _one_by_one(
             if response.settled is not True and not np.all(response.settled):
                 raise faults.LawFaultError(Status.UNSETTLED, "no division found")
             if not (math.isfinite(force) if single else np.isfinite(force).all()):
-                raise faults.LawFaultError(Status.NON_FINITE, f"force {shown(force)}")
+                raise faults.LawFaultError(Status.NON_FINITE, f"force {_number(force)}")
         own = law.normal_motion(state)
     except KeyboardInterrupt:
         raise
@@ -181,7 +181,7 @@ def _ended(
 ) -> TangentialMotion:
     """Return the motion up to ``fault``; friction work that is not finite is a failure too."""
     if fault is None and not _finite(work):
-        detail = faults.sentence(law, f"friction work {shown(work)}", count)
+        detail = faults.sentence(law, f"friction work {_number(work)}", count)
         fault = faults.LawFaultError(Status.NON_FINITE, detail)
     shape = normal.scene.shape
     return TangentialMotion(
