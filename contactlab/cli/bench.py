@@ -4,7 +4,7 @@ Examples
 --------
   contactlab bench --quick
   contactlab bench --figure bench.png --csv bench.csv
-  contactlab bench --law tangential.cundall --law tangential.springs
+  contactlab bench --law tangential.springs --law normal.tsuji
   contactlab bench --markdown --figure bench.png > bench.md
 """
 

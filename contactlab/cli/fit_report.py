@@ -64,7 +64,7 @@ def ranking(ranked: list[Ranked]) -> str:
 
 
 def write_residuals(path: Path, shown: list[Ranked]) -> None:
-    """Write the residuals as CSV, law row for each measured number and law."""
+    """Write the residuals as CSV, a row for each measured number and law."""
     rows: list[list[Any]] = []
     entries: list[str] = []
     for law in shown:

@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Print the list of materials, or single material with its sources."""
+    """Print the list of materials, or one material with its sources."""
     single = arguments.name is not None
     entries = (materials.entry(arguments.name),) if single else materials.entries()
     if arguments.json:

@@ -4,7 +4,7 @@ Examples
 --------
   contactlab stability --quick
   contactlab stability --figure stability.png --csv stability.csv
-  contactlab stability --law tangential.cundall --budget 60
+  contactlab stability --law tangential.springs --budget 60
 """
 
 from __future__ import annotations

@@ -2,12 +2,15 @@
 
 import re
 import shutil
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 from contactlab.cli.guide import text
 from contactlab.cli.main import COMMANDS
+from contactlab.compose.names import KINDS, full_name, kind_of
+from contactlab.compose.registry import REGISTRY
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PAGE = text("command-line")
@@ -22,6 +25,17 @@ def test_every_command_has_a_section_and_a_row_in_the_table():
     assert sorted(SECTIONS) == sorted(COMMANDS)
     rows = re.findall(r"^\| [^|`]+ \| `(\w+)` \|$", PAGE, re.MULTILINE)
     assert sorted(rows) == sorted(COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_laws_in_the_examples_of_a_help_text_are_installed(command):
+    examples = import_module(f"contactlab.cli.{command}").__doc__
+    options = r"--(law|normal|tangential|integrator|ghost) (\S+)|plugins \w+ (\w+\.\w+)"
+    for kind, listed, shown in re.findall(options, examples):
+        kind = "tangential" if kind in ("law", "ghost") else kind
+        for name in (listed or shown).split(","):
+            full = name if kind_of(name) in KINDS else full_name(kind, name)
+            assert REGISTRY.law_class(full)
 
 
 @pytest.mark.slow
