@@ -90,7 +90,8 @@ def create(name: str, **options: Any) -> Any:
     Parameters
     ----------
     name : str
-        Kind and name, such as ``"tangential.annulus"``.
+        Kind and name, such as ``"tangential.annulus"``, or file and class,
+        ``"my_law.py:Stribeck"``.
     **options
         Options of the law; ``contactlab plugins show NAME`` lists them with units.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import math
 import re
 import sys
@@ -61,6 +62,8 @@ def setting(text: str) -> tuple[str, Any]:
     try:
         return path.strip(), tomllib.loads(f"value = {value.strip()}")["value"]
     except tomllib.TOMLDecodeError:
+        with contextlib.suppress(ValueError):
+            return path.strip(), float(value)  # .5 is a number, though not in TOML
         return path.strip(), value.strip()  # words need no quotes
     except (RecursionError, ValueError) as error:  # nested too deep, or too many digits
         raise argparse.ArgumentTypeError(f"{path.strip()}: {error}") from None
@@ -148,7 +151,7 @@ def add_laws(
             f"--{kind}",
             type=names if many else str,
             metavar="A,B,..." if many else "NAME",
-            help=f"name of the {word}" + (", or several" if many else ""),
+            help=f"name of the {word}" + (", or several" if many else "") + "; or file.py:Class",
         )
     parser.add_argument(
         "--set",
@@ -222,8 +225,8 @@ def add_report(parser: argparse.ArgumentParser) -> None:
         "--law",
         action="append",
         metavar="NAME",
-        help="a law, installed or of a plug-in, such as tangential.mine, integrator.mine or "
-        "normal.mine; may be repeated (default: all of a kind, under Hertz's normal law)",
+        help="a law, such as tangential.springs, normal.tsuji or my_law.py:Stribeck; may be "
+        "repeated (default: all of a kind, under Hertz's normal law)",
     )
     parser.add_argument("--quick", action="store_true", help="fewer scenes and resolutions")
     parser.add_argument(

@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     check = actions.add_parser("check", help="check a law against its contract; exit 1 if it fails")
     for action in (show, check):
         action.add_argument(
-            "name", metavar="NAME", help="such as tangential.annulus, or my-laws:tangential.annulus"
+            "name", metavar="NAME", help="such as tangential.annulus, or my_law.py:Stribeck"
         )
     add_progress(check)
     for action in (listing, show, check):
@@ -111,6 +111,7 @@ def _indented(words: str, margin: str) -> str:
 def _check(arguments: argparse.Namespace) -> int:
     """Check a law against its contract; only this action imports the conformance kit."""
     from contactlab.testing import examine
+    from contactlab.testing.outcomes import REMEDY
 
     with progress(arguments.progress, f"checking {arguments.name}") as counted:
         outcomes = examine(arguments.name, progress=counted)
@@ -126,6 +127,8 @@ def _check(arguments: argparse.Namespace) -> int:
         print(table(("check", "outcome", "sentence"), rows))
         counts = Counter(outcome.verdict.value for outcome in outcomes)
         print(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
+        if failures:
+            print(REMEDY)
     return FAILED if failures else OK
 
 

@@ -61,9 +61,12 @@ def law(kind: str, value: object, **options: Any) -> Any:
     """Return the law of ``kind`` that ``value`` names, made with ``options``; or a law as it is."""
     if isinstance(value, str):
         name = full_name(kind, value)
-        if options:
-            return REGISTRY.create(name, **options)
-        return _with_defaults(name, REGISTRY.law_class(name))
+        law_class = REGISTRY.law_class(name)
+        if law_class.kind != kind:
+            raise refuse(
+                kind, value, f"is a law of kind {law_class.kind!r}", f"pass it as {law_class.kind}"
+            )
+        return REGISTRY.create(name, **options) if options else _with_defaults(name, law_class)
     if isinstance(value, Law) and value.kind == kind:
         if (complaint := outdated(type(value))) is not None:
             raise ValueError(f"{kind} = {complaint}")

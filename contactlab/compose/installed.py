@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from importlib import metadata
 
 GROUP, UNKNOWN = "contactlab", "unknown"
+#: Stands in place of the distribution for laws in files; their version is a checksum.
+FILE = "file"
 BLOCK_VARIABLE = "CONTACTLAB_BLOCK_PLUGINS"
 
 
@@ -53,7 +55,9 @@ class PluginInfo:
 
     @property
     def known_as(self) -> str:
-        """The shortest name that means this law."""
+        """The shortest name that means this law; the place of a law in a file."""
+        if self.distribution == FILE:
+            return f"{self.module}:{self.name.rpartition(':')[2]}"
         return self.name if self.meant else self.qualified
 
     @property

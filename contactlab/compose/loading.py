@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 import contextlib
+import copyreg
 import sys
+import traceback
 from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any, TypeGuard
+from zlib import crc32
 
 import numpy as np
 import pluggy
 
 from contactlab.compose import hookspecs
-from contactlab.compose.installed import GROUP, PluginInfo, short
+from contactlab.compose.installed import FILE, GROUP, PluginInfo, short
 from contactlab.compose.older import REMEDY, other_version
 from contactlab.contracts.law import API_VERSION, Law
+from contactlab.numeric.checks import nearest, refuse
+
+#: Laws that were loaded from files.
+IN_FILES: dict[type[Law], PluginInfo] = {}
 
 
 class PluginError(RuntimeError):
@@ -45,7 +56,82 @@ def law_class(info: PluginInfo) -> type[Law]:
         )
     with _guarded(source, "raised when asked for its law"):
         law = manager.hook.contactlab_law(name=info.name)
-    return _checked(law, info, source)
+    return _checked(law, info.kind, source)
+
+
+def law_at(place: str) -> type[Law]:
+    """Return the class of the law at a place: ``my_law.py:Stribeck``, ``package.module:Stribeck``.
+
+    Raises
+    ------
+    ValueError
+        If there is no such file, or no such law in the file; the message names the laws there.
+    PluginError
+        If the file or module raises an exception, or the law breaks the contract.
+    """
+    from importlib import import_module
+
+    where, _, title = place.rpartition(":") if not place.endswith(".py") else (place, "", "")
+    if where.endswith(".py"):
+        path = Path(where).expanduser()
+        try:
+            stat = path.stat()
+        except OSError as error:
+            remedy = f"the path begins in {Path.cwd()}" if not path.is_absolute() else ""
+            raise refuse("name", place, f"{where}: {error.strerror}", remedy) from None
+        with _guarded(repr(place), "could not be loaded"):
+            module = _module(str(path.resolve()), (stat.st_mtime_ns, stat.st_size))
+    else:
+        with _guarded(repr(place), "could not be imported (a file is named by its path, x.py)"):
+            module = import_module(where)
+    law = getattr(module, title, None)
+    if not _is_law(law):
+        laws = [name for name, each in _laws(module).items() if not each.__abstractmethods__]
+        remedy = f"{nearest(title, laws)}{where} has {', '.join(laws) or 'no law'}"
+        rule = f"{title} is no law" if title else "the class is missing"
+        raise refuse("name", place, rule, remedy)
+    return _checked(law, law.kind, repr(place))
+
+
+@lru_cache(maxsize=64)
+def _module(path: str, _: tuple[int, int]) -> ModuleType:
+    """Return a file as a module; a file that has changed is loaded again."""
+    module = ModuleType(path.removesuffix(".py").replace(".", "_"))
+    source = Path(path).read_bytes()
+    module.__file__ = path
+    sys.modules[module.__name__] = module
+    sys.path.append(str(Path(path).parent))  # for other files beside this one
+    try:
+        exec(compile(source, path, "exec", dont_inherit=True), vars(module))
+    finally:
+        sys.path.pop()
+    for title, law in _laws(module).items():
+        name = f"{law.kind}.{Path(path).name}:{title}"
+        IN_FILES[law] = PluginInfo(name, FILE, f"{crc32(source):08x}", path, False)
+        copyreg.pickle(law, _reduced)
+    return module
+
+
+def _laws(module: ModuleType) -> dict[str, type[Law]]:
+    """Return the laws that a module defines, by name."""
+    own = (each for each in vars(module).values() if _is_law(each))
+    return {law.__name__: law for law in own if law.__module__ == module.__name__}
+
+
+def _is_law(value: object) -> TypeGuard[type[Law]]:
+    """Return True for the class of a law of one of the three kinds."""
+    return isinstance(value, type) and issubclass(value, Law) and hasattr(value, "kind")
+
+
+def _reduced(law: Law) -> tuple[Any, ...]:
+    """Return what ``pickle`` writes of a law in a file: path, class and parameters."""
+    return _blank, (IN_FILES[type(law)].known_as,), law.__reduce_ex__(2)[2]
+
+
+def _blank(place: str) -> Law:
+    """Return a law without its parameters, which ``pickle`` adds."""
+    law = law_at(place)
+    return law.__new__(law)
 
 
 @contextlib.contextmanager
@@ -61,14 +147,16 @@ def _guarded(source: str, failed: str) -> Iterator[None]:
     except BaseException as error:
         if (sentence := other_version(error)) is not None:
             raise PluginError(f"{source} {sentence}") from None
-        raise PluginError(f"{source} {failed}: {short(error)}") from error
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        place = f" ({Path(last.filename).name}, line {last.lineno})"
+        raise PluginError(f"{source} {failed}: {short(error)}{place}") from error
 
 
-def _checked(law: object, info: PluginInfo, source: str) -> type[Law]:
+def _checked(law: object, kind: str, source: str) -> type[Law]:
     """Return ``law``, or raise PluginError unless it is a law's class of right kind and version."""
     if not (isinstance(law, type) and issubclass(law, Law)):
         raise PluginError(f"{source} returned {law!r}, which is not the class of a law")
-    if law.kind != info.kind:
+    if law.kind != kind:
         raise PluginError(
             f"{source} returned {law.__name__}, a {law.kind} law; "
             "each entry point needs a module of its own with a function contactlab_law"

@@ -23,8 +23,8 @@ from contactlab.compose.installed import (
     meant,
     stamp,
 )
-from contactlab.compose.loading import PluginError, law_class
-from contactlab.compose.names import KINDS, kind_of, parted, same_distribution
+from contactlab.compose.loading import IN_FILES, PluginError, law_at, law_class
+from contactlab.compose.names import KINDS, is_place, parted, same_distribution
 from contactlab.contracts.law import Law
 from contactlab.numeric.checks import nearest, refuse
 
@@ -127,6 +127,10 @@ class Registry:
         PluginError
             If the name in the entry point is malformed.
         """
+        if is_place(name):
+            found = law_at(name)
+            info = PluginInfo(f"{found.kind}.{name}", "not installed", "", found.__module__, False)
+            return IN_FILES.get(found, info)
         distribution, plain = parted(name)
         installed = self.installed()
         matches = [info for info in installed if info.name == name] or [
@@ -153,6 +157,8 @@ class Registry:
 
     def law_class(self, name: str) -> type[Law]:
         """Import the plug-in that offers ``name`` and return the law's class."""
+        if is_place(name):
+            return law_at(name)
         key = name, os.environ.get(BLOCK_VARIABLE, "")  # blocking changes the meaning of a name
         if self._meant.get(key) not in self._loaded:
             info = self.info(name)
@@ -183,7 +189,7 @@ class Registry:
             if required and option not in options:
                 raise ValueError(
                     f"{name}: {option} must be given; in Python create({name!r}, {option}=...), "
-                    f"on the command line --set {kind_of(name)}.{option}=..."
+                    f"on the command line --set {law.kind}.{option}=..."
                 )
         try:
             return law(**options)
@@ -200,6 +206,8 @@ class Registry:
 
     def _origin(self, law_class: type[Law]) -> PluginInfo | None:
         """Return the plug-in that offers this class, imported by name or not; None if none does."""
+        if law_class in IN_FILES:
+            return IN_FILES[law_class]
         for name, module in self._modules:
             if f"{law_class.__module__}.".startswith(f"{module}."):
                 with contextlib.suppress(ValueError, PluginError):

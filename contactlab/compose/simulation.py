@@ -36,7 +36,8 @@ class Simulation:
     Parameters
     ----------
     normal, tangential, integrator : str or law, optional
-        A name (``"hertz"``), or an object made by ``contactlab.create`` or by your own class.
+        A name (``"hertz"``), a class in a file (``"my_law.py:Soft"``), or an object made by
+        ``contactlab.create`` or by your own class.
         The default is exact: Hertz's closed form and the slip front followed event by event.
         A law that is left out is the first in ``contactlab.compose.composition.PREFERRED`` that
         fits the others.

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import attrs
 
 from contactlab.compose import composition
-from contactlab.compose.names import KINDS, full_name, kind_of, parted, short_name
+from contactlab.compose.names import KINDS, full_name, kind_of, parted, seen_from, short_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.scene_file.table import Table, flattened, nearest_of
@@ -101,13 +102,13 @@ class LawChoice:
         return default if composition.misfit(*laws) else own
 
     def made(self, kind: str) -> Any:
-        """Return a new law of one kind with its options."""
+        """Return the law of one kind with its options."""
         name = full_name(kind, getattr(self, kind))
         options = dict(self.options.get(kind, {}))
         for owner, values in self.options.items():
             if owner not in KINDS and same_law(owner, name):
                 options |= values
-        return REGISTRY.create(name, **options)
+        return composition.law(kind, name, **options)
 
 
 def same_law(one: str, other: str) -> bool:
@@ -117,10 +118,10 @@ def same_law(one: str, other: str) -> bool:
     return REGISTRY.info(one) == REGISTRY.info(other)
 
 
-def read_laws(content: object) -> LawChoice:
-    """Return the laws of a file's ``[simulation]`` table."""
+def read_laws(content: object, folder: Path) -> LawChoice:
+    """Return the laws of the ``[simulation]`` table of a file in ``folder``."""
     table = Table(content, "simulation", known=(*KINDS, "options"))
-    names = {kind: table.text(kind) for kind in KINDS if table.has(kind)}
+    names = {kind: seen_from(folder, table.text(kind)) for kind in KINDS if table.has(kind)}
     choice = LawChoice().choose(**names)
     if not table.has("options"):
         return choice

@@ -120,7 +120,7 @@ def read_scene(
             scene=scene.over(sweep.axes) if sweep.axes else scene,
             encounter=encounter,
             varied=sweep.varied,
-            laws=read_laws(document.get("simulation", {})),
+            laws=read_laws(document.get("simulation", {}), file.parent),
             measured=read_measured(document.get("measured", [])),
             tables=tables,
         )

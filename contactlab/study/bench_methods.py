@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 
 from contactlab.compose.composition import DEFAULT_NORMAL
-from contactlab.compose.names import KINDS, full_name, kind_of, short_name
+from contactlab.compose.names import KINDS, full_name, is_place, kind_of, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import WholeImpactTangentialLaw
@@ -174,7 +174,8 @@ def methods(laws: Iterable[str] | None = None) -> list[Method]:
     """
     named: dict[str, list[str]] = {kind: [] for kind in KINDS}
     for law in laws or ():
-        kind = kind_of(law) if kind_of(law) in KINDS else "tangential"
+        kind = REGISTRY.law_class(law).kind if is_place(law) else kind_of(law)
+        kind = kind if kind in KINDS else "tangential"
         named[kind].append(short_name(full_name(kind, law)))
         _law(kind, named[kind][-1])  # raises if the law is not installed
     fitting: list[Method] = []

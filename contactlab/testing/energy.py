@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab.testing.check import check, hold
+from contactlab.testing.check import CHANGES, GROWS, check, hold
 from contactlab.testing.load_paths import (
     Bench,
     Path,
@@ -33,7 +33,7 @@ def given_work(path: Path, force: Any) -> Any:
     return np.cumsum(0.5 * mean * np.diff(path.slip, prepend=0.0))
 
 
-@check(SteppedTangentialLaw)
+@check(SteppedTangentialLaw, nature=GROWS)
 def closed_cycles(law: Any) -> None:
     """A closed cycle of slip and normal load gives no energy."""
     bench = Bench.of()
@@ -51,7 +51,7 @@ def closed_cycles(law: Any) -> None:
             )
 
 
-@check(SteppedTangentialLaw)
+@check(SteppedTangentialLaw, nature=GROWS)
 def random_paths(law: Any) -> None:
     """No path from rest returns more energy than was put in (passivity, theory §7)."""
     bench = Bench.of()
@@ -66,7 +66,7 @@ def random_paths(law: Any) -> None:
             )
 
 
-@check(SteppedTangentialLaw)
+@check(SteppedTangentialLaw, nature=GROWS)
 def partial_unloading(law: Any) -> None:
     """A contact sheared, loaded or unloaded, and released returns no more energy than put in."""
     bench = Bench.of()
@@ -90,7 +90,7 @@ def friction_work(law: Any) -> None:
         hold(least >= -allowed, f"Friction work of {least:.2g} in one step (seed {seed}).")
 
 
-@check(SteppedTangentialLaw)
+@check(SteppedTangentialLaw, nature=CHANGES)
 def books(law: Any) -> None:
     """All the work put in is friction work by the time that the bodies part."""
     bench = Bench.of()

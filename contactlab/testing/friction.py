@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.contracts import NormalContact, SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
-from contactlab.testing.check import check, hold
+from contactlab.testing.check import GROWS, check, hold
 from contactlab.testing.load_paths import (
     STEPS_TO_KNOT,
     Bench,
@@ -108,7 +108,7 @@ def separation(law: Any) -> None:
     hold(np.all(gone == 0.0), f"F = {np.max(np.abs(gone)):.2g} mu P_max out of contact.")
 
 
-@check(SteppedTangentialLaw)
+@check(SteppedTangentialLaw, nature=GROWS)
 def normal_load_alone(law: Any) -> None:
     """A change of normal load alone makes no tangential force (stepped contract, 4)."""
     bench = Bench.of()

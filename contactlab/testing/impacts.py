@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlab.contracts import AllStepsTangentialLaw, TangentialLaw
 from contactlab.outcome.history import Recorder
-from contactlab.testing.check import apply_if, check, hold
+from contactlab.testing.check import CHANGES, GROWS, WHOLE, apply_if, check, hold
 from contactlab.testing.compare import same
 from contactlab.testing.load_paths import FRICTION, bodies, scene
 from contactlab.testing.units import ODD_UNITS, in_units
@@ -65,7 +65,7 @@ def impact_units(law: Any) -> None:
             )
 
 
-@check(TangentialLaw)
+@check(TangentialLaw, nature=GROWS)
 def impact_bounds(law: Any) -> None:
     """|psi2| is at most |psi1|, and psi changes by at most 4 chi (theory §7)."""
     for way in ways(law):
@@ -85,7 +85,7 @@ def impact_bounds(law: Any) -> None:
             )
 
 
-@check(TangentialLaw)
+@check(TangentialLaw, nature=CHANGES)
 def impact_books(law: Any) -> None:
     """The energy lost in an impact is the friction work, at any angle (theory §7)."""
     for way in ways(law):
@@ -191,7 +191,7 @@ def impact_after_another(law: Any) -> None:
         )
 
 
-@check(TangentialLaw, claim="partial_slip")
+@check(TangentialLaw, claim="partial_slip", nature=WHOLE)
 def impact_reference(law: Any) -> None:
     """Impacts with partial slip end as the exact solution does (theory §5)."""
     for way in ways(law):

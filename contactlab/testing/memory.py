@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab.testing.check import check, hold
+from contactlab.testing.check import WHOLE, check, hold
 from contactlab.testing.load_paths import Bench, Path, continue_from, drive, slack, straight
 
 LEVEL = 0.8
@@ -18,7 +18,7 @@ APART = (1, 2, 5)
 STILL = 400
 
 
-@check(SteppedTangentialLaw)
+@check(SteppedTangentialLaw, nature="it has no memory")
 def turning_points(law: Any) -> None:
     """Masing: unloading is loading doubled, and a closed loop leaves no memory (theory §7)."""
     bench, press = Bench.of(), (0.0, LEVEL)
@@ -44,7 +44,7 @@ def turning_points(law: Any) -> None:
         )
 
 
-@check(SteppedTangentialLaw, claim="partial_slip")
+@check(SteppedTangentialLaw, claim="partial_slip", nature=WHOLE)
 def cattaneo_mindlin(law: Any) -> None:
     """At fixed P, F/(mu P) = 1 - (1 - xi)^1.5: slip from the edge inwards (theory §7)."""
     path = straight((0.0, LEVEL), (1.3 * LEVEL, LEVEL), steps=65)

@@ -19,6 +19,12 @@ from contactlab.testing.check import (
 )
 from contactlab.testing.limits import MOST_TIMEOUTS, SECONDS
 
+#: Last line of a report with failures.
+REMEDY = (
+    "A failure by the law's nature is named in its class with the reason: "
+    'expected_failures: ClassVar = {"check": "reason"}'
+)
+
 
 class Verdict(Enum):
     """How a check ended; ``FAILED`` and ``UNEXPECTED_PASS`` are faults of the law."""
@@ -151,7 +157,7 @@ def check_law(law: Law | str, *, seconds: float = SECONDS) -> list[Outcome]:
         lines = [f"{entry.check}: {entry.verdict.value}: {entry.sentence}" for entry in bad]
         raise ConformanceError(
             f"{REGISTRY.describe(made_law(law))}: {len(bad)} of {len(outcomes)} checks\n"
-            + "\n".join(lines)
+            + "\n".join([*lines, REMEDY])
         )
     return outcomes
 

@@ -35,7 +35,7 @@ def coulomb_at_a_point(law: Any) -> None:
     _hold(law, REGISTRY.create("normal.hertz"))
 
 
-@check(SteppedTangentialLaw)
+@check(SteppedTangentialLaw, nature="each spring is limited separately")
 def coulomb_at_a_point_damped(law: Any) -> None:
     """Under a damped normal law the traction nowhere exceeds mu p.
 

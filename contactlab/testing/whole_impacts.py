@@ -168,7 +168,7 @@ def whole_impact_form(law: Any) -> None:
         )
 
 
-@check(TangentialLaw)
+@check(TangentialLaw, nature="it makes no friction, or another than Coulomb's")
 def sliding_impulse(law: Any) -> None:
     """A grazing impact slips throughout: friction takes mu (1 + e) v1 M_n/M_t from v_x.
 

@@ -1,12 +1,15 @@
-"""A stranger's law beside ours of one name: everywhere that names are taken."""
+"""A stranger's law beside ours of one name, and laws in files: wherever names are taken."""
 
 import json
+import pickle
+import re
 
 import pytest
 
 import contactlab
 from contactlab.cli.main import main
 from contactlab.compose.registry import REGISTRY
+from contactlab.compose.workers import processes
 from contactlab.scene_file import LawChoice
 from contactlab.study.bench_methods import methods
 from contactlab.study.scores import candidates
@@ -45,6 +48,18 @@ class Half(WholeImpactTangentialLaw):
 @contactlab.hookimpl
 def contactlab_law(name):
     return Half
+"""
+SOFT = """
+from typing import ClassVar
+from contactlab.contracts import NormalContact, NormalLaw
+
+class Soft(NormalLaw):
+    api_version: ClassVar[int] = 2
+    def start(self, scene):
+        return scene.pair.effective_modulus * scene.pair.radius
+    def respond(self, state, approach, rate):
+        inside = approach * (approach > 0.0)
+        return NormalContact(force=state * inside, radius=0.0 * inside, overlap=approach), state
 """
 FILE = """
 [nondimensional]
@@ -168,3 +183,126 @@ def test_a_misfit_advises_a_law_by_the_name_that_means_it():
     contactlab.create(THEIRS)  # at hand only once it was loaded
     with pytest.raises(ValueError, match=r"these would fit: .*usurper:tangential\.coulomb"):
         contactlab.Simulation(normal="linear", tangential="fronts")
+
+
+#: What is written of a law in the file ``half.py``, and a key word of the refusal.
+REFUSED = {
+    "half.py:Hlaf": "did you mean 'Half'",
+    "half.py": "half.py has Half",
+    "none.py:Half": "No such file",
+    "half.py:np": "np is no law",
+    "raises.py:Half": r"ZeroDivisionError: division by zero \(raises.py, line 1\)",
+    "abstract.py:Half": "does not define whole_impacts",
+    "old.py:Half": "api_version",
+    "contactlab_laws:Half": "has no law",
+    "no_package.at_all:Half": "a file is named by its path",
+    "soft.py:Soft": "is a law of kind 'normal'; pass it as normal",
+}
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    beside = LAW.replace("share * np", "share * one.ONE * np").replace("import attrs", "import one")
+    for name, text in {
+        "half": LAW,
+        "raises": "1/0",
+        "abstract": LAW.replace("def whole_impacts", "def other"),
+        "old": LAW.replace("int] = 2", "int] = 1"),
+        "soft": SOFT,
+        "normal": LAW,
+        "my half.laws": LAW,
+        "one": "ONE = 1.0",
+        "beside": f"import attrs\n{beside}",
+    }.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    return tmp_path
+
+
+@pytest.mark.parametrize(("name", "word"), REFUSED.items())
+@pytest.mark.usefixtures("files")
+def test_a_law_in_a_file_is_refused_in_one_sentence(capsys, name, word):
+    status, out, err = run(capsys, "run", "--psi1", "9", "--chi", "1", "--tangential", name)
+    assert status in (1, 2)
+    assert out == ""
+    assert len(err.splitlines()) == 1
+    assert re.search(word, err)
+    with pytest.raises((ValueError, contactlab.PluginError), match=word):
+        contactlab.Simulation(tangential=name)
+
+
+@pytest.mark.parametrize("file", ["half", "./half", "normal", "my half.laws", "beside"])
+def test_a_law_in_a_file_is_named_by_path_and_class(files, capsys, file):
+    scene = ("--psi1", "9", "--chi", "1")
+    for name in (f"{file}.py:Half", f"{files}/{file}.py:Half"):
+        assert psi2(capsys, *scene, "--tangential", name) == pytest.approx(7.0)
+        options = ("--set", "tangential.share=.25")
+        assert psi2(capsys, *scene, "--tangential", name, *options) == pytest.approx(8.0)
+        assert contactlab.create(name, share=0.25).share == 0.25
+    (named,) = methods([f"{file}.py:Half"])
+    assert named.tangential == f"{file}.py:Half"
+    normal = contactlab.Simulation(normal="soft.py:Soft", tangential="coulomb")
+    assert type(normal.normal).__name__ == "Soft"
+
+
+def test_every_command_takes_a_law_in_a_file(files, capsys):
+    name = "half.py:Half"
+    words = ("--psi1", "8:9:2", "--chi", "1", "--tangential", f"coulomb,{name}", "--json")
+    compared = json.loads(run(capsys, "compare", *words)[1])["laws"]
+    assert compared[name]["values"]["psi2"][1] == pytest.approx(7.0)
+    listed = json.loads(run(capsys, "bench", "--quick", "--json", "--law", name)[1])
+    assert {row["method"] for row in listed["rows"]} == {name}
+    listed = json.loads(run(capsys, "stability", "--quick", "--json", "--law", name)[1])
+    assert {each["method"] for each in listed["outcomes"]} == {name}
+    shown = json.loads(run(capsys, "plugins", "show", name, "--json")[1])
+    assert shown["known_as"] == f"{files / 'half.py'}:Half"
+    checked = json.loads(run(capsys, "plugins", "check", name, "--json")[1])
+    assert {"sliding_impulse": "expected failure"}.items() <= {
+        each["check"]: each["outcome"] for each in checked["checks"]
+    }.items()
+    table = "psi1,chi,psi2\n9,1,8\n8,1,7\n8.5,1,7.5\n"
+    (files / "data.csv").write_text(table)
+    (files / "scene.toml").write_text("[nondimensional]\npsi1 = 9\nchi = 1\n")
+    fitted = run(
+        capsys, "fit", "data.csv", "scene.toml", "--laws", name, "--fit", "tangential.share",
+        "--bootstrap", "0", "--json",
+    )  # fmt: skip
+    assert json.loads(fitted[1])["parameters"]["tangential.share"]["value"] == pytest.approx(0.25)
+
+
+def test_a_scene_file_names_a_law_relative_to_itself(files, capsys, monkeypatch):
+    (files / "elsewhere").mkdir()
+    content = FILE.replace("NAME", "half.py:Half").replace("OPTIONS", "options.tangential.share=1")
+    (files / "scene.toml").write_text(content)
+    monkeypatch.chdir(files / "elsewhere")
+    assert psi2(capsys, "../scene.toml") == pytest.approx(5.0)
+
+
+@pytest.mark.usefixtures("files")
+def test_the_processes_of_a_sweep_load_a_law_in_a_file():
+    scene = contactlab.Scene.nondimensional(psi1=[8.0, 9.0], chi=1.0)
+    law = contactlab.create("beside.py:Half", share=0.25)
+    assert pickle.loads(pickle.dumps(law)) == law
+    with processes(1) as executor:
+        swept = contactlab.Simulation(tangential=law).sweep(scene, executor=executor)
+    assert swept.psi2 == pytest.approx([7.0, 8.0])
+
+
+def test_a_file_that_has_changed_is_loaded_again_and_told_apart(files):
+    def law():
+        return contactlab.Simulation(tangential="half.py:Half").tangential
+
+    first, again = law(), law()
+    assert first is again
+    told = REGISTRY.describe(first)
+    assert told.startswith("half.py:Half (file ")
+    (files / "half.py").write_text(LAW.replace("default=0.5", "default=0.25"))
+    assert law().share == 0.25
+    assert REGISTRY.describe(law()) != told
+
+
+@pytest.mark.usefixtures("files")
+def test_a_law_is_named_by_module_and_class(capsys):
+    name = "contactlab_laws.coulomb.law:Coulomb"
+    assert psi2(capsys, "--psi1", "9", "--chi", "1", "--tangential", name) == pytest.approx(5.0)
+    assert REGISTRY.describe(REGISTRY.law_class(name)).startswith("coulomb (contactlab")

@@ -21,7 +21,8 @@ def written() -> dict[tuple[str, str], str]:
 
 
 def plain(sentence: str) -> str:
-    """Return a sentence without what Python, NumPy and the file's lines make of it."""
+    """Return a sentence without a law's nature, and what Python, NumPy and lines make of it."""
+    sentence = sentence.partition(" If that is the law's nature")[0]
     return re.sub(r"np\.\w+\((\S+?)\)", r"\1", re.sub(r", line \d+\)", ")", sentence))
 
 

@@ -147,7 +147,9 @@ def test_the_faults_of_a_law_are_listed(few):
     assert str(error.value) == (
         f"{__name__}.Expecting (not registered): 2 of 3 checks\n"
         "first: failed: The law failed.\n"
-        "second: unexpected pass: The law says it fails: it is its nature"
+        "second: unexpected pass: The law says it fails: it is its nature\n"
+        "A failure by the law's nature is named in its class with the reason: "
+        'expected_failures: ClassVar = {"check": "reason"}'
     )
     few[0] = made("first", passes)
     assert [entry.verdict for entry in check_law(Sound())] == [
