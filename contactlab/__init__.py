@@ -38,7 +38,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from contactlab.numeric.lazy import imported_on_use
+from contactlab.numeric.names import imported_on_use
 
 if TYPE_CHECKING:
     from contactlab.compose.collision import Collision, collide
@@ -136,9 +136,4 @@ MODULES = {
     "testing": "testing",
 }
 
-__getattr__ = imported_on_use(__name__, MODULES)
-
-
-def __dir__() -> list[str]:
-    """Return the public names, those that are not imported yet among them."""
-    return sorted({*globals(), *MODULES})
+__getattr__, __dir__ = imported_on_use(__name__, MODULES)

@@ -19,10 +19,10 @@ from typing import Any
 import attrs
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.table import table
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.files import write_table
 from contactlab.outcome.tables import time
+from contactlab.outcome.text_table import table
 from contactlab.study.bench_methods import methods
 from contactlab.study.benchmark import Benchmark, Row
 from contactlab.study.work_precision import bench

@@ -27,16 +27,16 @@ from pathlib import Path
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.cli import side_by_side
 from contactlab.cli.scene import add_ranges, check_alone
 from contactlab.compose.names import KINDS, full_name, kind_of, short_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import nearest
+from contactlab.numeric.names import nearest
 from contactlab.outcome.columns import quantity_named
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.scene_file.laws import same_law
+from contactlab.study import side_by_side
 from contactlab.study.comparison import Comparison, compare
 from contactlab.study.loops import loops
 from contactlab.study.scores import (

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from contactlab.cli.table import table
 from contactlab.compose.collision import VECTORS, Collision
 from contactlab.compose.planning import ADVICE
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import answer, closing, largest_imbalance, sections, sweep_section
+from contactlab.outcome.text_table import table
 
 
 def describe(

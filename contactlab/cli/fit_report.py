@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.cli.table import table
 from contactlab.fitting import Fit, Ranked
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.files import write_table
 from contactlab.outcome.tables import heading
+from contactlab.outcome.text_table import table
 
 
 def describe(fit: Fit) -> str:

@@ -11,10 +11,10 @@ Examples
 from __future__ import annotations
 
 import argparse
-import difflib
 import re
 
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.names import nearest
 
 #: Topics in reading order; each is a file of ``contactlab/guide``.
 TOPICS = (
@@ -63,10 +63,20 @@ def text(topic: str) -> str:
 
     name = topic.removesuffix(".md")
     if name not in TOPICS:
-        nearest = difflib.get_close_matches(name, TOPICS, n=1, cutoff=0.4)
-        hint = f"did you mean {nearest[0]!r}? " if nearest else ""
+        pages = ", ".join(map(repr, about(name)))
+        hint = nearest(name, TOPICS, alike=0.75) or f"read of {name} in {pages}; " * bool(pages)
         raise refuse("topic", topic, "is not in the guide", f"{hint}known: {', '.join(TOPICS)}")
     return resources.files("contactlab").joinpath("guide", f"{name}.md").read_text("utf-8")
+
+
+def about(word: str) -> list[str]:
+    """Return at most three topics that have a word, those with most headings and lines first."""
+    found = {}
+    for topic in TOPICS:
+        lines = [line for line in text(topic).splitlines() if word.lower() in line.lower()]
+        if lines:
+            found[topic] = (sum(line.startswith("#") for line in lines), len(lines))
+    return sorted(found, key=lambda topic: found[topic], reverse=True)[:3]
 
 
 def summary(topic: str) -> str:

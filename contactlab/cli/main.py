@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import difflib
 import importlib
 import os
 import re
@@ -25,6 +24,7 @@ from contactlab.cli.arguments import (
 from contactlab.cli.terminal import fitted
 from contactlab.compose.installed import PluginWarning
 from contactlab.contracts.status import Status
+from contactlab.numeric.names import nearest
 
 if TYPE_CHECKING:
     from _typeshed import SupportsWrite
@@ -54,8 +54,12 @@ class Parser(argparse.ArgumentParser):
         """Print the message with the nearest match to a wrong choice, and exit."""
         wrong = re.search(r"invalid choice: '(.*?)' \(choose from (.*)\)", message)
         if wrong:
-            near = difflib.get_close_matches(wrong[1], re.findall(r"[\w-]+", wrong[2]), n=1)
-            message += f"; did you mean {near[0]!r}?" if near else ""
+            words = re.findall(r"[\w-]+", wrong[2])
+            message += f"; {nearest(wrong[1], words)}"
+        unknown = re.match(r"unrecognized arguments: (--[\w-]+)", message)
+        if unknown:
+            message += f"; {nearest(unknown[1], self._option_string_actions)}"
+        message = message.rstrip("; ")
         self.exit(BAD_INPUT, f"{self.prog}: error: {message} (see {self.prog} --help)\n")
 
     def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:

@@ -16,8 +16,8 @@ import re
 import attrs
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.table import table
 from contactlab.impact import material as materials
+from contactlab.outcome.text_table import table
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -18,12 +18,12 @@ from collections import Counter
 from typing import Any
 
 from contactlab.cli.arguments import FAILED, OK, add_progress, progress
-from contactlab.cli.table import WIDTH, table
 from contactlab.compose.citations import references
 from contactlab.compose.composition import WAYS
 from contactlab.compose.options import Option, options
 from contactlab.compose.registry import REGISTRY, PluginInfo
 from contactlab.contracts import Integrator, TangentialLaw
+from contactlab.outcome.text_table import WIDTH, table
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

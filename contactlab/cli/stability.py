@@ -19,9 +19,9 @@ import attrs
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.table import table
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.files import write_table
+from contactlab.outcome.text_table import table
 from contactlab.study.bench_methods import Method, methods
 from contactlab.study.error_map import error_maps
 from contactlab.study.model_error import ModelError

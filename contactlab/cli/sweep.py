@@ -23,13 +23,13 @@ import numpy as np
 from contactlab.cli import arguments as shared
 from contactlab.cli.run import draw, report
 from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
-from contactlab.cli.table import table
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import COLUMNS, csv_heading
 from contactlab.outcome.export import WRITERS
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import evenly, sweep_section
+from contactlab.outcome.text_table import table
 from contactlab.scene_file import LawChoice, read_scene
 
 if TYPE_CHECKING:

@@ -18,9 +18,9 @@ from typing import Any
 import attrs
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.table import WIDTH, table
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.tables import heading
+from contactlab.outcome.text_table import WIDTH, table
 from contactlab.study.validation import Evidence, Finding, gather, judged, validate
 
 #: Laws in a picture, if installed; more curves could not be distinguished.

@@ -20,6 +20,7 @@ from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import Real, real, refuse
+from contactlab.numeric.names import attributes_told
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
 from contactlab.outcome.motion import Motion
@@ -36,6 +37,7 @@ VECTORS = (
 )  # fmt: skip
 
 
+@attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
 class Collision:
     """Both bodies after an encounter; vectors have the shape ``(..., 3)``, numbers the batch's.

@@ -20,7 +20,8 @@ from contactlab.compose import hookspecs
 from contactlab.compose.installed import FILE, GROUP, PluginInfo, short
 from contactlab.compose.older import REMEDY, other_version
 from contactlab.contracts.law import API_VERSION, Law
-from contactlab.numeric.checks import nearest, refuse
+from contactlab.numeric.checks import refuse
+from contactlab.numeric.names import nearest
 
 #: Laws that were loaded from files.
 IN_FILES: dict[type[Law], PluginInfo] = {}

@@ -26,7 +26,8 @@ from contactlab.compose.installed import (
 from contactlab.compose.loading import IN_FILES, PluginError, law_at, law_class
 from contactlab.compose.names import KINDS, is_place, parted, same_distribution
 from contactlab.contracts.law import Law
-from contactlab.numeric.checks import nearest, refuse
+from contactlab.numeric.checks import refuse
+from contactlab.numeric.names import nearest
 
 __all__ = [
     "BLOCK_VARIABLE",

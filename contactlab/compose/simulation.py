@@ -21,6 +21,7 @@ from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.coupling import three_numbers
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.names import arguments_told
 from contactlab.outcome.history import NO_HISTORY, Recorder
 from contactlab.outcome.plan import Clause, Plan
 from contactlab.outcome.result import ImpactResult
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
 
+@arguments_told
 @attrs.frozen(kw_only=True, init=False)
 class Simulation:
     """A normal law, a tangential law and an integrator that fit together.
@@ -48,6 +50,7 @@ class Simulation:
         If a name is not installed, or the laws do not fit together (naming what would).
     """
 
+    _remedy = "an option goes to its law: normal=create('normal.tsuji', restitution=0.9); "
     normal: NormalLaw
     tangential: TangentialLaw
     integrator: Integrator

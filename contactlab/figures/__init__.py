@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from contactlab.numeric.lazy import imported_on_use
+from contactlab.numeric.names import imported_on_use
 
 if TYPE_CHECKING:
     from contactlab.figures.comparison import laws_over_sweep
@@ -31,7 +31,7 @@ __all__ = [
     "styled",
 ]
 
-__getattr__ = imported_on_use(
+__getattr__, __dir__ = imported_on_use(
     __name__,
     {
         "draw_fits": "figures.fitting",

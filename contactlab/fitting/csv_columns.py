@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from contactlab.impact.scene import entry_unit
-from contactlab.numeric.checks import nearest
+from contactlab.numeric.names import nearest
 from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.files import content
 from contactlab.scene_file.entries import ENTRIES

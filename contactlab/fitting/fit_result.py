@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from contactlab.fitting.measurements import Measurements
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.names import attributes_told
 from contactlab.outcome.columns import json_value
 
 Array = NDArray[np.float64]
@@ -45,6 +46,7 @@ class Estimate:
     robust: float | None = None
 
 
+@attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class Fit:
     """Best parameters, their errors, and the residuals.

@@ -18,7 +18,8 @@ from contactlab.compose.simulation import Simulation
 from contactlab.fitting import tabulated
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, Rule, nearest
+from contactlab.numeric.checks import Real, Rule
+from contactlab.numeric.names import nearest
 
 #: Range of the friction coefficient, and starts of the searches.
 FRICTION, FRICTION_STARTS = (1e-6, 10.0), tuple(np.geomspace(0.004, 4.0, 25).tolist())

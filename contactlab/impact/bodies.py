@@ -17,6 +17,7 @@ from contactlab.numeric.checks import (
     real,
     refuse,
 )
+from contactlab.numeric.names import arguments_told
 
 #: K of a solid homogeneous sphere: K² = 2/5.
 SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)
@@ -29,6 +30,7 @@ def _material() -> Any:
     )
 
 
+@arguments_told
 @attrs.frozen
 class Sphere:
     """An elastic sphere.
@@ -72,6 +74,7 @@ class Sphere:
         object.__setattr__(self, "mass", real("mass", solid, rule=POSITIVE, empty=True))
 
 
+@arguments_told
 @attrs.frozen
 class HalfSpace:
     """An elastic body with a plane surface, so large that no impact changes its motion.

@@ -17,6 +17,7 @@ from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import NON_NEGATIVE, Real, first_of, instance, quantity, refuse
+from contactlab.numeric.names import arguments_told
 from contactlab.numeric.vectors import (
     LEAST,
     NOTHING,
@@ -58,6 +59,7 @@ _DIMENSIONS = attrgetter(*(f"{name}.ndim" for name in VECTORS))
 _last: Any = (None, None, None)
 
 
+@arguments_told
 @attrs.frozen
 class Encounter:
     """A sphere and a target at first touch, or a batch of such pairs, by vectors in SI units.

@@ -11,7 +11,8 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.numeric.checks import POISSON, POSITIVE, Real, nearest, quantity, real, refuse
+from contactlab.numeric.checks import POISSON, POSITIVE, Real, quantity, real, refuse
+from contactlab.numeric.names import arguments_told, nearest
 
 OWN = "or give your own: Material(young_modulus=..., poisson_ratio=..., density=...)"
 #: Names in common use, with the name in the collection.
@@ -23,6 +24,7 @@ OTHER_NAMES = {
 }  # fmt: skip
 
 
+@arguments_told
 @attrs.frozen(init=False, kw_only=True)
 class Material:
     """A linear elastic, isotropic material.
@@ -179,7 +181,7 @@ def entry(name: str) -> Entry:
         listed for each, listed in names_by_key.items() if words & {*each.split()}
     ]
     hint = f"did you mean {' or '.join(map(repr, similar))}? " if similar else ""
-    hint = hint or nearest(name, collection)
+    hint = hint or nearest(name, collection, alike=0.75)
     raise refuse("name", name, "no such material", f"{hint}known: {', '.join(collection)}; {OWN}")
 
 

@@ -26,6 +26,7 @@ from contactlab.numeric.checks import (
     real,
     refuse,
 )
+from contactlab.numeric.names import arguments_told
 
 #: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s. Numbers
 #: computed from smaller values would have fewer than sixteen digits.
@@ -37,6 +38,7 @@ OBLIQUE = Rule(
 )
 
 
+@arguments_told
 @attrs.frozen
 class Scene:
     """One oblique impact, or a batch of them, in SI units.

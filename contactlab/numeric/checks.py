@@ -6,7 +6,7 @@ A refusal is a ValueError that names the argument, the value, the rule and the r
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias
 
 import attrs
@@ -17,30 +17,6 @@ from numpy.typing import NDArray
 Real: TypeAlias = float | NDArray[np.float64]
 #: A bool or an array of bool.
 Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
-
-#: Names in this package for symbols and names that users try. The first name that is accepted
-#: where the symbol was used is suggested.
-SYMBOLS: dict[str, tuple[str, ...]] = {
-    "mu": ("friction_coefficient",), "friction": ("friction_coefficient", "tangential"),
-    "nu": ("poisson_ratio",), "E": ("young_modulus",), "G": ("shear_modulus",),
-    "rho": ("density",), "R": ("radius",), "r": ("radius",), "diameter": ("radius",),
-    "d": ("radius",), "Y": ("yield_stress",),
-    "law": ("tangential",), "theta": ("angle_deg",), "alpha": ("angle_deg",),
-    "m": ("mass",), "M": ("mass",), "K": ("gyration_ratio",),
-    "v": ("tangential_velocity", "speed", "velocity"), "vx": ("tangential_velocity",),
-    "velocity": ("rebound_tangential_velocity", "rebound_normal_velocity"),
-    "speed": ("normal_speed",), "v1": ("normal_speed",), "vn": ("normal_speed",),
-    "vz": ("normal_speed",), "v2": ("rebound_normal_velocity",),
-    "omega": ("spin", "rebound_spin"), "w": ("spin", "rebound_spin"), "spin": ("rebound_spin",),
-    "e": ("restitution", "normal_restitution"), "restitution": ("normal_restitution",),
-    "e_n": ("normal_restitution",), "e_t": ("tangential_restitution",),
-    "et": ("tangential_restitution",), "t": ("time",), "T": ("duration",),
-    "force": ("normal_force", "tangential_force"),
-    "F": ("tangential_force",), "P": ("normal_force",), "work": ("friction_work",),
-    "beta0": ("slip_restitution", "beta"), "kappa": ("stiffness_ratio",),
-    "shear_modulus_ratio": ("stiffness_ratio",),
-    "angle": ("angle_deg", "rebound_angle"), "psi": ("psi1",), "dt": ("steps",), "n": ("steps",),
-}  # fmt: skip
 
 
 class Rule(NamedTuple):
@@ -83,19 +59,6 @@ def shown(value: object, *, most: int = 80) -> str:
 def refuse(argument: str, value: object, rule: str, remedy: str = "") -> ValueError:
     """Return the ValueError for a bad argument: name, value, rule and remedy in one sentence."""
     return ValueError(f"{argument} = {shown(value)}: {rule}" + (f"; {remedy}" if remedy else ""))
-
-
-def nearest(name: str, known: Iterable[str]) -> str:
-    """Return "did you mean ...? " with the most similar of ``known``; empty if none is similar.
-
-    A symbol counts as similar to its name in this package: mu to friction_coefficient.
-    """
-    import difflib  # slow to import, needed for misspelt names only
-
-    names = list(known)
-    similar = [word for word in SYMBOLS.get(name, ()) if word in names]
-    similar += difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-    return f"did you mean {similar[0]!r}? " if similar else ""
 
 
 def real(

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from contactlab.contracts.status import Status
 from contactlab.impact.grid import product
 from contactlab.impact.scene import Scene, entry_unit
-from contactlab.numeric.checks import nearest, refuse
+from contactlab.numeric.checks import refuse
+from contactlab.numeric.names import nearest
 
 
 class Column(NamedTuple):

@@ -12,6 +12,7 @@ from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import some
 from contactlab.numeric.checks import Mask, Real
+from contactlab.numeric.names import attributes_told
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.motion import Motion
 
@@ -29,6 +30,7 @@ def _energy() -> Any:
     return attrs.field(metadata={"unit": "J"})
 
 
+@attributes_told
 @attrs.frozen(kw_only=True, eq=False)
 class EnergyLedger:
     """Kinetic energy of the relative motion at the contact, in J.

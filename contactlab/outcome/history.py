@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.integrator import Sample
+from contactlab.numeric.names import attributes_told
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,6 +24,7 @@ def _column(unit: str) -> Any:
     return attrs.field(metadata={"unit": unit})
 
 
+@attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class History:
     """Arrays over the instants of an impact, shape (K, ...): instants first, then the batch.

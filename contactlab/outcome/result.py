@@ -15,6 +15,7 @@ from contactlab.impact.bodies import Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Real
+from contactlab.numeric.names import attributes_told
 from contactlab.outcome.energy import EnergyLedger, ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory
 from contactlab.outcome.motion import Motion
@@ -42,6 +43,7 @@ class ImpactError(RuntimeError):
         return str(self.args[0])
 
 
+@attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class ImpactResult:
     """Result of one impact, or of a batch: every quantity has the scene's shape.

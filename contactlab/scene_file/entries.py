@@ -7,7 +7,7 @@ from typing import Any
 
 from contactlab.impact import material as materials
 from contactlab.impact.scene import UNITS as SCENE_UNITS
-from contactlab.numeric.checks import nearest
+from contactlab.numeric.names import nearest
 from contactlab.scene_file.table import MATERIAL_KEYS
 
 SPHERE_KEYS = ("radius", "mass", "gyration_ratio", "material")

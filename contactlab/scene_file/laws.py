@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from contactlab.compose import composition
 from contactlab.compose.names import KINDS, full_name, kind_of, parted, seen_from, short_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
+from contactlab.numeric.names import nearest
 from contactlab.scene_file.table import Table, flattened, nearest_of
 
 OPTION_REMEDY = "write tangential.annuli = 50, or tangential.annulus.annuli = 50 for one law only"
@@ -56,8 +58,10 @@ class LawChoice:
         for path, value in settings.items():
             owner, _, option = path.rpartition(".")
             if kind_of(owner) not in KINDS or not option:
-                hint = nearest_of(kind_of(owner), KINDS)
-                raise ValueError(f"{path}: is not an option of a law; {OPTION_REMEDY}; {hint}")
+                kind = kind_of(owner)
+                hint = nearest_of(kind, KINDS) if owner else nearest(path, self._offered())
+                told = f"{path}: is not an option of a law; {OPTION_REMEDY}; {hint}"
+                raise ValueError(told.rstrip("; "))
             options.setdefault(owner, {})[option] = value
         return attrs.evolve(self, options=options)
 
@@ -100,6 +104,12 @@ class LawChoice:
         own = attrs.evolve(default, integrator=self.integrator, options=self.options)
         laws = (own.made("normal"), own.made("tangential"), own.made("integrator"))
         return default if composition.misfit(*laws) else own
+
+    def _offered(self) -> list[str]:
+        """Return the options of the three laws: ``"tangential.annuli"``."""
+        choice = self.resolved()
+        laws = {kind: type(choice.made(kind)) for kind in KINDS}
+        return [f"{kind}.{name}" for kind in KINDS for name in signature(laws[kind]).parameters]
 
     def made(self, kind: str) -> Any:
         """Return the law of one kind with its options."""

@@ -7,7 +7,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from contactlab.numeric.checks import Real, nearest, real, refuse
+from contactlab.numeric.checks import Real, real, refuse
+from contactlab.numeric.names import nearest
 
 Made = TypeVar("Made")
 

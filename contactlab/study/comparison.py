@@ -15,10 +15,12 @@ from contactlab.contracts.status import Status
 from contactlab.impact.grid import product
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.names import attributes_told
 from contactlab.outcome.columns import QUANTITIES, quantity_named
 from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import Measured, SceneFile
 from contactlab.study.interrupts import uninterrupted
+from contactlab.study.side_by_side import default_quantities, describe
 
 Array = NDArray[np.float64]
 
@@ -91,11 +93,21 @@ class Agreement:
         return float(self.measured.x[np.argmax(difference)])
 
 
+@attributes_told
 @attrs.frozen(kw_only=True, eq=False)
 class Comparison:
     """Laws side by side; the first law is the reference of the others.
 
-    ``interrupted`` is True if Ctrl-C left laws out.
+    Attributes
+    ----------
+    scene : Scene
+    varied : mapping of str to array
+        Entries of a scene file that vary over the batch.
+    runs : tuple of LawRun
+    agreements : tuple of Agreement
+        One for each measured series.
+    interrupted : bool
+        True if Ctrl-C left laws out.
     """
 
     scene: Scene
@@ -103,6 +115,11 @@ class Comparison:
     runs: tuple[LawRun, ...]
     agreements: tuple[Agreement, ...]
     interrupted: bool = False
+
+    def __str__(self) -> str:
+        """Return what ``contactlab compare`` prints, and failures, in tables and lines."""
+        failures = "\n".join(f"failed: {sentence}" for sentence in self.failures())
+        return "\n\n".join(filter(None, [describe(self, default_quantities(self)), failures]))
 
     @property
     def names(self) -> list[str]:

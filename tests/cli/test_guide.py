@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 
@@ -40,6 +41,23 @@ def test_an_unknown_topic_is_refused_with_the_nearest(run):
     assert (ran.status, ran.out) == (2, "")
     assert "did you mean 'theory'?" in ran.err
     assert len(ran.err.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("word", "pages"),
+    [
+        ("restitution", ("theory", "choosing")), ("plugin", ("extending",)),
+        ("trust", ("how-far-to-trust",)), ("Hysteresis", ("load-paths",)), ("zzzzzz", ()),
+    ],
+)  # fmt: skip
+def test_a_word_is_refused_with_the_pages_that_have_it(run, word, pages):
+    ran = run("guide", word)
+    assert ran.status == 2
+    assert "did you mean" not in ran.err
+    told = ran.err.partition("known:")[0]
+    assert all(f"'{page}'" in told for page in pages)
+    for page in re.findall(r"'([a-z-]+)'", told.partition(" in ")[2]):
+        assert word.lower() in run("guide", page).out.lower()
 
 
 @pytest.mark.parametrize("words", [("theory", "99"), ("theory", "five"), ("choosing", "1")])

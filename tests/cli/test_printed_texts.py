@@ -31,13 +31,6 @@ def test_a_section_ends_where_the_next_begins():
     assert guide.sections("no sections") == {}
 
 
-@pytest.mark.parametrize(("word", "near"), [("lbxs", True), ("lbxcd", False)])
-def test_a_topic_is_near_if_two_fifths_of_its_letters_are_alike(run, monkeypatch, word, near):
-    """Twice the letters alike over all: 4 of 8, and 2 of 9."""
-    monkeypatch.setattr(guide, "TOPICS", ("laws",))
-    assert ("did you mean 'laws'? known: laws" in run("guide", word).err) == near
-
-
 def test_all_topics_are_told(run):
     listed = run("guide", "zzzzzz").err.rpartition("known: ")[2].strip()
     assert listed.split(", ") == list(guide.TOPICS)

@@ -162,6 +162,10 @@ def test_a_huge_angle_is_refused(run):
         ((*PSI, "--out", "no/such/folder/result.csv"), "no folder"),
         ((*PSI, "--history", "history.json"), ".csv"),
         ((*PSI, "--colour"), "--colour"),
+        ((*PSI, "--tangental", "springs"), "did you mean '--tangential'"),
+        (("--psi", "1", "--chi", "1"), "did you mean '--psi1'"),
+        ((*PSI, "--output", "x.csv"), "did you mean '--out'"),
+        ((*PSI, "--tangential", "springs", "--set", "springs=8"), "mean 'tangential.springs'"),
     ],
 )
 def test_bad_input_is_one_line_and_status_2(run, arguments, words):

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation, read_scene
-from contactlab.cli import side_by_side
-from contactlab.cli.side_by_side import default_quantities, describe, describe_scores
+from contactlab.study import side_by_side
 from contactlab.study.comparison import compare
 from contactlab.study.scores import Score
+from contactlab.study.side_by_side import default_quantities, describe, describe_scores
 from tests.cli.conftest import EXAMPLES
 
 RIGID, LOOSE = (Simulation(tangential=name) for name in ("coulomb", "frictionless"))

@@ -20,6 +20,7 @@ from contactlab import (
     collide,
 )  # fmt: skip
 from contactlab.contracts import SteppedTangentialLaw
+from contactlab.numeric.names import arguments_told
 
 STEEL = Material.named("steel")
 #: E in GPa, as a handbook lists it.
@@ -115,3 +116,66 @@ def test_a_failure_is_told_by_print():
     assert "start() takes 2 positional arguments but 3 were given" in str(one)
     assert "failed (impact 0; 2 in all): A law raised an error" in str(many)
     assert "failed" not in str(Simulation().run(scene))
+
+
+BALL = Sphere(0.01, STEEL)
+RESULT = Simulation().run(Scene.nondimensional(psi1=1.2, chi=1.44), history=True)
+#: What a user writes, and a key word of the answer.
+WRONG_NAMES = {
+    "Simulation(normal='tsuji', restitution=0.9)": r"create\('normal.tsuji', restitution=0.9\)",
+    "Simulation(law='springs')": "did you mean 'tangential'",
+    "Simulation('springs')": "arguments are written with their names.*it has normal, tangential",
+    "Sphere(diameter=0.02, material=STEEL)": "did you mean 'radius', half the diameter",
+    "Sphere(0.01)": "material must be given",
+    "Sphere(0.01, STEEL, 0.1)": "but for radius and material, arguments are written with their",
+    "Material(208e9, 0.3, 7850)": "names, name=value; it has shear_modulus, young_modulus",
+    "Material(E=208e9, nu=0.3)": "did you mean 'young_modulus'",
+    "Material(G=80e9, nu=0.3, rho=1)": "did you mean 'shear_modulus'",
+    "Material.named('gold')": "no such material; known: steel",
+    "Material.named('stell')": "did you mean 'steel'",
+    "HalfSpace(radius=1)": "radius is not an argument; it has material",
+    "Scene(BALL, BLOCK, mu=0.2)": "did you mean 'friction_coefficient'",
+    "Scene.nondimensional(psi=1.2, chi=1)": "did you mean 'psi1'",
+    "Scene.at_angle(BALL, BLOCK, 0.2, speed=1, theta=3)": "did you mean 'angle_deg'",
+    "Encounter(ball=BALL)": "did you mean 'sphere'",
+    "RESULT.rebound_velocity": "'rebound_tangential_velocity' or 'rebound_normal_velocity'",
+    "RESULT.e": "did you mean 'normal_restitution'",
+    "RESULT.psi_2": "did you mean 'psi2'",
+    "RESULT.zzzzzz": "it has .*psi2",
+    "RESULT.energy.work": "did you mean 'friction_work'",
+    "RESULT.history.force": "did you mean 'normal_force' or 'tangential_force'",
+    "contactlab.study.Compare": "did you mean 'compare'",
+}
+
+
+@pytest.mark.parametrize(("written", "words"), WRONG_NAMES.items())
+def test_a_wrong_name_is_answered_by_the_right_one(written, words):
+    kinds = (TypeError, AttributeError, ValueError)
+    with pytest.raises(kinds, match=words) as caught:
+        eval(written)
+    assert "\n" not in str(caught.value)
+
+
+def test_errors_from_within_and_missing_protocols_stay_what_they_are():
+    with pytest.raises(TypeError, match="unorderable"):
+        Broken(value=1)
+    with pytest.raises(AttributeError, match=r"^'ImpactResult' object has no attribute '_ipython"):
+        _ = RESULT._ipython_display_
+    assert pickle.loads(pickle.dumps(RESULT)).psi2 == RESULT.psi2
+
+
+@arguments_told
+class Broken:
+    def __init__(self, value):
+        raise TypeError("unorderable")
+
+
+def test_a_comparison_prints_as_a_table():
+    """Rigid spheres slip from psi1 = 4 chi on: psi2 = psi1 - 4 chi."""
+    scene = Scene.nondimensional(psi1=[6.0, 7.0], chi=1.0)
+    laws = {"rigid": Simulation(tangential="coulomb"), "exact": Simulation()}
+    lines = str(contactlab.study.compare(scene, laws)).splitlines()
+    assert lines[1].split() == ["psi1", "rigid", "exact", "exact", "-", "rigid"]
+    assert [float(word) for word in lines[3].split()] == pytest.approx([6.0, 2.0, 2.0, 0.0])
+    assert any(line.startswith("caution, rigid: rigid bodies") for line in lines)
+    assert "failed" not in "\n".join(lines)

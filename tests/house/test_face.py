@@ -22,8 +22,17 @@ def test_names_that_are_not_imported_yet_are_listed():
     assert {*contactlab.__all__, *contactlab.MODULES, "create", "__version__"} <= set(listed)
     for name in contactlab.__all__:
         assert getattr(contactlab, name) is not None
+    for package in ("contracts", "figures", "fitting", "study", "testing", "materials"):
+        module = getattr(contactlab, package)
+        assert set(getattr(module, "__all__", ())) <= set(dir(module))
 
 
-def test_a_name_that_there_is_not_is_no_attribute():
-    with pytest.raises(AttributeError, match=r"^module 'contactlab' has no attribute 'simulate'$"):
-        _ = contactlab.simulate
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [("simulate", "; did you mean 'Simulation'[?]"), ("zzzzzz", ""), ("__nothing__", "")],
+)
+def test_a_name_that_there_is_not_is_no_attribute(name, hint):
+    with pytest.raises(
+        AttributeError, match=f"^module 'contactlab' has no attribute '{name}'{hint}$"
+    ):
+        getattr(contactlab, name)

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from contactlab.numeric import checks
+from contactlab.numeric.names import nearest
 
 ABOVE, BELOW = np.nextafter(1.0, 2.0), np.nextafter(-1.0, -2.0)
 
@@ -189,13 +190,13 @@ def test_an_object_of_another_class_is_refused():
 
 
 def test_the_nearest_name():
-    assert checks.nearest("ab", ["ac"]) == "did you mean 'ac'? "  # alike by half
-    assert checks.nearest("ab", ["acd"]) == ""
-    assert checks.nearest("mu", ["mass", "friction_coefficient"]) == (
+    assert nearest("ab", ["ac"]) == "did you mean 'ac'? "  # alike by half
+    assert nearest("ab", ["acd"]) == ""
+    assert nearest("mu", ["mass", "friction_coefficient"]) == (
         "did you mean 'friction_coefficient'? "
     )
-    assert checks.nearest("v", ["speed", "velocity"]) == "did you mean 'speed'? "
-    assert checks.nearest("mu", []) == ""
+    assert nearest("v", ["speed", "velocity"]) == "did you mean 'speed' or 'velocity'? "
+    assert nearest("mu", []) == ""
 
 
 def test_what_cannot_be_shown_is_named_by_its_class():

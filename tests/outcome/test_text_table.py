@@ -2,7 +2,7 @@
 
 import pytest
 
-from contactlab.cli.table import WIDTH, _folded, table
+from contactlab.outcome.text_table import WIDTH, _folded, table
 
 
 def test_a_narrow_table_is_as_it_was_given():

@@ -1,25 +1,24 @@
-"""A comparison as tables."""
+"""A comparison, ``contactlab.study.comparison.Comparison``, as tables."""
 
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from contactlab.cli.table import table
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import COMPARISON_TABLE, QUANTITIES
 from contactlab.outcome.tables import heading, number, time
+from contactlab.outcome.text_table import table
 from contactlab.scene_file import SceneFile
-from contactlab.study.comparison import Agreement, Comparison
-from contactlab.study.scores import Score
 
 #: Scores below this are rounding errors and shown as 0.
 ZERO = 1e-12
 
 
-def default_quantities(comparison: Comparison) -> list[str]:
+def default_quantities(comparison: Any) -> list[str]:
     """Return the measured quantities, or psi2 of a sweep, or all defined ones of one impact."""
     measured = [agreement.measured.quantity for agreement in comparison.agreements]
     if measured:
@@ -34,10 +33,10 @@ def default_quantities(comparison: Comparison) -> list[str]:
     ]
 
 
-def describe(comparison: Comparison, quantities: Sequence[str], file: SceneFile) -> str:
-    """Return title, tables, agreement with measured values, cautions and cost."""
-    parts = [part for part in (file.title, _wrapped(file.citation)) if part]
-    by_quantity: dict[str, list[Agreement]] = {name: [] for name in quantities}
+def describe(comparison: Any, quantities: Sequence[str], file: SceneFile | None = None) -> str:
+    """Return a file's title, tables, agreement with measured values, cautions and cost."""
+    parts = [file.title, _wrapped(file.citation)] if file else []
+    by_quantity: dict[str, list[Any]] = {name: [] for name in quantities}
     for agreement in comparison.agreements:
         by_quantity.setdefault(agreement.measured.quantity, []).append(agreement)
     if comparison.scene.shape:
@@ -53,7 +52,7 @@ def describe(comparison: Comparison, quantities: Sequence[str], file: SceneFile)
     return "\n\n".join(part for part in parts if part)
 
 
-def describe_scores(scores: Sequence[Score], comparison: Comparison, file: SceneFile) -> str:
+def describe_scores(scores: Sequence[Any], comparison: Any, file: SceneFile) -> str:
     """Return title and one row for each law: the reference first, the others by rms."""
     reference = scores[0].law
     headings = [
@@ -88,7 +87,7 @@ def _short(value: object) -> str:
     return "0" if abs(float(value)) < ZERO else number(value, digits=2)  # type: ignore[arg-type]
 
 
-def _one_impact(comparison: Comparison, quantities: Sequence[str]) -> str:
+def _one_impact(comparison: Any, quantities: Sequence[str]) -> str:
     """Return the quantities of one impact under all laws, one row each."""
     first, *others = comparison.names
     headings = ["", *comparison.names, *(f"{name} - {first}" for name in others), "unit"]
@@ -100,7 +99,7 @@ def _one_impact(comparison: Comparison, quantities: Sequence[str]) -> str:
     return table(headings, rows)
 
 
-def _over_sweep(comparison: Comparison, quantity: str) -> str:
+def _over_sweep(comparison: Any, quantity: str) -> str:
     """Return one quantity under all laws, one row for each impact."""
     first, *others = comparison.names
     headings = [*map(_with_unit, comparison.varied)]
@@ -112,7 +111,7 @@ def _over_sweep(comparison: Comparison, quantity: str) -> str:
     return f"{heading(quantity, unit)}:\n{table(headings, np.transpose(columns).tolist())}"
 
 
-def _points(agreement: Agreement) -> str:
+def _points(agreement: Any) -> str:
     """Return measured values beside the laws, one row for each value."""
     measured = agreement.measured
     names = list(agreement.predicted)
@@ -125,7 +124,7 @@ def _points(agreement: Agreement) -> str:
     return f"{title}, measured: {measured.source}\n{table(headings, rows, digits=4)}"
 
 
-def _agreement(comparison: Comparison) -> str:
+def _agreement(comparison: Any) -> str:
     """Return the rms and largest distance of each law from measured values."""
     rows = []
     for agreement in comparison.agreements:
@@ -139,7 +138,7 @@ def _agreement(comparison: Comparison) -> str:
     return table(headings, rows, digits=3)
 
 
-def _cautions(comparison: Comparison) -> str:
+def _cautions(comparison: Any) -> str:
     """Return the cautions of all plans, each once with the names of its laws."""
     about: dict[str, list[str]] = {}
     for run in comparison.runs:
@@ -152,7 +151,7 @@ def _cautions(comparison: Comparison) -> str:
     return "\n".join(textwrap.fill(line, width=96, subsequent_indent="  ") for line in lines)
 
 
-def _cost(comparison: Comparison) -> str:
+def _cost(comparison: Any) -> str:
     """Return run time and number of successful impacts of each law."""
     first = comparison.runs[0].run_time_per_impact
     rows = []

@@ -1,0 +1,167 @@
+"""Names that users write: imported on first use, and refused with the nearest if unknown."""
+
+from __future__ import annotations
+
+import functools
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from importlib import import_module
+from typing import Any, TypeVar
+
+Class = TypeVar("Class", bound=type)
+
+#: Names in this package for symbols and names that users try. The first two that are accepted
+#: where the symbol was used are suggested.
+SYMBOLS: dict[str, tuple[str, ...]] = {
+    "mu": ("friction_coefficient",), "friction": ("friction_coefficient", "tangential"),
+    "nu": ("poisson_ratio",), "E": ("young_modulus",), "G": ("shear_modulus",),
+    "rho": ("density",), "R": ("radius",), "r": ("radius",), "diameter": ("radius",),
+    "d": ("radius",), "Y": ("yield_stress",),
+    "law": ("tangential",), "theta": ("angle_deg",), "alpha": ("angle_deg",),
+    "m": ("mass",), "M": ("mass",), "K": ("gyration_ratio",),
+    "v": ("tangential_velocity", "speed", "velocity"), "vx": ("tangential_velocity",),
+    "velocity": ("rebound_tangential_velocity", "rebound_normal_velocity"),
+    "speed": ("normal_speed",), "v1": ("normal_speed",), "vn": ("normal_speed",),
+    "vz": ("normal_speed",), "v2": ("rebound_normal_velocity",),
+    "omega": ("spin", "rebound_spin"), "w": ("spin", "rebound_spin"), "spin": ("rebound_spin",),
+    "e": ("restitution", "normal_restitution"), "restitution": ("normal_restitution",),
+    "e_n": ("normal_restitution",), "e_t": ("tangential_restitution",),
+    "et": ("tangential_restitution",), "t": ("time",), "T": ("duration",),
+    "force": ("normal_force", "tangential_force"),
+    "F": ("tangential_force",), "P": ("normal_force",), "work": ("friction_work",),
+    "beta0": ("slip_restitution", "beta"), "kappa": ("stiffness_ratio",),
+    "shear_modulus_ratio": ("stiffness_ratio",),
+    "rebound_velocity": ("rebound_tangential_velocity", "rebound_normal_velocity"),
+    "final_velocity": ("rebound_tangential_velocity", "rebound_normal_velocity"),
+    "ball": ("sphere",), "wall": ("target",), "plane": ("target",), "half_space": ("target",),
+    "laws": ("simulation",), "output": ("out",), "plot": ("figure",), "jobs": ("workers",),
+    "angle": ("angle_deg", "rebound_angle"), "psi": ("psi1",), "dt": ("steps",), "n": ("steps",),
+}  # fmt: skip
+#: Remarks on a suggested name whose quantity is another.
+REMARKS = {"diameter": ", half the diameter", "d": ", half the diameter"}
+
+
+def nearest(name: str, known: Iterable[str], *, alike: float = 0.5) -> str:
+    """Return "did you mean ...? " with the nearest of ``known``; empty if none is near.
+
+    A symbol means its name in this package, mu friction_coefficient. An option means a dotted
+    name that ends with it. Else a name counts if its letters are ``alike`` to this share.
+    """
+    names = {_plain(each): each for each in known}
+    plain = _plain(name)
+    words = (plain, *SYMBOLS.get(plain, ()))
+    meant = [names[word] for word in words if word in names] or [
+        names[each] for word in words for each in names if each.endswith(f".{word}")
+    ]
+    if not meant:
+        import difflib  # slow to import, needed for misspelt names only
+
+        meant = [names[each] for each in difflib.get_close_matches(plain, names, 1, alike)]
+    remark = REMARKS.get(plain, "")
+    return f"did you mean {' or '.join(map(repr, meant[:2]))}{remark}? " if meant else ""
+
+
+def _plain(name: str) -> str:
+    """Return a name without the hyphens of an option on the command line."""
+    return name.lstrip("-").replace("-", "_")
+
+
+def arguments_told(made: Class) -> Class:
+    """Return a class that users make: wrong arguments are refused with the nearest, and all names.
+
+    The text ``_remedy`` of a class tells where arguments belong that it does not have.
+    """
+    for name, each in [*vars(made).items()]:
+        if isinstance(each, classmethod):
+            setattr(made, name, classmethod(_told(made, each.__func__)))
+    made.__init__ = _told(made, vars(made)["__init__"])  # type: ignore[misc]
+    return made
+
+
+def attributes_told(made: Class) -> Class:
+    """Return a class of results that refuses a wrong attribute with the nearest, or all names."""
+
+    def __getattr__(self: Any, name: str) -> Any:  # noqa: N807
+        if name.startswith("_") or hasattr(made, name):
+            return object.__getattribute__(self, name)  # an error in a property is its own
+        public = [each for each in dir(self) if not each.startswith("_")]
+        remedy = nearest(name, public).strip() or f"it has {', '.join(public)}"
+        text = f"{made.__name__} has no attribute {name!r}; {remedy}"
+        raise AttributeError(text, name=name, obj=self)
+
+    made.__getattr__ = __getattr__  # type: ignore[attr-defined]
+    return made
+
+
+def _told(made: Any, call: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a method that says which of its arguments are wrong."""
+
+    @functools.wraps(call)
+    def told(*values: Any, **named: Any) -> Any:
+        try:
+            return call(*values, **named)
+        except TypeError:
+            if complaint := _unfit(call, values, named, getattr(made, "_remedy", "")):
+                raise TypeError(f"{made.__name__}: {complaint}") from None
+            raise
+
+    return told
+
+
+def _unfit(call: Any, values: Any, named: Mapping[str, Any], remedy: str) -> str:
+    """Return why arguments do not fit a method, and what would; empty if they fit."""
+    import inspect  # slow to import, needed for wrong arguments only
+
+    signature = inspect.signature(call)
+    try:
+        signature.bind(*values, **named)
+    except TypeError:
+        _, *parameters = signature.parameters.values()
+    else:
+        return ""  # the error came from within
+    names = [each.name for each in parameters]
+    free = [each.name for each in parameters if each.kind is each.POSITIONAL_OR_KEYWORD]
+    listed = f"it has {', '.join(names)}"
+    for name in named:
+        if name not in names:
+            near = nearest(name, names, alike=0.75 if remedy else 0.5)
+            return f"{name} is not an argument; {near or remedy}{listed}"
+    if len(values) - 1 > len(free):
+        rest = f"but for {' and '.join(free)}, " if free else ""
+        return f"{rest}arguments are written with their names, name=value; {listed}"
+    given = {*free[: len(values) - 1], *named}
+    for each in parameters:
+        if each.default is each.empty and each.name not in given:
+            return f"{each.name} must be given; {listed}"
+    return "an argument is given twice"
+
+
+def imported_on_use(
+    package: str, modules: Mapping[str, str]
+) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """Return the functions ``__getattr__`` and ``__dir__`` of a package.
+
+    Parameters
+    ----------
+    package : str
+        Name of the package, its ``__name__``.
+    modules : mapping of str to str
+        For each public name, the module in ``contactlab`` that defines it, or that it is, if the
+        module has no such name.
+    """
+
+    def __getattr__(name: str) -> Any:  # noqa: N807
+        """Return a public name, imported on first use and kept."""
+        if name not in modules:
+            hint = "" if name.startswith("_") else f"; {nearest(name, modules)}".rstrip("; ")
+            raise AttributeError(f"module {package!r} has no attribute {name!r}{hint}")
+        module = import_module(f"contactlab.{modules[name]}")
+        value = getattr(module, name, module)
+        setattr(sys.modules[package], name, value)
+        return value
+
+    def __dir__() -> list[str]:  # noqa: N807
+        """Return the public names, those that are not imported yet among them."""
+        return sorted({*vars(sys.modules[package]), *modules})
+
+    return __getattr__, __dir__
