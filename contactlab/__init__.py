@@ -42,8 +42,8 @@ from contactlab.numeric.names import imported_on_use
 
 if TYPE_CHECKING:
     from contactlab.compose.collision import Collision, collide
-    from contactlab.compose.hookspecs import hookimpl
     from contactlab.compose.load_path import load_path
+    from contactlab.compose.loading import hookimpl
     from contactlab.compose.rebound import rebound
     from contactlab.compose.registry import PluginError
     from contactlab.compose.simulation import Simulation
@@ -123,7 +123,7 @@ MODULES = {
     "Status": "contracts.status",
     "collide": "compose.collision",
     "fit": "fitting",
-    "hookimpl": "compose.hookspecs",
+    "hookimpl": "compose.loading",
     "load_path": "compose.load_path",
     "materials": "impact.material",
     "read_scene": "scene_file",

@@ -22,7 +22,7 @@ from contactlab.cli.arguments import (
     check_outputs,
 )
 from contactlab.cli.terminal import fitted
-from contactlab.compose.installed import PluginWarning
+from contactlab.compose.registry import PluginWarning
 from contactlab.contracts.status import Status
 from contactlab.numeric.names import nearest
 

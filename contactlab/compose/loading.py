@@ -1,4 +1,4 @@
-"""Loading of a plug-in: imports its module, calls its hook and checks its law."""
+"""Loading of a law: imports its module or file, calls its hook and checks its class."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from zlib import crc32
 import numpy as np
 import pluggy
 
-from contactlab.compose import hookspecs
-from contactlab.compose.installed import FILE, GROUP, PluginInfo, short
-from contactlab.compose.older import REMEDY, other_version
+from contactlab.compose.names import FILE, PROJECT, PluginInfo
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 
+#: Marks a plug-in's implementation: ``@contactlab.hookimpl``.
+hookimpl = pluggy.HookimplMarker(PROJECT)
 #: Laws that were loaded from files.
 IN_FILES: dict[type[Law], PluginInfo] = {}
 
@@ -31,8 +31,26 @@ class PluginError(RuntimeError):
     """A plug-in is broken or conflicts with another; the message names plug-in and distribution."""
 
 
+@pluggy.HookspecMarker(PROJECT)(firstresult=True)
+def contactlab_law(name: str) -> type | None:
+    """Return the class of the law called ``name``, or None; never called in a step.
+
+    Parameters
+    ----------
+    name : str
+        The entry point's name, kind and law: ``"tangential.annulus"``. A module with a single
+        entry point may leave the argument out.
+
+    Returns
+    -------
+    type
+        A subclass of ``NormalLaw``, ``TangentialLaw`` or ``Integrator`` whose parameters are
+        keyword arguments.
+    """
+
+
 def law_class(info: PluginInfo) -> type[Law]:
-    """Return the class of an installed law, from the hook of its module.
+    """Return the class of an installed law: its entry point names the class, or a hook's module.
 
     Raises
     ------
@@ -43,21 +61,28 @@ def law_class(info: PluginInfo) -> type[Law]:
 
     source = info.source
     with _guarded(source, "could not be imported"):
-        module = metadata.EntryPoint(info.name, info.module, GROUP).load()
-    manager = pluggy.PluginManager(hookspecs.PROJECT)  # of its own: modules do not see each other
-    manager.add_hookspecs(hookspecs)
+        law = metadata.EntryPoint(info.name, info.module, PROJECT).load()
+    if isinstance(law, ModuleType):
+        law = _from_hook(law, info)
+    return _checked(law, info.kind, source)
+
+
+def _from_hook(module: ModuleType, info: PluginInfo) -> object:
+    """Return what the hook of a module returns for an entry point."""
+    manager = pluggy.PluginManager(PROJECT)  # of its own: modules do not see each other
+    manager.add_hookspecs(sys.modules[__name__])
     try:
         manager.register(module, name=info.module)
         manager.check_pending()
     except Exception as error:
-        raise PluginError(f"{source} does not fit the hooks: {short(error)}") from error
+        raise PluginError(f"{info.source} does not fit the hooks: {short(error)}") from error
     if not manager.get_hookcallers(module):
         raise PluginError(
-            f"{source} has no hook: define @contactlab.hookimpl def contactlab_law(name)"
+            f"{info.source} has no hook: name the class in the entry point, {info.module}:Class, "
+            "or define @contactlab.hookimpl def contactlab_law(name)"
         )
-    with _guarded(source, "raised when asked for its law"):
-        law = manager.hook.contactlab_law(name=info.name)
-    return _checked(law, info.kind, source)
+    with _guarded(info.source, "raised when asked for its law"):
+        return manager.hook.contactlab_law(name=info.name)
 
 
 def law_at(place: str) -> type[Law]:
@@ -146,8 +171,6 @@ def _guarded(source: str, failed: str) -> Iterator[None]:
     except KeyboardInterrupt:
         raise
     except BaseException as error:
-        if (sentence := other_version(error)) is not None:
-            raise PluginError(f"{source} {sentence}") from None
         last = traceback.extract_tb(error.__traceback__)[-1]
         place = f" ({Path(last.filename).name}, line {last.lineno})"
         raise PluginError(f"{source} {failed}: {short(error)}{place}") from error
@@ -159,8 +182,8 @@ def _checked(law: object, kind: str, source: str) -> type[Law]:
         raise PluginError(f"{source} returned {law!r}, which is not the class of a law")
     if law.kind != kind:
         raise PluginError(
-            f"{source} returned {law.__name__}, a {law.kind} law; "
-            "each entry point needs a module of its own with a function contactlab_law"
+            f"{source} returned {law.__name__}, a {law.kind} law; an entry point names "
+            "a class of its kind, or a module whose contactlab_law returns one"
         )
     if (complaint := outdated(law)) is not None:
         raise PluginError(f"{source}: {complaint}")
@@ -175,13 +198,12 @@ def outdated(law: type[Law]) -> str | None:
     version = getattr(law, "api_version", None)
     if version == API_VERSION:
         return None
-    written = f"write api_version: ClassVar[int] = {API_VERSION} in its class"
-    if isinstance(version, int) and version < API_VERSION:
-        return (
-            f"{law.__name__} was written for version {version} of the contracts, contactlab has "
-            f"{API_VERSION}; {REMEDY}; then {written}"
-        )
     return (
         f"{law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}; if the law "
-        f"keeps to these contracts, {written}"
+        f"keeps to these contracts, write api_version: ClassVar[int] = {API_VERSION} in its class"
     )
+
+
+def short(error: BaseException) -> str:
+    """Return the class and the message of an exception."""
+    return f"{type(error).__name__}: {error}"

@@ -6,12 +6,20 @@ A law that is not installed is named by its place: ``my_law.py:Stribeck``, a cla
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
+import attrs
+
+#: Name of the program, of its own distribution and of the group of entry points.
+PROJECT = "contactlab"
+BLOCK_VARIABLE = "CONTACTLAB_BLOCK_PLUGINS"
 KINDS = ("normal", "tangential", "integrator")
 #: The place of a law: a Python file, or a module and a class, which begins with a capital.
 PLACE = re.compile(r"\.py(:|$)|:[A-Z]\w*$")
+#: Stands in place of the distribution for laws in files; their version is a checksum.
+FILE = "file"
 
 
 def is_place(name: str) -> bool:
@@ -39,28 +47,112 @@ def kind_of(name: str) -> str:
 
 def full_name(kind: str, name: str) -> str:
     """Return a name with its kind: ``"my-laws:normal.hertz"`` for ``"my-laws:hertz"``."""
-    if is_place(name):
-        return name
     distribution, plain = parted(name)
-    plain = plain if plain.startswith(f"{kind}.") else f"{kind}.{plain}"
-    return f"{distribution}:{plain}" if distribution else plain
+    if is_place(name) or plain.startswith(f"{kind}."):
+        return name
+    return f"{distribution}:{kind}.{plain}" if distribution else f"{kind}.{plain}"
 
 
 def short_name(name: str) -> str:
     """Return a name without its kind: ``"my-laws:hertz"`` for ``"my-laws:normal.hertz"``."""
-    if is_place(name):
-        return name
     distribution, plain = parted(name)
     kind, _, short = plain.partition(".")
-    plain = short if kind in KINDS and short else plain
-    return f"{distribution}:{plain}" if distribution else plain
+    if is_place(name) or kind not in KINDS or not short:
+        return name
+    return f"{distribution}:{short}" if distribution else short
 
 
 def same_distribution(first: str, second: str) -> bool:
     """Return True if two names mean the same distribution, as ``My_Laws`` and ``my-laws`` do."""
-    return normal_form(first) == normal_form(second)
+    plain, other = (re.sub(r"[-_.]+", "-", name).lower() for name in (first, second))
+    return plain == other
 
 
-def normal_form(distribution: str) -> str:
-    """Return the name of a distribution in small letters, with hyphens: ``my-laws``."""
-    return re.sub(r"[-_.]+", "-", distribution).lower()
+def blocks(entries: set[str], name: str, distribution: str) -> bool:
+    """Return True if entries of ``CONTACTLAB_BLOCK_PLUGINS`` block a plug-in of a distribution."""
+    for entry in entries:
+        origin, plain = parted(entry)
+        if entry == name or same_distribution(entry, distribution):
+            return True
+        if plain == name and same_distribution(origin, distribution):
+            return True
+    return False
+
+
+def blocked_names() -> set[str]:
+    """Return the entries of ``CONTACTLAB_BLOCK_PLUGINS``, separated by commas or blanks."""
+    return set(os.environ.get(BLOCK_VARIABLE, "").replace(",", " ").split())
+
+
+@attrs.frozen
+class PluginInfo:
+    """One installed law as its entry point describes it; its module is not imported.
+
+    Attributes
+    ----------
+    name, distribution, version, module : str
+        Name and module of the entry point, and the distribution that it belongs to.
+    blocked : bool
+        True if ``CONTACTLAB_BLOCK_PLUGINS`` blocks the law: see ``Registry``.
+    meant : bool
+        True if the name without a distribution means this law.
+    """
+
+    name: str
+    distribution: str
+    version: str
+    module: str
+    blocked: bool
+    meant: bool = True
+
+    @property
+    def qualified(self) -> str:
+        """The unique name with the distribution: ``"my-laws:normal.hertz"``."""
+        return f"{self.distribution}:{self.name}"
+
+    @property
+    def known_as(self) -> str:
+        """The shortest name that means this law; the place of a law in a file."""
+        if self.distribution == FILE:
+            return f"{self.module}:{self.name.rpartition(':')[2]}"
+        return self.name if self.meant else self.qualified
+
+    @property
+    def source(self) -> str:
+        """Name, distribution and version, for messages."""
+        return f"{self.name!r} of {self.distribution} {self.version}"
+
+    @property
+    def kind(self) -> str:
+        """The part of the name before the dot."""
+        return self.name.partition(".")[0]
+
+    @property
+    def malformed(self) -> bool:
+        """True if the name is not a kind, a dot and a name; such a law cannot be made."""
+        return self.kind not in KINDS or not self.name.partition(".")[2]
+
+    @property
+    def usable(self) -> bool:
+        """True if the law can be made: neither blocked nor malformed."""
+        return not (self.blocked or self.malformed)
+
+
+def meant(rivals: list[PluginInfo]) -> PluginInfo | None:
+    """Return the law that a name means, among laws of that name; None if the name is refused."""
+    usable = [info for info in rivals if not info.blocked] or rivals
+    ours = [info for info in usable if info.distribution == PROJECT]
+    return (ours or usable)[0] if 1 in (len(usable), len(ours)) else None
+
+
+def clash(rivals: list[PluginInfo]) -> str:
+    """Return a sentence on a name of several distributions: its meaning, and how to choose."""
+    name, law = rivals[0].name, meant(rivals)
+    origins = " and ".join(f"{info.distribution} {info.version}" for info in rivals)
+    others = [info for info in rivals if info is not law]
+    written = " or ".join(repr(info.qualified) for info in others)
+    meaning = f"means {law.qualified!r}" if law else "is refused"
+    return (
+        f"name = {name!r}: is offered by {origins}, and {meaning}; write {written}, or block all "
+        f"laws of one: {BLOCK_VARIABLE}={others[-1].distribution}"
+    )

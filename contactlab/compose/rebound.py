@@ -12,8 +12,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.hookspecs import PROJECT
-from contactlab.compose.installed import BLOCK_VARIABLE, blocks
+from contactlab.compose.names import BLOCK_VARIABLE, PROJECT, blocks
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.numeric.checks import POSITIVE, Real, Rule, paired, real, refuse
 

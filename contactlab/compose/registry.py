@@ -4,47 +4,39 @@ from __future__ import annotations
 
 import contextlib
 import os
+import sys
 import warnings
 from functools import cached_property, lru_cache
 from typing import Any
 
 import attrs
 
-from contactlab.compose.hookspecs import PROJECT
-from contactlab.compose.installed import (
+from contactlab.compose.loading import IN_FILES, PluginError, law_at, law_class, short
+from contactlab.compose.names import (
     BLOCK_VARIABLE,
+    KINDS,
+    PROJECT,
     PluginInfo,
-    PluginWarning,
     blocked_names,
     blocks,
-    by_name,
     clash,
-    entry_points,
+    is_place,
     meant,
-    stamp,
+    parted,
+    same_distribution,
 )
-from contactlab.compose.loading import IN_FILES, PluginError, law_at, law_class
-from contactlab.compose.names import KINDS, is_place, parted, same_distribution
 from contactlab.contracts.law import Law
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 
-__all__ = [
-    "BLOCK_VARIABLE",
-    "KINDS",
-    "REGISTRY",
-    "PluginError",
-    "PluginInfo",
-    "Registry",
-    "blocked_names",
-]
+__all__ = ["BLOCK_VARIABLE", "KINDS", "REGISTRY", "PluginError", "PluginInfo", "Registry"]
 
-#: Laws of former versions, each with the law that took its place.
-FORMER = {
-    "tangential.tabulated": "it is the table from which 'tangential.fronts' answers: use that",
-}
 #: Beginnings of the names of other plug-ins that may be blocked.
 OTHER_GROUPS = ("rebound.",)
+
+
+class PluginWarning(UserWarning):
+    """A blocked name is not installed, or the entry points of a distribution are unreadable."""
 
 
 class Registry:
@@ -72,40 +64,34 @@ class Registry:
     @cached_property
     def _modules(self) -> list[tuple[str, str]]:
         """Names and modules of the laws at first use: reading entry points takes long."""
-        return [(info.qualified, info.module) for info in self.installed()]
+        return [(info.qualified, info.module.partition(":")[0]) for info in self.installed()]
 
     def installed(self) -> list[PluginInfo]:
         """Return every installed law, sorted by kind and name, without an import."""
-        now = stamp()
+        now = _stamp()
         if now != self._stamp:
             self._found, self._stamp = entry_points(), now
         blocking = blocked_names()
-        infos = [
-            PluginInfo(name, distribution, version, module, blocks(blocking, name, distribution))
-            for name, distribution, version, module in self._found
-        ]
+        infos = [PluginInfo(*found, blocks(blocking, *found[:2])) for found in self._found]
         self._warn_of_unknown(infos)
         laws = [
             attrs.evolve(info, meant=info is meant(rivals))
-            for rivals in by_name(infos).values()
+            for rivals in _by_name(infos).values()
             for info in rivals
         ]
         return sorted(laws, key=lambda info: (_rank(info.kind), info.name, info.distribution))
 
     def _warn_of_unknown(self, infos: list[PluginInfo]) -> None:
         """Warn once of each blocked name that is not installed: a misspelt name blocks nothing."""
-        unknown = {
-            entry
-            for entry in blocked_names() - self._warned
-            if not parted(entry)[1].startswith(OTHER_GROUPS)
-            and not any(blocks({entry}, info.name, info.distribution) for info in infos)
-        }
-        self._warned |= unknown
-        names = {text for info in infos for text in (info.name, info.qualified, info.distribution)}
-        for name in sorted(unknown):
-            hint = nearest(name, names).strip()
-            text = f"{BLOCK_VARIABLE} names {name!r}, which is not installed; {hint}"
-            warnings.warn(text.rstrip("; "), PluginWarning, stacklevel=4)
+        for entry in sorted(blocked_names() - self._warned):
+            if any(blocks({entry}, info.name, info.distribution) for info in infos):
+                continue
+            self._warned.add(entry)
+            if not parted(entry)[1].startswith(OTHER_GROUPS):
+                known = {name for info in infos for name in (info.name, info.distribution)}
+                told = f"{BLOCK_VARIABLE} names {entry!r}, which is not installed; "
+                text = (told + nearest(entry, known)).rstrip("; ")
+                warnings.warn(text, PluginWarning, stacklevel=4)
 
     def names(self, kind: str | None = None) -> list[str]:
         """Return the shortest names of laws that can be made, of one kind or of all kinds."""
@@ -114,7 +100,7 @@ class Registry:
 
     def clashes(self) -> list[str]:
         """Return a sentence on each name that several distributions offer, with its meaning."""
-        offers = by_name(info for info in self.installed() if info.usable)
+        offers = _by_name([info for info in self.installed() if info.usable])
         return [clash(rivals) for rivals in offers.values() if len(rivals) > 1]
 
     def info(self, name: str) -> PluginInfo:
@@ -218,32 +204,54 @@ class Registry:
     def _unknown(self, name: str) -> ValueError:
         """Return the refusal of a name that is not installed, with the nearest installed name."""
         distribution, plain = parted(str(name))
-        if plain in FORMER:
-            return refuse("name", name, "no such law is installed", FORMER[plain])
         kind, _, short = plain.rpartition(".")
-        installed, names = self.installed(), self.names(kind if kind in KINDS else None)
-        others = [law for law in self.names() if law.endswith(f".{short}")]
-        offering = sorted(info.qualified for info in installed if info.name == plain)
-        distributions = {info.distribution for info in installed}
-        if distribution and offering:
-            hint = f"{plain!r} is offered as {' and '.join(map(repr, offering))}; "
+        names = self.names(kind if kind in KINDS else None)
+        offered = [info.qualified for info in self.installed() if info.name == plain]
+        if offered:
+            hint = f"{plain!r} is offered as {' and '.join(map(repr, offered))}; "
         elif distribution:
-            known = any(same_distribution(each, distribution) for each in distributions)
-            nearby = nearest(distribution, distributions)
-            hint = "" if known else f"no distribution {distribution!r} has laws; {nearby}"
-        elif others and kind in KINDS:
-            hint = f"{short!r} is a law of another kind, {others[0]!r}; "
-        elif others:
-            hint = f"did you mean {others[-1]!r}? "
-        else:
-            import difflib  # needed for a misspelt name only
+            hint = nearest(name, [info.qualified for info in self.installed()])
+        else:  # kinds are left out, which would make any two names similar
+            hint = nearest(short, names) or nearest(short, self.names(), alike=1.0)
+        return refuse(
+            "name", name, "no such law is installed", f"{hint}installed: {', '.join(names)}"
+        )
 
-            # Names are compared without their kind, which would make any two similar.
-            full_names = {full.rpartition(".")[2]: full for full in names}
-            close = difflib.get_close_matches(short, full_names, n=1, cutoff=0.5)
-            hint = f"did you mean {full_names[close[0]]!r}? " if close else ""
-        listed = f"{hint}installed: {', '.join(names)}"
-        return refuse("name", name, "no such law is installed", listed)
+
+def entry_points() -> set[tuple[str, str, str, str]]:
+    """Return name, distribution, version and module of every entry point of the group."""
+    from importlib import metadata  # takes 20 ms to import
+
+    entries, seen = set(), list[str]()
+    for distribution in metadata.distributions():
+        try:
+            points = list(distribution.entry_points.select(group=PROJECT))
+            if not points:  # only then are the papers read: each reading opens a file
+                continue
+            name, version = str(distribution.metadata["Name"]), distribution.version
+        except Exception as error:
+            where = getattr(distribution, "_path", "a distribution")
+            text = f"the entry points of {where} cannot be read and are passed over: {short(error)}"
+            warnings.warn(text, PluginWarning, stacklevel=4)
+            continue
+        if not any(same_distribution(name, other) for other in seen):  # the first is imported
+            entries |= {(point.name, name, version, point.value) for point in points}
+        seen.append(name)
+    return entries
+
+
+def _stamp() -> object:
+    """Return the folders of ``sys.path`` with their times: an installation changes the value."""
+    folders = [folder or "." for folder in sys.path]
+    return [(each, os.path.exists(each) and os.stat(each).st_mtime_ns) for each in folders]
+
+
+def _by_name(infos: list[PluginInfo]) -> dict[str, list[PluginInfo]]:
+    """Return laws by their names without a distribution."""
+    offers: dict[str, list[PluginInfo]] = {}
+    for info in infos:
+        offers.setdefault(info.name, []).append(info)
+    return offers
 
 
 @lru_cache(maxsize=256)

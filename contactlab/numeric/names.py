@@ -56,6 +56,8 @@ def nearest(name: str, known: Iterable[str], *, alike: float = 0.5) -> str:
     if not meant:
         import difflib  # slow to import, needed for misspelt names only
 
+        if "." not in plain:
+            names = {each.rpartition(".")[2]: full for each, full in names.items()} | names
         meant = [names[each] for each in difflib.get_close_matches(plain, names, 1, alike)]
     remark = REMARKS.get(plain, "")
     return f"did you mean {' or '.join(map(repr, meant[:2]))}{remark}? " if meant else ""

@@ -15,8 +15,7 @@ import attrs
 import numpy as np
 
 from contactlab.compose.composition import PREFERRED, exact, fixed_steps, misfit
-from contactlab.compose.hookspecs import PROJECT
-from contactlab.compose.names import full_name, kind_of
+from contactlab.compose.names import PROJECT, full_name, kind_of
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation

@@ -13,7 +13,7 @@ import contactlab
 from contactlab.cli import arguments
 from contactlab.cli import main as module
 from contactlab.cli import run as run_command
-from contactlab.compose.installed import PluginWarning
+from contactlab.compose.registry import PluginWarning
 from contactlab.contracts.status import Status
 
 

@@ -33,7 +33,8 @@ def install(tmp_path, monkeypatch):
     modules = []
 
     def install(distribution, module, source, *names):
-        (tmp_path / f"{module}.py").write_text(source, encoding="utf-8")
+        path = module.partition(":")[0]
+        (tmp_path / f"{path}.py").write_text(source, encoding="utf-8")
         info = tmp_path / f"{distribution}-1.5.dist-info"
         info.mkdir()
         (info / "METADATA").write_text(
@@ -41,7 +42,7 @@ def install(tmp_path, monkeypatch):
         )
         points = "\n".join(f"{name} = {module}" for name in names)
         (info / "entry_points.txt").write_text(f"[contactlab]\n{points}\n")
-        modules.append(module)
+        modules.append(path)
 
     yield install
     for module in modules:

@@ -157,8 +157,9 @@ def test_plugins_list_warns_of_the_name_and_shows_how_to_say_which(capsys):
     status, out, err = run(capsys, "plugins", "list")
     assert status == 0
     (warning,) = err.splitlines()
-    assert warning.startswith("contactlab: warning: 'tangential.coulomb' is offered by contactlab ")
-    assert "it means 'contactlab:tangential.coulomb'" in warning
+    assert warning.startswith("contactlab: warning: ")
+    assert "'tangential.coulomb': is offered by contactlab " in warning
+    assert "means 'contactlab:tangential.coulomb'" in warning
     assert "CONTACTLAB_BLOCK_PLUGINS=usurper" in warning
     assert [line.split()[0] for line in out.splitlines() if ".coulomb " in line] == [
         "tangential.coulomb",
