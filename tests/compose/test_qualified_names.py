@@ -304,6 +304,6 @@ def test_a_file_that_has_changed_is_loaded_again_and_told_apart(files):
 
 @pytest.mark.usefixtures("files")
 def test_a_law_is_named_by_module_and_class(capsys):
-    name = "contactlab_laws.coulomb.law:Coulomb"
+    name = "contactlab_laws.coulomb:Coulomb"
     assert psi2(capsys, "--psi1", "9", "--chi", "1", "--tangential", name) == pytest.approx(5.0)
     assert REGISTRY.describe(REGISTRY.law_class(name)).startswith("coulomb (contactlab")

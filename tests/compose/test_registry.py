@@ -221,7 +221,7 @@ def test_names_of_no_law_with_a_distribution_are_refused_with_what_is_meant(
     assert registry.create(f"My_Laws:{MINE}") is not None  # spellings of one distribution
     with pytest.raises(ValueError, match=r"'tangential.mine' is offered as 'my-laws:tangential"):
         registry.create(f"contactlab:{MINE}")
-    with pytest.raises(ValueError, match=r"did you mean 'my-laws:tangential.mine'"):
+    with pytest.raises(ValueError, match=r"did you mean 'my-laws'"):
         registry.create("my-law:tangential.other")
     with pytest.raises(ValueError, match="no such law is installed"):
         registry.create("my-laws:tangential.miner")

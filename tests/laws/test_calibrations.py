@@ -6,8 +6,8 @@ import pytest
 
 from contactlab import Scene, Simulation, create
 from contactlab.impact.hertz import hertz_scales
-from contactlab_laws.hunt_crossley.law import damping_number
-from contactlab_laws.thornton.law import Thornton
+from contactlab_laws.hunt_crossley import damping_number
+from contactlab_laws.thornton import Thornton
 
 
 def restitution(scene=None, **laws):

@@ -148,8 +148,3 @@ def test_a_sweep_gives_what_a_run_gives():
     assert calls[-1] == 5000
     assert set(result.status.tolist()) == {Status.SUCCESS}
     assert np.allclose(result.psi2, Simulation().run(scene).psi2, rtol=0.0, atol=1e-11)
-
-
-def test_the_former_name_says_where_the_table_is():
-    with pytest.raises(ValueError, match=r"tangential.tabulated.*'tangential.fronts' answers"):
-        Simulation(tangential="tabulated")

@@ -7,9 +7,8 @@ import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create
 from contactlab.contracts import Increment, NormalContact
-from contactlab_laws.mindlin import law as mindlin
-from contactlab_laws.mindlin.dashpot import critical_share, cut, with_dashpot
-from contactlab_laws.mindlin.law import FORMS, State
+from contactlab_laws import mindlin
+from contactlab_laws.mindlin import FORMS, State, critical_share, cut, with_dashpot
 
 STEEL = Material.named("steel")
 SCENE = Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.3, 0.7, 0.15)
@@ -219,7 +218,7 @@ def test_a_linear_spring_in_si(ratio, damping):
 
 def test_a_step_of_the_linear_spring_by_hand():
     """k = 2 N/m, c = 3 N s/m, M_t = 4 kg, mu = 0.5: cut at 1 N, from a spring of 0.8 N."""
-    from contactlab_laws.linear_spring.law import State as Spring
+    from contactlab_laws.linear_spring import State as Spring
 
     state = Spring(2.0, 3.0, 4.0, 0.5, 0.8, 0.9)
     step = Increment(0.3, 0.1, 2.0, 1.0, 3.0)

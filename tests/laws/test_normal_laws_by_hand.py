@@ -9,7 +9,7 @@ from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create
 from contactlab_laws.dashpot.motion import ScaledMotion, stretched, stretching
 from contactlab_laws.dashpot.oscillator import Oscillator, damping_of, half_duration, restitution
 from contactlab_laws.hertz.motion import HertzMotion
-from contactlab_laws.jkr.law import LEAST, root_of_size
+from contactlab_laws.jkr import LEAST, root_of_size
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 SCENE = Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.3, 0.7, 0.15)

@@ -5,7 +5,7 @@ import pytest
 
 import contactlab
 from contactlab.impact.hertz import hertz_scales
-from contactlab_laws.kuwabara_kono.law import viscosity_number
+from contactlab_laws.kuwabara_kono import viscosity_number
 from tests.laws.by_hand import rebound
 from tests.laws.exact_laws import order
 from tests.laws.normal_impacts import CALIBRATED, psi2, restitution, scene

@@ -119,7 +119,7 @@ def test_mfix_has_the_whole_stiffness_of_mindlin():
 
 
 def test_no_page_says_that_mfix_has_two_thirds():
-    from contactlab_laws.mindlin.law import MindlinCap
+    from contactlab_laws.mindlin import MindlinCap
 
     told = " ".join((MindlinCap.__doc__ or "").split())
     assert "Kratos and MFiX have 1" in told

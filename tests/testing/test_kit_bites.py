@@ -14,7 +14,7 @@ from contactlab.testing import (
     examine,
     outcome,
 )
-from contactlab_laws.mindlin.law import MindlinCap
+from contactlab_laws.mindlin import MindlinCap
 from tests.testing import broken_clauses as clauses
 from tests.testing import broken_couplings as couplings
 from tests.testing import broken_declarations as declarations

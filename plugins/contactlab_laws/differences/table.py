@@ -44,8 +44,8 @@ class Row(NamedTuple):
 
 
 def key(law: Law) -> str:
-    """Return the name of a normal law in the table: module and class."""
-    return f"{type(law).__module__}.{type(law).__qualname__}"
+    """Return the name of a normal law in the table: the module of the model, and the class."""
+    return f"{type(law).__module__}.{type(law).__qualname__}".replace(".law.", ".")
 
 
 @cache
@@ -54,7 +54,7 @@ def rows() -> dict[str, tuple[Row, ...]]:
     table: dict[str, list[Row]] = {}
     with FILE.open(encoding="utf-8", newline="") as file:
         for law, *numbers in list(csv.reader(file))[1:]:
-            table.setdefault(law, []).append(Row(*map(float, numbers)))
+            table.setdefault(law.replace(".law.", "."), []).append(Row(*map(float, numbers)))
     return {law: tuple(sorted(each)) for law, each in table.items()}
 
 

@@ -17,7 +17,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Real, quantity
-from contactlab_laws.mindlin.dashpot import critical_share, cut, with_dashpot
+from contactlab_laws.mindlin import critical_share, cut, with_dashpot
 
 #: Bound of the imbalance of the energy books at the fewest steps admitted, where it is largest: it
 #: falls as the square of the steps. A dashpot adds the share of a step in which the velocity

@@ -19,7 +19,6 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Mask, Real, choice, quantity
-from contactlab_laws.mindlin.dashpot import critical_share, cut, with_dashpot
 
 FORMS = ("displacement", "displacement_rescaled", "increment", "increment_rescaled")
 
@@ -82,6 +81,27 @@ DAMPED_GAIN = {
     "displacement_rescaled": _MADE.format(_DAMPED.format("11 %")),
     "increment": _MADE.format(_DAMPED.format("15 %")),
 }
+
+
+def critical_share(share: float, stiffness: Real, mass: Real) -> Any:
+    """Return 2 share sqrt(stiffness mass), the constant of a dashpot in N s/m."""
+    return 2.0 * share * np.sqrt(stiffness * mass)
+
+
+def with_dashpot(
+    spring: Real, constant: Real, increment: Increment, tangential_mass: Real, limit: Real
+) -> Any:
+    """Return the force of a spring and a dashpot in N, cut off at the limit mu L."""
+    # The dashpot acts on the velocity in the middle of the time in which the force acts. The force
+    # itself changes that velocity: solving for it keeps the march of second order.
+    slowing = 0.5 * increment.duration / tangential_mass
+    force = (spring + constant * increment.velocity) / (1.0 + constant * slowing)
+    return cut(force, limit)
+
+
+def cut(value: Real, limit: Real) -> Any:
+    """Return ``value`` within plus and minus ``limit``."""
+    return np.minimum(np.maximum(value, -limit), limit)
 
 
 class State(NamedTuple):
