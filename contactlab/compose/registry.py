@@ -210,7 +210,8 @@ class Registry:
         if offered:
             hint = f"{plain!r} is offered as {' and '.join(map(repr, offered))}; "
         elif distribution:
-            hint = nearest(distribution, {each.distribution for each in self.installed()} - {distribution})
+            others = {info.distribution for info in self.installed()} - {distribution}
+            hint = nearest(distribution, others)
         else:  # kinds are left out, which would make any two names similar
             hint = nearest(short, names) or nearest(short, self.names(), alike=1.0)
         return refuse(
