@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import functools
 import json
 import re
 
 import attrs
-import numpy as np
 import pytest
 
-from contactlab import PluginError, Scene, Simulation, read_scene
-from contactlab.cli import animate, cite, explore, report
+from contactlab import PluginError, Simulation
 from contactlab.cli import compare as command
-from contactlab.cli.scene import composed
+from contactlab.cli import report
 from contactlab.scene_file import LawChoice
 from contactlab.study.comparison import compare
 from tests.cli.conftest import EXAMPLES
@@ -79,95 +76,6 @@ def test_a_law_that_does_not_fit_a_report_is_refused_if_it_was_asked_for(run, re
     assert not reported
 
 
-def test_the_page_to_throw_on_has_the_values_given(run, monkeypatch, tmp_path):
-    asked = []
-
-    @functools.wraps(explore.explore_page)  # the defaults are those of its signature
-    def page(**values):
-        asked.append(values)
-        return "page"
-
-    monkeypatch.setattr(explore, "explore_page", page)
-    monkeypatch.chdir(tmp_path)
-    assert run("explore").out == "explore.html\n"
-    assert (tmp_path / "explore.html").read_text(encoding="utf-8") == "page"
-    run("explore", "--angle", 1, "--speed", 2.5, "--spin", -3, "--friction", 0.25, "--material",
-        "steel", "--predict", "--out", "b.html")  # fmt: skip
-    assert asked == [
-        {"angle": 35.0, "speed": 2.0, "spin": 100.0, "friction": 0.8, "material": "pmma",
-         "predict": False},
-        {"angle": 1.0, "speed": 2.5, "spin": -3.0, "friction": 0.25, "material": "steel",
-         "predict": True},
-    ]  # fmt: skip
-
-
-def test_ghosts_have_names_of_their_own(run, monkeypatch, tmp_path, ball):
-    drawn = []
-    monkeypatch.setattr(
-        "contactlab.figures.animation.animate",
-        lambda path, result, *, ghosts, **_: drawn.append((path, result, ghosts)),
-    )
-    path = tmp_path / "a.gif"
-    words = ("--tangential", "annulus", "--normal", "hertz", "--set", "tangential.annuli=9")
-    ran = run("animate", ball, *words, "--ghost", "coulomb,mindlin_cap,frictionless", "--out", path)
-    assert (ran.status, ran.out) == (0, f"{path}\n")
-    ((where, result, ghosts),) = drawn
-    assert where == path
-    assert result.history.fields is not None
-    assert list(ghosts) == ["rigid", "capped spring", "frictionless"]
-    expected = Simulation(tangential="coulomb").run(read_scene(ball).scene)
-    assert ghosts["rigid"].psi2 == pytest.approx(expected.psi2, abs=1e-12)
-    assert animate.GHOST_NAMES == {"coulomb": "rigid", "mindlin_cap": "capped spring"}
-
-
-def test_sources_of_data_come_first_then_laws_then_this_program(run, monkeypatch):
-    texts = []
-    monkeypatch.setattr(cite, "bibtex", lambda found: texts.append(list(found)) or "entries")
-    monkeypatch.setattr(cite, "software", lambda: "this program")
-    monkeypatch.setattr(cite, "references", lambda law: [f"{type(law).__name__}:\n  a paper"])
-    ran = run("cite", KHARAZ, "--tangential", "annulus,coulomb", "--integrator", "symplectic")
-    assert ran.out == "entries\n\nthis program\n"
-    file = read_scene(KHARAZ)
-    data = [" ".join(text.split()) for text in
-            (file.citation, *(one.source for one in file.measured))]  # fmt: skip
-    laws = [f"{name}: a paper" for name in ("Hertz", "Annulus", "Symplectic", "Coulomb")]
-    assert texts.pop() == [*dict.fromkeys(data), *laws]
-    run("cite")
-    assert texts.pop()[:2] == ["Hertz: a paper", "Fronts: a paper"]
-    bare = EXAMPLES / "sweep.toml"
-    assert not read_scene(bare).measured
-    run("cite", bare, "--tangential", "coulomb")
-    assert "Coulomb: a paper" in texts.pop()
-
-
-@pytest.mark.parametrize(
-    ("words", "history", "estimate"),
-    [
-        ([], False, True),
-        (["--no-estimate"], False, False),
-        (["--history", "h.csv"], True, True),
-        (["--figure", "f.png"], True, True),
-        (["--stick-slip", "s.png"], "fields", True),
-        (["--stick-slip", "s.png", "--history", "h.csv"], "fields", True),
-    ],
-)
-def test_the_history_that_a_run_keeps(run, monkeypatch, tmp_path, words, history, estimate):
-    asked = []
-    usual = Simulation.run
-
-    def recorded(simulation, scene, **options):
-        asked.append(options)
-        return usual(simulation, scene, **options)
-
-    monkeypatch.setattr(Simulation, "run", recorded)
-    monkeypatch.setattr("contactlab.figures.files.save", lambda *_, **__: None)
-    monkeypatch.chdir(tmp_path)
-    laws = ("--tangential", "annulus", "--set", "tangential.annuli=3")
-    assert run("run", "--psi1", 6, "--chi", 1, *laws, *words).status == 0
-    assert asked[0] == {"history": history, "estimate_error": estimate}
-    assert (tmp_path / "h.csv").exists() == ("h.csv" in words)
-
-
 def asked_for(laws=None, **options):
     plain = {"normal": None, "tangential": None, "integrator": None, "settings": []} | options
     return command.simulations(argparse.Namespace(**plain), laws or LawChoice())
@@ -212,54 +120,6 @@ def test_an_option_goes_to_the_laws_that_have_it():
     assert listed == sorted(listed)
     with pytest.raises(ValueError, match="is not an option of a law"):
         asked_for(tangential=["coulomb"], settings=[("odd.thing", 3)])
-
-
-def test_laws_and_options_of_the_command_replace_those_of_a_file():
-    words = argparse.Namespace(normal=None, tangential="springs", integrator="paper",
-                               settings=[("integrator.steps", 77)])  # fmt: skip
-    found = composed(words, LawChoice(normal="tsuji", tangential="annulus"))
-    names = [type(law).__name__ for law in (found.normal, found.tangential, found.integrator)]
-    assert names == ["Tsuji", "Springs", "PaperSteps"]
-    assert found.integrator.steps == 77
-
-
-@pytest.mark.parametrize(
-    ("words", "history", "estimate"),
-    [
-        ([], False, False),
-        (["--figure", "f.png"], True, False),
-        (["--estimate-error"], False, True),
-        (["--all"], False, True),
-        (["--all", "--figure", "f.png"], False, True),
-    ],
-)
-def test_the_history_and_the_errors_of_a_comparison(
-    run, monkeypatch, short_sweep, tmp_path, words, history, estimate
-):
-    asked = []
-
-    def recorded(file, simulations, *, history, estimate_error, progress):
-        asked.append((history, estimate_error))
-        return compare(file, {"coulomb": Simulation(tangential="coulomb")})
-
-    monkeypatch.setattr(command, "compare", recorded)
-    monkeypatch.setattr(command, "_draw", lambda *_: None)
-    monkeypatch.chdir(tmp_path)
-    assert run("compare", short_sweep, *words).status == 0
-    assert asked == [(history, estimate)]
-
-
-def test_psi1_and_chi_are_a_nameless_file():
-    words = argparse.Namespace(scene=None, psi1=np.array([1.0, 2.0]), chi=1.5)
-    file = command._file(words)
-    assert (str(file.path), file.title, file.citation, file.notes) == ("--psi1, --chi", "", "", "")
-    assert list(file.varied) == ["psi1"]
-    assert file.scene == Scene.nondimensional(psi1=np.array([1.0, 2.0]), chi=1.5)
-    single = command._file(argparse.Namespace(scene=None, psi1=1.0, chi=1.5))
-    assert single.varied == {}
-    assert command._file(argparse.Namespace(scene=KHARAZ, psi1=None, chi=None)).path == KHARAZ
-    default = command._file(argparse.Namespace(scene=None, psi1=None, chi=None))
-    assert default.scene.shape == (65,)
 
 
 def test_an_interrupted_comparison_names_the_laws_left(run, monkeypatch, short_sweep):

@@ -5,17 +5,14 @@ from __future__ import annotations
 import csv
 import functools
 
-import attrs
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
 from contactlab import Scene, Simulation, read_scene
-from contactlab.cli import compare as command
-from contactlab.cli import drawing, validate
+from contactlab.cli import drawing
 from contactlab.study.comparison import compare
 from contactlab.study.loops import loops
-from contactlab.study.paper_figures import Curve, FigureData
 
 LAWS = {name: Simulation(tangential=name) for name in ("coulomb", "frictionless")}
 LOOK = {"look": "slides", "width": "two"}
@@ -80,18 +77,6 @@ def test_a_comparison_of_one_impact_is_of_its_forces(drawn, tmp_path):
     )
 
 
-def test_all_laws_have_a_panel_and_one_of_their_differences(
-    drawn, short_sweep, tmp_path, monkeypatch
-):
-    called = []
-    monkeypatch.setattr(drawing, "all_laws", lambda *arguments: called.append(arguments))
-    comparison = compare(read_scene(short_sweep), LAWS)
-    drawing.draw_all(tmp_path, comparison, "psi2", **LOOK)
-    ((_, axes, heights, look),) = drawn
-    assert (axes.shape, heights, look) == ((2, 1), (2.4, 1.2), LOOK)
-    assert called == [(axes[0, 0], axes[1, 0], comparison, "psi2")]
-
-
 def test_loops_at_constant_and_at_oscillating_load(drawn, ball, tmp_path):
     paths = loops(read_scene(ball).scene, {"mindlin_cap": Simulation(tangential="mindlin_cap")})
     drawing.draw_load_paths(tmp_path, paths, **LOOK)
@@ -104,61 +89,6 @@ def test_loops_at_constant_and_at_oscillating_load(drawn, ball, tmp_path):
     assert legends(axes) == [["mindlin_cap"], None]
     loads = [max((line.get_ydata() for line in each.lines), key=len) for each in (left, right)]
     assert not np.array_equal(*loads)
-
-
-def test_the_commands_hand_their_look_on(run, short_sweep, ball, tmp_path, monkeypatch):
-    drawn = []
-
-    def save(path, draw, **look):
-        drawn.append((path, {name: look[name] for name in ("look", "width")}))
-
-    for module in ("contactlab.cli.drawing", "contactlab.figures.files"):
-        monkeypatch.setattr(f"{module}.save", save)
-    look = ("--style", "slides", "--width", "one")
-    handed = {"look": "slides", "width": "one"}
-    laws = ("--tangential", "coulomb,frictionless")
-    path = tmp_path / "a.png"
-    run("compare", short_sweep, *laws, "--figure", path, *look)
-    run("compare", ball, "--tangential", "mindlin_cap", "--loops", path, *look)
-    run("run", ball, "--figure", path, *look)
-    run("run", ball, "--stick-slip", path, "--tangential", "annulus", *look)
-    run("sweep", short_sweep, "--figure", path, *look)
-    assert drawn == [(path, handed)] * 5
-    called = []
-    monkeypatch.setattr(drawing, "draw_all", lambda *a, **k: called.append((a, k)))
-    monkeypatch.setattr(command, "candidates", lambda _: Candidates())
-    run("compare", short_sweep, "--all", "--figure", path, "--quantity", "slip_restitution,psi2",
-        *look)  # fmt: skip
-    ((where, comparison, quantity), given) = called[0]
-    assert (where, comparison.names, quantity, given) == (
-        path,
-        list(LAWS),
-        "slip_restitution",
-        handed,
-    )
-
-
-@attrs.frozen
-class Candidates:
-    simulations: dict = LAWS
-    left_out: dict = attrs.field(factory=lambda: {"odd": "does not fit"})
-
-
-def test_the_main_laws_are_drawn_over_a_source(monkeypatch, measured, tmp_path):
-    """Those of a fixed list, and each quantity once."""
-    drawn = []
-    monkeypatch.setattr(drawing, "draw_comparison", lambda *arguments: drawn.append(arguments))
-
-    @attrs.frozen
-    class Evidence:
-        comparison: object
-
-    text = measured.read_text(encoding="utf-8")
-    measured.write_text(text + text[text.index("[[measured]]") :], encoding="utf-8")
-    comparison = compare(read_scene(measured), LAWS)
-    validate._draw(tmp_path, Evidence(comparison))
-    ((path, shown, quantities),) = drawn
-    assert (path, shown.names, quantities) == (tmp_path, ["coulomb"], ["psi2"])
 
 
 def test_the_paper_s_figures_are_saved_as_asked(run, monkeypatch, tmp_path):
@@ -198,26 +128,3 @@ def test_a_folder_that_cannot_be_made_is_told(run, tmp_path):
         ran = run("figures", "--out", tmp_path / folder, "--only", "2")
         told = f"contactlab figures: error: --out {tmp_path / folder}: {words}\n"
         assert (ran.status, ran.out, ran.err) == (2, "", told)
-
-
-def test_a_folder_that_cannot_be_written_to_is_told(run, tmp_path, monkeypatch):
-    monkeypatch.setattr("contactlab.cli.figures.unwritable", lambda _: "is read-only")
-    ran = run("figures", "--out", tmp_path, "--only", "2")
-    told = f"contactlab figures: error: --out {tmp_path}: is read-only\n"
-    assert (ran.status, ran.out, ran.err) == (2, "", told)
-
-
-def test_progress_of_the_figures_counts_them(run, monkeypatch, tmp_path):
-    counted = []
-    monkeypatch.setattr(
-        "contactlab.cli.progress.Progress.__call__", lambda _, *count: counted.append(count)
-    )
-    monkeypatch.setattr("contactlab.figures.files.save", lambda *_, **__: None)
-
-    def line(_):
-        curve = Curve("a line", np.nan, np.ones(2), np.ones(2))
-        return FigureData(number=1, x="chi", y="psi2", parameter="", curves=(curve,))
-
-    monkeypatch.setattr("contactlab.cli.figures.paper_data", lambda: {1: line, 2: line})
-    run("figures", "--out", tmp_path, "--only", "2,1", "--progress")
-    assert counted == [(1, 2), (2, 2)]

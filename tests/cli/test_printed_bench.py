@@ -78,31 +78,6 @@ def test_the_short_table_of_the_benchmark(monkeypatch):
     )
 
 
-@pytest.mark.parametrize(
-    ("options", "law", "budget", "status"),
-    [
-        ((), None, math.inf, 0),
-        (("--law", "springs", "--law", "coulomb", "--budget", "3"), ["springs", "coulomb"], 3.0, 0),
-        (("--quick",), None, math.inf, 130),
-    ],
-)
-def test_what_the_benchmark_is_asked_for(run, monkeypatch, options, law, budget, status):
-    asked = {}
-
-    def study(chosen, **more):
-        asked.update(more, chosen=chosen)
-        return benched((), complete=status == 0, interrupted=status == 130)
-
-    monkeypatch.setattr(bench, "bench", study)
-    monkeypatch.setattr(bench, "methods", lambda names: names)
-    assert run("bench", *options, "--json").status == status
-    assert (asked["chosen"], asked["budget"], asked["quick"]) == (law, budget, "--quick" in options)
-    assert asked["with_rebound"] is (law is None)
-    assert run("bench", "--markdown").out.startswith("| law, integrator |")
-    told = "--json, --markdown: cannot be combined; leave out one"
-    assert run("bench", "--json", "--markdown").err == f"contactlab bench: error: {told}\n"
-
-
 def test_a_benchmark_as_plain_numbers_and_as_a_file(tmp_path):
     whole = benched(ROWS, orders={"a": NAN, "b": 2.0})
     content = bench._content(whole)
@@ -114,31 +89,3 @@ def test_a_benchmark_as_plain_numbers_and_as_a_file(tmp_path):
     assert lines[0].split(",") == [field.name for field in attrs.fields(Row)]
     assert lines[2].startswith("springs / paper,steps=100,0.002,0.0056,0.0078,9.1e-10,5.0,6.0,0,")
     assert len(lines) == 4
-
-
-def test_the_benchmark_is_drawn_in_two_panels(tmp_path, monkeypatch, capsys):
-    saved = []
-    monkeypatch.setattr(
-        "contactlab.figures.files.save", lambda path, _, **look: saved.append((path, look))
-    )
-    path = tmp_path / "b.png"
-    bench._draw(path, benched(ROWS, complete=True), look="slides", width="one")
-    assert saved == [(path, {"columns": 2, "look": "slides", "width": "one"})]
-    bench._draw(path, benched((), complete=True), look="slides", width="one")
-    assert len(saved) == 1
-    assert capsys.readouterr().err == "no figure drawn: nothing was measured\n"
-
-
-def test_the_files_of_the_benchmark_are_those_of_its_result(run, monkeypatch, tmp_path):
-    drawn = []
-    found = benched(ROWS)
-    monkeypatch.setattr(bench, "bench", lambda *_, **__: found)
-    monkeypatch.setattr(bench, "methods", lambda _: [])
-    monkeypatch.setattr(bench, "_report", lambda _: "the table")
-    monkeypatch.setattr(bench, "_draw", lambda *given, **look: drawn.append((given, look)))
-    files = tmp_path / "b.csv", tmp_path / "b.png"
-    look = ("--style", "slides", "--width", "two")
-    ran = run("bench", "--csv", files[0], "--figure", files[1], *look)
-    assert ran == (0, "the table\n", "")
-    assert drawn == [((files[1], found), {"look": "slides", "width": "two"})]
-    assert len(files[0].read_text(encoding="utf-8").splitlines()) == 4

@@ -166,36 +166,6 @@ def test_the_status_of_stability(outcomes, complete, status, monkeypatch, capsys
     assert json.loads(capsys.readouterr().out)["complete"] is complete
 
 
-def test_no_map_is_drawn_of_nothing(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(stability, "error_maps", lambda *_, **__: [])
-    for complete, words in ((True, "there is nothing to map"),
-                            (False, "interrupted before the map was done")):  # fmt: skip
-        nothing = Stability(outcomes=(), regions=(), complete=complete)
-        stability._draw(tmp_path / "t.png", arguments(), [], nothing, "interrupted")
-        assert capsys.readouterr().err == f"no map drawn: {words}\n"
-        assert not (tmp_path / "t.png").exists()
-
-
-def test_maps_and_models_are_drawn_with_the_look_asked_for(tmp_path, monkeypatch):
-    drawn, asked = [], []
-    monkeypatch.setattr(
-        stability, "error_maps", lambda chosen, quick: asked.append((chosen, quick)) or ["map"]
-    )
-    monkeypatch.setattr(
-        "contactlab.figures.stability.draw_stability", lambda *a, **k: drawn.append((a, k))
-    )
-    look = {"look": "slides", "width": "two"}
-    models = (model("cap", [0.5, 0.1, 0.1]),)
-    whole = Stability(outcomes=(), regions=(), complete=True, models=models)
-    path = tmp_path / "m.png"
-    stability._draw(path, arguments(style="slides", width="two"), ["law"], whole, "")
-    stability._draw(
-        path, arguments(style="slides", width="two"), [], attrs.evolve(whole, complete=False), ""
-    )
-    assert drawn == [((path, ["map"], models), look), ((path, [], models), look)]
-    assert asked == [(["law"], True)]
-
-
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -206,18 +176,6 @@ def test_maps_and_models_are_drawn_with_the_look_asked_for(tmp_path, monkeypatch
 )
 def test_options_of_stability_that_cannot_be(run, options, words):
     assert run("stability", *options) == (2, "", f"contactlab stability: error: {words}\n")
-
-
-def test_the_files_of_stability_are_those_of_its_result(monkeypatch, tmp_path):
-    asked = []
-    found = Stability(outcomes=OUTCOMES, regions=(), complete=True)
-    monkeypatch.setattr(stability, "stability", lambda *_, **__: found)
-    monkeypatch.setattr(stability, "methods", lambda _: ["a law"])
-    monkeypatch.setattr(stability, "_draw", lambda *given: asked.append(given))
-    words = arguments(csv=tmp_path / "s.csv", figure=tmp_path / "s.png")
-    assert stability.execute(words) == 1
-    assert asked == [(tmp_path / "s.png", words, ["a law"], found, "the budget ran out")]
-    assert len((tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()) == 9
 
 
 def test_an_interrupted_report_has_the_outcomes_judged_so_far(monkeypatch, capsys):
