@@ -10,8 +10,6 @@ Examples
 from __future__ import annotations
 
 import argparse
-import contextlib
-import sys
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_scene, inputs
@@ -40,15 +38,14 @@ def execute(arguments: argparse.Namespace) -> int:
     _, scene, simulation = inputs(arguments)
     if scene.shape:
         raise ValueError("scene: must be a single impact, not a sweep; leave out [sweep]")
-    with shared.progress(arguments.progress, "frames") as progress:
-        with contextlib.redirect_stdout(sys.stderr):  # plug-ins may print
-            result = simulation.run(scene, history="fields").check()
-            ghosts = {
-                GHOST_NAMES.get(name, name): Simulation(normal=simulation.normal, tangential=name)
-                .run(scene)
-                .check()
-                for name in arguments.ghost
-            }
+    with shared.working(arguments.progress, "frames") as progress:
+        result = simulation.run(scene, history="fields").check()
+        ghosts = {
+            GHOST_NAMES.get(name, name): Simulation(normal=simulation.normal, tangential=name)
+            .run(scene)
+            .check()
+            for name in arguments.ghost
+        }
         from contactlab.figures.animation import animate  # matplotlib only when drawing
 
         animate(arguments.out, result, ghosts=ghosts, progress=progress)

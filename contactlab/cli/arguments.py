@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import json
 import math
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import attrs
+
 from contactlab.cli.progress import progress as progress  # exported to the subcommands
 from contactlab.compose.registry import KINDS
-from contactlab.outcome.files import distinct, unwritable
+from contactlab.outcome.files import distinct, unwritable, write_table
 from contactlab.scene_file import SceneFile
 
 #: Exit statuses; the last two are those of a shell for a program that a signal ended.
@@ -139,6 +142,24 @@ def save(
             if counted is not None:
                 counted(done, len(wanted))
     return status
+
+
+@contextlib.contextmanager
+def working(wanted: bool | None, what: str) -> Iterator[Callable[[int, int], object] | None]:
+    """Yield the progress line, or None; what laws print meanwhile goes to stderr."""
+    with progress(wanted, what) as counted, contextlib.redirect_stdout(sys.stderr):
+        yield counted
+
+
+def print_json(content: object) -> None:
+    """Print JSON; NaN has to be None before."""
+    print(json.dumps(content, indent=2, allow_nan=False))
+
+
+def write_items(path: Path, kind: type, items: Iterable[Any]) -> None:
+    """Write a CSV with one row for each item of an attrs class, its fields as columns."""
+    names = [field.name for field in attrs.fields(kind)]
+    write_table(path, names, ([getattr(item, name) for name in names] for item in items))
 
 
 def add_laws(

@@ -11,16 +11,12 @@ Examples
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import Any
 
-import attrs
-
 from contactlab.cli import arguments as shared
 from contactlab.outcome.columns import json_value
-from contactlab.outcome.files import write_table
 from contactlab.outcome.tables import time
 from contactlab.outcome.text_table import table
 from contactlab.study.bench_methods import methods
@@ -54,12 +50,12 @@ def execute(arguments: argparse.Namespace) -> int:
             progress=progress,
         )
     saved = shared.save(
-        (arguments.csv, lambda path: _write_csv(path, benchmark)),
+        (arguments.csv, lambda path: shared.write_items(path, Row, benchmark.rows)),
         (arguments.figure, lambda path: _draw(path, benchmark, **shared.look(arguments))),
         progress_wanted=arguments.progress,
     )
     if arguments.json:
-        print(json.dumps(_content(benchmark), indent=2))
+        shared.print_json(_content(benchmark))
     else:
         print(markdown(benchmark) if arguments.markdown else _report(benchmark))
     return shared.INTERRUPTED if benchmark.interrupted else saved
@@ -78,11 +74,7 @@ def _draw(path: Path, benchmark: Benchmark, **look: Any) -> None:
 
 def _content(benchmark: Benchmark) -> dict[str, object]:
     """Return the content of the JSON."""
-    rows = [
-        {key: json_value(value) for key, value in attrs.asdict(row).items()}
-        for row in benchmark.rows
-    ]
-    orders = {name: json_value(order) for name, order in benchmark.orders.items()}
+    rows, orders = json_value(benchmark.rows), json_value(benchmark.orders)
     return {"rows": rows, "orders": orders, "complete": benchmark.complete}
 
 
@@ -132,9 +124,3 @@ def _report(benchmark: Benchmark) -> str:
     if benchmark.complete:
         return text
     return f"{text}\n\n{_incomplete(benchmark)}"
-
-
-def _write_csv(path: Path, benchmark: Benchmark) -> None:
-    """Write all rows of the benchmark."""
-    names = [field.name for field in attrs.fields(Row)]
-    write_table(path, names, ([getattr(row, name) for name in names] for row in benchmark.rows))

@@ -20,7 +20,6 @@ from __future__ import annotations
 import argparse
 import inspect
 import itertools
-import json
 import sys
 from pathlib import Path
 
@@ -33,7 +32,7 @@ from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
-from contactlab.outcome.columns import quantity_named
+from contactlab.outcome.columns import json_value, quantity_named
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.scene_file.laws import same_law
 from contactlab.study import side_by_side
@@ -42,7 +41,6 @@ from contactlab.study.loops import loops
 from contactlab.study.scores import (
     DEFAULT_SCENE,
     candidates,
-    plain_score,
     scores,
     to_dict,
     write_csv,
@@ -123,8 +121,8 @@ def execute(arguments: argparse.Namespace) -> int:
         content = to_dict(comparison, quantities) | {"title": file.title}
         content["complete"] = not comparison.interrupted
         if arguments.all:
-            content["scores"] = [plain_score(score) for score in scores(comparison, compared)]
-        print(json.dumps(content, indent=2, allow_nan=False))
+            content["scores"] = json_value(scores(comparison, compared))
+        shared.print_json(content)
     elif arguments.csv:
         write_csv(comparison, quantities, sys.stdout)
     elif arguments.all:

@@ -10,7 +10,6 @@ Examples
 from __future__ import annotations
 
 import argparse
-import json
 import re
 
 import attrs
@@ -32,7 +31,7 @@ def execute(arguments: argparse.Namespace) -> int:
     entries = (materials.entry(arguments.name),) if single else materials.entries()
     if arguments.json:
         content = {"materials": [attrs.asdict(entry) for entry in entries]}
-        print(json.dumps(content | {"references": materials.references()}, indent=2))
+        shared.print_json(content | {"references": materials.references()})
         return shared.OK
     headings = ["material", "E (GPa)", "nu", "density (kg/m³)"]
     rows = [

@@ -11,13 +11,12 @@ from __future__ import annotations
 
 import argparse
 import inspect
-import json
 import sys
 import textwrap
 from collections import Counter
 from typing import Any
 
-from contactlab.cli.arguments import FAILED, OK, add_progress, progress
+from contactlab.cli.arguments import FAILED, OK, add_progress, print_json, progress
 from contactlab.compose.citations import references
 from contactlab.compose.composition import WAYS
 from contactlab.compose.options import Option, options
@@ -51,7 +50,7 @@ def execute(arguments: argparse.Namespace) -> int:
     for sentence in REGISTRY.clashes():
         print(f"contactlab: warning: {sentence}", file=sys.stderr)
     if arguments.json:
-        print(json.dumps(entries, indent=2))
+        print_json(entries)
         return OK
     keys = ("name", "kind", "distribution", "version")
     rows = [[str(entry[key]) for key in keys] for entry in entries]
@@ -76,7 +75,7 @@ def _show(arguments: argparse.Namespace) -> int:
     accepted, sources = options(law), references(law)
     if arguments.json:
         details = {"options": [option.to_dict() for option in accepted], "references": sources}
-        print(json.dumps(entry | details, indent=2))
+        print_json(entry | details)
         return OK
     width = max(map(len, entry))
     for key, value in entry.items():
@@ -121,7 +120,7 @@ def _check(arguments: argparse.Namespace) -> int:
             {"check": outcome.check, "outcome": outcome.verdict.value, "sentence": outcome.sentence}
             for outcome in outcomes
         ]
-        print(json.dumps({"name": arguments.name, "good": not failures, "checks": entries}))
+        print_json({"name": arguments.name, "good": not failures, "checks": entries})
     else:
         rows = [(outcome.check, outcome.verdict.value, outcome.sentence) for outcome in outcomes]
         print(table(("check", "outcome", "sentence"), rows))

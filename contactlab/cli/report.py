@@ -10,8 +10,6 @@ Examples
 from __future__ import annotations
 
 import argparse
-import contextlib
-import sys
 
 from contactlab.cli import arguments as shared
 from contactlab.compose.names import full_name, short_name
@@ -58,10 +56,7 @@ def execute(arguments: argparse.Namespace) -> int:
         except ValueError:  # a default that does not fit the file's normal law is left out
             if arguments.tangential:
                 raise
-    with (
-        shared.progress(arguments.progress, "laws") as progress,
-        contextlib.redirect_stdout(sys.stderr),  # plug-ins may print
-    ):
+    with shared.working(arguments.progress, "laws") as progress:
         from contactlab.pages.report import report_page  # matplotlib only when drawing
 
         comparison = compare(file, simulations, history=True, progress=progress)

@@ -13,8 +13,6 @@ Examples
 from __future__ import annotations
 
 import argparse
-import contextlib
-import json
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -75,10 +73,7 @@ def execute(arguments: argparse.Namespace) -> int:
             raise ValueError(
                 f"--{option}: needs a single impact, this scene is a sweep; leave out --{option}"
             )
-    with (
-        shared.progress(arguments.progress, "impacts" if scene.shape else "impact") as progress,
-        contextlib.redirect_stdout(sys.stderr),  # plug-ins may print
-    ):
+    with shared.working(arguments.progress, "impacts" if scene.shape else "impact") as progress:
         if scene.shape:
             result = simulation.sweep(scene, progress=progress)
         else:
@@ -130,11 +125,10 @@ def report(
 ) -> int:
     """Print JSON if ``as_json``, report failures on stderr, and return the exit status."""
     if as_json:
-        swept = {name: json_value(values) for name, values in varied.items()}
-        content = export.to_dict(result) | {"varied": swept}
+        content = export.to_dict(result) | {"varied": json_value(varied)}
         if collision is not None:
             content["collision"] = collision.to_dict()
-        print(json.dumps(content, indent=2, allow_nan=False))
+        shared.print_json(content)
     for sentence in error_cautions(result) if as_json else ():
         print(f"contactlab: caution: {sentence}", file=sys.stderr)
     failures = result.failures

@@ -10,17 +10,14 @@ Examples
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-import attrs
 import numpy as np
 
 from contactlab.cli import arguments as shared
 from contactlab.outcome.columns import json_value
-from contactlab.outcome.files import write_table
 from contactlab.outcome.text_table import table
 from contactlab.study.bench_methods import Method, methods
 from contactlab.study.error_map import error_maps
@@ -28,7 +25,6 @@ from contactlab.study.model_error import ModelError
 from contactlab.study.stability import Stability, stability
 from contactlab.study.stability_cases import Case
 from contactlab.study.stability_judge import RAISED, WRONG, Outcome, judge
-from contactlab.study.stability_map import Region
 
 #: Most failures listed under the table; CSV and JSON hold all of them.
 LISTED = 40
@@ -67,12 +63,14 @@ def execute(arguments: argparse.Namespace) -> int:
         why_not = "interrupted"
         result = Stability(outcomes=tuple(judgements), regions=(), complete=False)
     saved = shared.save(
-        (arguments.csv, lambda path: _write_csv(path, result)),
+        (arguments.csv, lambda path: shared.write_items(path, Outcome, _listed(result))),
         (arguments.figure, lambda path: _draw(path, arguments, chosen, result, why_not)),
         progress_wanted=arguments.progress,
     )
-    content = json.dumps(_content(result), indent=2) if arguments.json else report(result, why_not)
-    print(content)
+    if arguments.json:
+        shared.print_json(_content(result))
+    else:
+        print(report(result, why_not))
     if why_not == "interrupted":
         return shared.INTERRUPTED
     return shared.FAILED if result.failures() else saved
@@ -140,27 +138,16 @@ def _worst(item: ModelError) -> tuple[float, float]:
 
 def _content(result: Stability) -> dict[str, object]:
     """Return the content of the JSON."""
-    regions = [
-        {**_plain(item), "failures": [_plain(failed) for failed in item.failures]}
-        for item in result.regions
-    ]
     return {
-        "outcomes": [_plain(item) for item in result.outcomes],
-        "map": regions,
-        "model_errors": [_plain(item) for item in result.models],
+        "outcomes": json_value(result.outcomes),
+        "map": json_value(result.regions),
+        "model_errors": json_value(result.models),
         "tried": result.tried(),
         "silently_wrong": result.silently_wrong(),
         "complete": result.complete,
     }
 
 
-def _plain(item: Outcome | Region | ModelError) -> dict[str, object]:
-    """Return the fields of an item for JSON."""
-    return {key: json_value(value) for key, value in attrs.asdict(item, recurse=False).items()}
-
-
-def _write_csv(path: Path, result: Stability) -> None:
-    """Write one row for each outcome, and for each failure of the map."""
-    listed = [*result.outcomes, *(item for region in result.regions for item in region.failures)]
-    names = [field.name for field in attrs.fields(Outcome)]
-    write_table(path, names, ([getattr(item, name) for name in names] for item in listed))
+def _listed(result: Stability) -> list[Outcome]:
+    """Return all outcomes, and the failures of the map."""
+    return [*result.outcomes, *(item for region in result.regions for item in region.failures)]

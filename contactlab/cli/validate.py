@@ -10,7 +10,6 @@ Examples
 from __future__ import annotations
 
 import argparse
-import json
 import textwrap
 from pathlib import Path
 from typing import Any
@@ -65,11 +64,11 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.json:
         checks = [attrs.asdict(finding) | {"ok": finding.ok} for finding in findings]
         content = {
-            "checks": [{key: json_value(value) for key, value in row.items()} for row in checks],
+            "checks": json_value(checks),
             "sources": [_plain(item) for item in gathered],
             "complete": not interrupted,
         }
-        print(json.dumps(content, indent=2, allow_nan=False))
+        shared.print_json(content)
     else:
         ending = ["not complete: interrupted"] if interrupted else []
         print("\n\n".join([_checks(findings), *map(_agreement, gathered), *ending]))

@@ -6,9 +6,11 @@ for reading show the columns in ``SWEEP_TABLE`` and ``COMPARISON_TABLE``.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from operator import attrgetter
 from typing import Any, NamedTuple
 
+import attrs
 import numpy as np
 from numpy.typing import NDArray
 
@@ -159,9 +161,13 @@ def json_value(value: Any) -> Any:
     """Return ``value`` for JSON: statuses by name, arrays as lists, None for numbers not finite."""
     if isinstance(value, Status):
         return value.name
+    if attrs.has(type(value)):
+        value = attrs.asdict(value, recurse=False)
+    if isinstance(value, Mapping):
+        return {name: json_value(item) for name, item in value.items()}
     if isinstance(value, np.ndarray):
         value = value.tolist()
-    if isinstance(value, list):
+    if isinstance(value, list | tuple):
         return [json_value(item) for item in value]
     if isinstance(value, float | np.floating):
         return float(value) if np.isfinite(value) else None

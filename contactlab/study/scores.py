@@ -193,11 +193,6 @@ def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]
     }
 
 
-def plain_score(score: Score) -> dict[str, Any]:
-    """Return a score as numbers and text, ready for JSON; None for NaN."""
-    return {name: json_value(value) for name, value in attrs.asdict(score).items()}
-
-
 def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO) -> None:
     """Write one row per value to ``stream``; the reference is the first law, or the measured value.
 

@@ -8,6 +8,7 @@ import attrs
 import pytest
 
 from contactlab.cli import bench
+from contactlab.cli.arguments import write_items
 from contactlab.study.benchmark import Benchmark, Row
 
 NAN = math.nan
@@ -84,7 +85,7 @@ def test_a_benchmark_as_plain_numbers_and_as_a_file(tmp_path):
     assert content["orders"] == {"a": None, "b": 2.0}
     assert content["complete"] is True
     assert [entry["time_s"] for entry in content["rows"]] == [None, 5.0, 1.2e-3]
-    bench._write_csv(tmp_path / "b.csv", whole)
+    write_items(tmp_path / "b.csv", Row, whole.rows)
     lines = (tmp_path / "b.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0].split(",") == [field.name for field in attrs.fields(Row)]
     assert lines[2].startswith("springs / paper,steps=100,0.002,0.0056,0.0078,9.1e-10,5.0,6.0,0,")

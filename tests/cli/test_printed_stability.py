@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from contactlab.cli import stability
+from contactlab.cli.arguments import write_items
 from contactlab.study.model_error import ModelError
 from contactlab.study.stability import Stability
 from contactlab.study.stability_judge import RAISED, WRONG, Outcome
@@ -126,7 +127,7 @@ def test_at_most_forty_failures_are_listed_and_all_are_written(tmp_path):
     found = Stability(outcomes=OUTCOMES, regions=(region(**{RAISED: 50}),), complete=True)
     text = stability.report(found)
     assert sum(line.endswith("odd") for line in text.splitlines()) == 38
-    stability._write_csv(tmp_path / "s.csv", found)
+    write_items(tmp_path / "s.csv", Outcome, stability._listed(found))
     lines = (tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()
     assert len(lines) == 1 + 8 + 50
     assert lines[0].split(",") == [field.name for field in attrs.fields(Outcome)]
@@ -134,7 +135,7 @@ def test_at_most_forty_failures_are_listed_and_all_are_written(tmp_path):
     assert [len(content[name]) for name in ("outcomes", "map", "model_errors")] == [8, 1, 0]
     assert len(content["map"][0]["failures"]) == 50
     assert content["map"][0]["failures"][0]["case"] == "map 0"
-    assert content["map"][0]["chis"] == (0.5, 3.0, 7.0)
+    assert content["map"][0]["chis"] == [0.5, 3.0, 7.0]
     assert (content["tried"], content["silently_wrong"], content["complete"]) == (30, 1, True)
     assert content["outcomes"][3]["error"] is None
     json.dumps(content, allow_nan=False)

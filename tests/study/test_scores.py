@@ -9,13 +9,13 @@ import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create
 from contactlab.compose.registry import REGISTRY, PluginError
+from contactlab.outcome.columns import json_value
 from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import LawChoice, read_scene
 from contactlab.study.comparison import compare
 from contactlab.study.scores import (
     DEFAULT_SCENE,
     candidates,
-    plain_score,
     pressed_force,
     scores,
     to_dict,
@@ -48,8 +48,8 @@ def test_a_score_is_the_distance_from_the_first_law(compared):
     assert second.energy_made == 0.0
     assert np.isnan(second.pressed_force)
     assert second.run_time_per_impact == compared.runs[1].run_time_per_impact > 0.0
-    assert plain_score(second)["pressed_force"] is None
-    assert plain_score(second)["worst"] == second.worst
+    assert json_value(second)["pressed_force"] is None
+    assert json_value(second)["worst"] == second.worst
 
 
 def test_failed_impacts_do_not_count_in_a_score(compared):
