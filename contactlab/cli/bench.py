@@ -57,6 +57,7 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.csv, lambda path: _write_csv(path, benchmark)),
         (arguments.figure, lambda path: _draw(path, benchmark, **shared.look(arguments))),
         progress_wanted=arguments.progress,
+        interrupted=benchmark.interrupted,
     )
     if arguments.json:
         print(json.dumps(_content(benchmark), indent=2))

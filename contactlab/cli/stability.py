@@ -70,6 +70,7 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.csv, lambda path: _write_csv(path, result)),
         (arguments.figure, lambda path: _draw(path, arguments, chosen, result, why_not)),
         progress_wanted=arguments.progress,
+        interrupted=why_not == "interrupted",
     )
     content = json.dumps(_content(result), indent=2) if arguments.json else report(result, why_not)
     print(content)
