@@ -98,17 +98,22 @@ class Kept:
                     piece, sweep = _piece(arrays), str(arrays["sweep"])
             except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
                 rule = f"is damaged: {error}"
-                raise refuse("keep", str(path), rule, "delete this file") from error
+                raise _refuse(path, rule, "delete this file") from error
             first, stop = piece.chunk
             if path.name != _name(piece.chunk):
                 rule = f"contains impacts {first} to {stop}, which are not those of its name"
                 remedy = f"rename it to {_name(piece.chunk)}, or delete this file"
-                raise refuse("keep", str(path), rule, remedy)
+                raise _refuse(path, rule, remedy)
             if sweep != self.sweep:
                 rule = f"holds impacts {first} to {stop} of another sweep"
-                raise refuse("keep", str(path), rule, "delete this file")
+                raise _refuse(path, rule, "delete this file")
             pieces.append(piece)
         return pieces
+
+
+def _refuse(path: Path, rule: str, remedy: str) -> ValueError:
+    """Return the refusal of a file, with its whole path."""
+    return ValueError(f"keep = {str(path)!r}: {rule}; {remedy}")
 
 
 def count(folder: Path) -> int:

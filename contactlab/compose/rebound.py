@@ -97,9 +97,10 @@ def rebound(
         Return d psi2/d psi1 and d psi2/d chi too, for chi up to 2.5. Both are tabulated to 1e-6 at
         any tolerance (5e-5 for psi1 just above 1, chi 1.83 to 1.92).
     restitution : float or array_like
-        e of the normal motion, from 0.01 to 1, broadcast against ``psi1``. An array costs about
-        twice the price of one value in the table, and a call for each value outside. Below 1 the law is Tsuji's (``normal.tsuji``) with
-        Coulomb's law at every point, and ``tolerance`` has no effect. For chi from 0.8 to 1.8 and e
+        e of the normal motion, from 0.01 to 1, broadcast against ``psi1``. An array costs half a
+        microsecond an impact in the table, and a call for each value outside. Below 1 the law is
+        Tsuji's (``normal.tsuji``) with Coulomb's law at every point, and ``tolerance`` has no
+        effect. For chi from 0.8 to 1.8 and e
         from 0.5 a table holds psi2 to 1e-3; elsewhere up to chi = 10 rings give psi2 to 4e-3, in
         about ten milliseconds per impact; beyond, annuli answer, with an error that is not
         declared. The choice of law is a model error: at the same e other laws differ in psi2, for

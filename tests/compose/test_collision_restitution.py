@@ -96,4 +96,4 @@ def test_a_restitution_that_depends_on_the_speed():
     with pytest.raises(ValueError, match="restitution"):
         collide(met.take(0), restitution=lambda speed: 1.5 * speed)
     with pytest.raises(ValueError, match="shape"):
-        collide(met.take(slice(0, 2)), restitution=lambda speed: [0.9] * 3)
+        collide(met.take(slice(0, 2)), restitution=lambda _: [0.9] * 3)
