@@ -124,8 +124,9 @@ def save(
     """Write each file whose path is not None, and return the exit status.
 
     After an interruption what is finished goes beside the file, as ``NAME.partial.SUFFIX``, until
-    the whole is written; a file of an earlier run stays as it was. A file that cannot be written is reported on stderr, so that the other files and the printed
-    results of long work are not lost.
+    the whole is written; a file of an earlier run stays as it was. A file that cannot be written
+    is reported on stderr, so that the other files and the printed results of long work are not
+    lost.
     """
     status = OK
     wanted = [(path, write) for path, write in writings if path is not None]
