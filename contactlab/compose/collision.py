@@ -30,6 +30,8 @@ from contactlab.outcome.result import ImpactError, ImpactResult
 Array = NDArray[np.float64]
 
 SEPARATING = ("refuse", "pass")
+#: Restitutions of a batch that have plans of their own.
+MOST_PLANS = 20
 #: Vectors after a collision, name and unit.
 VECTORS = (
     ("velocity", "m/s"), ("spin", "rad/s"), ("target_velocity", "m/s"), ("target_spin", "rad/s"),
@@ -147,8 +149,10 @@ class Collision:
             plan = _planned(met.scene, self.restitution)
         else:
             scene, each = met.scene, self._each
-            halves = [(mask, each[mask]) for mask in (each == 1.0, each < 1.0) if mask.any()]
-            plan = _joined([(mask, _planned(scene.take(mask), e)) for mask, e in halves])
+            groups = [each == value for value in np.unique(each)[:MOST_PLANS]]
+            if len(groups) == MOST_PLANS:  # one plan for all damped impacts
+                groups = [mask for mask in (each == 1.0, each < 1.0) if mask.any()]
+            plan = _joined([(mask, _planned(scene.take(mask), each[mask])) for mask in groups])
         return collision_plan(plan, met, passed)
 
     @property
