@@ -17,8 +17,8 @@ from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
 from contactlab.impact.hertz import hertz_scales
-from contactlab.impact.yielding import path_cautions
 from contactlab.impact.scene import Scene
+from contactlab.impact.yielding import path_cautions
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import Rule, real, refuse
 from contactlab.outcome.result import ImpactError

@@ -96,7 +96,8 @@ def test_refusals_of_a_piece(folder):
     start = f"keep = {str(path)!r}: "
     rewritten(path, place=np.array([4, 7]))
     assert refusal(folder) == (
-        f"{start}is damaged: slip_velocity_change has 4 impacts where its place has 3; delete this file"
+        f"{start}is damaged: slip_velocity_change has 4 impacts where its place has 3; delete "
+        "this file"
     )
     rewritten(path, place=np.array([5, 9]))
     assert refusal(folder) == (

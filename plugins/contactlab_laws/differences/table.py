@@ -141,7 +141,7 @@ def _rubs(scene: Scene) -> bool:
 
 
 def _largest(normal: NormalMotion, measured: tuple[Row, ...]) -> float:
-    """Return the largest difference from Tsuji's law over the impacts, interpolated in their restitution."""
+    """Return the largest difference from Tsuji's law, interpolated in the restitution."""
     e = _restitution(normal)
     tabulated = [row.restitution for row in measured]
     sizes = np.interp(e, tabulated, [row.choice for row in measured])
