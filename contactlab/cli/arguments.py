@@ -123,19 +123,28 @@ def check_outputs(arguments: argparse.Namespace) -> None:
 
 
 def save(
-    *writings: tuple[Path | None, Callable[[Path], object]], progress_wanted: bool | None
+    *writings: tuple[Path | None, Callable[[Path], object]],
+    progress_wanted: bool | None,
+    interrupted: bool = False,
 ) -> int:
     """Write each file whose path is not None, and return the exit status.
 
-    A file that cannot be written is reported on stderr, so that the other files and the printed
-    results of long work are not lost.
+    After an interruption what is finished goes beside the file, as ``NAME.partial.SUFFIX``, until
+    the whole is written; a file of an earlier run stays as it was. A file that cannot be written
+    is reported on stderr, so that the other files and the printed results of long work are not
+    lost.
     """
     status = OK
     wanted = [(path, write) for path, write in writings if path is not None]
     with progress(progress_wanted, "files") as counted:
         for done, (path, write) in enumerate(wanted, start=1):
+            partial = path.with_name(f"{path.stem}.partial{path.suffix}")
             try:
-                write(path)
+                write(partial if interrupted else path)
+                if interrupted:
+                    print(f"contactlab: interrupted: {partial} has what is done", file=sys.stderr)
+                else:
+                    partial.unlink(missing_ok=True)
             except OSError as error:
                 print(f"contactlab: error: {error}", file=sys.stderr)
                 status = FAILED

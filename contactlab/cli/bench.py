@@ -53,6 +53,7 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.csv, lambda path: shared.write_items(path, Row, benchmark.rows)),
         (arguments.figure, lambda path: _draw(path, benchmark, **shared.look(arguments))),
         progress_wanted=arguments.progress,
+        interrupted=benchmark.interrupted,
     )
     if arguments.json:
         shared.print_json(_content(benchmark))

@@ -116,6 +116,7 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.figure, lambda path: _draw(path, arguments, comparison)),
         (arguments.loops, lambda path: _draw_loops(path, arguments, file.scene, compared)),
         progress_wanted=arguments.progress,
+        interrupted=comparison.interrupted,
     )
     if arguments.json:
         content = to_dict(comparison, quantities) | {"title": file.title}

@@ -118,6 +118,7 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.figure, lambda file: _draw(file, shown, **shared.look(arguments))),
         (arguments.csv, lambda file: write_residuals(file, shown)),
         progress_wanted=arguments.progress,
+        interrupted=interrupted,
     )
     _report(fitted, ranked, complete=not interrupted, as_json=arguments.json)
     return shared.INTERRUPTED if interrupted else max(saved, _failures(ranked))

@@ -44,6 +44,7 @@ def describe(fit: Fit) -> str:
         parts.append(f"columns not used: {', '.join(fit.measurements.unused)}")
     if fit.reduced_chi_square is not None:
         parts.append(f"reduced chi square: {fit.reduced_chi_square:.3g}")
+    parts += [f"caution: {caution}" for caution in fit.cautions]
     parts += [f"note: {note}" for note in fit.notes]
     return "\n\n".join(parts)
 

@@ -198,5 +198,7 @@ def _is_negative(word: str) -> bool:
 
 
 def _one_line(error: BaseException) -> str:
-    """Return the message of an error on one line."""
+    """Return the message of an error on one line; of the system's errors path and reason."""
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        return f"{error.filename}: cannot be read or written: {error.strerror}"
     return " ".join(str(error).split()) or type(error).__name__

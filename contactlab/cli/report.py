@@ -10,6 +10,7 @@ Examples
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from contactlab.cli import arguments as shared
 from contactlab.compose.names import full_name, short_name
@@ -61,7 +62,14 @@ def execute(arguments: argparse.Namespace) -> int:
 
         comparison = compare(file, simulations, history=True, progress=progress)
         page = report_page(file, simulations, comparison)
-    with written(arguments.out) as stream:
-        stream.write(page)
-    print(arguments.out)
-    return shared.INTERRUPTED if comparison.interrupted else shared.OK
+
+    def write(path: Path) -> None:
+        with written(path) as stream:
+            stream.write(page)
+        print(path)
+
+    interrupted = comparison.interrupted
+    saved = shared.save(
+        (arguments.out, write), progress_wanted=arguments.progress, interrupted=interrupted
+    )
+    return shared.INTERRUPTED if interrupted else saved

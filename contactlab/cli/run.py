@@ -90,6 +90,7 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.figure, lambda path: draw(path, result, **shared.look(arguments))),
         (arguments.stick_slip, lambda path: draw_map(path, result, **shared.look(arguments))),
         progress_wanted=arguments.progress,
+        interrupted=Status.INTERRUPTED in np.ravel(np.array(result.status, dtype=object)),
     )
     varied: Mapping[str, Any] = file.varied if file else {}
     encounter = file.encounter if file else None

@@ -66,6 +66,7 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.csv, lambda path: shared.write_items(path, Outcome, _listed(result))),
         (arguments.figure, lambda path: _draw(path, arguments, chosen, result, why_not)),
         progress_wanted=arguments.progress,
+        interrupted=why_not == "interrupted",
     )
     if arguments.json:
         shared.print_json(_content(result))

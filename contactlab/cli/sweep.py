@@ -23,6 +23,7 @@ import numpy as np
 from contactlab.cli import arguments as shared
 from contactlab.cli.run import draw, report
 from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
+from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import COLUMNS, csv_heading
@@ -82,6 +83,7 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.figure, lambda path: draw(path, result, **shared.look(arguments))),
         progress_wanted=arguments.progress,
+        interrupted=Status.INTERRUPTED in result.status,
     )
     if keep is not None and saved == shared.OK:
         _clear(keep, result)

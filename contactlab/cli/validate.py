@@ -60,7 +60,7 @@ def execute(arguments: argparse.Namespace) -> int:
             (folder / f"{item.source.name}.png", lambda path, item=item: _draw(path, item))
             for item in gathered
         ]
-        saved = shared.save(*drawings, progress_wanted=arguments.progress)
+        saved = shared.save(*drawings, progress_wanted=arguments.progress, interrupted=interrupted)
     if arguments.json:
         checks = [attrs.asdict(finding) | {"ok": finding.ok} for finding in findings]
         content = {

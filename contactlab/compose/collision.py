@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
@@ -30,6 +31,8 @@ from contactlab.outcome.result import ImpactError, ImpactResult
 Array = NDArray[np.float64]
 
 SEPARATING = ("refuse", "pass")
+#: Restitutions of a batch that have plans of their own.
+MOST_PLANS = 20
 #: Vectors after a collision, name and unit.
 VECTORS = (
     ("velocity", "m/s"), ("spin", "rad/s"), ("target_velocity", "m/s"), ("target_spin", "rad/s"),
@@ -147,16 +150,23 @@ class Collision:
         elif isinstance(self.restitution, float):
             plan = _planned(met.scene, self.restitution)
         else:
-            parts = [(mask, _planned(met.scene.take(mask), value)) for mask, value in self._parts]
-            plan = _joined(parts)
+            scene, each = met.scene, self._each
+            groups = [each == value for value in np.unique(each)[:MOST_PLANS]]
+            if len(groups) == MOST_PLANS:  # one plan for all damped impacts
+                groups = [mask for mask in (each == 1.0, each < 1.0) if mask.any()]
+            plan = _joined([(mask, _planned(scene.take(mask), each[mask])) for mask in groups])
         return collision_plan(plan, met, passed)
+
+    @property
+    def _each(self) -> Array:
+        """The restitution of each encounter that collided."""
+        each = np.broadcast_to(self.restitution, self.encounter.shape)
+        return each if np.all(self.collided) else each[self.collided]
 
     @property
     def _parts(self) -> list[tuple[Any, float]]:
         """Masks of the encounters that collided, and the restitution of each mask."""
-        each = np.broadcast_to(self.restitution, self.encounter.shape)
-        if not np.all(self.collided):
-            each = each[self.collided]
+        each = self._each
         return [(each == value, value) for value in np.unique(each).tolist()]
 
     @property
@@ -258,7 +268,7 @@ def collide(
     encounter: Encounter,
     simulation: Simulation | None = None,
     *,
-    restitution: Real = 1.0,
+    restitution: Real | Callable[[Any], Any] = 1.0,
     separating: str = "refuse",
 ) -> Collision:
     """Return velocities and spins of both bodies after an encounter, or after each of a batch.
@@ -270,9 +280,10 @@ def collide(
         The laws. The default is ``contactlab.rebound``, exact for elastic spheres with Hertz
         contact and partial slip: under a microsecond per encounter in a large batch, 0.2 ms for a
         single one.
-    restitution : float or array, shape (...,)
-        e of the normal motion without a simulation, from 0.01 to 1, one number or one for each
-        encounter; each different value costs a call of its own. Below 1 the law is Tsuji's,
+    restitution : float, array of shape (...,), or callable
+        e of the normal motion without a simulation, from 0.01 to 1: one number, one for each
+        encounter, or a function that is given the speeds of approach in m/s (0 where bodies
+        separate) and returns e. Below 1 the law is Tsuji's,
         with Coulomb's law at every point: from a table for e from 0.5 and chi from 0.8 to 1.8
         (solid spheres), by rings elsewhere. ``Collision.plan`` states the error of psi2. Other laws
         of the same e give another psi2, at e = 0.9 by up to 0.021 (viscoelastic) or 0.62 (a linear
@@ -313,6 +324,8 @@ def collide(
         raise refuse("simulation", simulation, "must be a Simulation", remedy)
     if separating not in SEPARATING:
         raise refuse("separating", separating, "must be 'refuse' or 'pass'")
+    if callable(restitution):
+        restitution = restitution(np.maximum(_approach(encounter), 0.0))
     e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
     if not isinstance(e, float):
         e = _spread(e, encounter.shape)
@@ -339,15 +352,24 @@ def collide(
     return Collision(encounter=encounter, **moved, simulation=simulation, known=result)
 
 
+def _approach(encounter: Encounter) -> Any:
+    """Return the speeds of approach in m/s, of the batch shape."""
+    approach = np.empty(encounter.shape)
+    for where, part in encounter.parts():
+        approach.reshape(-1)[where] = part.contact().approach
+    return approach if encounter.shape else float(approach)
+
+
 def _simulation(restitution: float) -> Simulation:
     """Return laws with the answers of ``contactlab.rebound``."""
     return Simulation() if restitution == 1.0 else damped(restitution)
 
 
-def _planned(scene: Scene, restitution: float) -> Plan:
-    """Return the plan of impacts of one restitution."""
-    plan = _simulation(restitution).plan(scene)
-    return plan if restitution == 1.0 else by_rebound(plan, scene.chi, restitution)
+def _planned(scene: Scene, restitution: Any) -> Plan:
+    """Return the plan of impacts that are all elastic, or all damped."""
+    least = float(np.min(restitution))  # the plan of one value serves all but their own words
+    plan = _simulation(least).plan(scene)
+    return plan if least == 1.0 else by_rebound(plan, scene.chi, restitution)
 
 
 def _joined(parts: list[tuple[Any, Plan]]) -> Plan:

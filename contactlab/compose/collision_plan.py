@@ -40,7 +40,7 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
     return plan.changed(left_out=tuple(left_out))
 
 
-def by_rebound(plan: Plan, chi: Any, restitution: float) -> Plan:
+def by_rebound(plan: Plan, chi: Any, restitution: Any) -> Plan:
     """Return the plan with the answers of ``rebound`` in place of those of the laws.
 
     Parameters
@@ -49,7 +49,7 @@ def by_rebound(plan: Plan, chi: Any, restitution: float) -> Plan:
         Plan of the laws that give the same answers as ``rebound``.
     chi : float or array
         Inertia ratio of each impact.
-    restitution : float
+    restitution : float or array
         Normal restitution that ``rebound`` was given.
     """
     unknown = np.isnan(plan.psi2_error)
@@ -57,7 +57,9 @@ def by_rebound(plan: Plan, chi: Any, restitution: float) -> Plan:
     error_words = "none was measured beyond chi = 10, of contactlab.rebound"
     if not np.isnan(bound[unknown]).all():
         error_words = "at most {:g} beside Coulomb's law at every point, of contactlab.rebound"
-    laws = f"contactlab.rebound with restitution={restitution:g}"
+    low, high = float(np.min(restitution)), float(np.max(restitution))
+    told = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+    laws = f"contactlab.rebound with restitution={told}"
     texts = {
         TANGENTIAL_MOTION: f"tangential motion: {laws}",
         PSI2_ERROR: f"numerical error of psi2: {error_words}",

@@ -37,8 +37,9 @@ class Kept:
     def __init__(self, folder: str | Path, laws: Laws, scene: Scene, block: int) -> None:
         if not isinstance(folder, str | os.PathLike):
             raise refuse("keep", folder, "must be the path of a folder")
-        if os.path.exists(folder) and not os.path.isdir(folder):
-            raise refuse("keep", str(folder), "is a file", "name a folder")
+        if os.path.lexists(folder) and not os.path.isdir(folder):
+            what = "is a link to nothing" if os.path.islink(folder) else "is a file"
+            raise refuse("keep", str(folder), what, "name a folder")
         self.folder = Path(folder)
         by_kind = laws._asdict()
         about = {
@@ -78,8 +79,9 @@ class Kept:
         """Write a piece, unless it has impacts that were not computed."""
         if any(status in TRIED_AGAIN for status in piece.motion.status):
             return
+        arrays = _arrays(piece) | {"sweep": np.array(self.sweep)}
         with written(self.folder / _name(piece.chunk), binary=True) as stream:
-            np.savez(stream, **_arrays(piece), sweep=np.array(self.sweep))
+            np.savez(stream, **arrays, checksum=np.array(_checksum(arrays)))
 
     def pieces(self) -> list[Piece]:
         """Return the pieces in the folder, no impact in two of them; refuse other files."""
@@ -90,20 +92,28 @@ class Kept:
                 continue
             try:
                 with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as content:
-                    piece, sweep = _piece(content), str(content["sweep"])
+                    arrays = {name: content[name] for name in content.files}
+                    if str(arrays.pop("checksum")) != _checksum(arrays):
+                        raise ValueError("its numbers are not those that were written")
+                    piece, sweep = _piece(arrays), str(arrays["sweep"])
             except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
                 rule = f"is damaged: {error}"
-                raise refuse("keep", str(path), rule, "delete this file") from error
+                raise _refuse(path, rule, "delete this file") from error
             first, stop = piece.chunk
             if path.name != _name(piece.chunk):
                 rule = f"contains impacts {first} to {stop}, which are not those of its name"
                 remedy = f"rename it to {_name(piece.chunk)}, or delete this file"
-                raise refuse("keep", str(path), rule, remedy)
+                raise _refuse(path, rule, remedy)
             if sweep != self.sweep:
                 rule = f"holds impacts {first} to {stop} of another sweep"
-                raise refuse("keep", str(path), rule, "delete this file")
+                raise _refuse(path, rule, "delete this file")
             pieces.append(piece)
         return pieces
+
+
+def _refuse(path: Path, rule: str, remedy: str) -> ValueError:
+    """Return the refusal of a file, with its whole path."""
+    return ValueError(f"keep = {str(path)!r}: {rule}; {remedy}")
 
 
 def count(folder: Path) -> int:
@@ -153,6 +163,11 @@ def _feed(tree: Any, update: Any) -> None:
         update(pickle.dumps(tree))
 
 
+def _checksum(arrays: Mapping[str, Any]) -> str:
+    """Return a hash of the arrays of a piece, in the order of their names."""
+    return fingerprint([(name, np.asarray(arrays[name])) for name in sorted(arrays)])
+
+
 def _arrays(piece: Piece) -> dict[str, Any]:
     """Return the entries of a piece as arrays of numbers and text."""
     chunk, plan, motion = piece
@@ -185,6 +200,8 @@ def _piece(content: Mapping[str, Any]) -> Piece:
         detail=np.array(content["detail"].tolist(), dtype=object),
         counters=json.loads(str(content["counters"])),
     )
-    if motion.status.shape != (stop - first,):
-        raise ValueError(f"{motion.status.size} impacts where its place has {stop - first}")
+    for name in (*Motion.numbers(), "status", "detail"):
+        if np.shape(getattr(motion, name)) != (stop - first,):
+            count = np.size(getattr(motion, name))
+            raise ValueError(f"{name} has {count} impacts where its place has {stop - first}")
     return Piece(Chunk(first, stop), Plan.from_arrays(content), motion)

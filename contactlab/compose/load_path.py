@@ -18,6 +18,7 @@ from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
+from contactlab.impact.yielding import path_cautions
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import Rule, real, refuse
 from contactlab.outcome.result import ImpactError
@@ -80,6 +81,19 @@ class LoadPath:
     detail: str
     _states: tuple[Any, ...] = attrs.field(repr=False)
 
+    @property
+    def cautions(self) -> list[str]:
+        """Doubts about the model: of the friction law on such paths, and of the bodies."""
+        deepest = float(np.nanmax(self.approach, initial=0.0))
+        return [
+            *self.tangential.path_cautions(),
+            *path_cautions(self.scene, deepest, plastic=self.normal.plastic),
+        ]
+
+    def __str__(self) -> str:
+        """Return ``repr`` and every caution, one line each."""
+        return "\n".join([repr(self), *(f"caution: {text}" for text in self.cautions)])
+
     def __repr__(self) -> str:
         """Return the number of points, the laws and the status."""
         laws = f"{type(self.normal).__name__}, {type(self.tangential).__name__}"
@@ -108,17 +122,24 @@ class LoadPath:
         names = each[0] if each else ()
         return {name: np.array([fields[name] for fields in each]) for name in names}
 
-    def check(self) -> LoadPath:
+    def check(self, *, cautions: bool = False) -> LoadPath:
         """Return this path if every contact was followed to its end.
+
+        Parameters
+        ----------
+        cautions : bool
+            Raise the first caution too.
 
         Raises
         ------
         ImpactError
-            With the sentence of the failure.
+            With the sentence of the failure, or of the first caution.
         """
         statuses = np.ravel(np.asarray(self.status, dtype=object))
         for status in statuses[statuses != Status.SUCCESS]:
             raise ImpactError(f"{status.value} {self.detail}", status)
+        if cautions and self.cautions:
+            raise ImpactError(f"caution: {self.cautions[0]}", Status.SUCCESS)
         return self
 
 

@@ -15,7 +15,7 @@ from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
-from contactlab.impact.unit_slips import unit_slips
+from contactlab.impact.unit_slips import unit_slips, unlikely
 from contactlab.numeric.arrays import every, some, spread
 from contactlab.outcome.plan import BOOKS, PSI2_ERROR, TANGENTIAL_MOTION, UNCHECKED, Clause, Plan
 
@@ -77,10 +77,23 @@ def make_plan(
         return (
             (*computed, *_error_clauses(error, ended)),
             tuple(left_out),
-            tuple(Clause(text, everywhere) for text in (*unit_slips(scene), *cautions)),
+            tuple(
+                Clause(text, everywhere)
+                for text in (*unit_slips(scene), *unlikely(scene), *cautions, *_taken(normal_law))
+            ),
         )
 
     return Plan(late=clauses, marched=marched, psi2_error=error)
+
+
+def _taken(law: Any) -> tuple[str, ...]:
+    """Return the caution of a restitution that nobody gave."""
+    kept = _defaults(law).partition("restitution = ")[2]
+    if not kept:
+        return ()
+    value = kept.partition(",")[0].partition(" ")[0]
+    name = type(law).__name__
+    return (f"restitution = {value} was taken by default: give {name} one of your own",)
 
 
 def _defaults(law: Any) -> str:

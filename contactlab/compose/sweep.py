@@ -67,13 +67,15 @@ def swept(
         pieces = pieces_of(laws, scene, list(missing), block, executor)
     try:
         for piece in pieces:
+            finished.append(piece)
             if kept is not None:
                 kept.keep(piece)
-            finished.append(piece)
             done += piece.chunk.size
             if progress is not None:
                 progress(done, size)
     except KeyboardInterrupt:
+        if kept is not None and finished:
+            kept.keep(finished[-1])  # which may have been on its way to the disk
         finished += [unsolved(gap, Status.INTERRUPTED) for gap in _gaps(finished, size)]
     finally:
         pieces.close()

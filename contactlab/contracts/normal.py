@@ -12,11 +12,8 @@ from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import ClosedFormMotion, NormalMotion
 from contactlab.impact.scene import Scene
-from contactlab.impact.yielding import yielding
+from contactlab.impact.yielding import large_contact, yielding
 from contactlab.numeric.checks import Real
-
-#: Above this ratio of contact radius to R the theory of half-spaces is doubtful (theory §8).
-DOUBTFUL_SIZE_RATIO = 0.1
 
 
 class NormalLaw(Law):
@@ -96,13 +93,7 @@ class NormalLaw(Law):
             return ()
         cautions = () if self.plastic else yielding(scene)
         largest = float(np.max(motion.maximum_radius / scene.pair.radius))
-        if not largest > DOUBTFUL_SIZE_RATIO:
-            return cautions
-        return (
-            *cautions,
-            f"C = {largest:.3g}, contact radius over R: the contact is not small against the "
-            f"radius, the theory of half-spaces is doubtful above {DOUBTFUL_SIZE_RATIO}",
-        )
+        return (*cautions, *large_contact(largest))
 
 
 class ClosedFormNormalLaw(NormalLaw):

@@ -351,6 +351,10 @@ class SteppedTangentialLaw(TangentialLaw):
         """
         return None
 
+    def path_cautions(self) -> tuple[str, ...]:
+        """Return one sentence for each doubt about the law along a prescribed path; none here."""
+        return ()
+
     def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:
         """Return named arrays of ``state`` for the history (traction, stuck, ...).
 

@@ -18,6 +18,9 @@ LEAST_DENSITY, LEAST_MODULUS = 25.0, 1e4
 #: LEAST_SPIN rad/s that move the surface at more than MOST_RIM times the speed of the centre; a
 #: rolling sphere has once that speed.
 LEAST_SPIN, MOST_RIM = 50.0, 8.0
+#: Friction coefficient above which it is doubtful; speed over that of sound, sqrt(E/rho), above
+#: which waves carry off energy and Hertz's law is doubtful.
+MOST_FRICTION, SOUND_PART = 2.0, 0.1
 #: An angle that is a multiple of STEP_DEG degrees, to NEAR_DEG, when read in radians is suspect.
 STEP_DEG, NEAR_DEG = 5.0, 0.003
 
@@ -53,6 +56,28 @@ def unit_slips(scene: Scene) -> list[str]:
     if angle_deg <= 0.5 * math.pi and nearest > 0.0 and abs(intended - nearest) <= NEAR_DEG:
         number = f"angle of incidence {angle_deg:.6g}°: {nearest:g}° are as many radians"
         slips.append(f"unit: {number}; angle_deg is in degrees")
+    return slips
+
+
+def unlikely(scene: Scene) -> list[str]:
+    """Return one sentence for each number of ``scene`` that few contacts have."""
+    if scene.sphere is None or scene.target is None:
+        return []
+    slips, speed = [], _most(scene.normal_speed)
+    if (friction := _most(scene.friction_coefficient)) > MOST_FRICTION:
+        slips.append(
+            f"friction_coefficient = {friction:.4g}: above {MOST_FRICTION:g} surfaces stick like "
+            "soft rubber; is it in per cent, or an angle?"
+        )
+    for name, body in (("sphere", scene.sphere), ("target", scene.target)):
+        if (density := body.material.density) is not None:
+            young = 2.0 * (1.0 + body.material.poisson_ratio) * body.material.shear_modulus
+            sound = _least(np.sqrt(np.asarray(young) / density))
+            if speed > SOUND_PART * sound:
+                slips.append(
+                    f"normal speed {speed:.4g} m/s is {speed / sound:.2g} of the speed of sound in "
+                    f"the {name}, {sound:.4g} m/s: above {SOUND_PART:g} the contact is not quasi-static"
+                )
     return slips
 
 

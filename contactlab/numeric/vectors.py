@@ -64,11 +64,11 @@ def _many(value: Any, field: attrs.Attribute[Any]) -> Array:
         remedy = "give three numbers, or an array of shape (..., 3)"
     floats = type(value) is np.ndarray and value.dtype.kind == "f" and value.size
     # This test makes no temporary arrays; NaN fails both comparisons.
-    if floats and value.min() >= -LARGEST and value.max() <= LARGEST:
+    if floats and float(value.min()) >= -LARGEST and float(value.max()) <= LARGEST:
         vectors: Array = value.astype(np.float64, order="C")
     else:
         if floats and value.ndim > 1:
-            where = np.argwhere(~(np.abs(value) <= LARGEST).all(axis=-1))
+            where = np.argwhere(~(np.abs(value.astype(np.float64)) <= LARGEST).all(axis=-1))
             first = value[tuple(where[0])].tolist()
             raise refuse(field.name, first, RANGE.sentence + first_of(where), remedy)
         vectors = np.array(real(field.name, value, rule=RANGE, remedy=remedy, empty=True))

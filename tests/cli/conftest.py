@@ -18,6 +18,11 @@ class Ran(NamedTuple):
     err: str
 
 
+def partial(path):
+    """Return where an interrupted command writes what is done."""
+    return path.with_name(f"{path.stem}.partial{path.suffix}")
+
+
 def interrupting(function, after):
     """Return ``function`` as interrupted in its call number ``after`` + 1."""
     calls = []

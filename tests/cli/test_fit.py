@@ -160,7 +160,7 @@ def test_an_interruption_keeps_what_is_done(run, impacts, monkeypatch, tmp_path)
     assert ran.status == 130
     assert "friction_coefficient" in ran.out
     assert ran.out.endswith("not complete: interrupted\n")
-    assert len((tmp_path / "r.csv").read_text(encoding="utf-8").splitlines()) == 5
+    assert len((tmp_path / "r.partial.csv").read_text(encoding="utf-8").splitlines()) == 5
     content = json.loads(run("fit", impacts, KHARAZ, "--json").out)
     assert content["complete"] is False
     assert content["parameters"]["friction_coefficient"]["bootstrap_95"] is None

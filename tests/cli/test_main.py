@@ -144,7 +144,7 @@ def test_interrupted_sweep_reports_what_is_done(tmp_path):
     assert "interrupted" in err.splitlines()[-1]
     assert '"SUCCESS"' in out
     assert '"INTERRUPTED"' in out
-    assert (tmp_path / "part.npz").exists()
+    assert (tmp_path / "part.partial.npz").exists()
 
 
 @pytest.mark.parametrize(

@@ -53,7 +53,7 @@ RIGID = ("--tangential", "coulomb")
         (["bench"], ["bench", "files"]),
         (["validate"], ["checks", "sources"]),
         (["animate", "--psi1", 6, "--chi", 1, *RIGID, "--out", "a.gif"], ["frames"]),
-        (["report", "SWEEP", *RIGID, "--out", "a.html"], ["laws"]),
+        (["report", "SWEEP", *RIGID, "--out", "a.html"], ["laws", "files"]),
     ],
 )
 def test_the_work_has_a_name(run, asked, short_sweep, tmp_path, monkeypatch, words, works):

@@ -85,8 +85,11 @@ def test_interrupted_it_keeps_what_is_done(run, monkeypatch, tmp_path):
 
     monkeypatch.setattr(solve, "outcome", interrupted)
     out = tmp_path / "a.npz"
-    assert run(*SWEEP, "--out", out, "--resume").status == 130
-    with np.load(out) as content:
+    out.write_text("earlier")
+    ran = run(*SWEEP, "--out", out, "--resume")
+    assert (ran.status, out.read_text()) == (130, "earlier")
+    assert "a.partial.npz has what is done" in ran.err
+    with np.load(tmp_path / "a.partial.npz") as content:
         assert np.isfinite(content["psi2"]).sum() == 1000
     assert len(list((tmp_path / "a.npz.kept").glob("*.npz"))) == 1
     assert run(*SWEEP, "--out", out, "--resume").status == 0

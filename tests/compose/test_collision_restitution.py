@@ -64,3 +64,36 @@ def test_the_plan_of_a_restitution_says_who_answered():
     assert batch.plan.psi2_error.max() == DAMPED_ERROR
     assert f"psi2 (1 of 2 impacts): at most {DAMPED_ERROR:g}" in str(batch.plan)
     assert "Springs" in str(collide(meeting(), Simulation(tangential="springs")).plan)
+
+
+def test_a_restitution_for_each_pair_is_that_of_each_alone():
+    rng = np.random.default_rng(7)
+    count = 300
+    e = np.where(rng.random(count) < 0.1, 1.0, rng.uniform(0.5, 1.0, count))
+    speeds = np.stack([rng.uniform(0, 3, count), np.zeros(count), -np.ones(count)], axis=-1)
+    met = meeting(velocity=speeds)
+    made = collide(met, restitution=e)
+    for k in range(0, count, 7):
+        alone = collide(met.take(k), restitution=float(e[k]))
+        assert made.velocity[k] == pytest.approx(alone.velocity, abs=1e-12)
+    assert made.normal_velocity == pytest.approx(-e, rel=1e-14)
+    assert "restitution=0.5" in str(made.plan)
+
+
+def test_a_restitution_that_depends_on_the_speed():
+    speeds = [(0.5, 0.0, -1.0), (0.5, 0.0, -2.0), (0.5, 0.0, 1.0)]
+    met = meeting(velocity=speeds)
+
+    def softer(speed):
+        assert np.shape(speed) == (3,)
+        return 1.0 - 0.1 * speed
+
+    made = collide(met, restitution=softer, separating="pass")
+    assert made.normal_velocity[:2] == pytest.approx([-0.9, -1.6])
+    assert made.velocity[2].tolist() == list(speeds[2])
+    one = collide(met.take(0), restitution=lambda speed: 1.0 - 0.1 * speed)
+    assert one.velocity == pytest.approx(made.velocity[0], abs=1e-12)
+    with pytest.raises(ValueError, match="restitution"):
+        collide(met.take(0), restitution=lambda speed: 1.5 * speed)
+    with pytest.raises(ValueError, match="shape"):
+        collide(met.take(slice(0, 2)), restitution=lambda _: [0.9] * 3)

@@ -88,6 +88,9 @@ def test_what_holds_no_sweep_is_refused_and_left_alone(tmp_path):
         simulation.sweep(scene(), keep=folder / "thesis.txt")
     with pytest.raises(FileNotFoundError):
         simulation.sweep(scene(), keep=tmp_path / "none" / "kept")
+    (tmp_path / "dangling").symlink_to(tmp_path / "nowhere")
+    with pytest.raises(ValueError, match="is a link to nothing"):
+        simulation.sweep(scene(), keep=tmp_path / "dangling")
     (folder / "thesis.txt").rename(tmp_path / "thesis.txt")
     interrupted(simulation, folder)
     (tmp_path / "thesis.txt").rename(folder / "thesis.txt")
@@ -103,6 +106,15 @@ def test_damaged_files_are_refused(tmp_path):
     for content in (b"", whole[:100], b"x" * 300):
         piece.write_bytes(content)
         with pytest.raises(ValueError, match=r"is damaged.*delete this file"):
+            simulation.sweep(scene(), keep=folder)
+    piece.write_bytes(whole)
+    with np.load(piece) as content:
+        arrays = dict(content)
+    edited = arrays | {"slip_velocity_change": arrays["slip_velocity_change"] * 1.001}
+    short = arrays | {"friction_work": arrays["friction_work"][:-1]}
+    for changed in (edited, short):  # numbers edited by hand, a column cut off
+        np.savez(piece, **changed)
+        with pytest.raises(ValueError, match=rf"{piece.name}.*is damaged.*; delete this file"):
             simulation.sweep(scene(), keep=folder)
     piece.write_bytes(whole)
     piece.rename(piece.with_name("impacts-40-90.npz"))

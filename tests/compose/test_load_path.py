@@ -286,3 +286,30 @@ def test_a_path_may_have_one_point():
     path = load_path(SCENE, [DEEP], [1.0]).check()
     assert path.friction_force == 0.0
     assert path.work == 0.0
+
+
+def test_a_path_says_where_a_law_does_not_hold():
+    """Thirty cycles of the load by 10 % at a held displacement, against many springs."""
+    scene = Scene(BALL, BALL, 0.3, 1.0)
+    press = np.linspace(1e-8, 1e-6, 100)
+    load = np.concatenate((press, np.full(100, 1e-6)))
+    load = np.append(load, 1e-6 * (1.0 + 0.1 * np.sin(np.linspace(0.0, 60.0 * np.pi, 3000))))
+    held = np.concatenate((0.0 * press, np.linspace(0.0, 2.2e-7, 100), np.full(3000, 2.2e-7)))
+    paths = {
+        name: load_path(scene, load, held, tangential=name)
+        for name in ("springs", "mindlin_deresiewicz", "mindlin_cap")
+    }
+    last = {name: path.friction_force[-1] for name, path in paths.items()}
+    assert not paths["springs"].cautions
+    for name in ("mindlin_deresiewicz", "mindlin_cap"):
+        assert abs(last[name] / last["springs"] - 1.0) > 0.1
+        assert "a held displacement" in str(paths[name])
+        with pytest.raises(ImpactError, match="caution"):
+            paths[name].check(cautions=True)
+
+
+def test_a_path_cautions_of_its_bodies():
+    lead = Sphere(0.01, Material.named("lead"))
+    path = load_path(Scene(lead, lead, 0.3, 1.0), [1e-6, 2e-4], [0.0, 0.0])
+    assert any("yield" in text for text in path.cautions)
+    assert any("contact radius over R" in text for text in path.cautions)

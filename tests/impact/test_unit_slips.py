@@ -39,6 +39,23 @@ def test_slips(scene, words):
     assert len(unit_slips(scene)) == 1
 
 
+@pytest.mark.parametrize(
+    ("scene", "words"),
+    [
+        (attrs.evolve(BALL, friction_coefficient=15.0), "friction_coefficient = 15"),
+        (attrs.evolve(BALL, normal_speed=600.0), "0.12 of the speed of sound in the sphere"),
+    ],
+)
+def test_numbers_that_few_contacts_have(scene, words):
+    assert words in str(Simulation().plan(scene))
+    assert "friction_coefficient" not in str(Simulation().plan(BALL).cautions)
+    assert "sound" not in str(Simulation().plan(attrs.evolve(BALL, normal_speed=500.0)))
+
+
+def test_a_restitution_that_nobody_gave_is_told():
+    assert "restitution = 0.9 was taken by default" in str(Simulation(normal="tsuji").run(BALL))
+
+
 def test_a_batch_is_judged_by_its_extremes():
     angles = np.radians(np.radians([5.0, 15.0, 45.0]))
     batch = attrs.evolve(BALL, tangential_velocity=np.tan(angles), friction_coefficient=0.1)

@@ -78,6 +78,14 @@ class Annulus(PartialSlip):
         """Return the cautions of every law, and one on a pressure that may be no hemisphere."""
         return (*super().cautions(scene, normal), *hemisphere(normal))
 
+    def path_cautions(self) -> tuple[str, ...]:
+        """Return the caution that the force at gross slip is that of the annuli, not mu N."""
+        most = 0.1 / self.annuli
+        return (
+            f"the force of {self.annuli} annuli may exceed mu N by up to {most:.1g} of it "
+            "(numerical error; it falls with their number)",
+        )
+
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return a contact without traction."""
         shape = scene.shape

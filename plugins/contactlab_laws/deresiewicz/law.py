@@ -72,6 +72,14 @@ class MindlinDeresiewicz(SteppedTangentialLaw):
         """Return the cautions of every law, of the pressure, and of the short memory."""
         return (*super().cautions(scene, normal), *hemisphere(normal), SHORT_MEMORY)
 
+    def path_cautions(self) -> tuple[str, ...]:
+        """Return the caution of a memory that holds few turning points."""
+        return (
+            "short memory along a path: thirty load cycles of 10 % at a held displacement lose "
+            "45 % of the force, random paths are off by up to 0.42 mu N (0.10 rms); springs and "
+            "annuli hold both (model, not numerical error)",
+        )
+
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a in N/m, of the largest contact."""
         return scene.pair.tangential_stiffness(normal.maximum_radius)

@@ -19,11 +19,15 @@ FILE = Path(__file__).with_name("differences.csv")
 LEAST = 1e-3
 #: Laws whose least restitution in the table is at most this take any restitution, as Tsuji's does.
 SPANNED = 0.1
+#: Restitutions in the table are rounded to this.
+ROUNDED = 1e-5
 #: Factor on the sizes in cautions, which are then rounded up to one digit: between the measured
 #: impacts and restitutions the differences are up to 5 % larger than at them.
 BETWEEN = 1.1
-#: The impacts that were measured.
+#: The impacts that were measured, for the choice of a law.
 MEASURED = "measured for chi 0.8 to 1.8"
+#: chi at which the error of springs was measured, each over all psi1.
+NODES = (0.05, 0.1, 0.2, 0.4, 0.8, 1.2, 1.8, 2.5, 3.5, 5.0, 7.0, 10.0)
 
 
 class Row(NamedTuple):
@@ -32,15 +36,15 @@ class Row(NamedTuple):
     Attributes
     ----------
     restitution : float
-    springs : float
-        Between independent springs and Coulomb's law at every point.
     choice : float
         Between this normal law and Tsuji's of the same restitution.
+    springs : tuple of float
+        Between independent springs and Coulomb's law at every point, at the chi of ``NODES``.
     """
 
     restitution: float
-    springs: float
     choice: float
+    springs: tuple[float, ...]
 
 
 def key(law: Law) -> str:
@@ -54,7 +58,9 @@ def rows() -> dict[str, tuple[Row, ...]]:
     table: dict[str, list[Row]] = {}
     with FILE.open(encoding="utf-8", newline="") as file:
         for law, *numbers in list(csv.reader(file))[1:]:
-            table.setdefault(law.replace(".law.", "."), []).append(Row(*map(float, numbers)))
+            e, choice, *springs = map(float, numbers)
+            row = Row(e, choice, tuple(springs))
+            table.setdefault(law.replace(".law.", "."), []).append(row)
     return {law: tuple(sorted(each)) for law, each in table.items()}
 
 
@@ -62,18 +68,35 @@ def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     """Return the caution that separately limited springs are not Coulomb's law, with its size."""
     if "elastic_hertz" in normal.offers or not _rubs(scene):
         return ()
-    measured = rows()
-    own = measured.get(key(normal.law))
-    laws = measured.values() if own is None else (own,)
-    size = max((_largest(normal, each, "springs") for each in laws), default=0.0)
-    if not size >= LEAST:
-        return ()
-    scope = ", of other normal laws of this restitution" if own is None else ""
+    own, e, chi = rows().get(key(normal.law)), _restitution(normal), np.asarray(scene.chi)
+    if own is None or np.min(e) < own[0].restitution - ROUNDED or _beyond(chi):
+        told = "psi2 is off by an amount that was not measured here"
+    else:
+        size = _by_springs(own, e, chi)
+        if not size >= LEAST:
+            return ()
+        told = f"psi2 is off by up to {_above(size)}"
     return (
         "each spring is limited separately, which is not Coulomb's law at every point under this "
-        f"normal law: psi2 is off by up to {_above(size)} ({MEASURED}{scope}; model, not numerical "
-        "error); tangential.annulus has the right limit",
+        f"normal law: {told} (model, not numerical error); tangential.annulus has the right limit",
     )
+
+
+def _beyond(chi: Any) -> bool:
+    """Return whether any chi lies beyond those that were measured."""
+    return bool(np.min(chi) < NODES[0] or np.max(chi) > NODES[-1])
+
+
+def _by_springs(measured: tuple[Row, ...], e: Any, chi: Any) -> float:
+    """Return the largest error of springs at the measured e and chi around those of the impacts."""
+    sizes = np.array([row.springs for row in measured])
+    known = np.array([row.restitution for row in measured])
+    largest = 0.0
+    for value, ratio in np.unique(np.stack(np.broadcast_arrays(e, chi)).reshape(2, -1), axis=1).T:
+        low, left = np.searchsorted(known, value, "right") - 1, np.searchsorted(NODES, ratio) - 1
+        around = sizes[max(low, 0) : low + 2, max(left, 0) : left + 2]
+        largest = max(largest, float(around.max(initial=0.0)))
+    return largest
 
 
 def choice(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
@@ -87,14 +110,14 @@ def choice(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         if np.all(_restitution(normal) == 1.0):
             return ()  # no damping: Hertz's motion
         sizes = {
-            law.rpartition(".")[2]: _largest(normal, each, "choice")
+            law.rpartition(".")[2]: _largest(normal, each)
             for law, each in measured.items()
             if law != own and each[0].restitution <= SPANNED
         }
         least, most = (pick(sizes, key=sizes.__getitem__) for pick in (min, max))
         size_text = f"{_above(sizes[least])} ({least}) to {_above(sizes[most])} ({most})"
     else:
-        size = _largest(normal, measured[own], "choice")
+        size = _largest(normal, measured[own])
         if not size >= LEAST:
             return ()
         size_text = f"{_above(size)} (Tsuji)"
@@ -118,11 +141,11 @@ def _rubs(scene: Scene) -> bool:
     return bool(np.any((slip != 0.0) & (friction != 0.0)))
 
 
-def _largest(normal: NormalMotion, measured: tuple[Row, ...], column: str) -> float:
-    """Return the largest difference over the impacts, interpolated in their restitution."""
+def _largest(normal: NormalMotion, measured: tuple[Row, ...]) -> float:
+    """Return the largest difference from Tsuji's law, interpolated in the restitution."""
     e = _restitution(normal)
     tabulated = [row.restitution for row in measured]
-    sizes = np.interp(e, tabulated, [getattr(row, column) for row in measured])
+    sizes = np.interp(e, tabulated, [row.choice for row in measured])
     return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else 0.0
 
 

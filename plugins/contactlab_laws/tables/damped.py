@@ -38,6 +38,8 @@ BORDERS = (0.0, 0.1 ** (1.0 / 3.0), 0.5 ** (1.0 / 3.0))
 STICKS, RINGS, TURNS, SLIPS = range(4)
 #: Impacts computed together: fewer cost more calls, more leave the processor's cache.
 CHUNK = 8192
+#: The same with a restitution each, whose tables are larger.
+CHUNK_EACH = 1024
 #: Fewer impacts than this are computed one by one.
 FEW = 12
 #: The last terms along psi1 are left out that together are no more than this: less than the
@@ -125,7 +127,7 @@ def section(restitution: float) -> Section:
 
 
 @np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
-def rebound(psi1: Array, chi: Array, restitution: float) -> Array:
+def rebound(psi1: Array, chi: Array, restitution: Any) -> Array:
     """Return psi2, shape (impacts,), by the table or by rings; odd in psi1 to the last bit.
 
     Parameters
@@ -133,20 +135,70 @@ def rebound(psi1: Array, chi: Array, restitution: float) -> Array:
     psi1 : array, shape (impacts,)
     chi : array, shape (impacts,)
         Up to 10, as far as the rings were tried.
-    restitution : float
-        e.
+    restitution : float, or array of shape (impacts,)
+        e, below 1.
     """
-    speed = np.abs(psi1)
+    speed, each = np.abs(psi1), isinstance(restitution, np.ndarray)
     known = (chi >= CHI[0]) & (chi <= CHI[1]) & (restitution >= DAMPED_RESTITUTION)
+    table = tabulated_each if each else tabulated
     if known.all():
-        psi2 = tabulated(speed, chi, restitution)
+        psi2 = table(speed, chi, restitution)
     else:
         from contactlab_laws.rings.courses import by_rings  # a table needs no normal motion
 
+        e = np.broadcast_to(restitution, psi1.shape)
         psi2 = np.empty(psi1.shape)
-        psi2[known] = tabulated(speed[known], chi[known], restitution)
-        psi2[~known] = by_rings(speed[~known], chi[~known], restitution)
+        psi2[known] = table(speed[known], chi[known], e[known] if each else restitution)
+        for value in np.unique(e[~known]).tolist():
+            part = ~known & (e == value)
+            psi2[part] = by_rings(speed[part], chi[part], value)
     return np.copysign(psi2, psi2 * np.where(psi1 < 0.0, -1.0, 1.0))
+
+
+def tabulated_each(speed: Array, chi: Array, restitution: Array) -> Array:
+    """Return psi2 of psi1 = speed >= 0, with a restitution each, shape (impacts,)."""
+    psi2 = np.empty(speed.shape)
+    pieces = depth(restitution) > BORDERS[1]
+    for half in (0, 1):
+        rows = np.flatnonzero(pieces == half)
+        for first in range(0, rows.size, CHUNK_EACH):
+            part = rows[first : first + CHUNK_EACH]
+            psi2[part] = _each(half, speed[part], chi[part], restitution[part])
+    return psi2
+
+
+def _each(half: int, speed: Array, chi: Array, e: Array) -> Array:
+    """Return psi2 in one piece of the depth t: the sections of all impacts at once."""
+    cuts, terms = (shipped().arrays[name][half] for name in ("cuts", "terms"))
+    rows, columns, layers = terms.shape[1:]
+    deep = _chebyshev(inner(depth(e), *BORDERS[half : half + 2]), layers)
+    across = _chebyshev(inner(chi, *CHI), columns)
+    sections = (cuts.reshape(-1, layers) @ deep).reshape(len(cuts), columns, -1)
+    borders = np.einsum("icn,cn->in", sections, across)
+    piece = (speed > borders).sum(axis=0)
+    psi2 = np.empty(speed.shape)
+    for number in range(SLIPS + 1):
+        who = np.flatnonzero(piece == number)
+        if not who.size:
+            continue
+        section = (terms[number].reshape(-1, layers) @ deep[:, who]).reshape(rows, columns, -1)
+        count = np.maximum(needed(np.abs(section).sum(axis=1).T, SMALL), 2)
+        along = _chebyshev(place(number, speed[who], borders[:, who]), rows)
+        along *= np.arange(rows)[:, None] < count
+        section *= across[:, who]
+        value = np.einsum("rn,rn->n", section.sum(axis=1), along)
+        psi2[who] = rough(number, speed[who], value, chi[who], e[who])
+    return psi2
+
+
+def _chebyshev(x: Array, count: int) -> Array:
+    """Return the first Chebyshev polynomials at x, shape (count, places)."""
+    values = np.empty((count, x.size))
+    values[0], values[1] = 1.0, x
+    for k in range(2, count):
+        np.multiply(2.0 * x, values[k - 1], out=values[k])
+        values[k] -= values[k - 2]
+    return values
 
 
 def tabulated(speed: Array, chi: Array, restitution: float) -> Array:

@@ -136,8 +136,8 @@ def rebound(psi1: Any, chi: Any, *, derivatives: bool = False) -> Any:
     derivatives : bool
         Whether to return (psi2, d psi2/d psi1, d psi2/d chi); arrays only.
     """
-    if psi1.__class__ is float and not derivatives:
-        return _single()(psi1, chi)
+    if isinstance(psi1, float) and not derivatives:
+        return _single()(float(psi1), float(chi))  # NumPy's floats are floats, and slow
     flat, ratios, shape = psi1.ravel(), chi.ravel(), psi1.shape
     if flat.size < FEW:
         psi2 = np.array(list(map(_single(), flat.tolist(), ratios.tolist())))

@@ -19,19 +19,21 @@ from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
-from contactlab_laws.differences.table import FILE, key
+from contactlab_laws.differences.table import FILE, NODES, key
 from contactlab_laws.rings.rings import Array
 from table_builders.damped.build import by_half_space
 
-#: The impacts: least and number of psi1, up to slip throughout and 1 more, at each chi; as many
-#: again in ``NARROW``, the range of psi1 with the largest error of springs.
+#: The impacts of the choice of a law: least and number of psi1, up to slip throughout and 1 more,
+#: at each chi; as many again in ``NARROW``.
 LEAST, COUNT, CHI = 0.2, 24, (0.8, 1.0, 1.2, 49.0 / 34.0, 1.6, 1.8)
 NARROW = (0.7, 2.0)
+#: The impacts of springs: numbers of psi1 at each node of chi, from 0 to 1 beyond slip throughout.
+SPEEDS = 40
 #: Springs, extrapolated from this number and half of it, with four steps each.
 SPRINGS = 120
 #: Laws whose restitution is an option, and its values.
 CALIBRATED = ("tsuji", "hunt_crossley", "kuwabara_kono", "linear", "walton_braun")
-RESTITUTION = (1.0, 0.99, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3, 0.1)
+RESTITUTION = (1.0, 0.99, 0.95, 0.9, 0.8, 0.65, 0.5, 0.4, 0.3, 0.2, 0.1)
 #: Options of the other laws, in units of ``Scene.nondimensional``; they give some restitutions.
 OTHERS: tuple[tuple[str, str, tuple[float, ...]], ...] = (
     ("thornton", "yield_velocity", (0.6, 0.3, 0.1, 0.03, 0.01)),
@@ -83,14 +85,22 @@ def laws() -> Iterator[Any]:
             yield REGISTRY.create(f"normal.{name}", **{option: value})
 
 
+def by_springs(law: NormalLaw, e: float) -> Iterator[float]:
+    """Yield the largest error of springs at each node of chi."""
+    for chi in NODES:
+        psi1 = np.linspace(0.0, 2.0 * chi * (1.0 + e) + 1.0, SPEEDS + 1)[1:]
+        ratio = np.full(SPEEDS, chi)
+        yield float(np.abs(springs(law, psi1, ratio) - pointwise(law, psi1, ratio)).max())
+
+
 def row(law: NormalLaw) -> list[str]:
-    """Return the class of a law, its restitution, and the two largest differences of psi2."""
+    """Return the class of a law, its restitution, and the largest differences of psi2."""
     motion = normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0))
     e = round(-float(motion.final_rate), 6)
     psi1, chi = impacts(e)
     exact = pointwise(law, psi1, chi)
-    sizes = (np.abs(each - exact).max() for each in (springs(law, psi1, chi), tsuji(e)))
-    return [key(law), f"{e:g}", *(f"{size:.1e}" for size in sizes)]
+    choice = float(np.abs(tsuji(e) - exact).max())
+    return [key(law), f"{e:g}", *(f"{size:.1e}" for size in (choice, *by_springs(law, e)))]
 
 
 def write() -> None:
@@ -101,4 +111,5 @@ def write() -> None:
         print(*measured[-1], file=sys.stderr, flush=True)
     with FILE.open("w", encoding="utf-8", newline="") as file:
         lines = csv.writer(file, lineterminator="\n")
-        lines.writerows([["law", "restitution", "springs", "choice"], *measured])
+        heads = [f"springs chi={chi:g}" for chi in NODES]
+        lines.writerows([["law", "restitution", "choice", *heads], *measured])
