@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.impact.material import Material
+from contactlab.numeric.arrays import taken
 from contactlab.numeric.checks import POSITIVE, Real, Rule, instance, key, quantity, real, refuse
 
 Array = NDArray[np.float64]
@@ -117,10 +118,25 @@ class RigidBody:
         elif self.axes is not None:
             raise refuse("axes", self.axes, "belong to principal moments", "leave axes out")
         _check_inertia(self.inertia)
-        shape = np.broadcast_shapes(
-            np.shape(self.mass), np.shape(self.curvature_radius), self.inertia.shape[:-2]
-        )
+        shapes = (np.shape(each) for each in (self.mass, self.curvature_radius))
+        shape = np.broadcast_shapes(*shapes, self.inertia.shape[:-2])
         object.__setattr__(self, "shape", shape)
+
+    def take(self, shape: tuple[int, ...], part: Any) -> RigidBody:
+        """Return the bodies of a batch of ``shape`` that ``part`` indexes.
+
+        Parameters
+        ----------
+        shape : tuple of int
+        part : slice, array of bool or int, int or tuple of int
+            Index of an array of ``shape``.
+        """
+        inertia = np.broadcast_to(self.inertia, (*shape, 3, 3))[part]
+        entries = {
+            name: taken(getattr(self, name), shape, part)
+            for name in ("mass", "material", "curvature_radius", "curvature_ratio")
+        }
+        return RigidBody(inertia=inertia, **entries)
 
 
 def _check_inertia(inertia: Array) -> None:
