@@ -98,15 +98,18 @@ def _motion(
     laws: Laws, scene: EccentricScene, observer: EccentricObserver | None
 ) -> EccentricMotion:
     """Return the motion of one block; a normal law that fails has a status."""
-    normal = normal_motion(laws.normal, scene.central)
-    tangential = laws.tangential
-    if isinstance(tangential, EccentricTangentialLaw):
+    tangential, integrator = laws.tangential, laws.integrator
+    try:
+        normal = normal_motion(laws.normal, scene.central)
         with faults.blaming(tangential):
-            accuracy = laws.integrator.accuracy
-            return tangential.eccentric_impacts(scene, normal, accuracy, observer)
-    integrator: Any = laws.integrator
-    motion: EccentricMotion = integrator.integrate_eccentric(scene, normal, tangential, observer)
-    return motion
+            if isinstance(tangential, EccentricTangentialLaw):
+                accuracy = integrator.accuracy
+                return tangential.eccentric_impacts(scene, normal, accuracy, observer)
+            assert isinstance(integrator, EccentricIntegrator)
+            assert isinstance(tangential, IncrementalTangentialLaw)
+            return integrator.integrate_eccentric(scene, normal, tangential, observer)
+    except faults.LawFaultError as fault:
+        return EccentricMotion.nothing(scene.shape, fault.status, fault.detail)
 
 
 def plan(laws: Laws, scene: EccentricScene) -> Plan:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, TypeAlias
 
 import attrs
+import numpy as np
 
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.integrator import Integrator
@@ -15,6 +17,7 @@ from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import Real
 
 
@@ -53,6 +56,31 @@ class EccentricMotion:
     status: Any = Status.SUCCESS
     detail: Any = ""
     counters: Mapping[str, int] = attrs.field(factory=dict)
+
+    @classmethod
+    def nothing(cls, shape: tuple[int, ...], status: Status, detail: str) -> EccentricMotion:
+        """Return the motion of impacts that have no answer.
+
+        Parameters
+        ----------
+        shape : tuple of int
+            Batch shape.
+        status : Status
+        detail : str
+        """
+        none: Any = np.full(shape, math.nan) if shape else math.nan
+        numbers = [f.name for f in attrs.fields(cls) if f.name not in NO_NUMBERS]
+        return cls(
+            velocity_change=np.full((*shape, 3), math.nan),
+            **dict.fromkeys(numbers, none),
+            compressions=filled(0, shape),
+            status=filled(status, shape),
+            detail=filled(detail, shape),
+        )
+
+
+#: Entries of an eccentric motion that are no numbers of the batch shape.
+NO_NUMBERS = ("velocity_change", "compressions", "status", "detail", "counters")
 
 
 class EccentricSample(NamedTuple):

@@ -81,7 +81,7 @@ def motion(
         maximum_radius=number(radius * scales.radius),
         maximum_approach=number(approach * scales.approach),
         maximum_force=number(radius * approach * scales.force),
-        compressions=np.nan_to_num(times, nan=0.0).astype(int) if shape else int(answer[5]),
+        compressions=np.nan_to_num(times).astype(int) if shape else int(np.nan_to_num(times)),
         status=np.array(statuses, dtype=object).reshape(shape) if shape else statuses[0],
         detail=np.array(details, dtype=object).reshape(shape) if shape else details[0],
         counters={"steps": steps},

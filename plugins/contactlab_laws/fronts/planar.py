@@ -25,8 +25,8 @@ from contactlab_laws.fronts.series import (
 CAREFUL = 0.9
 #: Longest step: beyond it forces turn more than events are looked for.
 LONGEST = 1.0
-#: Phases of an impact before it is given up; a hard one takes 40.
-MOST_PHASES = 2000
+#: Phases of an impact before it is given up; a hard one takes 40, one of kappa = 1e6 some 10,000.
+MOST_PHASES = 100_000
 
 
 class Drawn(NamedTuple):

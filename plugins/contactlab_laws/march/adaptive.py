@@ -124,7 +124,7 @@ class Adaptive(EccentricIntegrator):
         while True:
             count = 2 * count
             if np.max(count) > MOST_STEPS:
-                return eccentric.nothing(scene, Status.UNRESOLVED, f"After {count} steps.")
+                return EccentricMotion.nothing(scene.shape, Status.UNRESOLVED, f"After {count} steps.")
             last = eccentric.march_eccentric(scene, normal, tangential, count, None)
             moved = np.abs(last.velocity_change - before.velocity_change).max(axis=-1)
             if not np.any(moved > 3.0 * self.tolerance * scale):

@@ -260,16 +260,3 @@ class _March:
             detail=self.detail,
             counters={"steps": self.steps},
         )
-
-
-def nothing(scene: EccentricScene, status: Status, detail: str) -> EccentricMotion:
-    """Return the motion of impacts that have no answer."""
-    none: Any = np.full(scene.shape, math.nan) if scene.shape else math.nan
-    numbers = ("friction_work", "normal_loss", "duration")
-    maxima = ("maximum_radius", "maximum_approach", "maximum_force")
-    return EccentricMotion(
-        velocity_change=np.full((*scene.shape, 3), math.nan),
-        **dict.fromkeys((*numbers, *maxima), none),
-        status=filled(status, scene.shape),
-        detail=filled(detail, scene.shape),
-    )

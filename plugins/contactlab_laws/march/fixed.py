@@ -218,5 +218,5 @@ class FixedSteps(EccentricIntegrator):
         taken = np.maximum(self.steps, needed)
         if not self.refine and np.any(needed > self.steps) or not np.all(taken <= MOST_STEPS):
             detail = refusal(self.steps, float(np.max(needed)))
-            return eccentric.nothing(scene, Status.TOO_FEW_STEPS, detail)
+            return EccentricMotion.nothing(scene.shape, Status.TOO_FEW_STEPS, detail)
         return eccentric.march_eccentric(scene, normal, tangential, taken, observer)
