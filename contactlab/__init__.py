@@ -51,8 +51,10 @@ if TYPE_CHECKING:
     from contactlab.fitting import fit
     from contactlab.impact import material as materials
     from contactlab.impact.bodies import HalfSpace, Sphere
+    from contactlab.impact.eccentric import EccentricScene
     from contactlab.impact.encounter import Encounter
     from contactlab.impact.material import Material
+    from contactlab.impact.rigid_body import RigidBody
     from contactlab.impact.scene import Scene
     from contactlab.outcome.energy import EnergyLedger
     from contactlab.outcome.result import ImpactError, ImpactResult
@@ -62,6 +64,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Collision",
+    "EccentricScene",
     "Encounter",
     "EnergyLedger",
     "HalfSpace",
@@ -69,6 +72,7 @@ __all__ = [
     "ImpactResult",
     "Material",
     "PluginError",
+    "RigidBody",
     "Scene",
     "Simulation",
     "Sphere",
@@ -110,6 +114,7 @@ def create(name: str, **options: Any) -> Any:
 #: Where the public names are: ``import contactlab`` imports none of them.
 MODULES = {
     "Collision": "compose.collision",
+    "EccentricScene": "impact.eccentric",
     "Encounter": "impact.encounter",
     "EnergyLedger": "outcome.energy",
     "HalfSpace": "impact.bodies",
@@ -117,6 +122,7 @@ MODULES = {
     "ImpactResult": "outcome.result",
     "Material": "impact.material",
     "PluginError": "compose.registry",
+    "RigidBody": "impact.rigid_body",
     "Scene": "impact.scene",
     "Simulation": "compose.simulation",
     "Sphere": "impact.bodies",

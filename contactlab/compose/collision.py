@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -27,6 +27,9 @@ from contactlab.outcome.energy import EnergyLedger, books
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactError, ImpactResult
+
+if TYPE_CHECKING:
+    from contactlab.compose.body_collision import BodyCollision
 
 Array = NDArray[np.float64]
 
@@ -206,7 +209,7 @@ class Collision:
     @property
     def energy(self) -> EnergyLedger:
         """The energy books of the relative motion, in J; its loss is the loss of both bodies."""
-        contact = self.encounter.contact()
+        contact = self.encounter.meeting()
         before = (contact.approach, contact.slip)
         after = (self.normal_velocity, self.slip_velocity_change)
         checked: Any = False
@@ -228,7 +231,7 @@ class Collision:
     @property
     def impulse(self) -> Array:
         """Impulse on the sphere, in N s; the target receives the opposite impulse."""
-        contact, pair = self.encounter.contact(), self.encounter.pair
+        contact, pair = self.encounter.meeting(), self.encounter.pair
         push: Any = pair.normal_mass * (self.normal_velocity - contact.approach)
         drag: Any = pair.tangential_mass * self.slip_velocity_change
         parts = zip(contact.normal, contact.along, strict=True)
@@ -238,7 +241,7 @@ class Collision:
     @property
     def contact_velocity(self) -> Array:
         """Velocity of the sphere's surface at the contact after the impact, in m/s."""
-        return self.velocity + _rim(self.encounter.sphere, self.spin, self._normal)
+        return self.velocity + _rim(self.encounter.body, self.spin, self._normal)
 
     @property
     def target_contact_velocity(self) -> Array:
@@ -251,7 +254,7 @@ class Collision:
     @property
     def _normal(self) -> Array:
         """Unit vectors along the normals, shape (..., 3)."""
-        parts = np.stack(self.encounter.contact().normal, axis=-1)
+        parts = np.stack(self.encounter.meeting().normal, axis=-1)
         return np.broadcast_to(parts, (*self.encounter.shape, 3))
 
     @property
@@ -270,8 +273,11 @@ def collide(
     *,
     restitution: Real | Callable[[Any], Any] = 1.0,
     separating: str = "refuse",
-) -> Collision:
+) -> Collision | BodyCollision:
     """Return velocities and spins of both bodies after an encounter, or after each of a batch.
+
+    Between bodies that are no spheres the laws are exact where the motion stays in a plane, and
+    springs in space; the result is a ``BodyCollision``.
 
     Parameters
     ----------
@@ -329,13 +335,16 @@ def collide(
     e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
     if not isinstance(e, float):
         e = _spread(e, encounter.shape)
+    if not encounter.of_spheres:
+        from contactlab.compose.body_collision import collide_bodies  # spheres need none of it
+
+        _alone(simulation, restitution, e)
+        return collide_bodies(encounter, simulation, e, separating)
     if simulation is None:
         strict = separating == "refuse"
         moved = impulses.moved(encounter, restitution=e, strict=strict)
         return Collision(encounter=encounter, **moved, restitution=e)
-    if np.any(e != 1.0):
-        remedy = "give it to the normal law: create('normal.tsuji', restitution=0.9)"
-        raise refuse("restitution", restitution, "stands in place of a simulation", remedy)
+    _alone(simulation, restitution, e)
     met: Any = encounter.approaching
     if separating == "refuse" and not np.all(met):
         raise encounter.separate()
@@ -356,8 +365,15 @@ def _approach(encounter: Encounter) -> Any:
     """Return the speeds of approach in m/s, of the batch shape."""
     approach = np.empty(encounter.shape)
     for where, part in encounter.parts():
-        approach.reshape(-1)[where] = part.contact().approach
+        approach.reshape(-1)[where] = part.meeting().approach
     return approach if encounter.shape else float(approach)
+
+
+def _alone(simulation: Simulation | None, given: Any, restitution: Any) -> None:
+    """Refuse a restitution beside a simulation."""
+    if simulation is not None and np.any(restitution != 1.0):
+        remedy = "give it to the normal law: create('normal.tsuji', restitution=0.9)"
+        raise refuse("restitution", given, "stands in place of a simulation", remedy)
 
 
 def _simulation(restitution: float) -> Simulation:

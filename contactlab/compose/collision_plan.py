@@ -77,7 +77,7 @@ def by_rebound(plan: Plan, chi: Any, restitution: Any) -> Plan:
 def _turns(encounter: Encounter) -> Any:
     """Return whether either body spins about the normal."""
     turning: Any = False
-    normal = encounter.contact().normal
+    normal = encounter.meeting().normal
     for spin in (encounter.spin, encounter.target_spin):
         parts = components(spin)
         about = sum(one * n for one, n in zip(parts, normal, strict=True))

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from contactlab.compose.rebound import rebound
 from contactlab.impact.bodies import Pair, Sphere
-from contactlab.impact.encounter import Contact, Encounter
+from contactlab.impact.body_contact import Contact
+from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import LEAST_IMPULSE
 from contactlab.numeric.arrays import chosen, every, locked
 from contactlab.numeric.checks import Real, refuse
@@ -81,7 +82,7 @@ def moved(
     numbers, collided = np.empty((3, *shape)), np.empty(shape, dtype=bool)
     columns, flags = numbers.reshape(3, -1), collided.reshape(-1)
     for where, part in encounter.parts():
-        contact, pair = part.contact(), part.pair
+        contact, pair = part.meeting(), part.pair
         meets: Any = contact.approach >= LEAST
         met = every(meets)
         if strict and not met:
@@ -111,7 +112,7 @@ def moved(
 
 def _alone(encounter: Encounter, restitution: Any, strict: bool) -> Moved:
     """Return both bodies after a single encounter, in plain numbers."""
-    contact, pair = encounter.contact(), encounter.pair
+    contact, pair = encounter.meeting(), encounter.pair
     _, _, approach, slip = contact
     collided, after, change, work = approach >= LEAST, approach, 0.0, 0.0
     normal_mass, tangential_mass = pair.normal_mass, pair.tangential_mass
@@ -145,7 +146,7 @@ def _pushed(part: Encounter, contact: Contact, push: Any, drag: Any) -> list[Arr
     (n1, n2, n3), (t1, t2, t3), _, _ = contact
     vectors = []
     for body, velocity, spin, sense in (
-        (part.sphere, part.velocity, part.spin, 1.0),
+        (part.body, part.velocity, part.spin, 1.0),
         (part.target, part.target_velocity, part.target_spin, -1.0),
     ):
         if not isinstance(body, Sphere):
@@ -176,7 +177,7 @@ def _push(moved: list[Array], part: Encounter, contact: Contact, push: Any, drag
     (n1, n2, n3), (t1, t2, t3) = contact.normal, contact.along
     across = (n2 * t3 - n3 * t2, n3 * t1 - n1 * t3, n1 * t2 - n2 * t1)
     bodies: tuple[Any, ...] = (
-        (part.sphere, part.velocity, part.spin, 1.0),
+        (part.body, part.velocity, part.spin, 1.0),
         (part.target, part.target_velocity, part.target_spin, -1.0),
     )
     pairs = ((moved[0], moved[1]), (moved[2], moved[3]))

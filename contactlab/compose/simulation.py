@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from contactlab.compose import composition, solve
+from contactlab.compose import composition, eccentric, solve
 from contactlab.compose.composition import Laws
 from contactlab.compose.error_estimate import estimated
 from contactlab.compose.sweep import swept
@@ -19,6 +19,7 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.coupling import three_numbers
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import arguments_told
@@ -76,6 +77,8 @@ class Simulation:
             The same as in ``run``.
         """
         laws = self.laws
+        if isinstance(scene, EccentricScene):
+            return eccentric.plan(laws, scene)
         laws.accept(_scene(scene))
         with np.errstate(under="ignore"):
             prepared = solve.prepare(laws, scene, _history(history))
@@ -106,6 +109,8 @@ class Simulation:
             If ``scene`` is not a Scene, ``history`` is none of its three values, or the history of
             a batch is requested whose impacts have different instants.
         """
+        if isinstance(scene, EccentricScene):
+            return eccentric.run(self.laws, scene, history=_history(history))
         started = time.perf_counter()
         laws, recorder = self.laws, None
         laws.accept(_scene(scene))

@@ -6,6 +6,15 @@ options (``quantity``, ``count``, ``choice``, ``flag``, ``restitution``), status
 
 from contactlab.contracts import faults
 from contactlab.contracts.contact import NormalContact, without_tension
+from contactlab.contracts.eccentric import (
+    EccentricIntegrator,
+    EccentricMotion,
+    EccentricObserver,
+    EccentricSample,
+    EccentricTangentialLaw,
+    IncrementalTangentialLaw,
+    VectorTangentialLaw,
+)
 from contactlab.contracts.integrator import Integrator, Observer, Sample, TangentialMotion
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.contracts.motion import (
@@ -31,6 +40,7 @@ from contactlab.contracts.tangential import (
 )
 from contactlab.contracts.whole_impact import WholeImpact, from_change, no_force, sliding
 from contactlab.impact.bodies import Pair
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import (
     NON_NEGATIVE,
@@ -52,7 +62,14 @@ __all__ = [
     "AllStepsTangentialLaw",
     "ClosedFormMotion",
     "ClosedFormNormalLaw",
+    "EccentricIntegrator",
+    "EccentricMotion",
+    "EccentricObserver",
+    "EccentricSample",
+    "EccentricScene",
+    "EccentricTangentialLaw",
     "Increment",
+    "IncrementalTangentialLaw",
     "Integrator",
     "Law",
     "LostPathError",
@@ -77,6 +94,7 @@ __all__ = [
     "TangentialLaw",
     "TangentialMotion",
     "TangentialResponse",
+    "VectorTangentialLaw",
     "WholeImpact",
     "WholeImpactTangentialLaw",
     "choice",

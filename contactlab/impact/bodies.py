@@ -155,8 +155,8 @@ class Pair:
         target : Sphere or HalfSpace
             The body that the sphere meets.
         """
-        compliance_n = _normal_compliance(sphere.material) + _normal_compliance(target.material)
-        compliance_t = _shear_compliance(sphere.material) + _shear_compliance(target.material)
+        compliance_n = normal_compliance(sphere.material) + normal_compliance(target.material)
+        compliance_t = shear_compliance(sphere.material) + shear_compliance(target.material)
         curvature = 1.0 / sphere.radius
         inverse_normal = 1.0 / sphere.mass
         inverse_tangential = _inverse_tangential_mass(sphere)
@@ -170,23 +170,23 @@ class Pair:
             effective_shear_modulus=1.0 / compliance_t,
             normal_mass=1.0 / inverse_normal,
             tangential_mass=1.0 / inverse_tangential,
-            dundurs_beta=_coupling_compliance(sphere.material, target.material) / compliance_n,
+            dundurs_beta=coupling_compliance(sphere.material, target.material) / compliance_n,
         )
 
 
-def _normal_compliance(material: Material) -> Real:
+def normal_compliance(material: Material) -> Real:
     """Return (1-nu)/(2G) = (1-nu²)/E, one body's part of 1/E*, in 1/Pa."""
     return (1.0 - material.poisson_ratio) / (2.0 * material.shear_modulus)
 
 
-def _coupling_compliance(sphere: Material, target: Material) -> Real:
+def coupling_compliance(sphere: Material, target: Material) -> Real:
     """Return half the difference of (1-2nu)/(2G), which is Dundurs' beta over E*, in 1/Pa."""
     first = (1.0 - 2.0 * sphere.poisson_ratio) / (2.0 * sphere.shear_modulus)
     second = (1.0 - 2.0 * target.poisson_ratio) / (2.0 * target.shear_modulus)
     return 0.5 * (first - second)
 
 
-def _shear_compliance(material: Material) -> Real:
+def shear_compliance(material: Material) -> Real:
     """Return (2-nu)/(4G), one body's part of 1/G*, in 1/Pa."""
     return (2.0 - material.poisson_ratio) / (4.0 * material.shear_modulus)
 

@@ -6,14 +6,17 @@ import math
 from collections.abc import Callable
 from functools import cache
 from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import Any
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
+from contactlab.impact.body_contact import Contact, meeting_of_bodies, scene_of_bodies
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.material import Material
+from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import NON_NEGATIVE, Real, first_of, instance, quantity, refuse
@@ -34,26 +37,10 @@ Array = NDArray[np.float64]
 TOGETHER = 1 << 14
 
 
-class Contact(NamedTuple):
-    """Directions and speeds at the contact; vectors are tuples of three components.
-
-    Attributes
-    ----------
-    normal, along : tuple of three arrays
-        Unit vectors from the sphere to the target, and along the slip; ``along`` is zero without
-        slip.
-    approach, slip : array
-        Speed of approach, negative where the bodies separate, and speed of slip, in m/s.
-    """
-
-    normal: tuple[Any, Any, Any]
-    along: tuple[Any, Any, Any]
-    approach: Any
-    slip: Any
-
-
 #: Fields of an encounter that are vectors.
-VECTORS = ("normal", "velocity", "spin", "target_velocity", "target_spin")
+VECTORS = (
+    "normal", "velocity", "spin", "target_velocity", "target_spin", "contact", "target_contact",
+)  # fmt: skip
 _DIMENSIONS = attrgetter(*(f"{name}.ndim" for name in VECTORS))
 #: The bodies of the last single encounter, and their pair.
 _last: Any = (None, None, None)
@@ -62,7 +49,7 @@ _last: Any = (None, None, None)
 @arguments_told
 @attrs.frozen
 class Encounter:
-    """A sphere and a target at first touch, or a batch of such pairs, by vectors in SI units.
+    """Two bodies at first touch, or a batch of such pairs, by vectors in SI units.
 
     ::
 
@@ -72,25 +59,28 @@ class Encounter:
           '----'      '----'                  '----'   |////
 
     Every vector may be an array of shape ``(..., 3)``, every number an array; the encounters are
-    then a batch of the broadcast ``shape``. Spins follow the right-hand rule. Friction acts in the
-    plane of the normal and the slip, and the slip of spheres stays in this plane.
+    then a batch of the broadcast ``shape``. Spins follow the right-hand rule. The slip of spheres
+    stays in the plane of normal and slip; that of other bodies may leave it.
 
     Parameters
     ----------
-    sphere : Sphere
+    body : Sphere or RigidBody
         The first body.
-    target : Sphere or HalfSpace
+    target : Sphere, HalfSpace or RigidBody
         The second body.
     friction_coefficient : float or array
         Coulomb's mu, at least 0.
     normal : vector
-        From the centre of the sphere towards the target: to the target's centre, or at right
-        angles into its surface. Only the direction counts; the length must not be zero.
+        From the first body into the target, at right angles to both surfaces; between spheres
+        from centre to centre. Only the direction counts; the length must not be zero.
     velocity, target_velocity : vector
-        Velocities of the centres, or of the surface of a half-space, in m/s; by default the
+        Velocities of the centres of mass, or of the surface of a half-space, in m/s; by default the
         target is at rest.
     spin, target_spin : vector
         Angular velocities in rad/s; zero by default. A half-space has no spin.
+    contact, target_contact : vector
+        From the centre of mass of a ``RigidBody`` to the contact, in m, in the frame of all other
+        vectors and of its inertia. A sphere's follows from its radius.
 
     Raises
     ------
@@ -99,19 +89,21 @@ class Encounter:
         half-space has a spin. The message names the argument.
     """
 
-    sphere: Sphere = instance(Sphere, remedy="make one: Sphere(...)")
-    target: Sphere | HalfSpace = instance(HalfSpace, Sphere)
+    body: Sphere | RigidBody = instance(Sphere, RigidBody, remedy="make one: Sphere(...)")
+    target: Sphere | HalfSpace | RigidBody = instance(HalfSpace, Sphere, RigidBody)
     friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE, empty=True)
     normal: Array = vector("1")
     velocity: Array = vector("m/s")
     spin: Array = vector("rad/s", default=NOTHING)
     target_velocity: Array = vector("m/s", default=NOTHING)
     target_spin: Array = vector("rad/s", default=NOTHING)
+    contact: Array = vector("m", default=NOTHING)
+    target_contact: Array = vector("m", default=NOTHING)
     #: Batch shape: () for one encounter.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
 
     def __attrs_post_init__(self) -> None:
-        paths, numbers = _numbers(isinstance(self.target, Sphere))
+        paths, numbers = _numbers(type(self.body), type(self.target))
         values, shape = numbers(self), ()
         if np.ndarray in map(type, values) or max(_DIMENSIONS(self)) > 1:
             shapes = {name: getattr(self, name).shape[:-1] for name in VECTORS}
@@ -120,12 +112,17 @@ class Encounter:
                 for path, value in zip(paths, values, strict=True)
                 if isinstance(value, np.ndarray)
             }
+            for name in ("body", "target"):
+                if isinstance(each := getattr(self, name), RigidBody):
+                    shapes[f"{name}.inertia"] = each.shape
             shape = batch.common_shape(
                 shapes,
                 what="Encounter: the batch shapes",
                 remedy="give one vector, or as many as there are encounters",
             )
         object.__setattr__(self, "shape", shape)
+        if not self.of_spheres or moving(self.contact) or moving(self.target_contact):
+            self._check_contacts()
         if isinstance(self.target, HalfSpace) and moving(self.target_spin):
             raise refuse(
                 "target_spin",
@@ -142,6 +139,22 @@ class Encounter:
             first = self.normal[tuple(where[0])].tolist() if where.size else self.normal.tolist()
             raise refuse("normal", first, rule, "two bodies at one place have no normal")
 
+    @property
+    def of_spheres(self) -> bool:
+        """True if both bodies are spheres, or the target is a half-space."""
+        return isinstance(self.body, Sphere) and not isinstance(self.target, RigidBody)
+
+    def _check_contacts(self) -> None:
+        """Refuse a rigid body without contact, and any other body with one."""
+        for name, body in (("contact", self.body), ("target_contact", self.target)):
+            given = moving(getattr(self, name))
+            if given and not isinstance(body, RigidBody):
+                rule = f"belongs to a RigidBody, not to a {type(body).__name__}"
+                raise refuse(name, getattr(self, name).tolist(), rule, "leave it out")
+            if not given and isinstance(body, RigidBody):
+                rule = "is needed: the vector in m from the centre of mass to the contact"
+                raise refuse(name, None, rule, "contactlab.shapes has those of common bodies")
+
     def take(self, part: Any) -> Encounter:
         """Return the encounters that ``part`` indexes.
 
@@ -151,8 +164,12 @@ class Encounter:
             Index of an array of the batch shape.
         """
         taken: Encounter = object.__new__(Encounter)  # every number was checked before
-        for name in ("sphere", "target", "friction_coefficient"):
-            value = batch.taken(getattr(self, name), self.shape, part)
+        for name in ("body", "target", "friction_coefficient"):
+            value = getattr(self, name)
+            if isinstance(value, RigidBody):
+                value = value.take(self.shape, part)
+            else:
+                value = batch.taken(value, self.shape, part)
             object.__setattr__(taken, name, value)
         for name in VECTORS:
             vectors = getattr(self, name)
@@ -167,12 +184,12 @@ class Encounter:
     def pair(self) -> Pair:
         """The numbers of the two bodies that laws need."""
         global _last  # many encounters of two bodies follow one another
-        sphere, target, last = _last
+        body, target, last = _last
         pair: Pair = last
-        if sphere is not self.sphere or target is not self.target:
-            pair = Pair.of(self.sphere, self.target)
+        if body is not self.body or target is not self.target:
+            pair = Pair.of(self.body, self.target)
             if not self.shape:
-                _last = self.sphere, self.target, pair
+                _last = self.body, self.target, pair
         return pair
 
     @property
@@ -180,7 +197,7 @@ class Encounter:
         """True where the bodies approach, of the batch shape; below 1e-100 m/s they rest."""
         approach = np.empty(self.shape)
         for where, part in self.parts():
-            approach.reshape(-1)[where] = part.contact().approach
+            approach.reshape(-1)[where] = part.meeting().approach
         approaching = approach >= LEAST
         return approaching if self.shape else bool(approaching)
 
@@ -192,7 +209,7 @@ class Encounter:
             where = slice(first, min(first + TOGETHER, size))
             yield where, flat.take(where) if size > TOGETHER else flat
 
-    def contact(self) -> Contact:
+    def meeting(self) -> Contact:
         """Return directions and speeds at the contact before the impact.
 
         The result is a named tuple. ``normal`` and ``along`` are the unit vectors from the sphere
@@ -202,6 +219,8 @@ class Encounter:
         n1, n2, n3 = components(self.normal)
         length = square_root(n1 * n1 + n2 * n2 + n3 * n3)
         n1, n2, n3 = n1 / length, n2 / length, n3 / length
+        if not self.of_spheres:
+            return meeting_of_bodies(self, (n1, n2, n3))
         u1, u2, u3 = difference(self.velocity, self.target_velocity)
         approach = u1 * n1 + u2 * n2 + u3 * n3
         w1, w2, w3 = self._rim()
@@ -215,7 +234,7 @@ class Encounter:
 
     def _rim(self) -> tuple[Any, Any, Any]:
         """Return R1 omega1 + R2 omega2 in m/s, whose cross product with the normal is slip."""
-        rim = [self.sphere.radius * component for component in components(self.spin)]
+        rim = [self.body.radius * component for component in components(self.spin)]
         if isinstance(self.target, Sphere) and moving(self.target_spin):
             radius = self.target.radius
             for k, component in enumerate(components(self.target_spin)):
@@ -223,8 +242,11 @@ class Encounter:
         return rim[0], rim[1], rim[2]
 
     @property
-    def scene(self) -> Scene:
+    def scene(self) -> Scene | EccentricScene:
         """The scene in the plane of friction, relative to a target at rest without spin.
+
+        Of bodies that are no spheres: an ``EccentricScene`` where friction changes the approach or
+        the slip turns; else a scene of numbers without bodies.
 
         The tangential velocity is the relative velocity of the centres along the slip. The spin
         is the part of (R1 omega1 + R2 omega2)/R1 that makes slip in this plane. Velocities and
@@ -236,25 +258,27 @@ class Encounter:
         ValueError
             If bodies separate.
         """
-        contact = self.contact()
+        contact = self.meeting()
         if not np.all(contact.approach >= LEAST):
             raise self.separate()
+        if not self.of_spheres:
+            return scene_of_bodies(self)
         u = difference(self.velocity, self.target_velocity)
         along = sum(component * axis for component, axis in zip(u, contact.along, strict=True))
         along = np.broadcast_to(along, self.shape)
-        spin = (contact.slip - along) / self.sphere.radius
+        spin = (contact.slip - along) / self.body.radius
         numbers: list[Any] = [contact.approach, along, spin]
         if not self.shape:
             numbers = [float(number) for number in numbers]
-        return Scene(self.sphere, self.target, self.friction_coefficient, *numbers)
+        return Scene(self.body, self.target, self.friction_coefficient, *numbers)
 
     def separate(self) -> ValueError:
         """Return the ValueError for bodies that do not approach each other."""
-        approach = np.broadcast_to(self.contact().approach, self.shape)
+        approach = np.broadcast_to(self.meeting().approach, self.shape)
         where = np.argwhere(~(approach >= LEAST))
         first = tuple(where[0].tolist())
         state = "bodies separate" if approach[first] < 0.0 else "bodies separate, or rest"
-        turned = "turn normal from the sphere to the target, or " if approach[first] < 0.0 else ""
+        turned = "turn normal from the first body to the target, or " if approach[first] < 0.0 else ""
         return refuse(
             "velocity, target_velocity",
             float(approach[first]),
@@ -264,11 +288,12 @@ class Encounter:
 
 
 @cache
-def _numbers(two_spheres: bool) -> tuple[list[str], Callable[[Encounter], Any]]:
+def _numbers(body: type, target: type) -> tuple[list[str], Callable[[Encounter], Any]]:
     """Return the path of every number of an encounter, and the function that returns them all."""
     paths = ["friction_coefficient"]
-    parts: dict[str, Any] = {"sphere": Sphere, "sphere.material": Material}
-    parts |= {"target": Sphere if two_spheres else HalfSpace, "target.material": Material}
+    parts: dict[str, Any] = {"body": body, "body.material": Material}
+    parts |= {"target": target, "target.material": Material}
     for part, kind in parts.items():
-        paths += [f"{part}.{one.name}" for one in attrs.fields(kind) if "unit" in one.metadata]
+        numbers = [one for one in attrs.fields(kind) if "rule" in one.metadata]
+        paths += [f"{part}.{one.name}" for one in numbers]
     return paths, attrgetter(*paths)

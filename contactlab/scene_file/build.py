@@ -110,7 +110,7 @@ def _encounter(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Enco
             remedy = "beside vectors write [x, y, z]"
             raise refuse(table.at(key), value, "must be a vector of three numbers", remedy)
     numbers = _numbers(table, ("friction_coefficient",))
-    return table.make(Encounter, sphere=sphere, target=target, **numbers, **vectors)
+    return table.make(Encounter, body=sphere, target=target, **numbers, **vectors)
 
 
 def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:

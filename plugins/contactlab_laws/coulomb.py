@@ -8,6 +8,10 @@ from typing import ClassVar
 import attrs
 
 from contactlab.contracts import (
+    EccentricMotion,
+    EccentricObserver,
+    EccentricScene,
+    EccentricTangentialLaw,
     NormalMotion,
     WholeImpact,
     WholeImpactTangentialLaw,
@@ -22,16 +26,22 @@ ROUNDING = 1e-9
 
 
 @attrs.frozen(kw_only=True)
-class Coulomb(WholeImpactTangentialLaw):
+class Coulomb(WholeImpactTangentialLaw, EccentricTangentialLaw):
     """Coulomb friction between bodies that do not deform tangentially.
 
     While the contact slips the force is mu times the friction load; once slip has stopped the
     bodies roll and the force is zero. Under any normal law the change of slip
     velocity is the lesser of mu J/M_t, J the load impulse, and the slip velocity itself.
 
+    Between bodies for which friction changes the approach, friction is followed over the normal
+    impulse: by Routh's construction in the plane, by Keller's equations in space. The restitution
+    is energetic, with the e of the approach without friction.
+
     References
     ----------
     Maw, Barber & Fawcett, Wear 38 (1976) 101-114, the rigid body theory of §§1 and 4.3.
+    Keller, J. Appl. Mech. 53 (1986) 1-4. Wang & Mason, J. Appl. Mech. 59 (1992) 635-642.
+    Stronge, Proc. R. Soc. Lond. A 431 (1990) 169-181.
     """
 
     api_version: ClassVar[int] = 2
@@ -58,6 +68,22 @@ class Coulomb(WholeImpactTangentialLaw):
             "rigid bodies: tangential elasticity is left out, which moves psi2 of solid spheres by "
             "up to about 1.5 where the contact sticks (model, not numerical error)",
         )
+
+    def refuses_eccentric(self, scene: EccentricScene) -> str | None:
+        """Return None: every impact has an answer."""
+        return None
+
+    def eccentric_impacts(
+        self,
+        scene: EccentricScene,
+        normal: NormalMotion,
+        accuracy: float | None,
+        observer: EccentricObserver | None = None,
+    ) -> EccentricMotion:
+        """Return the motion of rigid bodies; without a course, as all happens in no time."""
+        from contactlab_laws.rigid_impact import rigid_impacts
+
+        return rigid_impacts(scene, normal)
 
 
 @attrs.frozen(kw_only=True)

@@ -35,7 +35,7 @@ DOWN = (0.0, 0.0, -1.0)
 
 def meeting(**changes):
     given = {
-        "sphere": BALL,
+        "body": BALL,
         "target": PLATE,
         "friction_coefficient": 0.2,
         "normal": DOWN,
@@ -97,7 +97,7 @@ def test_a_moving_half_space():
         ({"normal": [DOWN, (0, 0, 0)]}, "normal"),
         ({"normal": [DOWN] * 2, "velocity": [(0, 0, -1)] * 3}, r"normal \(2,\), velocity \(3,\)"),
         ({"target_spin": (1.0, 0.0, 0.0)}, "target_spin.*half-space does not spin"),
-        ({"sphere": None}, "sphere"),
+        ({"body": None}, "body"),
         ({"target": STEEL}, "target"),
         ({"friction_coefficient": -1.0}, "friction_coefficient"),
     ],
@@ -279,7 +279,7 @@ def test_numbers_that_a_float_cannot_hold_are_refused():
         collide(meeting(friction_coefficient=1e250, velocity=(1e60, 0, -1e60)))
     light = Sphere(0.01, STEEL, mass=1e-290)
     with pytest.raises(ValueError, match="mass times speed"):
-        collide(meeting(sphere=light, velocity=(0.0, 0.0, -1e-9)))
+        collide(meeting(body=light, velocity=(0.0, 0.0, -1e-9)))
 
 
 def test_the_plan_says_what_passes_through():

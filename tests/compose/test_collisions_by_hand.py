@@ -25,7 +25,7 @@ def test_directions_and_speeds_at_the_contact():
     """Slip is (1, 1, 0) + (2, 2, 3.5) x (0, 0, 1) = (3, -1, 0)."""
     root = math.sqrt(10.0)
     for one in (met(), met(spin=[(4.0, 0.0, 7.0)] * 2)):
-        normal, along, approach, slip = one.contact()
+        normal, along, approach, slip = one.meeting()
         assert [np.ravel(each)[0] for each in normal] == [0.0, 0.0, 1.0]
         assert [np.ravel(each)[-1] for each in along] == pytest.approx([3 / root, -1 / root, 0.0])
         assert np.ravel(approach)[0] == 2.0
@@ -37,11 +37,11 @@ def test_directions_and_speeds_at_the_contact():
         assert np.ravel(scene.slip_velocity)[-1] == pytest.approx(root)
         assert np.ravel(scene.spin)[0] == pytest.approx(8.0 / root / 0.5)
     calm = met(target_velocity=(1.0, 2.0, 1.0), spin=(0.0, 0.0, 1.0), target_spin=(0.0, 0.0, 3.0))
-    assert calm.contact()[1:] == ((0.0, 0.0, 0.0), 2.0, 0.0)
+    assert calm.meeting()[1:] == ((0.0, 0.0, 0.0), 2.0, 0.0)
     wall = Encounter(
         BALL, HalfSpace(SOFT), 0.5, normal=(0, 0, 1), velocity=(1, 0, 1), spin=(0, 2, 0)
     )
-    assert wall.contact().slip == pytest.approx(2.0)
+    assert wall.meeting().slip == pytest.approx(2.0)
 
 
 def test_parts_of_encounters():
@@ -59,7 +59,7 @@ def test_parts_of_encounters():
     assert met().approaching is True
     assert met(velocity=(0, 0, 1 + 1e-15)).approaching is True
     radii = met(velocity=velocities).take((0, 1))
-    assert radii.sphere == BALL
+    assert radii.body == BALL
 
 
 def test_the_pair_of_the_last_bodies_is_kept():
@@ -152,8 +152,8 @@ def test_a_ball_that_passes_is_told_by_its_words():
 def test_the_least_length_of_a_normal():
     """Its square is a normal float; the first of a batch that is too short is named."""
     short = (0.0, 0.0, 1e-100)
-    assert met(normal=short).contact().approach == 2.0
-    assert met(normal=[short, (0.0, 0.0, 1.0)]).contact().approach.tolist() == [2.0, 2.0]
+    assert met(normal=short).meeting().approach == 2.0
+    assert met(normal=[short, (0.0, 0.0, 1.0)]).meeting().approach.tolist() == [2.0, 2.0]
     with pytest.raises(ValueError, match=r"not zero \(the first of 1 has index \[1\]\);"):
         met(normal=[short, (0.0, 0.0, 0.0)])
 

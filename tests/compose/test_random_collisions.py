@@ -84,7 +84,7 @@ def speeds(encounter):
     found = np.linalg.norm(encounter.velocity, axis=-1)
     found = found + np.linalg.norm(encounter.target_velocity, axis=-1)
     for body, spin in (
-        (encounter.sphere, encounter.spin),
+        (encounter.body, encounter.spin),
         (encounter.target, encounter.target_spin),
     ):
         if isinstance(body, Sphere):
@@ -94,7 +94,7 @@ def speeds(encounter):
 
 def states(encounter, made):
     """Mass, inertia, velocity and spin of both bodies, before and after."""
-    one, other = encounter.sphere, encounter.target
+    one, other = encounter.body, encounter.target
     return (
         (column(one.mass), inertia(one), encounter.velocity, encounter.spin),
         (column(other.mass), inertia(other), encounter.target_velocity, encounter.target_spin),
@@ -106,15 +106,15 @@ def states(encounter, made):
 @given(encounters())
 def test_momentum(met):
     made = collide(met)
-    before = column(met.sphere.mass) * met.velocity + column(met.target.mass) * (
+    before = column(met.body.mass) * met.velocity + column(met.target.mass) * (
         met.target_velocity
     )
-    after = column(met.sphere.mass) * made.velocity + column(met.target.mass) * (
+    after = column(met.body.mass) * made.velocity + column(met.target.mass) * (
         made.target_velocity
     )
-    heavy = np.maximum(met.sphere.mass, met.target.mass)
+    heavy = np.maximum(met.body.mass, met.target.mass)
     assert close(after, before, heavy * speeds(met), ROUNDING)
-    given_to_it = column(met.sphere.mass) * (made.velocity - met.velocity)
+    given_to_it = column(met.body.mass) * (made.velocity - met.velocity)
     assert close(made.impulse, given_to_it, heavy * speeds(met), ROUNDING)
 
 
@@ -122,7 +122,7 @@ def test_momentum(met):
 def test_angular_momentum_about_any_point(met, rng):
     point = 3.0 * RADIUS * rng.normal(size=3)
     made = collide(met)
-    radius = column(met.sphere.radius), column(met.target.radius)
+    radius = column(met.body.radius), column(met.target.radius)
     arms = -point, unit(met.normal) * (radius[0] + radius[1]) - point
     totals, scale = [], 0.0
     for first in (0, 2):
@@ -141,11 +141,11 @@ def test_angular_momentum_about_any_point(met, rng):
 def test_a_half_space_goes_on_and_takes_no_moment_about_the_contact(met):
     made = collide(met)
     assert np.array_equal(made.target_velocity, met.target_velocity)
-    arm = -unit(met.normal) * column(met.sphere.radius)
-    mass, moment = column(met.sphere.mass), inertia(met.sphere)
+    arm = -unit(met.normal) * column(met.body.radius)
+    mass, moment = column(met.body.mass), inertia(met.body)
     before = mass * np.cross(arm, met.velocity) + moment * met.spin
     after = mass * np.cross(arm, made.velocity) + moment * made.spin
-    scale = met.sphere.mass * met.sphere.radius * speeds(met)
+    scale = met.body.mass * met.body.radius * speeds(met)
     assert close(after, before, scale, ROUNDING)
 
 
@@ -166,7 +166,7 @@ def test_energy_loss_is_friction_work(met):
 def test_spin_about_the_normal_passes_through(met):
     made, normal = collide(met), unit(met.normal)
     for body, before, after in (
-        (met.sphere, met.spin, made.spin),
+        (met.body, met.spin, made.spin),
         (met.target, met.target_spin, made.target_spin),
     ):
         gap = ((after - before) * normal).sum(axis=-1)
@@ -176,7 +176,7 @@ def test_spin_about_the_normal_passes_through(met):
 def approach_and_slip(velocity, spin, target_velocity, target_spin, met):
     """Rate of approach, and slip vector, from the contact points themselves."""
     normal = unit(met.normal)
-    mine = velocity + column(met.sphere.radius) * np.cross(spin, normal)
+    mine = velocity + column(met.body.radius) * np.cross(spin, normal)
     other = target_velocity - column(met.target.radius) * np.cross(target_spin, normal)
     rate = ((mine - other) * normal).sum(axis=-1)
     return rate, mine - other - rate[:, None] * normal, mine, other
@@ -229,7 +229,7 @@ def test_galilean_shift(met, rng):
 def test_exchange_of_the_bodies(met):
     again = Encounter(
         met.target,
-        met.sphere,
+        met.body,
         met.friction_coefficient,
         normal=-met.normal,
         velocity=met.target_velocity,
@@ -241,7 +241,7 @@ def test_exchange_of_the_bodies(met):
     scale = speeds(met)
     assert close(one.velocity, other.target_velocity, scale, SAME)
     assert close(one.target_velocity, other.velocity, scale, SAME)
-    assert close(one.spin, other.target_spin, scale / met.sphere.radius, SAME)
+    assert close(one.spin, other.target_spin, scale / met.body.radius, SAME)
     assert close(one.target_spin, other.spin, scale / met.target.radius, SAME)
 
 
@@ -249,7 +249,7 @@ def compare(met, one, other, changed, *, names=None, scale=None):
     """Hold that two collisions of the same bodies agree, the first after ``changed``."""
     scale = speeds(met) if scale is None else scale
     for name in names or ("velocity", "target_velocity", "spin", "target_spin"):
-        radius = met.sphere.radius if name == "spin" else met.target.radius
+        radius = met.body.radius if name == "spin" else met.target.radius
         size = scale / radius if "spin" in name else scale
         assert close(changed(getattr(one, name)), getattr(other, name), size, SAME), name
 

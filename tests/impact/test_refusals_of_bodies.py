@@ -18,7 +18,7 @@ BOTH = "give speed in m/s and angle_deg in degrees from the normal"
 
 def met(**changes):
     given = {"normal": AXIS, "velocity": (0.0, 0.0, 1.0)}
-    return Encounter(changes.pop("sphere", BALL), changes.pop("target", PLATE), 0.2,
+    return Encounter(changes.pop("body", BALL), changes.pop("target", PLATE), 0.2,
                      **(given | changes))  # fmt: skip
 
 
@@ -161,12 +161,12 @@ REFUSED = [
         "normal = [0.0, 0.0, 9e-101]: must be at least 1e-100 long, not zero; two bodies at one "
         "place have no normal",
     ),
-    (lambda: met(sphere=PLATE).sphere, f"sphere = {str(PLATE)[:77]}...: must be a Sphere; make "
+    (lambda: met(body=PLATE).body, f"body = {str(PLATE)[:77]}...: must be a Sphere; make "
      "one: Sphere(...)"),
     (
         lambda: met(velocity=(0.0, 0.0, -2.0)).scene,
         "velocity, target_velocity = -2.0: bodies separate: the speed of approach, in m/s, must be "
-        "positive; turn normal from the sphere to the target, or let such pairs pass: "
+        "positive; turn normal from the first body to the target, or let such pairs pass: "
         "collide(encounter, separating='pass')",
     ),
     (

@@ -10,6 +10,10 @@ import numpy as np
 
 from contactlab.contracts import (
     ClosedFormMotion,
+    EccentricMotion,
+    EccentricObserver,
+    EccentricScene,
+    EccentricTangentialLaw,
     NormalMotion,
     PathTangentialLaw,
     Stretch,
@@ -28,7 +32,7 @@ REASON = "psi2 is tabulated; a history, or a tolerance below 1e-9, follows the i
 
 
 @attrs.frozen(kw_only=True)
-class Fronts(PathTangentialLaw):
+class Fronts(PathTangentialLaw, EccentricTangentialLaw):
     """The continuum limit of the annulus law, with no discretisation.
 
     Where the contact sticks and where it slips is a short list of fronts; between changes
@@ -91,6 +95,22 @@ class Fronts(PathTangentialLaw):
         from contactlab_laws.fronts.path import Impact  # not for impacts that the table answers
 
         return Impact(velocity, inertia, motion, tolerance).follow()
+
+    def refuses_eccentric(self, scene: EccentricScene) -> str | None:
+        """Return why a scene in space has no answer: the front is that of slip along a line."""
+        return None if scene.planar else "its front is that of slip along one line"
+
+    def eccentric_impacts(
+        self,
+        scene: EccentricScene,
+        normal: NormalMotion,
+        accuracy: float | None,
+        observer: EccentricObserver | None = None,
+    ) -> EccentricMotion:
+        """Return the motion of planar impacts, each followed from event to event."""
+        from contactlab_laws.fronts.eccentric import motion
+
+        return motion(scene, normal, accuracy, observer)
 
 
 def _from_table(scene: Scene, psi1: Any, chi: Any, *, where: Any) -> WholeImpact:

@@ -8,7 +8,11 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import (
-    Integrator,
+    EccentricIntegrator,
+    EccentricMotion,
+    EccentricObserver,
+    EccentricScene,
+    IncrementalTangentialLaw,
     NormalMotion,
     Observer,
     SteppedTangentialLaw,
@@ -21,8 +25,9 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Rule, quantity
+from contactlab_laws.march import eccentric
 from contactlab_laws.march.division import midpoints
-from contactlab_laws.march.fixed import MOST_STEPS, in_groups, needed_steps, refined
+from contactlab_laws.march.fixed import LARGEST_PHASE_STEP, MOST_STEPS, in_groups, needed_steps, refined
 from contactlab_laws.march.march import march
 from contactlab_laws.march.tied import march_tied
 
@@ -45,7 +50,7 @@ ROUNDING = 1e-13
 
 
 @attrs.frozen(kw_only=True)
-class Adaptive(Integrator):
+class Adaptive(EccentricIntegrator):
     """The steps of ``symplectic``, doubled until psi2 no longer changes by the tolerance.
 
     The error is that of the whole impact, seen in the answer itself, and not a sum of what
@@ -99,6 +104,35 @@ class Adaptive(Integrator):
         except faults.LawFaultError as fault:
             return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
         return motion
+
+    def integrate_eccentric(
+        self,
+        scene: EccentricScene,
+        normal: NormalMotion,
+        tangential: IncrementalTangentialLaw,
+        observer: EccentricObserver | None = None,
+    ) -> EccentricMotion:
+        """Return the motion in steps that are doubled until no velocity changes by the tolerance.
+
+        The tolerance is that of the velocities over the greatest of them at first touch.
+        """
+        scale = np.abs(scene.velocity).max(axis=-1)
+        count = np.maximum(
+            eccentric.needed_steps(scene, normal, tangential, LARGEST_PHASE_STEP), FIRST
+        )
+        before = eccentric.march_eccentric(scene, normal, tangential, count, None)
+        while True:
+            count = 2 * count
+            if np.max(count) > MOST_STEPS:
+                return EccentricMotion.nothing(scene.shape, Status.UNRESOLVED, f"After {count} steps.")
+            last = eccentric.march_eccentric(scene, normal, tangential, count, None)
+            moved = np.abs(last.velocity_change - before.velocity_change).max(axis=-1)
+            if not np.any(moved > 3.0 * self.tolerance * scale):
+                break
+            before = last
+        if observer is not None:
+            eccentric.march_eccentric(scene, normal, tangential, count, observer)
+        return last
 
     def _doubled(
         self,

@@ -11,7 +11,11 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import (
-    Integrator,
+    EccentricIntegrator,
+    EccentricMotion,
+    EccentricObserver,
+    EccentricScene,
+    IncrementalTangentialLaw,
     NormalMotion,
     Observer,
     SteppedTangentialLaw,
@@ -24,6 +28,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import for_share
 from contactlab.numeric.checks import Real, count, flag
+from contactlab_laws.march import eccentric
 from contactlab_laws.march.march import march
 from contactlab_laws.march.tied import march_tied
 
@@ -115,7 +120,7 @@ def in_groups(
 
 
 @attrs.frozen(kw_only=True)
-class FixedSteps(Integrator):
+class FixedSteps(EccentricIntegrator):
     """Even steps over the contact's duration, under any normal law; a subclass samples them.
 
     Under a law with marks a step ends at each mark, steps are even between marks, and the contact
@@ -200,3 +205,18 @@ class FixedSteps(Integrator):
             return in_groups(normal, self.steps, needed, self._taken(needed), even)
         except faults.LawFaultError as fault:
             return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
+
+    def integrate_eccentric(
+        self,
+        scene: EccentricScene,
+        normal: NormalMotion,
+        tangential: IncrementalTangentialLaw,
+        observer: EccentricObserver | None = None,
+    ) -> EccentricMotion:
+        """Return the motion, ``steps`` counted on the approach without friction."""
+        needed = eccentric.needed_steps(scene, normal, tangential, LARGEST_PHASE_STEP)
+        taken = np.maximum(self.steps, needed)
+        if not self.refine and np.any(needed > self.steps) or not np.all(taken <= MOST_STEPS):
+            detail = refusal(self.steps, float(np.max(needed)))
+            return EccentricMotion.nothing(scene.shape, Status.TOO_FEW_STEPS, detail)
+        return eccentric.march_eccentric(scene, normal, tangential, taken, observer)

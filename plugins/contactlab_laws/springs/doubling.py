@@ -25,6 +25,8 @@ from contactlab_laws.jaeger.bundle import Array
 #: Contacts whose radius is below this times that of the pair just touch: no friction. The cells of
 #: a smaller contact could underflow.
 TOUCH = 1e-30
+#: A grid that spans a contact known before spans this much more.
+SPARE = 1.05
 
 
 class Memory(NamedTuple):
@@ -47,26 +49,33 @@ class Memory(NamedTuple):
 
 
 class State(NamedTuple):
-    """Shape of a batch; radius of the pair, 2 G* and mu, shape (items,); the springs."""
+    """Shape of a batch; radius of the pair, 2 G* and mu, shape (items,); the springs.
+
+    A grid that ``spans`` a radius known before doubles, and is never split.
+    """
 
     shape: tuple[int, ...]
     unit: Array
     modulus: Array
     friction_coefficient: Array
     memory: Memory
+    spans: bool
 
 
-def start(scene: Scene, springs: int) -> State:
-    """Return contacts without traction."""
+def start(scene: Scene, springs: int, *, spanned: Any = None) -> State:
+    """Return contacts without traction; springs span at least the radius ``spanned`` in m."""
     shape, pair = scene.shape, scene.pair
     items = math.prod(shape)
     none, rows = np.zeros(items), np.zeros((springs, items))
+    if spanned is not None:
+        none = SPARE * flat(spanned, shape)
     return State(
         shape,
         flat(pair.radius, shape),
         flat(2.0 * pair.effective_shear_modulus, shape),
         flat(scene.friction_coefficient, shape),
-        Memory(none, none, rows, rows),
+        Memory(none, np.zeros(items), rows, rows),
+        spanned is not None,
     )
 
 
@@ -83,6 +92,7 @@ def advance(
         limit,
         unit=state.unit,
         modulus=state.modulus,
+        spans=state.spans,
     )
     state = state._replace(memory=memory)
     if not shape:
@@ -91,7 +101,8 @@ def advance(
 
 
 def moved(
-    before: Memory, displacement: Array, radius: Array, limit: Array, *, unit: Array, modulus: Array
+    before: Memory, displacement: Array, radius: Array, limit: Array, *, unit: Array, modulus: Array,
+    spans: bool = False,
 ) -> tuple[Array, Array, Memory]:
     """Return force (N), friction work (J), both of shape (items,), and the springs after a step.
 
@@ -106,14 +117,16 @@ def moved(
         Length in m of which A is a power of two: the radius of the pair.
     modulus : array, shape (items,)
         2 G* in Pa: stiffness of the contact over its radius.
+    spans : bool
+        True if the grid is kept where the contact is small or apart.
     """
     radius = radius + 0.0 * (displacement + limit)  # NaN where any of the three is not finite
     radius = radius * (1.0 - (radius <= TOUCH * unit)) + 0.0 * radius
-    size, held, merged = fitted(before, radius, unit)
+    size, held, merged = fitted(before, radius, unit, spans=spans)
     cell = size / len(held)
     places = np.multiply.outer(np.arange(len(held)) + 0.5, cell)
     compression = np.maximum(radius * radius - places * places, 0.0)
-    trial = held + _part(places, before.radius, radius) * displacement
+    trial = held + part_of_step(places, before.radius, radius) * displacement
     stiffness = modulus * cell  # of one spring, the same for all
     total = stiffness * compression.sum(axis=0)
     most = compression * (limit / (total + (total == 0.0)))
@@ -125,37 +138,40 @@ def moved(
     work = np.maximum(0.5 * stiffness * trial.sum(axis=0), 0.0) + modulus * merged
     if (apart := radius <= 0.0).any():  # NaN stays until then
         touching = ~apart
-        force, size = np.where(touching, force, 0.0), np.where(touching, size, 0.0)
+        force = np.where(touching, force, 0.0)
+        size = size if spans else np.where(touching, size, 0.0)
         deflection = np.where(touching, deflection, 0.0)
     return force, work, Memory(size, radius, deflection, most)
 
 
-def fitted(before: Memory, radius: Array, unit: Array) -> tuple[Array, Array, Real]:
+def fitted(
+    before: Memory, radius: Array, unit: Array, *, spans: bool = False
+) -> tuple[Array, Array, Real]:
     """Return A and w with A/4 < b <= A, and the energy lost in merging over 2 G*, in m³."""
     size, held = before.size, before.deflection
     if not size.all():
         size = np.where(size > 0.0, size, _least_size(radius, unit))
-    outgrown, small = radius > size, (radius > 0.0) & (radius <= 0.25 * size)
+    outgrown, small = radius > size, (radius > 0.0) & (radius <= 0.25 * size) & (not spans)
     if not (outgrown.any() or small.any()):
         return size, held, 0.0
     size, held, lost = size.copy(), held.copy(), np.zeros_like(size)
     while outgrown.any():
         inner, outer = held[::2, outgrown], held[1::2, outgrown]
         cell = size[outgrown] / len(held)
-        lost[outgrown] += 0.25 * cell * ((inner - outer) ** 2).sum(axis=0)
+        lost[outgrown] += 0.25 * cell * (abs(inner - outer) ** 2).sum(axis=0)
         held[:, outgrown] = np.concatenate((0.5 * (inner + outer), 0.0 * inner))
         size[outgrown] *= 2.0
         outgrown = radius > size
     while small.any():
         outside = held[len(held) // 2 :, small]  # springs that have left the contact
-        lost[small] += 0.5 * size[small] / len(held) * (outside * outside).sum(axis=0)
+        lost[small] += 0.5 * size[small] / len(held) * (abs(outside) ** 2).sum(axis=0)
         held[:, small] = np.repeat(held[: len(held) // 2, small], 2, axis=0)
         size[small] *= 0.5
         small = (radius > 0.0) & (radius <= 0.25 * size)
     return size, held, lost
 
 
-def _part(places: Array, before: Array, after: Array) -> Any:
+def part_of_step(places: Array, before: Array, after: Array) -> Any:
     """Return the part of the step in which each spring moves with the surfaces."""
     # A spring that the growing contact meets moves from then on only.
     growth = after - before

@@ -18,12 +18,13 @@ from contactlab.contracts import (
     NormalMotion,
     Steps,
     TangentialResponse,
+    VectorTangentialLaw,
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, choice, count, refuse
 from contactlab_laws.jaeger.bundle import Array, Bundle
 from contactlab_laws.jaeger.law import ProfileLaw
-from contactlab_laws.springs import doubling
+from contactlab_laws.springs import doubling, turning
 
 
 class Midpoints(Bundle):
@@ -75,7 +76,7 @@ def midpoints(springs: int) -> Midpoints:
 
 
 @attrs.frozen(kw_only=True)
-class Springs(ProfileLaw):
+class Springs(ProfileLaw, VectorTangentialLaw):
     """Mindlin's partial slip as a bundle of independent springs.
 
     The spring at distance r from the centre touches while r < b. Its displacement w grows with
@@ -138,11 +139,25 @@ class Springs(ProfileLaw):
             return doubling.start(scene, self.springs)
         return super().start(scene, normal)
 
+    def begin(self, scene: Scene, normal: NormalMotion) -> Any:
+        """Return springs that span the approach without friction, and double if outgrown."""
+        return doubling.start(scene, self._even(), spanned=normal.maximum_radius)
+
+    def begin_vectors(self, scene: Scene, normal: NormalMotion) -> Any:
+        """Return the springs of ``begin``, which turn with the slip."""
+        return turning.start(scene, self._even(), spanned=normal.maximum_radius)
+
+    def _even(self) -> int:
+        """Return the number of springs, one more if odd: a doubling grid merges pairs."""
+        return self.springs + self.springs % 2
+
     def advance(
         self, state: Any, increment: Increment, before: NormalContact, after: NormalContact
     ) -> tuple[TangentialResponse, Any]:
         """Return the force after the step."""
-        if self.grid == "doubling":
+        if isinstance(state, turning.State):
+            return turning.advance(state, increment, before, after)
+        if isinstance(state, doubling.State):
             return doubling.advance(state, increment, after)
         return super().advance(state, increment, before, after)
 

@@ -1,0 +1,199 @@
+"""The collision of bodies of any shape: velocities and spins after an encounter."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.compose import eccentric
+from contactlab.compose.rebound import damped
+from contactlab.compose.simulation import Simulation
+from contactlab.contracts.status import Status
+from contactlab.impact.body_contact import arms, frame, turned
+from contactlab.impact.eccentric import EccentricScene
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import filled
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.columns import json_value
+from contactlab.outcome.eccentric import EccentricResult
+from contactlab.outcome.energy import EnergyLedger
+from contactlab.outcome.plan import Clause, Plan
+from contactlab.outcome.result import ImpactError, ImpactResult
+
+Array = NDArray[np.float64]
+
+VECTORS = ("velocity", "spin", "target_velocity", "target_spin", "impulse")
+
+
+@attrs.frozen(kw_only=True, eq=False, repr=False)
+class BodyCollision:
+    """Two bodies after an encounter; vectors have the shape ``(..., 3)``.
+
+    Attributes
+    ----------
+    encounter : Encounter
+    velocity, target_velocity : array
+        Velocities of the centres of mass, in m/s.
+    spin, target_spin : array
+        In rad/s.
+    impulse : array
+        Impulse on the first body, in N s; the target receives the opposite impulse.
+    collided : bool or array of bool
+        False if the bodies were separating and passed through untouched.
+    result : EccentricResult or ImpactResult
+        The impacts of the bodies that collided, in order; an ``ImpactResult`` where friction does
+        not change the approach.
+    """
+
+    encounter: Encounter
+    velocity: Array
+    spin: Array
+    target_velocity: Array
+    target_spin: Array
+    impulse: Array
+    collided: Any
+    result: EccentricResult | ImpactResult
+    plan: Plan
+
+    def __repr__(self) -> str:
+        """Return velocity and spin of a single collision, or the count in a batch, and statuses."""
+        statuses = sorted({each.name for each in np.ravel(np.array(self.status, dtype=object))})
+        outcome = ", ".join(statuses)
+        if not self.encounter.shape:
+            return f"BodyCollision(velocity={self.velocity}, spin={self.spin}; {outcome})"
+        count = int(np.sum(self.collided))
+        return f"BodyCollision({count} of {np.size(self.collided)} collided; {outcome})"
+
+    def __str__(self) -> str:
+        """Return ``repr`` and every caution of the plan, one line each."""
+        return "\n".join([repr(self), *(f"caution: {text}" for text in self.plan.cautions)])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the vectors of both bodies after the collision as plain lists."""
+        return {name: json_value(np.asarray(getattr(self, name))) for name in VECTORS}
+
+    @property
+    def status(self) -> Any:
+        """A ``Status``, or an array of statuses; ``SUCCESS`` if the bodies passed through."""
+        if np.all(self.collided):
+            return self.result.status
+        status = filled(Status.SUCCESS, self.encounter.shape)
+        status[self.collided] = self.result.status
+        return status
+
+    @property
+    def energy(self) -> EnergyLedger:
+        """The energy books of the impacts, in J; their loss is the loss of both bodies."""
+        return self.result.energy
+
+    def check(self, *, cautions: bool = False) -> BodyCollision:
+        """Return this collision if every impact succeeded; with ``cautions`` if there is none.
+
+        Parameters
+        ----------
+        cautions : bool
+            Raise the first caution too.
+
+        Raises
+        ------
+        ImpactError
+            With the sentence on the first impact that failed, or of the first caution.
+        """
+        self.result.check()
+        if cautions and self.plan.cautions:
+            raise ImpactError(f"caution: {self.plan.cautions[0]}", Status.SUCCESS)
+        return self
+
+
+def collide_bodies(
+    encounter: Encounter, simulation: Simulation | None, restitution: Any, separating: str
+) -> BodyCollision:
+    """Return both bodies after an encounter, under the laws that answer its scene best.
+
+    Parameters
+    ----------
+    encounter : Encounter
+        At least one body is a ``RigidBody``.
+    simulation : Simulation or None
+        The laws.
+    restitution : float
+        e of a frictionless impact, by Tsuji's law on the mass 1/W_nn, if there is no simulation.
+    separating : "refuse" or "pass"
+    """
+    met: Any = encounter.approaching
+    if not np.all(met):
+        if separating == "refuse" or not np.any(met):
+            raise encounter.separate()
+        collided = encounter.take(met)
+    else:
+        collided = encounter
+    if simulation is None and not (isinstance(restitution, float) or np.all(restitution == restitution.flat[0])):
+        rule = "must be one number for bodies that are no spheres"
+        raise refuse("restitution", restitution, rule, "collide those of each value by themselves")
+    e = restitution if isinstance(restitution, float) else float(restitution.flat[0])
+    scene = collided.scene
+    laws = simulation if simulation is not None else _simulation(scene, e)
+    result = laws.run(scene)
+    impulse = np.zeros((*encounter.shape, 3))
+    impulse[met] = _impulse(collided, result)
+    return BodyCollision(
+        encounter=encounter,
+        **_pushed(encounter, impulse),
+        impulse=-impulse,
+        collided=met,
+        result=result,
+        plan=_plan(result, e),
+    )
+
+
+def _simulation(scene: Scene | EccentricScene, restitution: float) -> Simulation:
+    """Return the laws that answer a scene best."""
+    if isinstance(scene, Scene):
+        return Simulation() if restitution == 1.0 else damped(restitution)
+    if restitution == 1.0:
+        return Simulation(**eccentric.preferred(scene))
+    return Simulation(normal=damped(restitution).normal, **eccentric.IN_SPACE)
+
+
+def _plan(result: EccentricResult | ImpactResult, restitution: float) -> Plan:
+    """Return the plan of the impacts, with what a restitution stands for."""
+    if restitution == 1.0 or isinstance(result, ImpactResult):
+        return result.plan
+    said = f"restitution {restitution:g}: of a frictionless impact on the mass 1/W_nn, Tsuji's law"
+    everywhere = np.ones(result.scene.shape, dtype=bool)
+    return result.plan.changed(computed=(*result.plan.computed, Clause(said, everywhere)))
+
+
+def _impulse(encounter: Encounter, result: EccentricResult | ImpactResult) -> Array:
+    """Return the impulse on the target in the encounter's frame, in N s."""
+    if isinstance(result, EccentricResult):
+        axes = frame(encounter).axes
+        return np.asarray(np.einsum("...ia,...i->...a", axes, result.impulse))
+    meeting, pair, motion = encounter.meeting(), result.scene.pair, result.motion
+    push = pair.normal_mass * (result.scene.normal_speed - np.asarray(motion.normal_velocity))
+    drag = -pair.tangential_mass * np.asarray(motion.slip_velocity_change)
+    parts = zip(meeting.normal, meeting.along, strict=True)
+    return np.stack([push * n + drag * t for n, t in parts], axis=-1)
+
+
+def _pushed(encounter: Encounter, impulse: Array) -> dict[str, Array]:
+    """Return velocities and spins after an impulse on the target, and its opposite on the body."""
+    normal = encounter.normal / np.sqrt(np.sum(encounter.normal**2, axis=-1))[..., None]
+    first, second = arms(encounter, normal)
+    moved = {}
+    for name, body, arm, sense in (
+        ("", encounter.body, first, -1.0),
+        ("target_", encounter.target, second, 1.0),
+    ):
+        push = sense * impulse
+        velocity = getattr(encounter, f"{name}velocity")
+        if hasattr(body, "mass"):
+            velocity = velocity + push / np.asarray(body.mass)[..., None]
+        spin = getattr(encounter, f"{name}spin") + turned(body, np.cross(arm, push))
+        moved[f"{name}velocity"] = np.broadcast_to(velocity, impulse.shape)
+        moved[f"{name}spin"] = np.broadcast_to(spin, impulse.shape)
+    return moved

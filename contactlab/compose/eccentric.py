@@ -1,0 +1,184 @@
+"""Eccentric impacts under three laws: who answers, the plan and the motion (theory §14)."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.compose import composition
+from contactlab.compose.composition import Laws
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.contracts import faults
+from contactlab.contracts.eccentric import (
+    EccentricIntegrator,
+    EccentricMotion,
+    EccentricObserver,
+    EccentricTangentialLaw,
+    IncrementalTangentialLaw,
+    VectorTangentialLaw,
+)
+from contactlab.impact.eccentric import EccentricScene
+from contactlab.impact.hertz import hertz_scales
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.eccentric import EccentricRecorder, EccentricResult
+from contactlab.outcome.history import NO_HISTORY
+from contactlab.outcome.plan import Clause, Plan
+
+#: Impacts that are marched at a time: their springs stay in the processor's cache.
+BLOCK = 1000
+#: Laws by name that answer every eccentric impact: in the plane exactly, in space by springs.
+IN_PLANE = {"tangential": "fronts", "integrator": "events"}
+IN_SPACE = {"tangential": "springs", "integrator": "symplectic"}
+#: Above this ratio of contact radius to R the theory of half-spaces is doubtful (theory §8).
+DOUBTFUL_SIZE_RATIO = 0.1
+
+
+def run(laws: Laws, scene: EccentricScene, *, history: bool | str = False) -> EccentricResult:
+    """Return the result of one impact, or of a batch.
+
+    Raises
+    ------
+    ValueError
+        If a law has no answer to the scene, or a history is asked of a batch.
+    """
+    started = time.perf_counter()
+    _accept(laws, scene)
+    if history and scene.shape:
+        raise refuse("history", history, "is kept of a single impact", "run them one by one")
+    recorder = EccentricRecorder() if history else None
+    flat = scene
+    if len(scene.shape) > 1:
+        flat = scene.take(np.ones(scene.shape, dtype=bool))
+    if not flat.shape or flat.shape[0] <= BLOCK:
+        motion = _motion(laws, flat, recorder)
+    else:
+        places = [slice(at, at + BLOCK) for at in range(0, flat.shape[0], BLOCK)]
+        motion = _joined([_motion(laws, flat.take(place), None) for place in places])
+    if flat is not scene:
+        motion = _shaped(motion, scene.shape)
+    return EccentricResult(
+        scene=scene,
+        plan=plan(laws, scene),
+        motion=motion,
+        run_time=time.perf_counter() - started,
+        laws=composition.versions(*laws),
+        history=NO_HISTORY if recorder is None else recorder.history(),
+    )
+
+
+def preferred(scene: EccentricScene) -> dict[str, str]:
+    """Return the names of the laws that answer ``scene`` best: exact in the plane."""
+    return IN_PLANE if scene.planar else IN_SPACE
+
+
+def _accept(laws: Laws, scene: EccentricScene) -> None:
+    """Refuse laws that have no answer to the scene, and name laws that have one."""
+    tangential, integrator = laws.tangential, laws.integrator
+    name = type(tangential).__name__
+    where = "in the plane" if scene.planar else "in space"
+    reason: str | None = None
+    if isinstance(tangential, EccentricTangentialLaw):
+        reason = tangential.refuses_eccentric(scene)
+    elif not isinstance(tangential, IncrementalTangentialLaw):
+        reason = "it needs the normal motion before the march, and here friction changes it"
+    elif not scene.planar and not isinstance(tangential, VectorTangentialLaw):
+        reason = "its displacement is a number, and here it is a vector of the tangent plane"
+    elif not isinstance(integrator, EccentricIntegrator):
+        name, reason = type(integrator).__name__, "it follows a normal motion that is known before"
+    if reason is not None:
+        words = ", ".join(f"{kind}={law!r}" for kind, law in preferred(scene).items())
+        rule = f"has no answer to an eccentric impact {where}: {reason}"
+        raise ValueError(f"{name}: {rule}; take Simulation({words})")
+
+
+def _motion(
+    laws: Laws, scene: EccentricScene, observer: EccentricObserver | None
+) -> EccentricMotion:
+    """Return the motion of one block; a normal law that fails has a status."""
+    tangential, integrator = laws.tangential, laws.integrator
+    try:
+        normal = normal_motion(laws.normal, scene.central)
+        with faults.blaming(tangential):
+            if isinstance(tangential, EccentricTangentialLaw):
+                accuracy = integrator.accuracy
+                return tangential.eccentric_impacts(scene, normal, accuracy, observer)
+            assert isinstance(integrator, EccentricIntegrator)
+            assert isinstance(tangential, IncrementalTangentialLaw)
+            return integrator.integrate_eccentric(scene, normal, tangential, observer)
+    except faults.LawFaultError as fault:
+        return EccentricMotion.nothing(scene.shape, fault.status, fault.detail)
+
+
+def plan(laws: Laws, scene: EccentricScene) -> Plan:
+    """Return what ``run`` computes for the scene, and its cautions."""
+    everywhere = np.ones(scene.shape, dtype=bool)
+    whole = isinstance(laws.tangential, EccentricTangentialLaw)
+    how = "answered as a whole" if whole else f"marched by {type(laws.integrator).__name__}"
+    names = f"{type(laws.normal).__name__}, {type(laws.tangential).__name__}"
+    computed = (
+        Clause(f"normal and tangential motion together: {names}, {how}", everywhere),
+        Clause("velocities, impulse and energy books of the relative motion", everywhere),
+    )
+    if scene.planar:
+        what = "second tangent: the motion stays in a plane"
+    else:
+        what = "error of psi2: none is declared in space"
+    left_out = (Clause(what, everywhere),)
+    return Plan(
+        computed=computed,
+        left_out=left_out,
+        cautions=tuple(Clause(text, everywhere) for text in _cautions(laws, scene)),
+        marched=np.full(scene.shape, not whole),
+        psi2_error=np.full(scene.shape, np.nan) if scene.shape else np.nan,
+    )
+
+
+def _cautions(laws: Laws, scene: EccentricScene) -> list[str]:
+    """Return a sentence for each doubt about the model."""
+    cautions = []
+    scales = hertz_scales(scene.central)
+    largest = float(np.max(np.asarray(scales.radius) / scene.pair.radius))
+    if scene.bodies and largest > DOUBTFUL_SIZE_RATIO:
+        cautions.append(
+            f"C = {largest:.3g}, contact radius over R: the contact is not small against the "
+            f"radius, the theory of half-spaces is doubtful above {DOUBTFUL_SIZE_RATIO}"
+        )
+    if np.any(np.asarray(scene.pair.dundurs_beta) != 0.0):
+        cautions.append(
+            "unlike materials: pressure also shears the surfaces, which is left out (model)"
+        )
+    if not scene.planar and "partial_slip" in laws.tangential.offers:
+        cautions.append(
+            "springs in space: abs(q) <= mu p holds for each spring, not at every point, which "
+            "moves psi2 by up to 0.008 where measured (model)"
+        )
+    for body in scene.bodies:
+        cautions += getattr(body, "cautions", lambda _: ())(float(np.max(scales.duration)))
+    return cautions
+
+
+def _joined(motions: list[EccentricMotion]) -> EccentricMotion:
+    """Return one motion of consecutive blocks."""
+    entries: dict[str, Any] = {}
+    for field in attrs.fields(EccentricMotion):
+        parts = [getattr(motion, field.name) for motion in motions]
+        if field.name == "counters":
+            steps = [part.get("steps", 0) for part in parts]
+            entries["counters"] = {"steps": max(steps)}
+        else:
+            entries[field.name] = np.concatenate(parts)
+    return EccentricMotion(**entries)
+
+
+def _shaped(motion: EccentricMotion, shape: tuple[int, ...]) -> EccentricMotion:
+    """Return the motion of a flat batch in its own shape."""
+    change = motion.velocity_change.reshape(*shape, 3)
+    entries = {
+        field.name: np.reshape(getattr(motion, field.name), shape)
+        for field in attrs.fields(EccentricMotion)
+        if field.name not in ("counters", "velocity_change")
+    }
+    return EccentricMotion(velocity_change=change, counters=motion.counters, **entries)

@@ -1,0 +1,155 @@
+"""Rigid bodies of any shape, which an impact sees as mass, inertia and curvature."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.impact.material import Material
+from contactlab.numeric.arrays import taken
+from contactlab.numeric.checks import POSITIVE, Real, Rule, instance, key, quantity, real, refuse
+
+Array = NDArray[np.float64]
+
+#: Asymmetry of an inertia, and excess of a principal moment over the sum of the other two, that
+#: count as rounding, over the largest moment.
+ROUNDING = 1e-9
+#: A flat surface has an infinite radius; ``real`` refuses infinity, so this one is put in for it.
+FLAT = 1e200
+
+
+def _tensor(value: Any, field: attrs.Attribute[Any]) -> Array | None:
+    """Return a read-only array of shape (..., 3, 3), or (..., 3) of principal moments."""
+    if value is None:
+        return None
+    unit, ends = field.metadata["unit"], field.metadata["ends"]
+    remedy = f"give an array of shape (..., {str(ends)[1:-1].rstrip(',')})" + (
+        f" in {unit}" if unit != "1" else ""
+    )
+    array = np.array(real(field.name, value, remedy=remedy, empty=True))
+    if array.shape[-len(ends) :] != ends:
+        raise refuse(f"{field.name}.shape", array.shape, f"must end with {ends}", remedy)
+    array.flags.writeable = False
+    return array
+
+
+def _array(unit: str, ends: tuple[int, ...]) -> Any:
+    """Return an attrs field for checked arrays that end with the axes ``ends``."""
+    converter = attrs.Converter(_tensor, takes_field=True)
+    return attrs.field(
+        default=None, converter=converter, eq=key, metadata={"unit": unit, "ends": ends}
+    )
+
+
+def _curvature(value: Any) -> Real:
+    """Return a radius of curvature in m; infinity for a flat surface."""
+    flat = np.isinf(value) if isinstance(value, float | np.ndarray) else False
+    if np.any(flat):
+        value = np.where(flat, FLAT, value)
+    checked = real("curvature_radius", value, rule=POSITIVE, remedy="in m; math.inf if flat")
+    return np.where(flat, np.inf, checked) if np.ndim(checked) else (np.inf if flat else checked)
+
+
+@attrs.frozen(kw_only=True)
+class RigidBody:
+    """A body of any shape that is elastic at its contact only.
+
+    Give ``inertia``, or ``principal`` moments with the ``axes`` they belong to. The frame is that
+    of the encounter's vectors. Every entry may be a batch.
+
+    Parameters
+    ----------
+    mass : float or array
+        In kg.
+    inertia : array, shape (..., 3, 3), optional
+        Inertia about the centre of mass, in kg m².
+    material : Material
+        Elastic material of the surface.
+    curvature_radius : float or array
+        Radius of curvature of the surface at the contact, in m; ``math.inf`` for a flat surface.
+    principal : array, shape (..., 3), optional
+        Principal moments of inertia, in kg m².
+    axes : array, shape (..., 3, 3), optional
+        Unit vectors of the principal axes as columns, in the order of ``principal``; those of the
+        frame by default.
+    curvature_ratio : float or array
+        Larger over smaller principal radius of curvature at the contact, at least 1. The answer
+        takes the contact for circular; the plan cautions above 1.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or no body has such an inertia: it is not symmetric, a
+        principal moment is not positive or exceeds the sum of the other two.
+    """
+
+    mass: Real = quantity("kg", rule=POSITIVE)
+    inertia: Any = _array("kg m²", (3, 3))
+    material: Material = instance(
+        Material, remedy="make one, Material(...), or by its name: Material.named('steel')"
+    )
+    curvature_radius: Real = attrs.field(
+        converter=_curvature, eq=key, metadata={"unit": "m", "range": POSITIVE.sentence}
+    )
+    principal: Any = _array("kg m²", (3,))
+    axes: Any = _array("1", (3, 3))
+    curvature_ratio: Real = quantity(
+        "1", rule=Rule(lambda ratio: ratio >= 1.0, "must be at least 1"), default=1.0
+    )
+    #: Batch shape of mass, inertia and curvature together.
+    shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
+
+    def __attrs_post_init__(self) -> None:
+        if (self.inertia is None) == (self.principal is None):
+            rule = "give one of the two"
+            remedy = "inertia=(..., 3, 3), or principal=(..., 3) with axes=(..., 3, 3)"
+            raise refuse("inertia, principal", (self.inertia, self.principal), rule, remedy)
+        if self.principal is not None:
+            axes = np.eye(3) if self.axes is None else self.axes
+            product = np.swapaxes(axes, -1, -2) @ axes
+            if not np.allclose(product, np.eye(3), rtol=0.0, atol=1e-6):
+                raise refuse("axes", self.axes, "columns must be unit vectors at right angles")
+            inertia = np.einsum("...ij,...j,...kj->...ik", axes, self.principal, axes)
+            inertia.flags.writeable = False
+            object.__setattr__(self, "inertia", inertia)
+        elif self.axes is not None:
+            raise refuse("axes", self.axes, "belong to principal moments", "leave axes out")
+        _check_inertia(self.inertia)
+        shapes = (np.shape(each) for each in (self.mass, self.curvature_radius))
+        shape = np.broadcast_shapes(*shapes, self.inertia.shape[:-2])
+        object.__setattr__(self, "shape", shape)
+
+    def take(self, shape: tuple[int, ...], part: Any) -> RigidBody:
+        """Return the bodies of a batch of ``shape`` that ``part`` indexes.
+
+        Parameters
+        ----------
+        shape : tuple of int
+        part : slice, array of bool or int, int or tuple of int
+            Index of an array of ``shape``.
+        """
+        inertia = np.broadcast_to(self.inertia, (*shape, 3, 3))[part]
+        entries = {
+            name: taken(getattr(self, name), shape, part)
+            for name in ("mass", "material", "curvature_radius", "curvature_ratio")
+        }
+        return RigidBody(inertia=inertia, **entries)
+
+
+def _check_inertia(inertia: Array) -> None:
+    """Refuse an inertia that no body has."""
+    largest = np.abs(inertia).max(axis=(-1, -2), initial=0.0)
+    skew = np.abs(inertia - np.swapaxes(inertia, -1, -2)).max(axis=(-1, -2), initial=0.0)
+    if np.any(skew > ROUNDING * largest):
+        raise refuse("inertia", inertia.tolist(), "must be symmetric", "give J and its transpose")
+    moments = np.linalg.eigvalsh(inertia)
+    if not np.all(moments[..., 0] > 0.0):
+        rule = "must be positive definite: every principal moment is positive"
+        raise refuse("inertia", inertia.tolist(), rule, f"the principal moments are {moments}")
+    sums = moments[..., 0] + moments[..., 1]
+    if not np.all(moments[..., 2] <= sums * (1.0 + ROUNDING)):
+        rule = "no body has it: a principal moment exceeds the sum of the other two"
+        raise refuse("inertia", inertia.tolist(), rule, f"the principal moments are {moments}")

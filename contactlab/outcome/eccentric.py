@@ -1,0 +1,245 @@
+"""The result of an eccentric impact: velocities after it, status, energy books and history."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.contracts.eccentric import EccentricMotion, EccentricSample
+from contactlab.contracts.status import Status
+from contactlab.impact.eccentric import EccentricScene
+from contactlab.numeric import arrays as batch
+from contactlab.numeric.checks import Real
+from contactlab.outcome.energy import EnergyLedger
+from contactlab.outcome.history import NO_HISTORY, NoHistory
+from contactlab.outcome.plan import Plan
+from contactlab.outcome.result import ImpactError
+
+Array = NDArray[np.float64]
+
+
+@attrs.frozen(kw_only=True, eq=False, repr=False)
+class EccentricHistory:
+    """Arrays over the instants of an eccentric impact, shape (K, ...), and (K, ..., 2) of vectors.
+
+    Vectors have components along t1 and t2; a force that opposes the slip is positive.
+    """
+
+    time: Array
+    approach: Array
+    normal_velocity: Array
+    normal_force: Array
+    contact_radius: Array
+    slip_velocity: Array
+    tangential_force: Array
+
+    def __repr__(self) -> str:
+        """Return the number of instants and the last time."""
+        last = np.max(self.time, initial=0.0)
+        return f"EccentricHistory({len(self.time)} instants to {last:.4g} s)"
+
+
+class EccentricRecorder:
+    """An observer that keeps every sample."""
+
+    def __init__(self) -> None:
+        self._rows: list[tuple[Any, ...]] = []
+
+    def __call__(self, sample: EccentricSample) -> None:
+        """Keep the sample of one instant."""
+        time, approach, rate, contact, slip, force = sample
+        self._rows.append((time, approach, rate, contact.force, contact.radius, slip, force))
+
+    def history(self) -> EccentricHistory:
+        """Return the history of the samples."""
+        names = [field.name for field in attrs.fields(EccentricHistory)]
+        columns = zip(*self._rows, strict=True) if self._rows else [()] * len(names)
+        return EccentricHistory(
+            **{name: np.array(column) for name, column in zip(names, columns, strict=True)}
+        )
+
+
+@attrs.frozen(kw_only=True, eq=False, repr=False)
+class EccentricResult:
+    """Result of one eccentric impact, or of a batch: every quantity has the scene's shape.
+
+    Attributes
+    ----------
+    scene : EccentricScene
+    plan : Plan
+    motion : EccentricMotion
+        The motion as the laws returned it.
+    run_time : float
+        Wall-clock time of the run, in s.
+    laws : mapping of str to str
+        Names of the three laws with their versions.
+    history : EccentricHistory or NoHistory
+        Only on request.
+    """
+
+    scene: EccentricScene
+    plan: Plan
+    motion: EccentricMotion
+    run_time: float = attrs.field(metadata={"unit": "s"})
+    laws: Mapping[str, str]
+    history: EccentricHistory | NoHistory = NO_HISTORY
+
+    def __repr__(self) -> str:
+        """Return V2, psi2, statuses and laws on one line."""
+        statuses = Counter(each.name for each in np.ravel(np.array(self.status, dtype=object)))
+        laws = ", ".join(name.partition(" ")[0] for name in self.laws.values())
+        shape = self.scene.shape
+        told = f"{np.size(self.normal_velocity)} impacts"
+        if not shape:
+            psi2 = np.array2string(np.asarray(self.psi2), precision=6)
+            told = f"normal_velocity={self.normal_velocity:.6g}, psi2={psi2}"
+        outcome = ", ".join(f"{n} {name}" if shape else name for name, n in statuses.items())
+        return f"EccentricResult({told}; {outcome}; {laws})"
+
+    def __str__(self) -> str:
+        """Return ``repr``, the first failure and every caution, in lines."""
+        lines = [repr(self)]
+        for index, sentence in [*self.failures.items()][:1]:
+            where = f" (impact {index}; {len(self.failures)} in all)" if self.scene.shape else ""
+            lines.append(f"failed{where}: {sentence}")
+        return "\n".join([*lines, *(f"caution: {text}" for text in self.cautions)])
+
+    @property
+    def status(self) -> Any:
+        """Status of the impact, or an array of statuses of the scene's shape."""
+        return self.motion.status
+
+    @property
+    def failures(self) -> dict[int, str]:
+        """A sentence for each impact that failed, by its index in C order."""
+        statuses = np.ravel(np.array(self.motion.status, dtype=object))
+        details = np.ravel(np.array(self.motion.detail, dtype=object))
+        return {
+            index: f"{status.value} {detail}".strip()
+            for index, (status, detail) in enumerate(zip(statuses, details, strict=True))
+            if status is not Status.SUCCESS
+        }
+
+    @property
+    def cautions(self) -> list[str]:
+        """Cautions of the plan."""
+        return [*map(str, self.plan.cautions)]
+
+    @property
+    def counters(self) -> Mapping[str, int]:
+        """Counts of steps, by name."""
+        return self.motion.counters
+
+    def check(self, *, cautions: bool = False) -> EccentricResult:
+        """Return this result if every impact succeeded; with ``cautions`` only if there is none.
+
+        Parameters
+        ----------
+        cautions : bool
+            Raise the first caution too.
+
+        Raises
+        ------
+        ImpactError
+            With the sentence of the first impact that failed, or of the first caution.
+        """
+        for index, sentence in self.failures.items():
+            where = f"impact {index}: " if self.scene.shape else ""
+            status = np.ravel(np.array(self.status, dtype=object))[index]
+            raise ImpactError(where + sentence, status)
+        if cautions:
+            for sentence in self.cautions:
+                raise ImpactError(f"caution: {sentence}", Status.SUCCESS)
+        return self
+
+    @property
+    def psi1(self) -> Any:
+        """Scaled slip velocity before the impact, (...) in the plane, (..., 2) in space."""
+        return self.scene.psi1
+
+    @property
+    def psi2(self) -> Any:
+        """Scaled slip velocity after the impact, (...) in the plane, (..., 2) in space."""
+        return self.scene.psi(self.slip_velocity)
+
+    @property
+    def slip_velocity(self) -> Array:
+        """Slip velocity after the impact along t1 and t2, shape (..., 2), in m/s."""
+        return np.asarray(self.scene.slip_velocity + self.motion.velocity_change[..., 1:])
+
+    @property
+    def normal_velocity(self) -> Real:
+        """Approach velocity of the contact points after the impact over that before, V2."""
+        speed: Any = self.scene.normal_speed
+        ratio = (speed + self.motion.velocity_change[..., 0]) / speed
+        return float(ratio) if np.ndim(ratio) == 0 else ratio
+
+    @property
+    def normal_restitution(self) -> Real:
+        """Speed at which the contact points part over that at which they met."""
+        return -self.normal_velocity
+
+    @property
+    def compressions(self) -> Any:
+        """How often the approach grew: 1, or more where friction pressed the bodies together."""
+        return self.motion.compressions
+
+    @property
+    def impulse(self) -> Array:
+        """Impulse on the target along n, t1 and t2, shape (..., 3), in N s."""
+        change = self.motion.velocity_change[..., None]
+        return np.asarray(-np.linalg.solve(self.scene.inverse_mass, change)[..., 0])
+
+    @property
+    def energy(self) -> EnergyLedger:
+        """Energy books in J, of the kinetic energy ½ v·W⁻¹·v of the relative motion at the contact."""
+        before = self.scene.velocity
+        impulse = self.impulse
+        with np.errstate(invalid="ignore", over="ignore"):
+            start = self.scene.kinetic_energy(before)
+            mean = before + 0.5 * self.motion.velocity_change
+            lost = np.einsum("...i,...i->...", impulse, mean)
+            lost = float(lost) if lost.ndim == 0 else lost
+            spent = self.motion.normal_loss + self.motion.friction_work
+            return EnergyLedger(
+                start=start,
+                end=start - lost,
+                normal_loss=self.motion.normal_loss,
+                friction_work=self.motion.friction_work,
+                imbalance=lost - spent,
+            )
+
+    def __len__(self) -> int:
+        """Return the number of impacts of a batch."""
+        if not self.scene.shape:
+            raise TypeError("the result of a single impact has no length")
+        return self.scene.shape[0]
+
+    def __getitem__(self, index: int | slice) -> EccentricResult:
+        """Return the result of one impact of a batch, or of a slice."""
+        if not self.scene.shape:
+            raise TypeError("the result of a single impact cannot be indexed")
+        shape = self.scene.shape
+        entries = {
+            field.name: batch.taken(getattr(self.motion, field.name), shape, index)
+            for field in attrs.fields(EccentricMotion)
+            if field.name != "velocity_change"
+        }
+        change = self.motion.velocity_change[index]
+        motion = EccentricMotion(velocity_change=change, **entries)
+        return attrs.evolve(
+            self,
+            scene=self.scene.take(index),
+            plan=self.plan[index],
+            motion=motion,
+            history=NO_HISTORY,
+        )
+
+    def __iter__(self) -> Iterator[EccentricResult]:
+        """Iterate over the impacts of a batch."""
+        return (self[index] for index in range(len(self)))

@@ -1,0 +1,262 @@
+"""Even steps of an eccentric impact: normal and friction law march together (theory §14).
+
+Half a drift, a kick by the forces in the middle, half a drift. The slip is marched as components,
+so that single impacts are plain numbers.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from contactlab.contracts import (
+    EccentricMotion,
+    EccentricObserver,
+    EccentricSample,
+    EccentricScene,
+    Increment,
+    IncrementalTangentialLaw,
+    NormalContact,
+    NormalLaw,
+    NormalMotion,
+    VectorTangentialLaw,
+    faults,
+)
+from contactlab.contracts.status import Status
+from contactlab.numeric.arrays import filled
+from contactlab.numeric.checks import shown
+
+#: A contact that lasts longer than so many times the approach without friction is given up.
+LONGEST = 100
+#: A step of the deepest contact that friction can make, over that of the frictionless one: at most.
+DEEPEST = 1e3
+
+
+def needed_steps(scene: EccentricScene, normal: NormalMotion, law: Any, phase_step: float) -> Any:
+    """Return the least steps in the approach without friction that resolve every oscillation."""
+    # omega² <= k_n W_nn + k_t tr W_tt; both stiffnesses grow as the contact radius, and the energy
+    # bounds the radius.
+    W = scene.inverse_mass
+    normal_stiffness = 2.0 * scene.pair.effective_modulus * normal.maximum_radius
+    tangential = law.stiffness(normal.scene, normal)
+    inertia = W[..., 1, 1] if scene.planar else W[..., 1, 1] + W[..., 2, 2]
+    omega = np.sqrt(normal_stiffness * W[..., 0, 0] + tangential * inertia)
+    radians = omega * normal.duration * deepest(scene) ** 0.1
+    steps = radians / phase_step
+    if "partial_slip" not in law.offers:
+        steps = np.maximum(steps, radians * np.sqrt(radians / 1.2))
+    return np.ceil(steps)
+
+
+def deepest(scene: EccentricScene) -> Any:
+    """Return a bound of zeta^2.5, the energy in the normal contact over that of the approach."""
+    energy = scene.kinetic_energy(scene.velocity)
+    alone = 0.5 * np.square(scene.normal_speed) / scene.inverse_mass[..., 0, 0]
+    drag = np.asarray(scene.lam)
+    drag = np.abs(drag) if scene.planar else np.hypot(drag[..., 0], drag[..., 1])
+    with np.errstate(divide="ignore"):
+        held = np.where(drag < 1.0, 1.0 / np.maximum(1.0 - drag, 0.0), np.inf)
+    return np.clip(np.minimum(energy / alone, held), 1.0, DEEPEST)
+
+
+def march_eccentric(
+    scene: EccentricScene,
+    normal: NormalMotion,
+    law: IncrementalTangentialLaw,
+    count: Any,
+    observer: EccentricObserver | None,
+) -> EccentricMotion:
+    """Return the motion in ``count`` steps an approach without friction, one for each impact."""
+    return _March(scene, normal, law, count).run(observer)
+
+
+class _March:
+    """The impacts of a batch in progress."""
+
+    def __init__(
+        self,
+        scene: EccentricScene,
+        normal: NormalMotion,
+        law: IncrementalTangentialLaw,
+        count: Any,
+    ) -> None:
+        self.scene, self.normal, self.law, self.shape = scene, normal, law, scene.shape
+        self.axes = 1 if scene.planar else 2
+        plain = not scene.shape
+
+        def entry(value: Any) -> Any:
+            return float(value) if plain else np.array(np.broadcast_to(value, scene.shape))
+
+        self.step = entry(np.asarray(normal.duration) / count)
+        self.most = int(LONGEST * np.max(count))
+        W, size = scene.inverse_mass, 1 + self.axes
+        self.W = [[entry(W[..., i, j]) for j in range(size)] for i in range(size)]
+        slip = scene.slip_velocity
+        self.before = [entry(scene.normal_speed), *(entry(slip[..., j]) for j in range(self.axes))]
+        self.change: list[Any] = [0.0 * each for each in self.before]
+        zero = self.change[0]
+        self.elastic = "elastic_hertz" in normal.law.offers
+        self.work, self.loss, self.duration = zero, zero, zero
+        self.greatest: list[Any] = [zero, zero, zero]
+        self.compressions: Any = 1 if plain else np.ones(scene.shape, dtype=int)
+        self.alive: Any = True if plain else np.ones(scene.shape, dtype=bool)
+        self.steps = 0
+        self.status: Any = filled(Status.SUCCESS, scene.shape)
+        self.detail: Any = filled("", scene.shape)
+
+    def run(self, observer: EccentricObserver | None) -> EccentricMotion:
+        """Return the motion to the end of contact of all impacts."""
+        try:
+            self._follow(observer)
+        except KeyboardInterrupt:
+            raise
+        except faults.LawFaultError as fault:
+            self._fail(fault.status, fault.detail)
+        except BaseException as error:  # a plug-in may not end the process
+            sentence = faults.sentence(self.law, faults.raised(error), self.steps)
+            self._fail(Status.LAW_RAISED, sentence)
+        return self._motion()
+
+    def _follow(self, observer: EccentricObserver | None) -> None:
+        scene, law = self.scene, self.law
+        alone: NormalLaw = self.normal.law  # type: ignore[assignment]
+        central = self.normal.scene
+        with faults.blaming(alone):
+            memory = alone.start(central)
+        begin = law.begin_vectors if self._vectors() else law.begin
+        state = begin(central, self.normal)
+        velocity = self.before
+        zero = self.change[0]
+        contact = NormalContact(zero, zero, zero, zero)
+        time, approach = zero, zero
+        drift = 0.5 * self.step
+        while True:
+            self.steps += 1
+            time = time + drift
+            approach = approach + velocity[0] * drift
+            rate, before = velocity[0], contact
+            with faults.blaming(alone) as blamed:
+                blamed.step = self.steps
+                contact, new = self._respond(alone, memory, approach, rate)
+            moved = [each * drift for each in velocity[1:]]
+            load = contact.friction_load
+            increment = Increment(
+                self._joined(moved), self._joined(velocity[1:]), load, self.step, drift
+            )
+            response, state = law.advance(state, increment, before, contact)
+            force = self._components(response.force, response.friction_work)
+            if not self.elastic:  # a viscous force acts on the rate in the middle of its kick
+                rate = velocity[0] - 0.5 * self._kick(contact.force, force)[0]
+                with faults.blaming(alone):
+                    contact, new = self._respond(alone, memory, approach, rate)
+            memory = new
+            touching = contact.overlap > 0.0
+            going = touching & self.alive if self.shape else touching
+            kick = self._kick(contact.force * touching, [each * touching for each in force])
+            if self.shape:
+                kick = [each * self.alive for each in kick]
+            middle = [v - 0.5 * k for v, k in zip(velocity, kick, strict=True)]
+            if not self.elastic:
+                self.loss = self.loss + contact.force * middle[0] * self.step * going
+            self.work = self.work + response.friction_work * self.alive
+            if observer is not None:
+                observer(
+                    EccentricSample(
+                        time, approach, middle[0], contact, self._pair(middle[1:]),
+                        self._pair(force),
+                    )
+                )  # fmt: skip
+            self.change = [c - k for c, k in zip(self.change, kick, strict=True)]
+            velocity = [v + c for v, c in zip(self.before, self.change, strict=True)]
+            reached = (contact.radius, approach, contact.force)
+            self.greatest = [
+                np.maximum(most, now * going)
+                for most, now in zip(self.greatest, reached, strict=True)
+            ]
+            again = going & (velocity[0] > 0.0) & (velocity[0] + kick[0] <= 0.0)
+            self.compressions = self.compressions + again
+            self.duration = self.duration + self.step * going
+            self.alive = going
+            drift = self.step
+            if not (self.alive.any() if self.shape else self.alive):
+                return
+            if not np.isfinite(sum(velocity)).all():
+                self._fail(
+                    Status.NON_FINITE, faults.sentence(law, "velocity is not finite", self.steps)
+                )
+                return
+            if self.steps >= self.most:
+                times = np.max(self.compressions)
+                self._fail(
+                    Status.NOT_SEPARATED,
+                    f"After {LONGEST} durations of the approach without friction and {times} "
+                    "compressions.",
+                )
+                return
+
+    def _respond(self, law: NormalLaw, state: Any, approach: Any, rate: Any) -> Any:
+        """Return the complete contact and the new state of the normal law."""
+        contact, new = law.respond(state, approach, rate)
+        return contact.complete, new
+
+    def _vectors(self) -> bool:
+        """Return whether displacements are vectors."""
+        return self.axes == 2 and isinstance(self.law, VectorTangentialLaw)
+
+    def _joined(self, components: list[Any]) -> Any:
+        """Return a displacement or velocity as the law takes it."""
+        return components[0] if self.axes == 1 else np.stack(components, axis=-1)
+
+    def _pair(self, components: list[Any]) -> Any:
+        """Return a vector of shape (..., 2)."""
+        first = components[0]
+        return np.stack([first, components[1] if self.axes == 2 else 0.0 * first], axis=-1)
+
+    def _components(self, force: Any, work: Any) -> list[Any]:
+        """Return the components of a force, or refuse a malformed answer."""
+        shape = self.shape if self.axes == 1 else (*self.shape, 2)
+        for answer, wanted in ((force, shape), (work, self.shape)):
+            if not (type(answer) is float and not wanted) and faults.malformed(answer, wanted):
+                sentence = faults.sentence(self.law, f"the answer {shown(answer)}", self.steps)
+                raise faults.LawFaultError(Status.MALFORMED, sentence)
+        if self.axes == 1:
+            return [force]
+        both = np.broadcast_to(force, shape)
+        return [both[..., 0], both[..., 1]] if self.shape else both.tolist()
+
+    def _kick(self, pressure: Any, force: list[Any]) -> list[Any]:
+        """Return W (P, F) dt, the velocities that a step takes."""
+        each = [pressure, *force]
+        return [
+            self.step * sum(w * f for w, f in zip(row, each, strict=True)) for row in self.W
+        ]
+
+    def _fail(self, status: Status, detail: str) -> None:
+        """Mark impacts that have not ended as failed."""
+        if not self.shape:
+            self.status, self.detail = status, detail
+            return
+        self.status[self.alive] = status
+        self.detail[self.alive] = detail
+
+    def _motion(self) -> EccentricMotion:
+        change = [*self.change] + [0.0 * self.change[0]] * (2 - self.axes)
+        failed = self.status != Status.SUCCESS
+        lost = np.where(failed, math.nan, 0.0)
+        change = np.stack([each + lost for each in change], axis=-1)
+        number: Any = (lambda v: v + lost) if self.shape else (lambda v: float(v + lost))
+        return EccentricMotion(
+            velocity_change=change,
+            friction_work=number(self.work),
+            normal_loss=number(self.loss),
+            duration=number(self.duration),
+            maximum_radius=number(self.greatest[0]),
+            maximum_approach=number(self.greatest[1]),
+            maximum_force=number(self.greatest[2]),
+            compressions=self.compressions,
+            status=self.status,
+            detail=self.detail,
+            counters={"steps": self.steps},
+        )
