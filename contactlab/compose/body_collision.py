@@ -131,7 +131,9 @@ def collide_bodies(
         collided = encounter.take(met)
     else:
         collided = encounter
-    if simulation is None and not (isinstance(restitution, float) or np.all(restitution == restitution.flat[0])):
+    if simulation is None and not (
+        isinstance(restitution, float) or np.all(restitution == restitution.flat[0])
+    ):
         rule = "must be one number for bodies that are no spheres"
         raise refuse("restitution", restitution, rule, "collide those of each value by themselves")
     e = restitution if isinstance(restitution, float) else float(restitution.flat[0])

@@ -419,7 +419,7 @@ def _columns(encounter: Encounter, result: ImpactResult, met: Any = True) -> Arr
     return columns.reshape(3, -1)
 
 
-def _rim(body: Sphere, spin: Array, normal: Array) -> Array:
+def _rim(body: Any, spin: Array, normal: Array) -> Array:
     """Return the velocity in m/s, relative to the centre, of the surface at ``normal``."""
     radius: Any = np.asarray(body.radius)[..., None]
     return np.asarray(radius * np.cross(spin, normal))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import attrs
 import numpy as np
@@ -23,6 +23,7 @@ from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import arguments_told
+from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.history import NO_HISTORY, Recorder
 from contactlab.outcome.plan import Clause, Plan
 from contactlab.outcome.result import ImpactResult
@@ -66,7 +67,7 @@ class Simulation:
         laws = composition.compose(normal, tangential, integrator)
         self.__attrs_init__(**laws._asdict())
 
-    def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
+    def plan(self, scene: Scene | EccentricScene, *, history: bool | str = False) -> Plan:
         """Return what ``run`` would compute for ``scene``, what it would leave out and why.
 
         Parameters
@@ -84,14 +85,25 @@ class Simulation:
             prepared = solve.prepare(laws, scene, _history(history))
         return _complete(prepared.plan, scene)
 
+    @overload
     def run(
         self, scene: Scene, *, history: bool | str = False, estimate_error: bool = False
-    ) -> ImpactResult:
+    ) -> ImpactResult: ...
+    @overload
+    def run(self, scene: EccentricScene, *, history: bool | str = False) -> EccentricResult: ...
+    def run(
+        self,
+        scene: Scene | EccentricScene,
+        *,
+        history: bool | str = False,
+        estimate_error: bool = False,
+    ) -> ImpactResult | EccentricResult:
         """Run one impact, or a batch scene at once.
 
         Parameters
         ----------
-        scene : Scene
+        scene : Scene or EccentricScene
+            The result of an eccentric impact is an ``EccentricResult``.
         history : bool or "fields"
             Keep the course of the impact; ``"fields"`` keeps traction and stick/slip too.
         estimate_error : bool

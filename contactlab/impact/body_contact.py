@@ -36,8 +36,8 @@ class Contact(NamedTuple):
     Attributes
     ----------
     normal, along : tuple of three arrays
-        Unit vectors from the first body to the target, and along the slip; ``along`` is zero without
-        slip.
+        Unit vectors from the first body to the target, and along the slip; ``along`` is zero
+        without slip.
     approach, slip : array
         Speed of approach, negative where the bodies separate, and speed of slip, in m/s.
     """
@@ -66,7 +66,10 @@ class Frame(NamedTuple):
 def arms(encounter: Encounter, normal: Array) -> tuple[Array, Array]:
     """Return the vectors in m from the centres of mass to the contact, zero for a half-space."""
     found = []
-    sides = ((encounter.body, encounter.contact, 1.0), (encounter.target, encounter.target_contact, -1.0))
+    sides = (
+        (encounter.body, encounter.contact, 1.0),
+        (encounter.target, encounter.target_contact, -1.0),
+    )
     for body, given, sense in sides:
         if isinstance(body, RigidBody):
             found.append(given)
@@ -106,7 +109,9 @@ def relative_velocity(encounter: Encounter, normal: Array) -> Array:
     """Return the velocity in m/s of the first body over the target at the contact."""
     first, second = arms(encounter, normal)
     velocity = encounter.velocity + np.cross(encounter.spin, first)
-    return np.asarray(velocity - encounter.target_velocity - np.cross(encounter.target_spin, second))
+    return np.asarray(
+        velocity - encounter.target_velocity - np.cross(encounter.target_spin, second)
+    )
 
 
 def meeting_of_bodies(encounter: Encounter, normal: tuple[Any, Any, Any]) -> Contact:
@@ -182,8 +187,9 @@ def scene_of_bodies(encounter: Encounter) -> Scene | EccentricScene:
     )
 
 
-def pair_of_bodies(encounter: Encounter, W: Array) -> Pair:
-    """Return the numbers of two bodies that laws need; W in the frame of the contact."""
+def pair_of_bodies(encounter: Encounter, inverse: Array) -> Pair:
+    """Return the numbers of two bodies that laws need; ``inverse`` is W in the contact's frame."""
+    W = inverse
     first, second = encounter.body.material, encounter.target.material
     compliance = normal_compliance(first) + normal_compliance(second)
     curvature: Any = 0.0
@@ -192,7 +198,9 @@ def pair_of_bodies(encounter: Encounter, W: Array) -> Pair:
             radius = body.radius if isinstance(body, Sphere) else body.curvature_radius
             curvature = curvature + 1.0 / np.asarray(radius)
     if not np.all(curvature > 0.0):
-        given = tuple(getattr(b, "curvature_radius", math.inf) for b in (encounter.body, encounter.target))
+        given = tuple(
+            getattr(b, "curvature_radius", math.inf) for b in (encounter.body, encounter.target)
+        )
         rule = "one of the bodies must be curved at the contact"
         raise refuse("curvature_radius", given, rule, "a contact of two planes is no Hertz contact")
     number: Any = (lambda v: v) if encounter.shape else float

@@ -192,7 +192,7 @@ class EccentricScene:
 
     @property
     def kappa(self) -> Real:
-        """kappa = G*/E*."""
+        """Kappa = G*/E*."""
         return self.pair.stiffness_ratio
 
     def psi(self, velocity: Any) -> Any:
@@ -236,7 +236,8 @@ class EccentricScene:
     def rho(self) -> Real:
         """Rho = mu²/kappa."""
         mu: Any = self.friction_coefficient
-        return _number(mu * mu / self.kappa)
+        rho: Real = mu * mu / self.kappa
+        return rho
 
     @property
     def central(self) -> Scene:
@@ -310,5 +311,3 @@ class EccentricScene:
 def _number(value: Any) -> Any:
     """Return a float for a single number, else the array."""
     return float(value) if np.ndim(value) == 0 else value
-
-

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
 from contactlab.impact.body_contact import Contact, meeting_of_bodies, scene_of_bodies
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
@@ -103,7 +102,7 @@ class Encounter:
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
 
     def __attrs_post_init__(self) -> None:
-        paths, numbers = _numbers(type(self.body), type(self.target))
+        paths, numbers = _numbers(*map(type, (self.body, self.target)))
         values, shape = numbers(self), ()
         if np.ndarray in map(type, values) or max(_DIMENSIONS(self)) > 1:
             shapes = {name: getattr(self, name).shape[:-1] for name in VECTORS}
@@ -187,10 +186,17 @@ class Encounter:
         body, target, last = _last
         pair: Pair = last
         if body is not self.body or target is not self.target:
-            pair = Pair.of(self.body, self.target)
+            pair = self._pair_of_spheres()
             if not self.shape:
                 _last = self.body, self.target, pair
         return pair
+
+    def _pair_of_spheres(self) -> Pair:
+        """Return the pair, or refuse bodies that have one only with their contact."""
+        body, target = self.body, self.target
+        if isinstance(body, RigidBody) or isinstance(target, RigidBody):
+            raise refuse("pair", type(body).__name__, "is that of spheres", "take scene.pair")
+        return Pair.of(body, target)
 
     @property
     def approaching(self) -> Any:
@@ -234,7 +240,8 @@ class Encounter:
 
     def _rim(self) -> tuple[Any, Any, Any]:
         """Return R1 omega1 + R2 omega2 in m/s, whose cross product with the normal is slip."""
-        rim = [self.body.radius * component for component in components(self.spin)]
+        body: Any = self.body
+        rim = [body.radius * component for component in components(self.spin)]
         if isinstance(self.target, Sphere) and moving(self.target_spin):
             radius = self.target.radius
             for k, component in enumerate(components(self.target_spin)):
@@ -242,8 +249,8 @@ class Encounter:
         return rim[0], rim[1], rim[2]
 
     @property
-    def scene(self) -> Scene | EccentricScene:
-        """The scene in the plane of friction, relative to a target at rest without spin.
+    def scene(self) -> Any:
+        """The ``Scene`` in the plane of friction, relative to a target at rest without spin.
 
         Of bodies that are no spheres: an ``EccentricScene`` where friction changes the approach or
         the slip turns; else a scene of numbers without bodies.
@@ -266,11 +273,12 @@ class Encounter:
         u = difference(self.velocity, self.target_velocity)
         along = sum(component * axis for component, axis in zip(u, contact.along, strict=True))
         along = np.broadcast_to(along, self.shape)
-        spin = (contact.slip - along) / self.body.radius
+        bodies: tuple[Any, Any] = self.body, self.target
+        spin = (contact.slip - along) / bodies[0].radius
         numbers: list[Any] = [contact.approach, along, spin]
         if not self.shape:
             numbers = [float(number) for number in numbers]
-        return Scene(self.body, self.target, self.friction_coefficient, *numbers)
+        return Scene(*bodies, self.friction_coefficient, *numbers)
 
     def separate(self) -> ValueError:
         """Return the ValueError for bodies that do not approach each other."""
@@ -278,7 +286,9 @@ class Encounter:
         where = np.argwhere(~(approach >= LEAST))
         first = tuple(where[0].tolist())
         state = "bodies separate" if approach[first] < 0.0 else "bodies separate, or rest"
-        turned = "turn normal from the first body to the target, or " if approach[first] < 0.0 else ""
+        turned = (
+            "turn normal from the first body to the target, or " if approach[first] < 0.0 else ""
+        )
         return refuse(
             "velocity, target_velocity",
             float(approach[first]),
@@ -288,7 +298,7 @@ class Encounter:
 
 
 @cache
-def _numbers(body: type, target: type) -> tuple[list[str], Callable[[Encounter], Any]]:
+def _numbers(body: Any, target: Any) -> tuple[list[str], Callable[[Encounter], Any]]:
     """Return the path of every number of an encounter, and the function that returns them all."""
     paths = ["friction_coefficient"]
     parts: dict[str, Any] = {"body": body, "body.material": Material}

@@ -76,7 +76,8 @@ def unlikely(scene: Scene) -> list[str]:
             if speed > SOUND_PART * sound:
                 slips.append(
                     f"normal speed {speed:.4g} m/s is {speed / sound:.2g} of the speed of sound in "
-                    f"the {name}, {sound:.4g} m/s: above {SOUND_PART:g} the contact is not quasi-static"
+                    f"the {name}, {sound:.4g} m/s: above {SOUND_PART:g} the contact is not "
+                    "quasi-static"
                 )
     return slips
 

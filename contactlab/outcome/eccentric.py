@@ -197,7 +197,7 @@ class EccentricResult:
 
     @property
     def energy(self) -> EnergyLedger:
-        """Energy books in J, of the kinetic energy ½ v·W⁻¹·v of the relative motion at the contact."""
+        """Energy books in J, of the relative motion at the contact: ½ v·W⁻¹·v is its energy."""
         before = self.scene.velocity
         impulse = self.impulse
         with np.errstate(invalid="ignore", over="ignore"):

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import EccentricMotion, EccentricScene, NormalMotion
-from contactlab.numeric.arrays import filled
 from contactlab.contracts.status import Status
+from contactlab.numeric.arrays import filled
 
 Array = NDArray[np.float64]
 
@@ -51,17 +51,17 @@ def rigid_impacts(scene: EccentricScene, normal: NormalMotion) -> EccentricMotio
     )
 
 
-def _planar(W: Array, before: Array, mu: float, e: float) -> tuple[Array, float, float]:
+def _planar(inverse: Array, before: Array, mu: float, e: float) -> tuple[Array, float, float]:
     """Return velocities after, friction work and normal loss of one impact in the plane."""
     rate, slip = float(before[0]), float(before[1])
-    n, c, t = float(W[0, 0]), float(W[0, 1]), float(W[1, 1])
+    n, c, t = float(inverse[0, 0]), float(inverse[0, 1]), float(inverse[1, 1])
     if slip != 0.0:
         sign = math.copysign(1.0, slip)
     else:  # the way in which pressure drags the bodies, if friction does not hold them
         sign = 0.0 if abs(c) <= mu * t else -math.copysign(1.0, c)
     books = _Books(rate, e)
     while True:
-        # friction over pressure: at the limit while the contact slips, what holds it while it sticks
+        # friction over pressure: the limit in slip, what holds the contact in stick
         ratio = sign * mu if sign else -c / t
         fall, drag = n + ratio * c, c + ratio * t
         until = slip / drag if sign and slip * drag > 0.0 else math.inf
@@ -108,10 +108,11 @@ class _Books:
         return self.pressed - self.returned
 
 
-def _spatial(W: Array, before: Array, mu: float, e: float) -> tuple[Array, float, float]:
+def _spatial(inverse: Array, before: Array, mu: float, e: float) -> tuple[Array, float, float]:
     """Return velocities after, friction work and normal loss of one impact in space."""
     from scipy.integrate import solve_ivp
 
+    W = inverse
     scale = float(np.linalg.norm(before))
     W_nt, W_tt = W[1:, 0], W[1:, 1:]
     held = -np.linalg.solve(W_tt, W_nt)  # the ratio that holds the contact, if mu allows it
@@ -141,7 +142,7 @@ def _spatial(W: Array, before: Array, mu: float, e: float) -> tuple[Array, float
     reach = 1e3 * scale / float(np.linalg.eigvalsh(W)[0])
     at = 0.0
     for _ in range(20):
-        path = solve_ivp(
+        path: Any = solve_ivp(
             slopes, (at, reach), state, "DOP853", events=events, rtol=TOLERANCE,
             atol=TOLERANCE * scale * min(1.0, scale),
         )  # fmt: skip
@@ -159,13 +160,13 @@ def _spatial(W: Array, before: Array, mu: float, e: float) -> tuple[Array, float
     return state[:3], float(state[4]), loss
 
 
-def _way_out(W_nt: Array, W_tt: Array, mu: float) -> Array:
+def _way_out(coupling: Array, drag: Array, mu: float) -> Array:
     """Return the direction in which slip begins where friction cannot hold the contact."""
     # the slip grows along its own direction: -(W_nt + mu W_tt s) = g s with g > 0
     from scipy.optimize import brentq
 
     def excess(g: float) -> float:
-        return float(np.linalg.norm(np.linalg.solve(mu * W_tt + g * np.eye(2), W_nt)) - 1.0)
+        return float(np.linalg.norm(np.linalg.solve(mu * drag + g * np.eye(2), coupling)) - 1.0)
 
-    g = float(brentq(excess, 0.0, float(np.linalg.norm(W_nt)), xtol=1e-300, rtol=1e-14))
-    return -np.asarray(np.linalg.solve(mu * W_tt + g * np.eye(2), W_nt))
+    g = float(brentq(excess, 0.0, float(np.linalg.norm(coupling)), xtol=1e-300, rtol=1e-14))
+    return -np.asarray(np.linalg.solve(mu * drag + g * np.eye(2), coupling))

@@ -106,12 +106,8 @@ def states(encounter, made):
 @given(encounters())
 def test_momentum(met):
     made = collide(met)
-    before = column(met.body.mass) * met.velocity + column(met.target.mass) * (
-        met.target_velocity
-    )
-    after = column(met.body.mass) * made.velocity + column(met.target.mass) * (
-        made.target_velocity
-    )
+    before = column(met.body.mass) * met.velocity + column(met.target.mass) * (met.target_velocity)
+    after = column(met.body.mass) * made.velocity + column(met.target.mass) * (made.target_velocity)
     heavy = np.maximum(met.body.mass, met.target.mass)
     assert close(after, before, heavy * speeds(met), ROUNDING)
     given_to_it = column(met.body.mass) * (made.velocity - met.velocity)

@@ -46,7 +46,8 @@ def motion(
         if still:
             answer = (-1.0, 0.0, 0.0, 2.9432751843, 1.0, 1)
         else:
-            impact = Impact(*place, tolerance, watch)
+            psi1, chi, lam, eta = place
+            impact = Impact(psi1, chi, lam, eta, tolerance, watch)
             try:
                 impact.follow()
                 answer = (

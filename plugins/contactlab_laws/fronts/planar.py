@@ -142,7 +142,7 @@ class Impact:
         return self._slip
 
     def _drawn(self) -> Phase:
-        """The front runs back along a piece that was drawn while all stuck."""
+        """Let the front run back along a piece that was drawn while all stuck."""
         piece = self.memory[-1]
         assert isinstance(piece, Drawn)
         then, left = piece.outer, piece.length
@@ -152,7 +152,10 @@ class Impact:
             now = (self.radius, self.rate, self.margin)
             rows = along_drawn(self.laws, now, then, fresh=fresh)
             rows[7][0] = left
-            slip, gap = [-k for k in rows[2]], [u - c for u, c in zip(rows[0], rows[3], strict=True)]
+            slip, gap = (
+                [-k for k in rows[2]],
+                [u - c for u, c in zip(rows[0], rows[3], strict=True)],
+            )
             begins = self.margin == 0.0
             t, event = self._step(rows[:8], [(slip, begins), (rows[7], False), (gap, meets)])
             self._arrive(rows[:3], t)
@@ -171,7 +174,7 @@ class Impact:
         return self._stopped(front) if event == 0 else self._caught(front)
 
     def _locked(self) -> Phase:
-        """The front runs back through a zone that was locked out of slip of the other sign."""
+        """Let the front run back through a zone that locked out of slip of the other sign."""
         piece = self.memory[-1]
         assert isinstance(piece, Locked)
         front, base = piece.outer, -piece.lack
@@ -179,7 +182,10 @@ class Impact:
         while True:
             now = (self.radius, self.rate, self.margin)
             rows = along_locked(self.laws, now, front, base)
-            slip, gap = [-k for k in rows[2]], [u - c for u, c in zip(rows[0], rows[3], strict=True)]
+            slip, gap = (
+                [-k for k in rows[2]],
+                [u - c for u, c in zip(rows[0], rows[3], strict=True)],
+            )
             rest = [rows[3][0] - piece.inner, *rows[3][1:]]
             begins = self.margin == 0.0
             t, event = self._step(rows[:4], [(slip, begins), (rest, False), (gap, meets)])
@@ -208,10 +214,9 @@ class Impact:
         stop = math.inf
         if drive > 0.0:
             stop = rate + margin * press / drive
-            if press > 0.0:
-                stops = stop > end
-            else:  # friction presses the bodies together: V grows, through zero if it can
-                stops = left < 0.0 or rate >= 0.0 or stop < end
+            # where press is negative V grows, through zero if it can
+            turns = left < 0.0 or rate >= 0.0 or stop < end
+            stops = stop > end if press > 0.0 else turns
         else:
             stops = False
         last = stop if stops else end
@@ -238,7 +243,7 @@ class Impact:
         alone = laws._replace(drive=0.0, spring=0.0)  # then k and J stay zero
         falls = self.rate > last
         u, V, start = self.radius, self.rate, self.rate
-        while event < 0 and V != last:
+        while event < 0 and last != V:
             rows = stuck(alone, u, V, 0.0, 0.0)
             ahead = [V - last, *rows[1][1:]] if falls else [last - V, *(-v for v in rows[1][1:])]
             t, event = self._step(rows[:2], [(ahead, False)] if stops else [(rows[0], u == 0.0)])
@@ -251,7 +256,7 @@ class Impact:
     # --------------------------------------------------------------------- what comes after
 
     def _slip(self) -> Phase:
-        """The edge slips into the outermost piece; without any all slips."""
+        """Let the edge slip into the outermost piece; without any all slips."""
         memory = self.memory
         while memory and isinstance(memory[-1], Locked) and memory[-1].sign == self.sign:
             memory.pop()  # one zone, which slips as a whole
@@ -276,7 +281,7 @@ class Impact:
         return self._slip
 
     def _caught(self, front: float) -> Phase:
-        """The shrinking edge has met the front, and slips with the other sign."""
+        """Let the edge, which has met the front, slip with the other sign."""
         self.radius = front
         self._turn()
         return self._slip

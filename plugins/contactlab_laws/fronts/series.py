@@ -44,7 +44,8 @@ class Laws(NamedTuple):
 
 def product(a: Series, b: Series, n: int) -> float:
     """Return the coefficient n of a product."""
-    return sum(map(mul, a, b[n::-1]))
+    total: float = sum(map(mul, a, b[n::-1]))
+    return total
 
 
 def value(series: Series, t: float) -> float:
@@ -134,7 +135,9 @@ def along_drawn(
     pace: Series = []  # dx
     run: Series = []  # dx_1
     gone: Series = []  # u k dx
-    slope, start, known = [], [], []
+    slope: Series = []
+    start: Series = []
+    known: Series = []
     for n in ORDERS:
         share = 1.0 / (n + 1)
         ahead.next(n)
@@ -181,7 +184,7 @@ def _fresh(
     rest = front[0] * part + sum(map(mul, front[1 : n + 1], slope[n - 1 :: -1]))
     middle = sum(map(mul, start[1:n], run[n - 1 : 0 : -1])) if n > 1 else 0.0
     own = back[0] * share
-    coefficient = (known[n] - middle + rest) / (start[0] - front[0] * own)
+    coefficient: float = (known[n] - middle + rest) / (start[0] - front[0] * own)
     slope.append(part + own * coefficient)
     start.append(rest + front[0] * own * coefficient)
     return coefficient

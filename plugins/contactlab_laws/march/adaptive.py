@@ -27,7 +27,13 @@ from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Rule, quantity
 from contactlab_laws.march import eccentric
 from contactlab_laws.march.division import midpoints
-from contactlab_laws.march.fixed import LARGEST_PHASE_STEP, MOST_STEPS, in_groups, needed_steps, refined
+from contactlab_laws.march.fixed import (
+    LARGEST_PHASE_STEP,
+    MOST_STEPS,
+    in_groups,
+    needed_steps,
+    refined,
+)
 from contactlab_laws.march.march import march
 from contactlab_laws.march.tied import march_tied
 
@@ -124,7 +130,9 @@ class Adaptive(EccentricIntegrator):
         while True:
             count = 2 * count
             if np.max(count) > MOST_STEPS:
-                return EccentricMotion.nothing(scene.shape, Status.UNRESOLVED, f"After {count} steps.")
+                return EccentricMotion.nothing(
+                    scene.shape, Status.UNRESOLVED, f"After {count} steps."
+                )
             last = eccentric.march_eccentric(scene, normal, tangential, count, None)
             moved = np.abs(last.velocity_change - before.velocity_change).max(axis=-1)
             if not np.any(moved > 3.0 * self.tolerance * scale):

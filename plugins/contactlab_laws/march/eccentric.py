@@ -120,12 +120,13 @@ class _March:
         return self._motion()
 
     def _follow(self, observer: EccentricObserver | None) -> None:
-        scene, law = self.scene, self.law
+        law = self.law
         alone: NormalLaw = self.normal.law  # type: ignore[assignment]
         central = self.normal.scene
         with faults.blaming(alone):
             memory = alone.start(central)
-        begin = law.begin_vectors if self._vectors() else law.begin
+        vectors = self.axes == 2 and isinstance(law, VectorTangentialLaw)
+        begin = law.begin_vectors if vectors else law.begin  # type: ignore[attr-defined]
         state = begin(central, self.normal)
         velocity = self.before
         zero = self.change[0]
@@ -201,10 +202,6 @@ class _March:
         contact, new = law.respond(state, approach, rate)
         return contact.complete, new
 
-    def _vectors(self) -> bool:
-        """Return whether displacements are vectors."""
-        return self.axes == 2 and isinstance(self.law, VectorTangentialLaw)
-
     def _joined(self, components: list[Any]) -> Any:
         """Return a displacement or velocity as the law takes it."""
         return components[0] if self.axes == 1 else np.stack(components, axis=-1)
@@ -229,9 +226,7 @@ class _March:
     def _kick(self, pressure: Any, force: list[Any]) -> list[Any]:
         """Return W (P, F) dt, the velocities that a step takes."""
         each = [pressure, *force]
-        return [
-            self.step * sum(w * f for w, f in zip(row, each, strict=True)) for row in self.W
-        ]
+        return [self.step * sum(w * f for w, f in zip(row, each, strict=True)) for row in self.W]
 
     def _fail(self, status: Status, detail: str) -> None:
         """Mark impacts that have not ended as failed."""
@@ -242,10 +237,10 @@ class _March:
         self.detail[self.alive] = detail
 
     def _motion(self) -> EccentricMotion:
-        change = [*self.change] + [0.0 * self.change[0]] * (2 - self.axes)
+        columns = [*self.change] + [0.0 * self.change[0]] * (2 - self.axes)
         failed = self.status != Status.SUCCESS
         lost = np.where(failed, math.nan, 0.0)
-        change = np.stack([each + lost for each in change], axis=-1)
+        change = np.stack([each + lost for each in columns], axis=-1)
         number: Any = (lambda v: v + lost) if self.shape else (lambda v: float(v + lost))
         return EccentricMotion(
             velocity_change=change,

@@ -216,7 +216,7 @@ class FixedSteps(EccentricIntegrator):
         """Return the motion, ``steps`` counted on the approach without friction."""
         needed = eccentric.needed_steps(scene, normal, tangential, LARGEST_PHASE_STEP)
         taken = np.maximum(self.steps, needed)
-        if not self.refine and np.any(needed > self.steps) or not np.all(taken <= MOST_STEPS):
+        if (not self.refine and np.any(needed > self.steps)) or not np.all(taken <= MOST_STEPS):
             detail = refusal(self.steps, float(np.max(needed)))
             return EccentricMotion.nothing(scene.shape, Status.TOO_FEW_STEPS, detail)
         return eccentric.march_eccentric(scene, normal, tangential, taken, observer)

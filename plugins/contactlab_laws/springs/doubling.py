@@ -101,7 +101,13 @@ def advance(
 
 
 def moved(
-    before: Memory, displacement: Array, radius: Array, limit: Array, *, unit: Array, modulus: Array,
+    before: Memory,
+    displacement: Array,
+    radius: Array,
+    limit: Array,
+    *,
+    unit: Array,
+    modulus: Array,
     spans: bool = False,
 ) -> tuple[Array, Array, Memory]:
     """Return force (N), friction work (J), both of shape (items,), and the springs after a step.

@@ -156,7 +156,7 @@ class Springs(ProfileLaw, VectorTangentialLaw):
     ) -> tuple[TangentialResponse, Any]:
         """Return the force after the step."""
         if isinstance(state, turning.State):
-            return turning.advance(state, increment, before, after)
+            return turning.advance(state, increment, after)
         if isinstance(state, doubling.State):
             return doubling.advance(state, increment, after)
         return super().advance(state, increment, before, after)

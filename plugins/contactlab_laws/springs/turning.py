@@ -35,7 +35,7 @@ def start(scene: Scene, springs: int, *, spanned: Any) -> State:
 
 
 def advance(
-    state: State, increment: Increment, before: NormalContact, after: NormalContact
+    state: State, increment: Increment, after: NormalContact
 ) -> tuple[TangentialResponse, State]:
     """Return force, shape (..., 2), and friction work after the step, and the springs."""
     own = state.springs
