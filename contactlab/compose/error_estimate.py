@@ -36,8 +36,9 @@ def estimated(laws: Laws, result: ImpactResult) -> Real:
     law, tangential law and, if the impact is marched, integrator. The estimate is the distance of
     psi2 from the finest answer, plus what the finest leaves by the ratio of the two changes, at
     least the last change, and no less than rounding. If a tightened tolerance cannot be kept, the
-    tolerance stays, and the estimate leaves out the error in time. The estimate never includes errors of the model. If the
-    answers do not differ, or no law has a finer resolution, the estimate is what the plan declares.
+    tolerance stays, and the estimate leaves out the error in time. The estimate never includes
+    errors of the model. If the answers do not differ, or no law has a finer resolution, the
+    estimate is what the plan declares.
 
     Parameters
     ----------

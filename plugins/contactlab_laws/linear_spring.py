@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import attrs
 import numpy as np
@@ -12,12 +12,20 @@ from contactlab.contracts import (
     Increment,
     NormalContact,
     NormalMotion,
-    SteppedTangentialLaw,
     TangentialResponse,
+    VectorTangentialLaw,
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Real, quantity
-from contactlab_laws.mindlin import critical_share, cut, with_dashpot
+from contactlab_laws.mindlin import (
+    InPlane,
+    along,
+    critical_share,
+    cut,
+    in_plane,
+    moved_in_plane,
+    with_dashpot,
+)
 
 #: Bound of the imbalance of the energy books at the fewest steps admitted, where it is largest: it
 #: falls as the square of the steps. A dashpot adds the share of a step in which the velocity
@@ -53,7 +61,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class LinearSpring(SteppedTangentialLaw):
+class LinearSpring(VectorTangentialLaw):
     """F = k_t u + c v_x within mu L: spring and dashpot, in series with a slider.
 
     The stiffness is the same from first touch to separation, k_t = ``stiffness_ratio`` times
@@ -115,19 +123,25 @@ class LinearSpring(SteppedTangentialLaw):
             zero,
         )
 
+    def begin_vectors(self, scene: Scene, normal: NormalMotion) -> Any:
+        """Return a spring at rest whose displacement is a vector."""
+        return in_plane(self, scene, normal)
+
     def advance(
-        self, state: State, increment: Increment, before: NormalContact, after: NormalContact
-    ) -> tuple[TangentialResponse, State]:
+        self, state: Any, increment: Increment, before: NormalContact, after: NormalContact
+    ) -> tuple[TangentialResponse, Any]:
         """Return the force, and the friction work: the work that the spring does not store."""
+        if isinstance(state, InPlane):
+            return moved_in_plane(self, state, increment, before, after)
         limit = state.friction_coefficient * after.friction_load
         trial = state.spring + state.stiffness * increment.displacement
         spring = force = cut(trial, limit)
         # The mean of the forces before and after: as contact ends a spring lets go of all it holds.
-        work = 0.5 * (state.spring + spring) * (trial - spring) / state.stiffness
+        work = 0.5 * along(state.spring + spring, trial - spring) / state.stiffness
         if self.damping:
             force = with_dashpot(spring, state.constant, increment, state.tangential_mass, limit)
             viscous = force - spring + state.force - state.spring
-            work = work + 0.5 * viscous * increment.displacement
+            work = work + 0.5 * along(viscous, increment.displacement)
         work = np.maximum(work, 0.0)
         if not np.ndim(state.force):
             force, spring, work = float(force), float(spring), float(work)

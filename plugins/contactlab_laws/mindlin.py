@@ -12,8 +12,8 @@ from contactlab.contracts import (
     Increment,
     NormalContact,
     NormalMotion,
-    SteppedTangentialLaw,
     TangentialResponse,
+    VectorTangentialLaw,
     WholeImpact,
     sliding,
 )
@@ -104,8 +104,46 @@ def with_dashpot(
     return cut(force, limit)
 
 
-def cut(value: Real, limit: Real) -> Any:
-    """Return ``value`` within plus and minus ``limit``."""
+class InPlane(NamedTuple):
+    """A law's state whose displacements and forces are vectors, held as complex numbers."""
+
+    own: Any
+    shape: tuple[int, ...]
+
+
+def in_plane(law: Any, scene: Scene, normal: NormalMotion) -> InPlane:
+    """Return the state at first touch of a law of one spring, for vectors."""
+    own, zero = law.start(scene, normal), np.zeros(scene.shape or (1,), dtype=complex)
+    names = {"held", "spring", "force"} & set(own._fields)
+    return InPlane(own._replace(**dict.fromkeys(names, zero)), scene.shape)
+
+
+def moved_in_plane(
+    law: Any, state: InPlane, increment: Increment, before: NormalContact, after: NormalContact
+) -> tuple[TangentialResponse, InPlane]:
+    """Return the answer to a step whose displacement and velocity have the shape (..., 2)."""
+    shape = state.shape
+    numbers = (np.asarray(each) for each in (increment.displacement, increment.velocity))
+    moved, velocity = ((each[..., 0] + 1j * each[..., 1]).reshape(shape or 1) for each in numbers)
+    step = increment._replace(displacement=moved, velocity=velocity)
+    response, own = law.advance(state.own, step, before, after)
+    force = np.stack((response.force.real, response.force.imag), axis=-1).reshape(*shape, 2)
+    work = response.friction_work.reshape(shape) if shape else response.friction_work.item()
+    return TangentialResponse(force, work), InPlane(own, shape)
+
+
+def along(force: Any, slip: Any) -> Any:
+    """Return force times slip: the product, or the scalar product of complex numbers."""
+    if isinstance(slip, np.ndarray) and slip.dtype.kind == "c":
+        return (force.conj() * slip).real
+    return force * slip
+
+
+def cut(value: Any, limit: Any) -> Any:
+    """Return ``value`` within plus and minus ``limit``; of a complex number the length."""
+    if isinstance(value, np.ndarray) and value.dtype.kind == "c":
+        size = np.abs(value)
+        return value * (np.minimum(size, limit) / (size + (size == 0.0)))
     return np.minimum(np.maximum(value, -limit), limit)
 
 
@@ -122,7 +160,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class MindlinCap(SteppedTangentialLaw):
+class MindlinCap(VectorTangentialLaw):
     """The stiffness of a contact that sticks all over, k = 2 G* b, under Coulomb's cap mu P.
 
     No part of the contact slips before the whole does. The energy that the changing
@@ -223,10 +261,16 @@ class MindlinCap(SteppedTangentialLaw):
         modulus = self._modulus(scene)
         return State(modulus, *masses, scene.friction_coefficient, zero, zero, zero)
 
+    def begin_vectors(self, scene: Scene, normal: NormalMotion) -> Any:
+        """Return a spring at rest whose displacement is a vector."""
+        return in_plane(self, scene, normal)
+
     def advance(
-        self, state: State, increment: Increment, before: NormalContact, after: NormalContact
-    ) -> tuple[TangentialResponse, State]:
+        self, state: Any, increment: Increment, before: NormalContact, after: NormalContact
+    ) -> tuple[TangentialResponse, Any]:
         """Return the force after the step, and the work of the mean force on the slip."""
+        if isinstance(state, InPlane):
+            return moved_in_plane(self, state, increment, before, after)
         stiffness: Any = state.modulus * after.radius
         cap = state.friction_coefficient * after.friction_load
         compliance = (stiffness > 0.0) / (stiffness + (stiffness == 0.0))
@@ -248,12 +292,12 @@ class MindlinCap(SteppedTangentialLaw):
             trial = kept + mean * moved
             spring = held = cut(trial, cap)
             slip = (trial - held) * compliance
-        force, work = spring, 0.5 * (spring + state.spring) * slip
+        force, work = spring, 0.5 * along(spring + state.spring, slip)
         if self.damping:
             constant = critical_share(self.damping, stiffness, state.normal_mass)
             force = with_dashpot(spring, constant, increment, state.tangential_mass, cap)
             viscous = force - spring + state.force - state.spring
-            work = work + 0.5 * viscous * increment.displacement
+            work = work + 0.5 * along(viscous, increment.displacement)
         work = np.maximum(work, 0.0)
         if not np.shape(state.force):
             held, spring, force, work = float(held), float(spring), float(force), float(work)

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import (
     Increment,
+    IncrementalTangentialLaw,
     NormalContact,
     NormalMotion,
-    SteppedTangentialLaw,
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
@@ -40,7 +40,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class MindlinDeresiewicz(SteppedTangentialLaw):
+class MindlinDeresiewicz(IncrementalTangentialLaw):
     """Partial slip by increments: dT = 2 G* b theta dD +- (1 - theta) mu dP.
 
     theta, the stick radius over b, follows from the force and from two turning points, which move
