@@ -55,6 +55,8 @@ def test_jax():
     value, slope = jax.jvp(ours, (PSI1, CHI), (np.ones_like(PSI1), 2.0))
     assert np.asarray(value) == pytest.approx(rebound(PSI1, CHI), abs=1e-15)
     assert np.asarray(slope) == pytest.approx(by_psi1 + 2.0 * by_chi, abs=1e-4)
+    with pytest.raises(ValueError, match="do not support JVP"):
+        jax.hessian(ours)(1.2, CHI)
     together = jax.grad(lambda psi1: (ours(psi1, CHI) ** 2).sum())(PSI1)
     assert np.asarray(together) == pytest.approx(2.0 * rebound(PSI1, CHI) * by_psi1, abs=1e-3)
 
@@ -78,6 +80,8 @@ def test_torch():
     single = torch.tensor([1.2], dtype=torch.float32, requires_grad=True)
     ours(single, torch.tensor(CHI)).sum().backward()
     assert single.grad.dtype == torch.float32
+    with pytest.raises(NotImplementedError, match="first derivatives"):
+        torch.autograd.functional.hessian(lambda one: ours(one, chi).sum(), psi1)
 
 
 @pytest.fixture(scope="module")
