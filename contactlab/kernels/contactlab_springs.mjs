@@ -1,10 +1,9 @@
 /**
- * Friction of two elastic spheres with partial slip: springs on a doubling grid, and one impact.
+ * Friction of two elastic spheres with partial slip: springs on a doubling grid.
  *
  * `step` is the kernel for engines: Mindlin's partial slip along any path of load and displacement, with
  * n springs in 2 + 3 n numbers a contact, from nothing but the present contact. No path gains energy.
- * `impact` is one impact of elastic spheres in scaled variables, whose largest contact is known.
- * Theory, accuracy and measurements: sections 4 and 13 of `contactlab guide theory`.
+ * Theory, accuracy and measurements: section 13 of `contactlab guide theory`.
  *
  *     const state = new Float64Array(stateLength(8));               // no contact: all zero
  *     const work = step(state, 8, moved, normal, radius, limit, unit, modulus, force);
@@ -125,55 +124,4 @@ function leastPower(x) {
   while (power < x) power *= 2;
   while (power / 2 >= x) power /= 2;
   return power;
-}
-
-/**
- * Returns one impact of elastic spheres, with a bundle of springs that spans the largest contact.
- *
- * Scaled variables (theory §1): u is the contact radius over its maximum; psi' = -2.5 chi F; F = 1.5 times
- * the integral of the deflection w, which follows the slip within the limit u² - s². Leapfrog over even
- * steps of the Hertz phase.
- *
- * @param {number} psi1     scaled angle of incidence
- * @param {number} chi      ratio of inertias
- * @param {number} springs  springs along the largest contact radius
- * @param {number} steps    steps from first touch to separation
- * @returns {{psi2: number, time: number[], force: number[], limit: number[], states: Uint8Array[]}}
- *   psi2; at the ends of the steps, the start first: time over the duration, F and mu P over mu P_max;
- *   and of each step the springs from the centre: 0 out of contact, 1 stuck, 2 and 3 slipping forth, back
- */
-export function impact(psi1, chi, springs = 120, steps = 600) {
-  const squares = Float64Array.from({length: springs}, (_, i) => ((i + 0.5) / springs) ** 2);
-  const w = new Float64Array(springs), time = [0], force = [0], limit = [0], states = [];
-  const rate = x => {  // of time in the phase, in which u = sin x
-    const u = Math.sin(x), q = u * u;
-    return 2 * u / Math.sqrt(1 + q + q * q / (1 + u));
-  };
-  let psi = psi1, square = 0, now = 0;
-  for (let k = 1; k <= steps; k++) {
-    const h = rate(Math.PI * (k - 0.5) / steps) * Math.PI / steps;
-    const u = k === steps ? 0 : Math.sin(Math.PI * k / steps), next = u * u;
-    psi -= 1.25 * chi * force[k - 1] * h;
-    const moved = psi * h, state = new Uint8Array(springs);
-    let sum = 0, full = 0;
-    for (let i = 0; i < springs; i++) {
-      const most = next - squares[i];
-      if (most <= 0) { w[i] = 0; continue; }
-      const share = squares[i] < square ? 1 : most / (next - square);
-      const tried = w[i] + share * moved;
-      w[i] = Math.max(-most, Math.min(most, tried));
-      state[i] = tried > most ? 2 : tried < -most ? 3 : 1;
-      sum += w[i];
-      full += most;
-    }
-    square = next;
-    now += h;
-    const friction = square ** 1.5, tangential = full > 0 ? friction * sum / full : 0;
-    psi -= 1.25 * chi * tangential * h;
-    time.push(now);
-    force.push(tangential);
-    limit.push(friction);
-    states.push(state);
-  }
-  return {psi2: psi, time: time.map(t => t / now), force, limit, states};
 }

@@ -201,7 +201,7 @@ console.log(JSON.stringify([first, force]));
 def test_what_the_notes_say_of_spin_about_the_normal(tmp_path):
     """Two bodies that spin about the normal together take the force along."""
     notes = (KERNELS / "README.md").read_text("utf-8")
-    lines = notes[notes.index("    const about") : notes.index("## How many")]
+    lines = notes[notes.index("    const about") : notes.index("### How many")]
     kernel = json.dumps((KERNELS / "contactlab_springs.mjs").as_uri())
     first, second = answered(SPINNING.format(kernel=kernel, lines=lines), tmp_path)
     normal = np.array([0.6, 0.0, 0.8])
@@ -242,7 +242,8 @@ def test_it_is_c_plus_plus_too(tmp_path):
     if compiler is None:
         pytest.skip("no C++ compiler (c++, g++) is there")
     source = tmp_path / "use.cpp"
-    source.write_text('#include "contactlab_springs.h"\nint main() { return 0; }\n')
+    include = '#include "contactlab_springs.h"\n#include "contactlab_bounce.h"\n'
+    source.write_text(include + "int main() { return 0; }\n")
     words = [compiler, "-std=c++11", "-Wall", "-Wextra", "-pedantic", "-Werror", f"-I{KERNELS}"]
     subprocess.run([*words, "-Wno-unused-function", "-c", source, "-o", tmp_path / "use.o"],
                    check=True, timeout=120)  # fmt: skip
@@ -253,7 +254,7 @@ def test_it_is_c_plus_plus_too(tmp_path):
     ("psi1", "chi"), [(0.5, 1.18), (1.2, 49.0 / 34.0), (3.0, 1.75), (8.0, 1.44)]
 )
 def test_one_impact_in_javascript(psi1, chi):
-    words = [NODE, HERE / "drive.mjs", KERNELS / "contactlab_springs.mjs", "impact"]
+    words = [NODE, HERE / "drive.mjs", KERNELS / "contactlab_bounce.mjs", "impact"]
     numbers = [str(number) for number in (psi1, chi, 120, 600)]
     run = subprocess.run([*words, *numbers], check=True, timeout=60, capture_output=True, text=True)
     motion = json.loads(run.stdout)
