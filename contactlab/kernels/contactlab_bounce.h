@@ -161,15 +161,15 @@ static inline int contactlab_bounce(const contactlab_body *one, const contactlab
 {
   const contactlab_body *body[2];
   double n[3], along[3], arm[2], light[2], turn[2]; /* radius, 1 over mass, radius over inertia */
-  double soft = 0, stiff = 0, mobility = 0, masses = 0, approach = 0, slip = 0, drag = 0, kappa, unit, size;
+  double soft = 0, stiff = 0, mobility = 0, masses = 0, approach = 0, slip = 0, drag = 0, kappa, chi, unit, size;
   int i, k;
   body[0] = one;
   body[1] = other;
   for (i = 0; i < 2; ++i) {
     const contactlab_body *it = body[i];
     const double shear = it->young / (1 + it->poisson);
-    if (!(it->radius >= 0 && it->mass >= 0 && it->inertia >= 0 && it->young > 0 && it->poisson > -1 && it->poisson <= 0.5))
-      return -1;
+    if (!(it->radius >= 0 && it->mass >= 0 && it->inertia >= 0)) return -1;
+    if (!(it->young > 0 && it->poisson > -1 && it->poisson <= 0.5)) return -1;
     arm[i] = it->radius;
     light[i] = it->radius > 0 && it->mass > 0 ? 1 / it->mass : 0;
     turn[i] = it->inertia > 0 ? it->radius / it->inertia : light[i] > 0 ? 2.5 * light[i] / it->radius : 0;
@@ -179,6 +179,7 @@ static inline int contactlab_bounce(const contactlab_body *one, const contactlab
     stiff += (2 - it->poisson) / shear;
   }
   kappa = 2 * soft / stiff;
+  chi = 0.5 * kappa * mobility / masses;
   size = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
   for (k = 0; k < 3; ++k) n[k] = normal[k] / size;
   for (k = 0; k < 3; ++k) { /* velocity of the contact point, the first less the other */
@@ -189,11 +190,11 @@ static inline int contactlab_bounce(const contactlab_body *one, const contactlab
   }
   for (k = 0; k < 3; ++k) along[k] -= approach * n[k];
   slip = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
-  if (!(one->radius > 0 && masses > 0 && friction >= 0 && slip + mobility + kappa + friction <= 1e300)) return -1;
+  if (!(one->radius > 0 && masses > 0 && chi <= 1e4 && friction >= 0 && slip + friction <= 1e300)) return -1;
   if (!(approach > 0)) return 0;
   unit = friction * approach / kappa; /* of psi */
   if (unit > 0 && slip > 0)
-    drag = unit * contactlab_bounce_change(slip / unit, 0.5 * kappa * mobility / masses) / mobility / slip;
+    drag = unit * contactlab_bounce_change(slip / unit, chi) / mobility / slip;
   for (k = 0; k < 3; ++k) {
     const int l = (k + 1) % 3, m = (k + 2) % 3;
     const double impulse = drag * along[k] - 2 * approach / masses * n[k];

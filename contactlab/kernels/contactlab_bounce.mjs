@@ -40,7 +40,8 @@ export function bounce(one, other, friction, normal, velocity, spin = [0, 0, 0],
   const approach = u * x + v * y + w * z;
   u -= approach * x; v -= approach * y; w -= approach * z;
   const slip = Math.hypot(u, v, w), mobility = masses + r1 * c1 + r2 * c2, kappa = stiffnesses(one, other);
-  if (!(r1 > 0 && masses > 0 && friction >= 0 && Number.isFinite(slip + mobility + kappa + friction))) {
+  const chi = 0.5 * kappa * mobility / masses;
+  if (!(r1 > 0 && masses > 0 && chi <= MOST && friction >= 0 && Number.isFinite(slip + friction))) {
     throw new RangeError("bounce: a sphere needs a radius, a mass and poisson; these and young must be positive "
       + "(poisson from -1 to 0.5), friction at least 0, the normal not zero, and vectors three finite numbers");
   }
@@ -49,7 +50,7 @@ export function bounce(one, other, friction, normal, velocity, spin = [0, 0, 0],
   if (!after.bounced) return after;
   const unit = friction * approach / kappa;  // of psi
   const push = -2 * approach / masses;       // impulses on the first body
-  const drag = unit > 0 ? unit * slipChange(slip / unit, 0.5 * kappa * mobility / masses) / mobility : 0;
+  const drag = unit > 0 ? unit * slipChange(slip / unit, chi) / mobility : 0;
   const along = slip > 0 ? [u / slip, v / slip, w / slip] : [0, 0, 0];
   const about = [y * along[2] - z * along[1], z * along[0] - x * along[2], x * along[1] - y * along[0]];
   [x, y, z].forEach((n, k) => {
@@ -63,8 +64,12 @@ export function bounce(one, other, friction, normal, velocity, spin = [0, 0, 0],
 }
 
 /** Returns psi2 of psi1 and chi (theory §1): to 1e-6 max(1, |psi1|) for chi from 0.5 to 2.5, which all
- *  spheres have but those with a dense core; by 16 springs else: to 0.006 up to chi = 4, 0.02 up to 10. */
+ *  spheres have but those with a dense core; by 16 springs else: to 0.006 up to chi = 4, 0.02 up to 10. NaN
+ *  for what is no number. */
 export const rebound = (psi1, chi) => psi1 + Math.sign(psi1) * slipChange(Math.abs(psi1), chi);
+
+/** The largest chi. */
+const MOST = 1e4;
 
 /** Returns radius, 1 over mass, and radius over inertia of a body: 0 of a wall. */
 const inertias = ({radius, mass = Infinity, inertia = 0.4 * mass * radius * radius}) =>
@@ -85,7 +90,8 @@ function stiffnesses(one, other) {
 
 /** Returns psi2 - psi1 for psi1 >= 0. */
 function slipChange(psi1, chi) {
-  if (psi1 >= Math.max(1, 4 * chi - 1)) return -4 * chi;  // slips throughout
+  if (!(chi > 0 && chi <= MOST)) return NaN;
+  if (!(psi1 < Math.max(1, 4 * chi - 1))) return -4 * chi;  // slips throughout
   const moved = chi >= 0.5 && chi <= 2.5 ? psi1 * tabulated(psi1, chi)
     : impact(psi1, chi, 16, Math.ceil(50 * Math.max(1, Math.sqrt(chi)))).psi2 - psi1;
   return Math.min(Math.max(moved, -4 * chi, -2 * psi1), 0);

@@ -10,7 +10,17 @@ import pytest
 import contactlab
 from contactlab import Encounter, HalfSpace, Material, Sphere, collide
 from table_builders.elastic import thin
-from tests.kernels.test_kernels import COMPILER, HERE, KERNELS, NODE, STRICT, needs_c, needs_node
+from tests.kernels.test_kernels import (
+    COMPILER,
+    HERE,
+    KERNELS,
+    NODE,
+    SANITIZERS,
+    STRICT,
+    answered,
+    needs_c,
+    needs_node,
+)
 
 COUNT = 2000
 #: Places in a row, as bounce.c reads them.
@@ -23,8 +33,8 @@ def bounced(request, tmp_path_factory):
     """Return a function of rows (n, 26) that gives answers (n, 13), by the code in C or JS."""
     folder = tmp_path_factory.mktemp("bounce")
     if request.param == "c":
-        words = [COMPILER, *STRICT, f"-I{KERNELS}", HERE / "bounce.c", "-o", folder / "bounce"]
-        subprocess.run([*words, "-lm"], check=True, timeout=120)
+        words = [COMPILER, *STRICT, *SANITIZERS, f"-I{KERNELS}", HERE / "bounce.c"]
+        subprocess.run([*words, "-o", folder / "bounce", "-lm"], check=True, timeout=120)
         command = [folder / "bounce"]
     else:  # as npm lays a package out
         shutil.copytree(KERNELS, folder / "node_modules" / "contactlab")
@@ -159,7 +169,8 @@ PLACES = {"radius": 0, "mass": 1, "inertia": 2, "young": 3, "poisson": 4, "other
 
 @pytest.mark.parametrize(
     ("place", "values"),
-    [("radius", (-0.01, np.nan, 0.0)), ("mass", (-1.0, np.nan)), ("inertia", (-1.0, np.nan)),
+    [("radius", (-0.01, np.nan, 0.0)), ("mass", (-1.0, np.nan)),
+     ("inertia", (-1.0, np.nan, 1e-300)),
      ("young", (-1.0, 0.0, np.nan)), ("poisson", (-1.0, 0.51, np.nan)), ("other mass", (-1.0,)),
      ("other poisson", (0.6, np.nan)), ("friction", (-0.1, np.nan, np.inf)),
      ("normal", (np.nan, np.inf)), ("velocity", (np.nan, np.inf)), ("spin", (np.nan,))],
@@ -178,6 +189,15 @@ def test_a_normal_of_no_length_and_two_fixed_bodies_are_refused(bounced):
     rows[0, NORMAL] = 0.0
     rows[1, [1, 2]] = 0.0
     assert (bounced(rows[:2])[:, 0] == -1).all()
+
+
+@needs_node
+def test_rebound_of_no_number_is_nan(tmp_path):
+    pairs = [("NaN", 1.44), (1.2, "NaN"), (0.5, 0), (0.5, -1), (0.5, "Infinity"), ("Infinity", 2)]
+    calls = ",".join(f"rebound({psi1},{chi})" for psi1, chi in pairs)
+    module = json.dumps((KERNELS / "contactlab_bounce.mjs").as_uri())
+    script = f"import {{rebound}} from {module}; console.log(JSON.stringify([{calls}]))"
+    assert answered(script, tmp_path) == [None] * 6  # NaN and infinity in JSON
 
 
 def test_the_table_is_the_one_that_is_built(tmp_path):
