@@ -46,11 +46,12 @@ def script(
     law: str = "springs8",
     coefficients: str = "",
     sort: bool = True,
-    wall: bool = True,
+    wall: str = "zplane 0 NULL",
 ) -> str:
     """Return the settings of a run, without its steps."""
     model = MODEL.format(friction(law, MU))
-    fix = f"fix w all {lammps.wall} granular {model} zplane 0 NULL" if wall else ""
+    style = lammps.wall.replace("gran", "gran/region") if "region" in wall else lammps.wall
+    fix = f"fix w all {style} granular {model} {wall}" if wall else ""
     pairs = coefficients or f"pair_coeff * * {model}"
     return f"""
 units si
@@ -60,6 +61,7 @@ newton {newton}
 comm_modify vel yes
 {"" if sort else "atom_modify sort 0 0.0"}
 {{begin}}
+region floor plane 0 0 0 0 0 1
 pair_style {lammps.pair}
 {pairs}
 {fix}
@@ -142,7 +144,7 @@ def touching(lammps: Engine) -> Array:
     velocity = np.array([[0.0, 0.3, 0.0], [0.0, -0.3, 0.0]])
     numbers = np.full(2, 2.0 * RADIUS), np.full(2, 2500.0)
     grains = Grains(np.ones(2, int), *numbers, place, velocity, np.zeros((2, 3)))
-    text = script(lammps, wall=False) + DUMP.format(every=1) + "run 0\n"
+    text = script(lammps, wall="") + DUMP.format(every=1) + "run 0\n"
     return run(lammps, text, grains, np.full(3, -0.1), np.full(3, 0.2))
 
 
@@ -168,6 +170,7 @@ def main() -> int:
         print(f"{what:50} {gap:9.1e}  {'ok' if gap <= bound else f'above {bound:g}'}")
 
     hold("restart in mid-contact (damping at whole steps)", restarted(lammps, STEPS // 8), 1e-3)
+    hold("the wall as a region", whole(lammps, wall="region floor"), 1e-9)
     hold("newton on", whole(lammps, newton="on"), 1e-9)
     hold("grains numbered backwards", swapped(lammps), 1e-9)
     model = MODEL.format(friction("springs8", MU))

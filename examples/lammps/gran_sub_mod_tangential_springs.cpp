@@ -6,7 +6,6 @@
 */
 #include "gran_sub_mod_tangential_springs.h"
 
-#include "contactlab_springs.h"
 #include "error.h"
 #include "gran_sub_mod_damping.h"
 #include "gran_sub_mod_normal.h"
@@ -19,6 +18,8 @@
 using namespace LAMMPS_NS;
 using namespace Granular_NS;
 using MathExtra::dot3;
+
+#include "contactlab_springs.h"    // in a merged tree the kernel itself
 
 static constexpr int MOST = 64;    // springs
 
