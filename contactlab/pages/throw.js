@@ -15,7 +15,7 @@ function meeting(set) {
   const C = (15 * mass * normal ** 2 / (16 * modulus * R ** 3)) ** .2;
   const peak = 1.25 * mass * normal ** 2 / (C * C * R);
   return {
-    along, normal, R, C, scale, chi: .5 * kappa / SHARE, psi1: scale * (along + set.spin * R),
+    along, normal, R, C, mass, nu, scale, chi: .5 * kappa / SHARE, psi1: scale * (along + set.spin * R),
     duration: DURATION * C * C * R / normal, pressure: 1.5 * peak / (Math.PI * (C * R) ** 2),
     yields: body.yield_stress ? FIRST_YIELD * body.yield_stress : Infinity,
   };
@@ -31,13 +31,20 @@ function leaving(met, set, psi2) {
   };
 }
 
+/* Return how the elastic ball leaves; spin about the third axis is positive where it adds to the slip. */
+function bouncing(met, set) {
+  const ball = {radius: met.R, mass: met.mass, poisson: met.nu};
+  const left = bounce(ball, {}, set.friction, [0, -1, 0], [met.along, -met.normal, 0], [0, 0, set.spin]);
+  return leaving(met, set, met.scale * (left.velocity[0] + left.spin[2] * met.R));
+}
+
 /* Return the whole throw: meeting, contact, and how the ball leaves under the three laws. */
 function thrown(set) {
   const met = meeting(set), contact = impact(met.psi1, met.chi, SPRINGS, STEPS);
   const capped = cappedImpact(met.psi1, met.chi, contact);
   return {
     met, contact, capped,
-    exact: leaving(met, set, contact.psi2),
+    exact: bouncing(met, set),
     spring: leaving(met, set, capped.psi2),
     rigid: leaving(met, set, rigidRebound(met.psi1, met.chi)),
   };
@@ -49,10 +56,8 @@ function rebounds(set) {
   for (let angle = 0; angle <= 84; angle += 2) {
     const at = {...set, angle}, met = meeting(at);
     const contact = impact(met.psi1, met.chi, 40, 160);
-    const psi2 = [
-      contact.psi2, cappedImpact(met.psi1, met.chi, contact).psi2, rigidRebound(met.psi1, met.chi),
-    ];
-    rows.push([angle, ...psi2.map(value => leaving(met, at, value).angle)]);
+    const others = [cappedImpact(met.psi1, met.chi, contact).psi2, rigidRebound(met.psi1, met.chi)];
+    rows.push([angle, ...[bouncing(met, at), ...others.map(psi2 => leaving(met, at, psi2))].map(left => left.angle)]);
   }
   return rows;
 }

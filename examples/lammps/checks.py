@@ -10,6 +10,8 @@ Examples
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +19,8 @@ from engine import DUMP, Array, Engine, Grains, arguments, engine, folder, frict
 
 YOUNG, POISSON, MU, RADIUS = 1e8, 0.3, 0.4, 0.01
 MODEL = f"hertz/material {YOUNG:g} 0.8 {POISSON} {{}} damping tsuji"
+#: Young's modulus and Poisson's ratio of two unlike materials.
+UNLIKE = ((1e8, 0.2), (4e8, 0.45))
 
 
 def cluster(count: int = 60, seed: int = 5) -> tuple[Grains, Array, Array]:
@@ -42,11 +46,12 @@ def script(
     law: str = "springs8",
     coefficients: str = "",
     sort: bool = True,
-    wall: bool = True,
+    wall: str = "zplane 0 NULL",
 ) -> str:
     """Return the settings of a run, without its steps."""
     model = MODEL.format(friction(law, MU))
-    fix = f"fix w all {lammps.wall} granular {model} zplane 0 NULL" if wall else ""
+    style = lammps.wall.replace("gran", "gran/region") if "region" in wall else lammps.wall
+    fix = f"fix w all {style} granular {model} {wall}" if wall else ""
     pairs = coefficients or f"pair_coeff * * {model}"
     return f"""
 units si
@@ -56,6 +61,7 @@ newton {newton}
 comm_modify vel yes
 {"" if sort else "atom_modify sort 0 0.0"}
 {{begin}}
+region floor plane 0 0 0 0 0 1
 pair_style {lammps.pair}
 {pairs}
 {fix}
@@ -85,17 +91,42 @@ def whole(lammps: Engine, **options: object) -> Array:
     return run(lammps, text, grains, low, high)
 
 
-def restarted(lammps: Engine, at: int) -> Array:
+def unlike(mixed: bool) -> str:
+    """Return lines for two unlike materials; their pair is mixed, or has its stiffnesses."""
+    lines = [
+        f"pair_coeff {kind} {kind} hertz/material {young:g} 0.8 {poisson} "
+        f"{friction('springs8', MU)} damping tsuji"
+        for kind, (young, poisson) in enumerate(UNLIKE, 1)
+    ]
+    if not mixed:
+        normal = 4.0 / 3.0 / sum((1.0 - poisson**2) / young for young, poisson in UNLIKE)
+        shear = sum(2.0 * (2.0 - poisson) * (1.0 + poisson) / young for young, poisson in UNLIKE)
+        lines.append(
+            f"pair_coeff 1 2 hertz {normal:.17g} 0.8 "
+            f"tangential mindlin_springs {8.0 / shear:.17g} 0 {MU} 8 damping tsuji"
+        )
+    return "\n".join(lines)
+
+
+def refused(what: Callable[[], object], word: str) -> bool:
+    """Return whether LAMMPS stops with an error that has a word."""
+    try:
+        what()
+    except RuntimeError as error:
+        return word in str(error)
+    return False
+
+
+def restarted(lammps: Engine, at: int, first: str = "springs8", then: str = "springs8") -> Array:
     """Return the answers of a run that is stopped while grains touch, and begun again."""
     grains, low, high = cluster()
     low = np.array([low[0], low[1], 0.0])
-    text = script(lammps)
     with folder() as name:
         write(grains, Path(name) / "data", low, high, kinds=2)
-        first = text.replace("{begin}", "read_data data") + f"run {at}\nwrite_restart kept\n"
-        lammps.run(first, Path(name))
-        second = text.replace("{begin}", "read_restart kept")
-        lammps.run(second + DUMP.format(every=STEPS) + f"run {STEPS - at}\n", Path(name))
+        begun = script(lammps, law=first).replace("{begin}", "read_data data")
+        lammps.run(begun + f"run {at}\nwrite_restart kept\n", Path(name))
+        again = script(lammps, law=then).replace("{begin}", "read_restart kept")
+        lammps.run(again + DUMP.format(every=STEPS) + f"run {STEPS - at}\n", Path(name))
         return read(Path(name) / "out")
 
 
@@ -113,7 +144,7 @@ def touching(lammps: Engine) -> Array:
     velocity = np.array([[0.0, 0.3, 0.0], [0.0, -0.3, 0.0]])
     numbers = np.full(2, 2.0 * RADIUS), np.full(2, 2500.0)
     grains = Grains(np.ones(2, int), *numbers, place, velocity, np.zeros((2, 3)))
-    text = script(lammps, wall=False) + DUMP.format(every=1) + "run 0\n"
+    text = script(lammps, wall="") + DUMP.format(every=1) + "run 0\n"
     return run(lammps, text, grains, np.full(3, -0.1), np.full(3, 0.2))
 
 
@@ -126,11 +157,11 @@ def main() -> int:
     base = whole(lammps)
     scale = np.abs(base[:, :3]).max()
     other = whole(lammps, law="mindlin/force")
-    unlike = np.abs(other[:, :3] - base[:, :3]).max() / scale
+    moved = np.abs(other[:, :3] - base[:, :3]).max() / scale
     print(
-        f"mindlin/force instead moves velocities by {unlike:.2g} of the largest: so checks can tell"
+        f"mindlin/force instead moves velocities by {moved:.2g} of the largest: so checks can tell"
     )
-    failed = unlike < 1e-3
+    failed = moved < 1e-3
 
     def hold(what: str, answers: Array, bound: float) -> None:
         nonlocal failed
@@ -139,6 +170,7 @@ def main() -> int:
         print(f"{what:50} {gap:9.1e}  {'ok' if gap <= bound else f'above {bound:g}'}")
 
     hold("restart in mid-contact (damping at whole steps)", restarted(lammps, STEPS // 8), 1e-3)
+    hold("the wall as a region", whole(lammps, wall="region floor"), 1e-9)
     hold("newton on", whole(lammps, newton="on"), 1e-9)
     hold("grains numbered backwards", swapped(lammps), 1e-9)
     model = MODEL.format(friction("springs8", MU))
@@ -146,6 +178,32 @@ def main() -> int:
     mixed = "\n".join(f"pair_coeff {pair} {model}" for pair in ("1 1", "2 2"))
     hold("unlike types left to mixing, like materials", whole(lammps, coefficients=mixed), 1e-9)
     hold("a line of coefficients for every pair of types", whole(lammps, coefficients=pairs), 1e-12)
+    apart = whole(lammps, coefficients=unlike(mixed=False))
+    gap = np.abs(whole(lammps, coefficients=unlike(mixed=True)) - apart)[:, :3].max() / scale
+    failed |= not gap <= 1e-9
+    print(f"{'unlike materials left to mixing':50} {gap:9.1e}  {'ok' if gap <= 1e-9 else 'above'}")
+    model = MODEL.format("tangential mindlin_springs {}")
+    refusals: dict[str, tuple[Callable[[], object], str]] = {
+        f"restart of {first} with {then}": (
+            partial(restarted, lammps, STEPS // 8, first, then), "history of another"
+        )
+        for first, then in (
+            ("springs8", "springs4"), ("springs8", "springs12"), ("mindlin/force", "springs8"),
+            ("mindlin_rescale", "springs8"),
+        )
+    } | {
+        f"coefficients {words}": (
+            partial(whole, lammps, coefficients=f"pair_coeff * * {model.format(words)}"), told
+        )
+        for words, told in (
+            ("NULL 0 0.4 1e300", "must be even"), ("NULL 0 0.4 7", "must be even"),
+            ("0 0 0.4 8", "kt must be positive"), ("NULL -1 0.4 8", "must not be negative"),
+        )
+    }  # fmt: skip
+    for what, (act, word) in refusals.items():
+        stopped = refused(act, word)
+        failed |= not stopped
+        print(f"{what:50} {'refused: ok' if stopped else 'not refused'}")
     if given.two:
         two = Engine(given.two, lammps.plugin)
         hold("two processes, newton off", whole(two), 1e-9)

@@ -45,7 +45,7 @@ thermo 100000
 
 
 def packed(lammps: Engine, count: int, place: Path) -> None:
-    """Write a restart file of a dense pack: loose grains, pressed together and sheared a little."""
+    """Write a data file of a dense pack: loose grains, pressed together and sheared a little."""
     random = np.random.default_rng(1)
     side = int(np.ceil(count ** (1 / 3)))
     lattice = np.stack(np.meshgrid(*[np.arange(side)] * 3), axis=-1).reshape(-1, 3)[:count]
@@ -64,7 +64,7 @@ fix d all deform 1 x final 0 {final:.9g} y final 0 {final:.9g} z final 0 {final:
 run 20000
 unfix d
 run 2000
-write_restart pack
+write_data pack nocoeff
 """
     lammps.run(script, place)
 
@@ -72,8 +72,8 @@ write_restart pack
 def seconds(lammps: Engine, law: str, steps: int, place: Path) -> tuple[float, float]:
     """Return processor seconds of the loop on each process, and contacts a grain."""
     style = lammps.pair if law.startswith("springs") else "granular"
-    # The pair style of the restart file is another one, so that grains begin without a memory.
-    script = settings(style, law, "read_restart pack\nchange_box all triclinic")
+    # A data file has no history: grains begin without a memory.
+    script = settings(style, law, "read_data pack\nchange_box all triclinic")
     script += f"""
 fix n all nve/sphere
 fix d all deform 1 xy erate 20 remap v

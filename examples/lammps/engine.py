@@ -49,11 +49,16 @@ class Engine(NamedTuple):
         """Run an input script in a folder and return what LAMMPS prints."""
         load = f"plugin load {self.plugin}\n" if self.plugin else ""
         (folder / "in.lammps").write_text(load + script)
-        words = [*shlex.split(self.command), "-in", "in.lammps"]
+        words = [*map(_absolute, shlex.split(self.command)), "-in", "in.lammps"]
         done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode:
             raise RuntimeError(f"{self.command}:\n{done.stdout[-3000:]}\n{done.stderr[-1000:]}")
         return done.stdout
+
+
+def _absolute(word: str) -> str:
+    """Return a path to a program from the root: LAMMPS runs in another folder."""
+    return str(Path(word).absolute()) if "/" in word and Path(word).exists() else word
 
 
 def arguments(description: str) -> argparse.ArgumentParser:
@@ -72,7 +77,7 @@ def engine(given: argparse.Namespace) -> Engine:
 def friction(law: str, mu: float) -> str:
     """Return the words of a tangential sub-model: a name of ``OWN``, or ``springs8``."""
     if law.startswith("springs"):
-        return f"tangential mindlin_springs NULL {mu:.17g} {int(law.removeprefix('springs'))}"
+        return f"tangential mindlin_springs NULL 0 {mu:.17g} {int(law.removeprefix('springs'))}"
     return f"tangential {law} NULL 0 {mu:.17g}"
 
 

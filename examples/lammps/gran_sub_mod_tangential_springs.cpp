@@ -6,77 +6,96 @@
 */
 #include "gran_sub_mod_tangential_springs.h"
 
-#include "contactlab_springs.h"
 #include "error.h"
+#include "gran_sub_mod_damping.h"
 #include "gran_sub_mod_normal.h"
 #include "granular_model.h"
+#include "math_extra.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace Granular_NS;
+using MathExtra::dot3;
+
+#include "contactlab_springs.h"    // in a merged tree the kernel itself
 
 static constexpr int MOST = 64;    // springs
 
 GranSubModTangentialMindlinSprings::GranSubModTangentialMindlinSprings(GranularModel *gm, LAMMPS *lmp) :
-    GranSubModTangential(gm, lmp), springs(0)
+    GranSubModTangential(gm, lmp), springs(0), xt(0.0)
 {
-  num_coeffs = 3;
+  num_coeffs = 4;
   contact_radius_flag = 1;
   nondefault_history_transfer = 1;
-  damp = 0.0;
 }
 
 void GranSubModTangentialMindlinSprings::coeffs_to_local()
 {
-  k = coeffs[0];
-  mu = coeffs[1];
-  springs = static_cast<int>(coeffs[2]);
-  if (springs != coeffs[2] || springs % 2 || springs < 2 || springs > MOST)
-    error->all(FLERR, "mindlin_springs: springs = {}: must be even, from 2 to {}", coeffs[2], MOST);
+  xt = coeffs[1];
+  mu = coeffs[2];
+  if (!(coeffs[3] >= 2.0 && coeffs[3] <= MOST && fmod(coeffs[3], 2.0) == 0.0))
+    error->all(FLERR, "mindlin_springs: N = {}: must be even, from 2 to {}", coeffs[3], MOST);
+  springs = static_cast<int>(coeffs[3]);
 
-  if (k == -1) {
+  // the stiffness takes the place of NULL, for mixing and for a restart
+  if (coeffs[0] == -1) {
     if (!gm->normal_model->get_material_properties())
       error->all(FLERR, "mindlin_springs: kt = NULL needs a normal model with material properties");
     const double young = gm->normal_model->get_emod(), poisson = gm->normal_model->get_poiss();
-    k = 8.0 * (gm->contact_type == PAIR ? mix_stiffnessG(young, young, poisson, poisson) :
-                                          mix_stiffnessG_wall(young, poisson));
+    coeffs[0] = 8.0 * (gm->contact_type == PAIR ? mix_stiffnessG(young, young, poisson, poisson) :
+                                                  mix_stiffnessG_wall(young, poisson));
   }
-  if (k < 0.0 || mu < 0.0) error->all(FLERR, "mindlin_springs: kt and mu must not be negative");
+  k = coeffs[0];
+  if (!(k > 0.0 && xt >= 0.0 && mu >= 0.0))
+    error->all(FLERR, "mindlin_springs: kt must be positive, xt and mu must not be negative");
 
-  // where two grains swap, the deflections change sign; the size of the grid and the contact radius do not
-  size_history = CONTACTLAB_SPRINGS_STATE(springs);
+  // where two grains swap, the deflections change sign; N, the size of the grid and the contact radius do not
+  size_history = 1 + CONTACTLAB_SPRINGS_STATE(springs);
   delete[] transfer_history_factor;
   transfer_history_factor = new double[size_history];
-  std::fill(transfer_history_factor, transfer_history_factor + 2, 1.0);
-  std::fill(transfer_history_factor + 2, transfer_history_factor + size_history, -1.0);
+  std::fill(transfer_history_factor, transfer_history_factor + 3, 1.0);
+  std::fill(transfer_history_factor + 3, transfer_history_factor + size_history, -1.0);
 }
 
 void GranSubModTangentialMindlinSprings::mix_coeffs(double *icoeffs, double *jcoeffs)
 {
-  const bool material = icoeffs[0] == -1 || jcoeffs[0] == -1;
-  coeffs[0] = material ? -1 : mix_geom(icoeffs[0], jcoeffs[0]);
+  // kt of like pairs is 4 G/(2 - nu) of their material, and compliances add up
+  coeffs[0] = 2.0 * icoeffs[0] * jcoeffs[0] / (icoeffs[0] + jcoeffs[0]);
   coeffs[1] = mix_geom(icoeffs[1], jcoeffs[1]);
-  coeffs[2] = std::max(icoeffs[2], jcoeffs[2]);
+  coeffs[2] = mix_geom(icoeffs[2], jcoeffs[2]);
+  coeffs[3] = std::max(icoeffs[3], jcoeffs[3]);
   coeffs_to_local();
-  // the mixed normal model has E* for Young's modulus: with it mix_stiffnessG would halve the stiffness
-  if (material) {
-    const double poisson = gm->normal_model->get_poiss();
-    k = 4.0 * (1.0 - poisson) / (2.0 - poisson) * gm->normal_model->get_emod();
-  }
 }
 
 void GranSubModTangentialMindlinSprings::calculate_forces()
 {
   double *history = &gm->history[history_index];
-  double kept[CONTACTLAB_SPRINGS_STATE(MOST)], moved[3] = {0.0, 0.0, 0.0};
+  double kept[1 + CONTACTLAB_SPRINGS_STATE(MOST)], moved[3] = {0.0, 0.0, 0.0};
+  const double limit = mu * gm->normal_model->get_fncrit();
+
+  // N leads the history, so that a restart with another N or law is told
+  if (history[0] != springs && (history[0] != 0.0 || history[1] != 0.0 || history[2] != 0.0))
+    error->one(FLERR, "mindlin_springs: a contact has the history of another N or tangential model, not of N = {}",
+               springs);
 
   if (gm->history_update) {
     for (int i = 0; i < 3; i++) moved[i] = gm->dt * gm->vtr[i];
+    history[0] = springs;
   } else {    // setup of a run, or a query: the force without a step
     std::copy(history, history + size_history, kept);
     history = kept;
   }
-  contactlab_springs_step(history, springs, moved, gm->nx, gm->contact_radius,
-                          mu * gm->normal_model->get_fncrit(), gm->Reff, k, gm->fs);
+  contactlab_springs_step(history + 1, springs, moved, gm->nx, gm->contact_radius, limit, gm->Reff, k, gm->fs);
+
+  // damping within what the springs leave of Coulomb's limit
+  damp = xt * gm->damping_model->get_damp_prefactor();
+  const double square = damp * damp * dot3(gm->vtr, gm->vtr);
+  if (square > 0.0) {
+    const double along = damp * dot3(gm->fs, gm->vtr);
+    const double left = std::max(limit * limit - dot3(gm->fs, gm->fs), 0.0);
+    const double share = std::min(1.0, (along + sqrt(along * along + square * left)) / square);
+    for (int i = 0; i < 3; i++) gm->fs[i] -= share * damp * gm->vtr[i];
+  }
 }

@@ -19,10 +19,11 @@ GranSubModStyle(mindlin_springs,GranSubModTangentialMindlinSprings,TANGENTIAL);
 namespace LAMMPS_NS {
 namespace Granular_NS {
 
-  // tangential mindlin_springs kt mu N
+  // tangential mindlin_springs kt xt mu N
   //   kt  8 G*, 1/G* = sum (2 - nu)/G, in pressure units; NULL takes it from the material of the normal model
+  //   xt  tangential over normal damping
   //   mu  friction coefficient
-  //   N   springs, even, 2 to 64; the history has 2 + 3 N numbers
+  //   N   springs, even, 2 to 64; the history has 3 + 3 N numbers
   class GranSubModTangentialMindlinSprings : public GranSubModTangential {
    public:
     GranSubModTangentialMindlinSprings(class GranularModel *, class LAMMPS *);
@@ -32,6 +33,7 @@ namespace Granular_NS {
 
    protected:
     int springs;
+    double xt;
   };
 
 }    // namespace Granular_NS

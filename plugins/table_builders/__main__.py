@@ -26,6 +26,7 @@ def main() -> int:
         verifying.add_argument("--seed", type=int, default=1)
         these.add_parser("bench", help="print the processor time an impact takes")
         if table is elastic:
+            these.add_parser("thin", help="write it, thinned, into the kernels for games")
             _options(building, verifying)
     commands[damped].add_parser("differences", help="measure springs and normal laws: minutes")
     asked = parser.parse_args()
@@ -61,6 +62,12 @@ def _elastic(asked: argparse.Namespace) -> int:
 
         for name, nanoseconds in bench():
             print(f"{name:30} {nanoseconds:8.0f} ns of processor time")
+        return 0
+    if asked.command == "thin":
+        from table_builders.elastic import thin
+
+        for file in thin.write():
+            print(file)
         return 0
     workers = asked.workers or os.cpu_count() or 1
     if asked.command == "build":

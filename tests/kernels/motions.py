@@ -75,7 +75,9 @@ def by_vectors(springs, rows):
             w = np.repeat(w[: springs // 2], 2, axis=0)
             size /= 2.0
         places = (np.arange(springs) + 0.5) * size / springs
+        length = np.linalg.norm(w)
         w = w - np.outer(w @ normal, normal)
+        w *= length / np.linalg.norm(w) if length > 0.0 else 1.0  # a turn keeps the energy
         step = step - (step @ normal) * normal
         compression = np.maximum(radius**2 - places**2, 0.0)
         most = limit * compression / (MODULUS * size / springs * compression.sum())
@@ -90,7 +92,7 @@ def by_vectors(springs, rows):
     return np.array(forces)
 
 
-def write(path, springs, rows):
+def write(path, springs, rows, unit=UNIT, modulus=MODULUS):
     """Write a motion for the drivers."""
-    head = np.array([springs, len(rows), UNIT, MODULUS], float)
+    head = np.array([springs, len(rows), unit, modulus], float)
     np.concatenate((head, rows.ravel())).tofile(path)

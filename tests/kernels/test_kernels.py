@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import contactlab
 from tests.kernels.motions import by_the_law, by_vectors, sliding, wandering, write
@@ -37,9 +38,9 @@ def built(tmp_path_factory):
     return build
 
 
-def driven(words, folder, springs, rows):
+def driven(words, folder, springs, rows, **lengths):
     """Return forces and works, shape (K, 4), that a driver writes."""
-    write(folder / "in", springs, rows)
+    write(folder / "in", springs, rows, **lengths)
     subprocess.run([*words, folder / "in", folder / "out"], check=True, timeout=120)
     return np.fromfile(folder / "out").reshape(-1, 4)
 
@@ -105,6 +106,110 @@ def test_what_is_not_finite_is_nan_until_the_contact_ends(words, spoilt, value, 
     assert (found[100, :3] == 0.0).all()
 
 
+@pytest.mark.parametrize("across", [0.0, np.pi / 2.0])
+def test_a_turn_of_the_normal_keeps_the_force(words, across, tmp_path):
+    """A held contact turned by 90 degrees in nine steps, along the force and across."""
+    angle = np.linspace(0.0, np.pi / 2.0, 10)
+    rows = np.zeros((11, 8))
+    rows[:, 6:] = 0.1, 1.0
+    rows[0, :3] = 0.0, 1e-6 * np.sin(across), 1e-6 * np.cos(across)
+    rows[:, 3:6] = [(np.cos(each), 0.0, np.sin(each)) for each in (0.0, *angle)]
+    rows[:, 3:6] *= 1.0 if across else -1.0  # either sense
+    force = driven(words, tmp_path, 8, rows)[:, :3]
+    turned = [(-np.sin(each), 0.0, np.cos(each)) for each in angle]
+    expected = np.outer(np.ones(10), force[0]) if across else force[0, 2] * np.array(turned)
+    assert np.abs(force[0]).max() > 1e-3
+    assert np.abs(force[1:] - expected).max() <= 1e-12 * np.abs(force[0]).max()
+
+
+@pytest.mark.parametrize(
+    ("column", "value"), [("unit", 0.0), ("unit", -0.7), ("unit", np.nan), ("unit", np.inf),
+                          ("unit", 5e-324), ("modulus", 0.0), ("modulus", -1.0),
+                          ("modulus", np.nan), ("limit", -1e-3), ("springs", 7)]
+)  # fmt: skip
+def test_what_is_no_contact_is_nan_or_refused(words, column, value, tmp_path):
+    rows, _, _ = sliding(1, 101)
+    springs, lengths = 8, {}
+    if column == "limit":
+        rows[:, 7] = value
+    elif column == "springs":
+        springs = value
+    else:
+        lengths = {column: value}
+    if column == "springs" and words[0] == NODE:
+        with pytest.raises(subprocess.CalledProcessError):
+            driven(words, tmp_path, springs, rows)
+    else:
+        assert np.isnan(driven(words, tmp_path, springs, rows, **lengths)[:100]).all()
+
+
+POOL = """
+import {{stateLength, step}} from {kernel};
+const length = stateLength(4), normal = [0, 0, 1], force = [0, 0, 0];
+const pool = new Float64Array(3 * length).fill(7), list = Array(length).fill(0), forces = [];
+const take = (state, radius) => {{
+  step(state, 4, [1e-6, 2e-6, 0], normal, radius, 1, 0.7, 3e4, force);
+  forces.push([...force]);
+}};
+pool.fill(0, length, 2 * length);
+for (const radius of [0.1, 0.11, 0]) {{
+  take(pool.subarray(length), radius);  // the view holds the neighbour too
+  take(list, radius);
+}}
+const told = [];
+const wrong = [[[], 4], [new Float64Array(13), 4], [list, 3], [list, 0], [list, undefined]];
+for (const [state, n] of wrong) {{
+  try {{ step(state, n, [0, 0, 0], normal, 0.1, 1, 0.7, 3e4, force); }}
+  catch (error) {{ told.push(error.message); }}
+}}
+console.log(JSON.stringify({{pool: [...pool], forces, told}}));
+"""
+
+
+def answered(script, folder):
+    """Return what a script for node prints, read as JSON."""
+    (folder / "script.mjs").write_text(script, "utf-8")
+    words = [NODE, folder / "script.mjs"]
+    run = subprocess.run(words, check=True, timeout=60, capture_output=True, text=True)
+    return json.loads(run.stdout)
+
+
+@needs_node
+def test_a_state_in_a_pool_leaves_its_neighbours_alone(tmp_path):
+    kernel = json.dumps((KERNELS / "contactlab_springs.mjs").as_uri())
+    answer = answered(POOL.format(kernel=kernel), tmp_path)
+    assert answer["pool"] == [7] * 14 + [0] * 14 + [7] * 14
+    assert answer["forces"][::2] == answer["forces"][1::2]  # a plain Array serves as well
+    assert answer["forces"][0] != [0, 0, 0]
+    assert len(answer["told"]) == 5
+    assert all("must be even" in each and "state hold" in each for each in answer["told"])
+
+
+SPINNING = """
+import {{stateLength, step}} from {kernel};
+const n = 4, state = new Float64Array(stateLength(n)), force = [0, 0, 0], normal = [0.6, 0, 0.8];
+const spin = [3, 9, 1], otherSpin = [1, -4, 5], time = 0.1;
+step(state, n, [1e-6 * 0.8, 2e-6, -1e-6 * 0.6], normal, 0.1, 1, 0.7, 3e4, force);
+const first = [...force];
+{lines}
+step(state, n, [0, 0, 0], normal, 0.1, 1, 0.7, 3e4, force);
+console.log(JSON.stringify([first, force]));
+"""
+
+
+@needs_node
+def test_what_the_notes_say_of_spin_about_the_normal(tmp_path):
+    """Two bodies that spin about the normal together take the force along."""
+    notes = (KERNELS / "README.md").read_text("utf-8")
+    lines = notes[notes.index("    const about") : notes.index("### How many")]
+    kernel = json.dumps((KERNELS / "contactlab_springs.mjs").as_uri())
+    first, second = answered(SPINNING.format(kernel=kernel, lines=lines), tmp_path)
+    normal = np.array([0.6, 0.0, 0.8])
+    turn = Rotation.from_rotvec(0.1 * 0.5 * (np.array([4.0, 5.0, 6.0]) @ normal) * normal)
+    assert turn.apply(first) == pytest.approx(second, abs=1e-12 * np.abs(first).max())
+    assert np.linalg.norm(np.subtract(first, second)) > 0.2 * np.linalg.norm(first)
+
+
 @needs_c
 def test_no_undefined_behaviour(built, tmp_path):
     """The sanitizers stop the program at the first read or write out of the state, or overflow."""
@@ -137,7 +242,8 @@ def test_it_is_c_plus_plus_too(tmp_path):
     if compiler is None:
         pytest.skip("no C++ compiler (c++, g++) is there")
     source = tmp_path / "use.cpp"
-    source.write_text('#include "contactlab_springs.h"\nint main() { return 0; }\n')
+    include = '#include "contactlab_springs.h"\n#include "contactlab_bounce.h"\n'
+    source.write_text(include + "int main() { return 0; }\n")
     words = [compiler, "-std=c++11", "-Wall", "-Wextra", "-pedantic", "-Werror", f"-I{KERNELS}"]
     subprocess.run([*words, "-Wno-unused-function", "-c", source, "-o", tmp_path / "use.o"],
                    check=True, timeout=120)  # fmt: skip
@@ -148,7 +254,7 @@ def test_it_is_c_plus_plus_too(tmp_path):
     ("psi1", "chi"), [(0.5, 1.18), (1.2, 49.0 / 34.0), (3.0, 1.75), (8.0, 1.44)]
 )
 def test_one_impact_in_javascript(psi1, chi):
-    words = [NODE, HERE / "drive.mjs", KERNELS / "contactlab_springs.mjs", "impact"]
+    words = [NODE, HERE / "drive.mjs", KERNELS / "contactlab_bounce.mjs", "impact"]
     numbers = [str(number) for number in (psi1, chi, 120, 600)]
     run = subprocess.run([*words, *numbers], check=True, timeout=60, capture_output=True, text=True)
     motion = json.loads(run.stdout)

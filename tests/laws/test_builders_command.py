@@ -15,7 +15,7 @@ from table_builders import __main__ as command
 from table_builders.coupling import build as unlike
 from table_builders.damped import build as damped_build
 from table_builders.damped import checks, differences
-from table_builders.elastic import bench, build, verify
+from table_builders.elastic import bench, build, thin, verify
 from table_builders.elastic.verify import Errors
 
 ROWS = [
@@ -50,6 +50,7 @@ def told(monkeypatch):
     stand_in(checks, "bench", 4)
     stand_in(bench, "bench", [("9 together", 12.4), ("one at a time", 98765.4)])
     stand_in(build, "build", None)
+    stand_in(thin, "write", [])
     stand_in(verify, "verify", ROWS)
     return calls
 
@@ -63,6 +64,7 @@ def run(monkeypatch, *asked):
     ("asked", "called", "given", "answer"),
     [
         ("coupling build", "coupling.build.build", (coupling.FILE,), 0),
+        ("elastic thin", "elastic.thin.write", (), 0),
         ("damped build", "damped.build.build", (damped.SHIPPED,), 0),
         ("damped differences", "damped.differences.write", (), 0),
         ("damped bench", "damped.checks.bench", (), 4),

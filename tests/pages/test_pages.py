@@ -73,8 +73,8 @@ def test_the_parts_of_the_page_have_names_of_their_own():
     assert "export " not in script
 
 
-def test_the_kernel_of_the_page_is_the_one_for_engines():
-    kernel = resources.files("contactlab").joinpath("kernels", "contactlab_springs.mjs")
+def test_the_kernel_of_the_page_is_the_one_for_games():
+    kernel = resources.files("contactlab").joinpath("kernels", "contactlab_bounce.mjs")
     assert kernel.read_text("utf-8").strip().replace("\nexport ", "\n") in explore_page()
 
 

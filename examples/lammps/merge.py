@@ -1,0 +1,174 @@
+"""``mindlin_springs`` in a source tree of LAMMPS: sub-model with the kernel, pages, unit test.
+
+``python build.py merge lammps-4Feb2025`` applies all. Headers and style are the tree's own.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from importlib import resources
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+SUB_MODEL = ("gran_sub_mod_tangential_springs.h", "gran_sub_mod_tangential_springs.cpp")
+UNIT_TEST = "atomic-pair-granular_mindlin_springs.yaml"
+AUTHOR = """
+/* ----------------------------------------------------------------------
+   Contributing authors: the authors of contactlab
+   The springs are contactlab's kernel, which is under the MIT license
+------------------------------------------------------------------------- */
+"""
+#: From the kernel in C, for any kind of number, to C++ for double.
+PLAIN = (
+    (r"#define CONTACTLAB_SPRINGS_STATE\(n\) \((.*)\)\n",
+     "static constexpr int springs_state(int n)\n{\n  return 2 + 3 * n;\n}\n"),
+    (r"#define CONTACTLAB_SPRINGS_TOUCH \(\(CONTACTLAB_REAL\) (\S+)\)",
+     r"static constexpr double SPRINGS_TOUCH = \1;"),
+    (r"\((CONTACTLAB_REAL|double)\) ", ""),
+    ("CONTACTLAB_REAL", "double"),
+    ("CONTACTLAB_SPRINGS_STATE", "springs_state"),
+    ("CONTACTLAB_SPRINGS_TOUCH", "SPRINGS_TOUCH"),
+    ("contactlab_springs_", "springs_"),
+    ("static inline", "static"),
+)  # fmt: skip
+
+ITEM = (
+    r"7. *mindlin_springs* : :math:`k_t` or NULL, :math:`x_{\gamma,t}`, :math:`\mu_s`, :math:`N`"
+    "\n"
+)
+SECTION = r"""
+.. versionadded:: TBD
+
+The *mindlin_springs* option resolves the partial slip within a contact, for
+which the options above take one spring with a cap.  Of :math:`N` springs in
+the middle of equal cells of :math:`[0, A]`, those at :math:`r_i < a` carry the
+force
+
+.. math::
+
+   \mathbf{F}_{te} = -k_t \frac{A}{N} \sum_i \mathbf{w}_i , \qquad
+   \|\mathbf{w}_i\| \le l_i \propto a^2 - r_i^2 , \qquad
+   k_t \frac{A}{N} \sum_i l_i = \mu_s F_{n0}
+
+where every :math:`\mathbf{w}_i` follows the tangential displacement since the
+contact reached :math:`r_i`.  This is the theory of
+:ref:`Mindlin and Deresiewicz <Mindlin1953>` for any path of load and
+displacement.  :math:`A` is a power of two times the effective radius.  When the
+contact outgrows :math:`A`, neighboring springs are merged and :math:`A`
+doubles; when :math:`a \le A/4`, every cell is split into halves and :math:`A`
+halves.  Nothing about the future of the contact needs to be known, and no path
+gains energy.  A change of the tangent plane is treated as for *mindlin*.
+
+The number of springs :math:`N` is even, from 2 to 64, and a contact stores
+:math:`3 + 3N` values.  After an impact of elastic spheres, the tangential
+velocity of the contact point, in units of
+:math:`\mu_s v_n E_{eff}/(4 G_{eff})`, differs from the solution of
+:ref:`Maw et al <Maw1976>` by at most 0.022 with :math:`N = 8`, and by 0.47 to
+0.66 with the *mindlin* options, if a contact takes 50 time steps.  A contact
+needs at least 14 time steps.  The stiffness :math:`k_t` is that of *mindlin*;
+:math:`x_{\gamma,t}` adds tangential damping within what the springs leave of
+the Coulomb limit.
+
+.. note::
+
+   A run that is restarted with another :math:`N`, or with *mindlin_springs*
+   after another tangential model, stops with an error, because the histories
+   of the contacts do not fit.
+"""
+MIXING = r"""
+For *tangential mindlin_springs* the stiffness, also that from *NULL*, is mixed as
+
+.. math::
+
+   k_{t,ij} = \frac{2 k_{t,i} k_{t,j}}{k_{t,i} + k_{t,j}}
+
+which is the stiffness of the two materials in contact.  The larger :math:`N` is
+used.
+"""
+MAW = """Maw, N., Barber, J. R., & Fawcett, J. N. (1976).
+The oblique impact of elastic spheres. Wear, 38(1), 101-114."""
+WALL = (
+    "   fix 7 all wall/gran granular hertz/material 1e8 0.8 0.3 "
+    "tangential mindlin_springs NULL 0.0 0.5 8 damping tsuji zplane 0.0 NULL\n"
+)
+#: Pages: what is inserted, after the last line that begins so.
+PAGES: dict[str, tuple[tuple[str, str], ...]] = {
+    "doc/src/pair_granular.rst": (
+        ("6. *mindlin_rescale/force* :", ITEM),
+        ("particularly Appendix A.", SECTION),
+        ("   E_{eff,ij} = \\frac{E_{ij}}{2(1-\\nu_{ij}^2)}", MIXING),
+        ("I. Assembling process", f"\n.. _Maw1976:\n\n**(Maw et al, 1976)** {MAW}\n"),
+    ),
+    "doc/src/fix_wall_gran.rst": (("   fix 6 all wall/gran hooke ", WALL),),
+    "doc/src/Bibliography.rst": (
+        ("   Mattice", "\n**(Maw et al, 1976)**\n   " + MAW.replace("\n", " ") + "\n"),
+    ),
+    "doc/utils/sphinx-config/false_positives.txt": (("Mattson", "Maw\n"),),
+    "src/.gitignore": (
+        ("/gran_sub_mod_tangential.h", "".join(f"/{name}\n" for name in SUB_MODEL[::-1])),
+    ),
+}  # fmt: skip
+
+
+def plain(text: str) -> str:
+    """Return code of the kernel, or that calls the kernel, as C++ without macros."""
+    for pattern, to in PLAIN:
+        text = re.sub(pattern, to, text)
+    return text
+
+
+def kernel() -> str:
+    """Return the kernel of contactlab as C++ without macros."""
+    file = resources.files("contactlab").joinpath("kernels", "contactlab_springs.h")
+    text = file.read_text("utf-8")
+    return plain(text[text.index("/* Length of the state") : text.rindex("#endif")].strip())
+
+
+def merge(lammps: Path) -> None:
+    """Write sub-model, unit test and pages into a tree; what is there already is left."""
+    granular = lammps / "src" / "GRANULAR"
+    head = (granular / "gran_sub_mod.h").read_text("utf-8")
+    head = head[: head.index("*/") + 3]
+    for name in SUB_MODEL:
+        text = (HERE / name).read_text("utf-8")
+        text = text[text.index("*/") + 3 :]
+        text = re.sub(r'#include "contactlab_springs.h".*', lambda _: kernel(), text)
+        author = AUTHOR if name.endswith(".cpp") else ""
+        (granular / name).write_text(f"{head}{author}\n{plain(text).strip()}\n", "utf-8")
+    if shutil.which("clang-format"):
+        subprocess.run(["clang-format", "-i", *SUB_MODEL], cwd=granular, check=True)
+    shutil.copy(HERE / UNIT_TEST, lammps / "unittest" / "force-styles" / "tests")
+    for page, inserted in PAGES.items():
+        path = lammps / page
+        if page == "src/.gitignore" and not path.exists():
+            continue  # a tree that is no clone
+        text = path.read_text("utf-8")
+        for anchor, more in inserted:
+            if more in text:
+                continue
+            at = text.rfind(f"\n{anchor}")
+            if at < 0:
+                sys.exit(f"{path}: no line begins with {anchor!r}: sources of another year?")
+            end = text.index("\n", at + 1) + 1
+            if text[end : end + 1] == " ":  # the entry goes on
+                end = text.index("\n", end) + 1
+            text = text[:end] + more + text[end:]
+        path.write_text(text, "utf-8")
+
+
+def style(lammps: Path) -> int:
+    """Run the checks of style of a tree; return how many lines they say of our files."""
+    names, told = (*SUB_MODEL, UNIT_TEST, *(Path(page).name for page in PAGES)), []
+    for check in ("whitespace", "permissions", "homepage", "errordocs", "fmtlib"):
+        words = [sys.executable, lammps / "tools" / "coding_standard" / f"{check}.py", lammps]
+        run = subprocess.run(words, capture_output=True, text=True, check=False)
+        told += [line for line in run.stdout.splitlines() if any(name in line for name in names)]
+    granular = lammps / "src" / "GRANULAR"
+    words = ["clang-format", "--dry-run", "--Werror", *SUB_MODEL]
+    run = subprocess.run(words, cwd=granular, capture_output=True, text=True, check=False)
+    told += [line for line in run.stderr.splitlines() if "error" in line]
+    print("\n".join([*told, f"style: {len(told)} complaints of our files"]))
+    return len(told)
