@@ -125,7 +125,7 @@ def moved_in_plane(
     shape = state.shape
     numbers = (np.asarray(each) for each in (increment.displacement, increment.velocity))
     moved, velocity = ((each[..., 0] + 1j * each[..., 1]).reshape(shape or 1) for each in numbers)
-    step = increment._replace(displacement=moved, velocity=velocity)
+    step: Any = increment._replace(displacement=moved, velocity=velocity)  # type: ignore[arg-type]
     response, own = law.advance(state.own, step, before, after)
     force = np.stack((response.force.real, response.force.imag), axis=-1).reshape(*shape, 2)
     work = response.friction_work.reshape(shape) if shape else response.friction_work.item()
@@ -301,7 +301,9 @@ class MindlinCap(VectorTangentialLaw):
         work = np.maximum(work, 0.0)
         if not np.shape(state.force):
             held, spring, force, work = float(held), float(spring), float(force), float(work)
-        return TangentialResponse(force, work), State(*state[:4], held, spring, force)
+        return TangentialResponse(force, work), state._replace(
+            held=held, spring=spring, force=force
+        )
 
 
 def _mean_radius(before: Any, after: Any) -> Any:

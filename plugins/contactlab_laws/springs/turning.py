@@ -100,7 +100,11 @@ def _dragged(
     angle = angle / (np.abs(angle) + TINY)
     rest = (1.0 - share) * np.abs(d)
     fall = np.exp(-rest / (0.5 * (limit + l1) + TINY))
-    turned = (1.0 + angle.real) + 1j * (angle.imag * fall)
+    aside = angle.imag  # beside a spring that is pushed back 1 + cos is lost in rounding
+    half = np.where(
+        angle.real < 0.0, aside * aside / np.maximum(1.0 - angle.real, 1.0), 1.0 + angle.real
+    )
+    turned = half + 1j * (aside * fall)
     turned = turned * turned
     size = np.abs(turned)
     turned = np.where(size > 0.0, turned / (size + TINY), np.where(np.abs(w) > 0.0, -1.0, 1.0))
