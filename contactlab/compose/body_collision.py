@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose import eccentric
+from contactlab.compose import composition, eccentric
 from contactlab.compose.rebound import damped
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
@@ -158,7 +158,7 @@ def _simulation(scene: Scene | EccentricScene, restitution: float) -> Simulation
         return Simulation() if restitution == 1.0 else damped(restitution)
     if restitution == 1.0:
         return Simulation(**eccentric.preferred(scene))
-    return Simulation(normal=damped(restitution).normal, **eccentric.IN_SPACE)
+    return Simulation(normal=damped(restitution).normal, **composition.IN_SPACE)
 
 
 def _plan(result: EccentricResult | ImpactResult, restitution: float) -> Plan:

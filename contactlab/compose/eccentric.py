@@ -29,9 +29,6 @@ from contactlab.outcome.plan import Clause, Plan
 
 #: Impacts that are marched at a time: their springs stay in the processor's cache.
 BLOCK = 1000
-#: Laws by name that answer every eccentric impact: in the plane exactly, in space by springs.
-IN_PLANE = {"tangential": "fronts", "integrator": "events"}
-IN_SPACE = {"tangential": "springs", "integrator": "symplectic"}
 #: Above this ratio of contact radius to R the theory of half-spaces is doubtful (theory §8).
 DOUBTFUL_SIZE_RATIO = 0.1
 
@@ -71,7 +68,7 @@ def run(laws: Laws, scene: EccentricScene, *, history: bool | str = False) -> Ec
 
 def preferred(scene: EccentricScene) -> dict[str, str]:
     """Return the names of the laws that answer ``scene`` best: exact in the plane."""
-    return IN_PLANE if scene.planar else IN_SPACE
+    return composition.EXACT if scene.planar else composition.IN_SPACE
 
 
 def _accept(laws: Laws, scene: EccentricScene) -> None:

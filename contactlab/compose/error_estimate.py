@@ -23,10 +23,10 @@ ALONE, TOGETHER = 4, 2
 #: A tolerance is divided by this times the square of the factor of the counts, as for a method of
 #: second order. Steps are doubled until a tolerance is kept: a lesser change might change no step.
 TOLERANCE = 4.0
-#: Least and greatest error of the finest run, over the last change. A method of first order leaves
-#: as much as the change of a doubling, one of order 0.74, as annuli under damping, one and a half.
-LEFT = 1.0, 3.0
-TINY = 1e-300
+#: Least and greatest error of the finest run, over the last change. After a doubling a method of
+#: second order leaves a third of the change, one of first order all of it, one of order 0.74, as
+#: annuli under damping, one and a half.
+LEFT = 0.5, 3.0
 
 
 def estimated(laws: Laws, result: ImpactResult) -> Real:
@@ -35,7 +35,7 @@ def estimated(laws: Laws, result: ImpactResult) -> Real:
     Each impact is run again at two finer resolutions of all laws that have a resolution: normal
     law, tangential law and, if the impact is marched, integrator. The estimate is the distance of
     psi2 from the finest answer, plus what the finest leaves by the ratio of the two changes, at
-    least the last change, and no less than rounding. If a tightened tolerance cannot be kept, the
+    least half the last change, and no less than rounding. If a tightened tolerance cannot be kept, the
     tolerance stays, and the estimate leaves out the error in time. The estimate never includes
     errors of the model. If the answers do not differ, or no law has a finer resolution, the
     estimate is what the plan declares.
@@ -95,7 +95,9 @@ def _distance(laws: Laws, scene: Scene, resolution: float | None, change: Any) -
         answers.append(answer)
     fine, finest = answers
     last, before = np.abs(finest - fine), np.abs(fine - change)
-    left = np.clip(last / np.maximum(before - last, last / LEFT[1] + TINY), *LEFT)
+    falls = before > last  # by a ratio, if the answers converge
+    ratio = last / np.where(falls, before - last, 1.0)
+    left = np.where(falls, np.clip(ratio, *LEFT), LEFT[0])
     distance = scene.psi(np.abs(finest - change) + left * last)
     return np.where(
         distance > 0.0, np.maximum(distance, CLOSED_FORM * psi_magnitude(scene)), distance

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +20,6 @@ from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-
-if TYPE_CHECKING:
-    from contactlab.impact.encounter import Encounter
 
 Array = NDArray[np.float64]
 
@@ -63,7 +60,7 @@ class Frame(NamedTuple):
     velocity: Array
 
 
-def arms(encounter: Encounter, normal: Array) -> tuple[Array, Array]:
+def arms(encounter: Any, normal: Array) -> tuple[Array, Array]:
     """Return the vectors in m from the centres of mass to the contact, zero for a half-space."""
     found = []
     sides = (
@@ -90,7 +87,7 @@ def turned(body: Any, moment: Array) -> Array:
     return np.zeros(3)
 
 
-def inverse_mass(encounter: Encounter, normal: Array) -> Array:
+def inverse_mass(encounter: Any, normal: Array) -> Array:
     """Return W in the frame of the encounter, shape (..., 3, 3), in 1/kg."""
     total: Any = np.zeros((3, 3))
     for body, arm in zip((encounter.body, encounter.target), arms(encounter, normal), strict=True):
@@ -105,7 +102,7 @@ def inverse_mass(encounter: Encounter, normal: Array) -> Array:
     return np.asarray(0.5 * (total + np.swapaxes(total, -1, -2)))
 
 
-def relative_velocity(encounter: Encounter, normal: Array) -> Array:
+def relative_velocity(encounter: Any, normal: Array) -> Array:
     """Return the velocity in m/s of the first body over the target at the contact."""
     first, second = arms(encounter, normal)
     velocity = encounter.velocity + np.cross(encounter.spin, first)
@@ -114,7 +111,7 @@ def relative_velocity(encounter: Encounter, normal: Array) -> Array:
     )
 
 
-def meeting_of_bodies(encounter: Encounter, normal: tuple[Any, Any, Any]) -> Contact:
+def meeting_of_bodies(encounter: Any, normal: tuple[Any, Any, Any]) -> Contact:
     """Return directions and speeds at the contact of bodies that are no spheres."""
     n = np.stack(np.broadcast_arrays(*normal), axis=-1)
     velocity = relative_velocity(encounter, n)
@@ -126,7 +123,7 @@ def meeting_of_bodies(encounter: Encounter, normal: tuple[Any, Any, Any]) -> Con
     return Contact(normal, (x, y, z), approach, size)
 
 
-def frame(encounter: Encounter) -> Frame:
+def frame(encounter: Any) -> Frame:
     """Return the frame with t1 along W_nt, or along the slip without coupling."""
     n = np.broadcast_to(encounter.normal, (*encounter.shape, 3))
     n = n / np.sqrt(np.einsum("...i,...i->...", n, n))[..., None]
@@ -156,7 +153,7 @@ def frame(encounter: Encounter) -> Frame:
     )
 
 
-def scene_of_bodies(encounter: Encounter) -> Scene | EccentricScene:
+def scene_of_bodies(encounter: Any) -> Scene | EccentricScene:
     """Return the scene in numbers: central where W neither couples nor depends on direction."""
     axes, W, velocity = frame(encounter)
     del axes
@@ -187,7 +184,7 @@ def scene_of_bodies(encounter: Encounter) -> Scene | EccentricScene:
     )
 
 
-def pair_of_bodies(encounter: Encounter, inverse: Array) -> Pair:
+def pair_of_bodies(encounter: Any, inverse: Array) -> Pair:
     """Return the numbers of two bodies that laws need; ``inverse`` is W in the contact's frame."""
     W = inverse
     first, second = encounter.body.material, encounter.target.material

@@ -49,6 +49,8 @@ class EccentricScene:
         Velocity of the first body over the target at the contact, along t1 and t2, in m/s.
     planar : bool
         True if the motion stays in the plane of n and t1.
+    bodies : tuple
+        Bodies of the encounter, which cautions look at; empty without.
 
     Raises
     ------
@@ -196,7 +198,13 @@ class EccentricScene:
         return self.pair.stiffness_ratio
 
     def psi(self, velocity: Any) -> Any:
-        """Return slip velocities, shape (..., 2), as psi: (...) in the plane, (..., 2) in space."""
+        """Return slip velocities, shape (..., 2), as psi: (...) in the plane, (..., 2) in space.
+
+        Parameters
+        ----------
+        velocity : array, shape (..., 2)
+            Along t1 and t2, in m/s.
+        """
         unit: Any = self.friction_coefficient * self.normal_speed / self.kappa
         with np.errstate(all="ignore"):
             scaled = velocity / np.asarray(unit)[..., None]

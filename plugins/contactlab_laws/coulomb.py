@@ -39,9 +39,9 @@ class Coulomb(WholeImpactTangentialLaw, EccentricTangentialLaw):
 
     References
     ----------
-    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, the rigid body theory of §§1 and 4.3.
-    Keller, J. Appl. Mech. 53 (1986) 1-4. Wang & Mason, J. Appl. Mech. 59 (1992) 635-642.
-    Stronge, Proc. R. Soc. Lond. A 431 (1990) 169-181.
+    Maw, Barber & Fawcett, Wear 38 (1976) 101-114, the rigid body theory of §§1 and 4.3; Keller,
+    J. Appl. Mech. 53 (1986) 1-4, doi:10.1115/1.3171712; Wang & Mason, J. Appl. Mech. 59 (1992)
+    635-642, for Routh's construction.
     """
 
     api_version: ClassVar[int] = 2

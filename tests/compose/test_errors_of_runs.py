@@ -176,7 +176,8 @@ def test_how_much_finer_the_runs_of_an_estimate_are(terms, normal, runs):
         assert found.psi2_error_estimate == found.plan.psi2_error
         return
     first, fine, finest = (0.1 / each for each in runs)
-    expected = first - finest + 0.5 * (fine - finest)
+    last, before = fine - finest, first - fine  # of first order
+    expected = first - finest + max(0.5, last / (before - last)) * last
     assert found.psi2_error_estimate == pytest.approx(expected, rel=1e-9)
 
 

@@ -135,7 +135,7 @@ def test_the_plan_of_a_heavy_core_says_that_no_error_was_measured():
     """K = 1/5 makes chi = (7/17) 26 = 10.7."""
     core = Sphere(0.01, STEEL, gyration_ratio=0.2)
     target = meeting().target
-    plan = collide(meeting(sphere=core, target=type(target)(STEEL)), restitution=0.9).plan
+    plan = collide(meeting(body=core, target=type(target)(STEEL)), restitution=0.9).plan
     lines = str(plan).splitlines()
     assert "computed: tangential motion: contactlab.rebound with restitution=0.9" in lines
     assert (

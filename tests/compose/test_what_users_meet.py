@@ -137,7 +137,7 @@ WRONG_NAMES = {
     "Scene(BALL, BLOCK, mu=0.2)": "did you mean 'friction_coefficient'",
     "Scene.nondimensional(psi=1.2, chi=1)": "did you mean 'psi1'",
     "Scene.at_angle(BALL, BLOCK, 0.2, speed=1, theta=3)": "did you mean 'angle_deg'",
-    "Encounter(ball=BALL)": "did you mean 'sphere'",
+    "Encounter(ball=BALL)": "did you mean 'body'",
     "RESULT.rebound_velocity": "'rebound_tangential_velocity' or 'rebound_normal_velocity'",
     "RESULT.e": "did you mean 'normal_restitution'",
     "RESULT.psi_2": "did you mean 'psi2'",

@@ -161,8 +161,8 @@ REFUSED = [
         "normal = [0.0, 0.0, 9e-101]: must be at least 1e-100 long, not zero; two bodies at one "
         "place have no normal",
     ),
-    (lambda: met(body=PLATE).body, f"body = {str(PLATE)[:77]}...: must be a Sphere; make "
-     "one: Sphere(...)"),
+    (lambda: met(body=PLATE).body, f"body = {str(PLATE)[:77]}...: must be a Sphere or a RigidBody; "
+     "make one: Sphere(...)"),
     (
         lambda: met(velocity=(0.0, 0.0, -2.0)).scene,
         "velocity, target_velocity = -2.0: bodies separate: the speed of approach, in m/s, must be "

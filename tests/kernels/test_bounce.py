@@ -83,9 +83,9 @@ def rows_and_laws(seed, wall, gyration):
 
 def gaps(answers, met, made):
     """Return the largest error of a surface's velocity over approach + slip, per encounter."""
-    contact = met.contact()
+    contact = met.meeting()
     speed = np.abs(contact.approach) + contact.slip
-    arms = (met.sphere.radius, getattr(met.target, "radius", np.zeros(COUNT)))
+    arms = (met.body.radius, getattr(met.target, "radius", np.zeros(COUNT)))
     errors = [
         answers[:, 1:4] - made.velocity,
         (answers[:, 4:7] - made.spin) * arms[0][:, None],

@@ -242,11 +242,13 @@ def test_the_least_grid_is_a_power_of_two_of_the_pair(radius, size):
 
 def test_a_doubled_spring_is_met_on_the_way():
     places = np.array([0.1, 0.3, 0.5])[:, None]
-    found = doubling._part(places, np.array([0.2]), np.array([0.4]))
+    found = doubling.part_of_step(places, np.array([0.2]), np.array([0.4]))
     assert found[:, 0] == pytest.approx([1.0, 0.5, 0.0])
-    assert doubling._part(places, np.array([0.4]), np.array([0.2])) == 1.0
-    assert doubling._part(places, np.array([0.4]), np.array([0.4])) == 1.0
-    both = doubling._part(np.hstack((places, places)), np.array([0.2, 0.5]), np.array([0.4, 0.3]))
+    assert doubling.part_of_step(places, np.array([0.4]), np.array([0.2])) == 1.0
+    assert doubling.part_of_step(places, np.array([0.4]), np.array([0.4])) == 1.0
+    both = doubling.part_of_step(
+        np.hstack((places, places)), np.array([0.2, 0.5]), np.array([0.4, 0.3])
+    )
     assert both[:, 1].tolist() == [1.0, 1.0, 1.0]
     assert both[:, 0] == pytest.approx([1.0, 0.5, 0.0])
 
