@@ -177,7 +177,7 @@ def test_the_impacts_of_the_bench():
     approach = ((made.velocity - made.target_velocity) * made.normal).sum(axis=-1)
     assert (approach > 0.0).all()
     assert made.friction_coefficient == 0.2
-    for body, modulus in ((made.sphere, 208e9), (made.target, 70e9)):
+    for body, modulus in ((made.body, 208e9), (made.target, 70e9)):
         assert 1e-3 < np.min(body.radius) < 1.1e-3 < 9.9e-3 < np.max(body.radius) < 1e-2
         assert body.material.young_modulus == modulus
     for spin in (made.spin, made.target_spin):

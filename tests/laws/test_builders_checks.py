@@ -127,24 +127,6 @@ def test_springs_are_extrapolated_in_their_number(monkeypatch):
     assert asked == [(law, 8, 32), (law, 16, 64)]
 
 
-def test_a_row_tells_the_largest_differences(monkeypatch):
-    """Of springs by 0.02, of Tsuji's law by 0.3; a law whose restitution is 0.9."""
-    law = create("normal.linear", restitution=0.9)
-    monkeypatch.setattr(differences, "pointwise", lambda *of: of[1])
-
-    def springs(law, psi1, chi):
-        return psi1 + np.where(psi1 == psi1.max(), -0.02, 0.01)
-
-    def tsuji(e):
-        assert e == 0.9
-        psi1, _ = differences.impacts(e)
-        return psi1 + np.where(psi1 == psi1.min(), -0.3, 0.1)
-
-    monkeypatch.setattr(differences, "springs", springs)
-    monkeypatch.setattr(differences, "tsuji", tsuji)
-    assert differences.row(law) == [differences.key(law), "0.9", "2.0e-02", "3.0e-01"]
-
-
 def test_both_sides_are_the_half_space_with_the_motion_of_a_law(monkeypatch):
     def followed(motion, psi1, chi):
         return -float(motion.final_rate) + 0.0 * psi1
@@ -160,19 +142,8 @@ def test_the_laws_that_are_measured():
     names = [re.match(r"\w+", each)[0] for each in told]
     calibrated = ["Tsuji", "HuntCrossley", "KuwabaraKono", "Linear", "WaltonBraun"]
     others = ["Thornton"] * 5 + ["JohnsonKendallRoberts"] * 3 + ["DerjaguinMullerToporov"] * 2
-    assert names == [name for name in calibrated for _ in range(9)] + others
-    values = [float(re.search(r"restitution=([\d.e-]+)", each)[1]) for each in told[:45]]
-    assert values == 5 * [1.0, 0.99, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3, 0.1]
-    values = [float(re.search(r"(?:velocity|adhesion)=([\d.e-]+)", each)[1]) for each in told[45:]]
+    assert names == [name for name in calibrated for _ in range(11)] + others
+    values = [float(re.search(r"restitution=([\d.e-]+)", each)[1]) for each in told[:55]]
+    assert values == 5 * [1.0, 0.99, 0.95, 0.9, 0.8, 0.65, 0.5, 0.4, 0.3, 0.2, 0.1]
+    values = [float(re.search(r"(?:velocity|adhesion)=([\d.e-]+)", each)[1]) for each in told[55:]]
     assert values == [0.6, 0.3, 0.1, 0.03, 0.01, 0.001, 0.01, 0.05, 0.01, 0.05]
-
-
-def test_the_file_of_differences(monkeypatch, tmp_path, capsys):
-    monkeypatch.setattr(differences, "FILE", tmp_path / "differences.csv")
-    monkeypatch.setattr(differences, "laws", lambda: iter(["µ", "b"]))
-    monkeypatch.setattr(differences, "row", lambda law: [law, "1", "2e-3", "4"])
-    differences.write()
-    assert (tmp_path / "differences.csv").read_bytes() == (
-        "law,restitution,springs,choice\nµ,1,2e-3,4\nb,1,2e-3,4\n".encode()
-    )
-    assert capsys.readouterr().err == "µ 1 2e-3 4\nb 1 2e-3 4\n"

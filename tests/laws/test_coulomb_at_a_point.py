@@ -93,12 +93,6 @@ def test_no_springs_are_cautioned_of_where_nothing_slips():
     assert caution(law, "springs", Scene.nondimensional(psi1=[0.0, 2.0], chi=1.44)) == 0.05
 
 
-def test_a_normal_law_that_was_not_measured_is_cautioned_of_too():
-    from tests.laws.normal_laws import Damped
-
-    assert caution(Damped(damping=0.5), "springs") > 0.01
-
-
 SAME = "the restitution alone does not decide psi2"
 
 
