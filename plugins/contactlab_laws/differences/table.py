@@ -24,8 +24,8 @@ ROUNDED = 1e-5
 #: Factor on the sizes in cautions, which are then rounded up to one digit: between the measured
 #: impacts and restitutions the differences are up to 5 % larger than at them.
 BETWEEN = 1.1
-#: The same for springs: between the nodes of chi their error is up to a quarter larger.
-AROUND = 1.3
+#: The same for springs: beside the measured psi1 and chi their error is up to a half larger.
+AROUND = 1.6
 #: The impacts that were measured, for the choice of a law.
 MEASURED = "measured for chi 0.8 to 1.8"
 #: chi at which the error of springs was measured, each over all psi1.
