@@ -20,18 +20,20 @@ from contactlab.contracts import faults
 from contactlab.contracts.integrator import Observer, TangentialMotion
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import NormalMotions
-from contactlab.contracts.status import Status
+from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, halves, some
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.energy import balanced
+from contactlab.outcome.energy import EnergyLedger, balanced, ledger
 from contactlab.outcome.history import Recorder
-from contactlab.outcome.motion import Motion, sound
-from contactlab.outcome.plan import Plan
+from contactlab.outcome.motion import Motion, sound, without_failures
+from contactlab.outcome.plan import Clause, Plan
 
 #: Friction work over the energy at the start is this many times less accurate than psi2.
 WORK_ACCURACY = 10.0
+#: Undeclared imbalances over the energy at the start are cautioned of from here on.
+BOOKS_OFF = 0.01
 #: A failed batch of at most so many impacts is marched one by one; a larger batch is halved first.
 FEW = 8
 
@@ -83,9 +85,30 @@ def outcome(
     tangential = _tangential(laws, prepared, recorder)
     motion = sound(Motion.along(prepared.normal, tangential))
     # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
-    bound: Any = books_bound(laws.tangential, scene)
-    bound = bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
-    return prepared.plan, _named(laws, balanced(motion, scene, bound))
+    declared: Any = books_bound(laws.tangential, scene)
+    bound = declared + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
+    motion = balanced(motion, scene, bound)
+    if not succeeded(motion.status):
+        motion = _named(laws, without_failures(motion))
+    plan = prepared.plan
+    if some(undeclared := declared == math.inf):
+        plan = _with_books(plan, laws, ledger(scene, motion), undeclared)
+    return plan, motion
+
+
+def _with_books(plan: Plan, laws: Laws, books: EnergyLedger, undeclared: Any) -> Plan:
+    """Return the plan with a caution of an imbalance for which no bound is declared."""
+    share: Any = np.abs(books.relative_imbalance)
+    where = np.asarray(undeclared & (share > BOOKS_OFF))
+    if not where.any():
+        return plan
+    text = (
+        f"energy books: off by {{:.2g}} of the energy at the start, and "
+        f"{type(laws.tangential).__name__} declares no bound (books_bound); with more steps a "
+        "numerical error falls, what the law makes by its nature stays"
+    )
+    caution = Clause(text, where, (np.asarray(share),))
+    return plan.changed(cautions=(*plan.cautions, caution))
 
 
 def solved(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
@@ -98,9 +121,6 @@ def solved(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
 
 def _named(laws: Laws, motion: Motion) -> Motion:
     """Return the motion, its sentences with the distribution of the law that each blames."""
-    if not (motion.detail if isinstance(motion.detail, str) else np.any(motion.detail)):
-        return motion
-
     names = [(type(law).__name__, REGISTRY.describe(law)) for law in laws]
 
     def named(sentence: str) -> str:
@@ -186,7 +206,7 @@ def _march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) -
     if shape and size == 1 and observer is None:  # one impact is faster as plain numbers
         return TangentialMotion.joined([part((0,) * len(shape))], shape)
     motion, raised = _attempt(laws, normal, observer)
-    if not shape or observer is not None or np.all(motion.status == Status.SUCCESS):
+    if not shape or observer is not None or succeeded(motion.status):
         return motion
     if laws.integrator.own_statuses and not raised:
         return motion

@@ -100,7 +100,8 @@ class TangentialLaw(Law):
         """Return the largest relative error of the energy books that counts as success.
 
         The error is the imbalance over the energy at the start. Infinite, the default, means not
-        declared. The error that an integrator controls is allowed in addition.
+        declared: the plan then cautions of an imbalance above 0.01, and 1 counts as success. The
+        error that an integrator controls is allowed in addition.
 
         Parameters
         ----------

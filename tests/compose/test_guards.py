@@ -105,9 +105,9 @@ def test_the_normal_motion_takes_no_steps(integrator):
         march = contactlab.create(f"integrator.{integrator}", steps=steps, refine=refine)
         for tangential in ("coulomb", FailsWhenFast()):
             result = Simulation(tangential=tangential, integrator=march).run(scene)
-            assert result.normal_restitution == 1.0
             raised = tangential != "coulomb" and steps < 7
             refused = raised and not refine
+            assert refused or result.normal_restitution == 1.0
             assert result.status is (Status.TOO_FEW_STEPS if refused else Status.SUCCESS)
             assert ("steps raised" in str(result.plan)) is (raised and refine)
 
@@ -233,7 +233,7 @@ def test_steps_divide_the_contact_that_there_is(integrator, stiffer):
         assert result.normal_restitution == pytest.approx(1.0, abs=1e-8)
         assert result.motion.duration == pytest.approx(hertz / np.sqrt(stiffer), rel=1e-8)
         assert result.counters["steps"] == march.steps
-        assert not result.plan.cautions
+        assert not any("raised" in str(caution) for caution in result.plan.cautions)
         course = sim.run(scene, history=True).check()
         assert course.psi2.tolist() == result.psi2.tolist()
         assert len(course.history.time) == march.steps
