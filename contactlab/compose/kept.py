@@ -24,7 +24,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.plan import Plan
+from contactlab.outcome.plan import PlanColumns
 
 ABOUT, PIECES = "sweep.json", "impacts-*.npz"
 #: Statuses of impacts that were not computed: a resumed sweep computes them.
@@ -155,13 +155,13 @@ def _feed(tree: Any, update: Any) -> None:
 
 def _arrays(piece: Piece) -> dict[str, Any]:
     """Return the entries of a piece as arrays of numbers and text."""
-    chunk, plan, motion = piece
+    chunk, columns, motion = piece
     arrays: dict[str, Any] = {name: getattr(motion, name) for name in motion.numbers()}
     arrays["place"] = np.array(chunk)
     arrays["status"] = np.array([status.name for status in motion.status])
     arrays["detail"] = np.array(list(motion.detail), dtype=np.str_)
     arrays["counters"] = np.array(json.dumps(dict(motion.counters)))
-    arrays |= plan.to_arrays()
+    arrays |= columns.to_arrays()
     return arrays
 
 
@@ -187,4 +187,4 @@ def _piece(content: Mapping[str, Any]) -> Piece:
     )
     if motion.status.shape != (stop - first,):
         raise ValueError(f"{motion.status.size} impacts where its place has {stop - first}")
-    return Piece(Chunk(first, stop), Plan.from_arrays(content), motion)
+    return Piece(Chunk(first, stop), PlanColumns.from_arrays(content), motion)

@@ -13,16 +13,18 @@ import numpy as np
 from contactlab.compose import composition, solve
 from contactlab.compose.composition import Laws
 from contactlab.compose.error_estimate import estimated
+from contactlab.compose.planning import plan_of
 from contactlab.compose.sweep import swept
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.status import succeeded
 from contactlab.contracts.tangential import TangentialLaw
-from contactlab.impact.coupling import three_numbers
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.history import NO_HISTORY, Recorder
-from contactlab.outcome.plan import Clause, Plan
+from contactlab.outcome.motion import without_failures
+from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
 
 if TYPE_CHECKING:
@@ -75,7 +77,7 @@ class Simulation:
         laws.accept(_scene(scene))
         with np.errstate(under="ignore"):
             prepared = solve.prepare(laws, scene, _history(history))
-        return _complete(prepared.plan, scene)
+        return plan_of(laws, scene, prepared.columns, prepared.normal, history)
 
     def run(
         self, scene: Scene, *, history: bool | str = False, estimate_error: bool = False
@@ -107,11 +109,11 @@ class Simulation:
         laws.accept(_scene(scene))
         if _history(history):
             recorder = Recorder(scene.shape, with_fields=history == "fields")
-        plan, motion = solve.outcome(laws, scene, history, recorder)
+        columns, motion = solve.outcome(laws, scene, history, recorder)
         result = ImpactResult(
             scene=scene,
-            plan=_complete(plan, scene),
-            motion=motion,
+            plan=plan_of(laws, scene, columns, motion, history),
+            motion=motion if succeeded(motion.status) else without_failures(motion),
             laws=composition.versions(*laws),
             history=NO_HISTORY if recorder is None else recorder.history(),
             run_time=time.perf_counter() - started,
@@ -180,14 +182,14 @@ class Simulation:
             )
         laws = self.laws
         laws.accept(batch)
-        plan, motion = swept(
+        columns, motion = swept(
             laws, batch, progress=progress, chunk=chunk, executor=executor, keep=keep
         )
         return ImpactResult(
             scene=batch,
-            plan=_complete(plan, batch),
-            motion=motion,
-            laws=composition.versions(*self.laws),
+            plan=plan_of(laws, batch, columns, motion),
+            motion=motion if succeeded(motion.status) else without_failures(motion),
+            laws=composition.versions(*laws),
             run_time=time.perf_counter() - started,
         )
 
@@ -205,16 +207,6 @@ class Simulation:
     def laws(self) -> Laws:
         """The three laws: normal, tangential, integrator."""
         return Laws(self.normal, self.tangential, self.integrator)
-
-
-def _complete(plan: Plan, scene: Scene) -> Plan:
-    """Return the plan with the cautions about the whole batch, which no chunk can have."""
-    cautions = three_numbers(scene)
-    if not cautions:
-        return plan
-    everywhere = np.ones(scene.shape, dtype=bool)
-    more = tuple(Clause(text, everywhere) for text in cautions)
-    return plan.changed(cautions=plan.cautions + more)
 
 
 def _scene(scene: object) -> Scene:

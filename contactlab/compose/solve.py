@@ -13,7 +13,7 @@ from contactlab.compose.answers import Answer, answers, show
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.pieces import Chunk, Piece
-from contactlab.compose.planning import make_plan
+from contactlab.compose.planning import columns_of
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.solved_motion import FailedMotion
 from contactlab.contracts import faults
@@ -25,39 +25,39 @@ from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, halves, some
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.energy import EnergyLedger, balanced, ledger
+from contactlab.outcome.energy import balanced
 from contactlab.outcome.history import Recorder
-from contactlab.outcome.motion import Motion, sound, without_failures
-from contactlab.outcome.plan import Clause, Plan
+from contactlab.outcome.motion import Motion, sound
+from contactlab.outcome.plan import PlanColumns
 
 #: Friction work over the energy at the start is this many times less accurate than psi2.
 WORK_ACCURACY = 10.0
-#: Undeclared imbalances over the energy at the start are cautioned of from here on.
-BOOKS_OFF = 0.01
 #: A failed batch of at most so many impacts is marched one by one; a larger batch is halved first.
 FEW = 8
 
 
 class Prepared(NamedTuple):
-    """Normal motion, whole-impact answers and plan of a scene, made before the march."""
+    """Normal motion, whole-impact answers and columns of the plan, made before the march."""
 
     normal: NormalMotion
     known: list[Answer]
-    plan: Plan
+    columns: PlanColumns
 
 
 @np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
 def outcome(
     laws: Laws, scene: Scene, history: bool | str, recorder: Recorder | None
-) -> tuple[Plan, Motion]:
-    """Return plan and motion; a law that raises in a batch costs those impacts only.
+) -> tuple[PlanColumns, Motion]:
+    """Return columns of the plan, and motion; a law that raises costs its impacts only.
+
+    Numbers of impacts that failed are what the laws made of them.
 
     Parameters
     ----------
     laws : Laws
     scene : Scene
     history : bool or "fields"
-        The history that is requested; the plan states what it leaves out.
+        The history that is requested.
     recorder : Recorder or None
         Keeps the history.
 
@@ -79,44 +79,26 @@ def outcome(
     except faults.LawFaultError as fault:
         if recorder is None and math.prod(shape) > 1:
             return _by_halves(laws, scene)
-        return Plan.nothing(shape), _named(laws, Motion.nothing(shape, fault.status, fault.detail))
+        nothing = PlanColumns.nothing(shape)
+        return nothing, _named(laws, Motion.nothing(shape, fault.status, fault.detail))
     if isinstance(prepared.normal, FailedMotion) and math.prod(shape) > 1:
         return _by_halves(laws, scene)
     tangential = _tangential(laws, prepared, recorder)
     motion = sound(Motion.along(prepared.normal, tangential))
     # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
-    declared: Any = books_bound(laws.tangential, scene)
-    bound = declared + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
+    bound: Any = books_bound(laws.tangential, scene)
+    bound = bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
     motion = balanced(motion, scene, bound)
-    if not succeeded(motion.status):
-        motion = _named(laws, without_failures(motion))
-    plan = prepared.plan
-    if some(undeclared := declared == math.inf):
-        plan = _with_books(plan, laws, ledger(scene, motion), undeclared)
-    return plan, motion
-
-
-def _with_books(plan: Plan, laws: Laws, books: EnergyLedger, undeclared: Any) -> Plan:
-    """Return the plan with a caution of an imbalance for which no bound is declared."""
-    share: Any = np.abs(books.relative_imbalance)
-    where = np.asarray(undeclared & (share > BOOKS_OFF))
-    if not where.any():
-        return plan
-    text = (
-        f"energy books: off by {{:.2g}} of the energy at the start, and "
-        f"{type(laws.tangential).__name__} declares no bound (books_bound); with more steps a "
-        "numerical error falls, what the law makes by its nature stays"
-    )
-    caution = Clause(text, where, (np.asarray(share),))
-    return plan.changed(cautions=(*plan.cautions, caution))
+    return prepared.columns, motion if succeeded(motion.status) else _named(laws, motion)
 
 
 def solved(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
     """Return the piece of a sweep's chunk, a block at a time; ``scene`` is the chunk alone."""
     ends = range(0, chunk.size, block)
     scenes = (scene.take(slice(first, min(first + block, chunk.size))) for first in ends)
-    plans, motions = zip(*(outcome(laws, each, False, None) for each in scenes), strict=True)
-    return Piece(chunk, Plan.joined(plans), Motion.joined(motions, (chunk.size,)))
+    columns, motions = zip(*(outcome(laws, each, False, None) for each in scenes), strict=True)
+    shape = (chunk.size,)
+    return Piece(chunk, PlanColumns.joined(columns, shape), Motion.joined(motions, shape))
 
 
 def _named(laws: Laws, motion: Motion) -> Motion:
@@ -137,18 +119,18 @@ def _named(laws: Laws, motion: Motion) -> Motion:
 
 
 def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
-    """Return normal motion, whole-impact answers and plan of a scene.
+    """Return normal motion, whole-impact answers and columns of the plan of a scene.
 
     Raises
     ------
     LawFaultError
-        If a law raises while it is asked for whole-impact answers or cautions.
+        If a law raises while it is asked for whole-impact answers or declared errors.
     """
     normal = normal_or_failed(laws, scene)
     accuracy = laws.integrator.accuracy
     with faults.blaming(laws.tangential):
         known = answers(normal, laws.tangential, history=history, accuracy=accuracy)
-        return Prepared(normal, known, make_plan(normal, laws, known, history=history))
+        return Prepared(normal, known, columns_of(normal, laws, known))
 
 
 def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
@@ -159,18 +141,18 @@ def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
         return FailedMotion(laws.normal, scene, fault.status, fault.detail)
 
 
-def _by_halves(laws: Laws, scene: Scene) -> tuple[Plan, Motion]:
-    """Return plan and motion of a batch, half by half, down to the impacts that fail."""
+def _by_halves(laws: Laws, scene: Scene) -> tuple[PlanColumns, Motion]:
+    """Return columns and motion of a batch, half by half, down to the impacts that fail."""
     shape = scene.shape
     parts = [outcome(laws, scene.take(half), False, None) for half in halves(shape)]
-    plans, motions = zip(*parts, strict=True)
-    return Plan.joined(plans, shape), Motion.joined(motions, shape)
+    columns, motions = zip(*parts, strict=True)
+    return PlanColumns.joined(columns, shape), Motion.joined(motions, shape)
 
 
 def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> TangentialMotion:
     """Return the tangential motion, by whole-impact answers where there are any, else marched."""
-    normal, known, plan = prepared
-    shape, marched = normal.scene.shape, plan.marched
+    normal, known, columns = prepared
+    shape, marched = normal.scene.shape, columns.marched
     if every(marched):
         return _march(laws, normal, recorder)
     if recorder is not None and not some(marched):

@@ -18,6 +18,7 @@ from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion, sound
+from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
 from contactlab.study.stability_cases import Case
 from contactlab.study.stability_references import (
@@ -128,7 +129,7 @@ def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
     law, integrator = simulation.tangential, simulation.integrator
     normal = simulation.normal_motion(scene)
     tangential = integrator.integrate(normal, law, scene, None)
-    plan = simulation.plan(scene).changed(
+    plan = Plan(
         marched=np.ones(scene.shape, dtype=bool),
         psi2_error=integrator.psi2_error(normal, law, scene),
     )
