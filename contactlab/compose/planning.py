@@ -16,7 +16,7 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import faults
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.law import Law
-from contactlab.contracts.motion import NormalMotion, NormalSample
+from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import books_bound
@@ -24,7 +24,6 @@ from contactlab.impact.coupling import three_numbers
 from contactlab.impact.scene import Scene
 from contactlab.impact.unit_slips import unit_slips
 from contactlab.numeric.arrays import every, some, spread, taken
-from contactlab.numeric.checks import Real
 from contactlab.outcome.energy import ledger
 from contactlab.outcome.motion import ENDS, Motion
 from contactlab.outcome.plan import (
@@ -51,6 +50,8 @@ UNCHECKED = (
 )
 #: Undeclared imbalances over the energy at the start are cautioned of from here on.
 BOOKS_OFF = 0.01
+#: Entries of a motion by the names that a normal motion has for them.
+SOURCES = {source: name for name, source in ENDS.items()}
 
 
 def columns_of(normal: NormalMotion, laws: Laws, known: Sequence[Answer]) -> PlanColumns:
@@ -70,7 +71,7 @@ def columns_of(normal: NormalMotion, laws: Laws, known: Sequence[Answer]) -> Pla
         marched: Any = code == MARCHED and not known
         code = 0 if known else code
     else:
-        marched, code = separated(normal), np.full(shape, ENDLESS)
+        marched, code = separated(normal), np.full(shape, ENDLESS, dtype=np.int16)
         code[marched] = MARCHED
         for place, answer in enumerate(known):
             code[answer.where] = place
@@ -153,7 +154,7 @@ SINGLE = {
 def _cautions(laws: Laws, scene: Scene, motion: NormalMotion | Motion, masks: _Masks) -> Clauses:
     """Return the cautions about numbers of the scene, of the laws, and of the energy books."""
 
-    def of(part: Mask) -> NormalMotion:
+    def of(part: Mask) -> Any:
         if not isinstance(motion, Motion):
             return motion if every(part) else motion.take(part)
         if every(part):
@@ -189,7 +190,7 @@ def _asked(law: Law, question: Callable[..., tuple[str, ...]], *about: Any) -> l
 
 def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
     """Return the caution of an imbalance of the energy books for which no bound is declared."""
-    undeclared: Any = np.isinf(books_bound(laws.tangential, scene))
+    undeclared: Any = books_bound(laws.tangential, scene) == math.inf
     if not some(undeclared):
         return []
     share: Any = np.abs(ledger(scene, motion).relative_imbalance)
@@ -204,35 +205,23 @@ def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
     return [Clause(text, where, (np.asarray(share),))]
 
 
-class _Ends(NormalMotion):
-    """The normal motion of a run, by its end and its maxima; the rest is made when it is asked."""
+class _Ends:
+    """The normal motion of a run by its end and its maxima; the rest is made when it is asked."""
 
-    def __init__(self, law: Law, scene: Scene, motion: Motion) -> None:
-        self.law, self.scene = law, scene
-        for name, source in ENDS.items():
-            setattr(self, source, getattr(motion, name))
+    def __init__(self, law: Any, scene: Scene, motion: Motion) -> None:
+        self.law, self.scene, self._motion = law, scene, motion
+        self.offers = law.offers
+
+    def __getattr__(self, name: str) -> Any:
+        """Return an entry of the motion, or of the normal motion made again."""
+        if name in SOURCES:
+            return getattr(self._motion, SOURCES[name])
+        return getattr(self._course, name)
 
     @cached_property
     def _course(self) -> NormalMotion:
         """The normal motion, made again."""
-        return normal_motion(self.law, self.scene)  # type: ignore[arg-type]
-
-    @property
-    def total_load_impulse(self) -> Real:  # type: ignore[override]
-        """Integral of the friction load over the duration, in N s."""
-        return self._course.total_load_impulse
-
-    def at(self, phase: Real) -> NormalSample:
-        """Return the motion at ``phase``."""
-        return self._course.at(phase)
-
-    def phase(self, fraction: Real) -> Real:
-        """Return the phase at which ``fraction`` of the duration has passed."""
-        return self._course.phase(fraction)
-
-    def take(self, part: Any) -> NormalMotion:
-        """Return the motion of some impacts."""
-        return self._course.take(part)
+        return normal_motion(self.law, self.scene)
 
 
 def _defaults(law: Any) -> str:

@@ -21,6 +21,7 @@ from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import succeeded
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import taken
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.history import NO_HISTORY, Recorder
 from contactlab.outcome.motion import without_failures
@@ -109,7 +110,13 @@ class Simulation:
         laws.accept(_scene(scene))
         if _history(history):
             recorder = Recorder(scene.shape, with_fields=history == "fields")
-        columns, motion = solve.outcome(laws, scene, history, recorder)
+        flat = scene
+        if len(scene.shape) > 1:  # laws and integrators are run over one axis
+            flat = scene.take(np.ones(scene.shape, dtype=bool))
+        columns, motion = solve.outcome(laws, flat, history, recorder)
+        if flat is not scene:
+            place = np.arange(flat.shape[0]).reshape(scene.shape)
+            columns, motion = columns.take(place), taken(motion, flat.shape, place)
         result = ImpactResult(
             scene=scene,
             plan=plan_of(laws, scene, columns, motion, history),

@@ -23,7 +23,7 @@ from contactlab.contracts.sampled_motion import NormalMotions
 from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import every, halves, some
+from contactlab.numeric.arrays import consecutive, every, some
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.energy import balanced
 from contactlab.outcome.history import Recorder
@@ -143,10 +143,15 @@ def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
 
 def _by_halves(laws: Laws, scene: Scene) -> tuple[PlanColumns, Motion]:
     """Return columns and motion of a batch, half by half, down to the impacts that fail."""
-    shape = scene.shape
-    parts = [outcome(laws, scene.take(half), False, None) for half in halves(shape)]
+    size = scene.shape[0]
+    parts = [outcome(laws, scene.take(half), False, None) for half in _parts(size, most=1)]
     columns, motions = zip(*parts, strict=True)
-    return PlanColumns.joined(columns, shape), Motion.joined(motions, shape)
+    return PlanColumns.joined(columns, (size,)), Motion.joined(motions, (size,))
+
+
+def _parts(size: int, *, most: int) -> list[slice]:
+    """Return the two halves of a batch, or its impacts if there are at most ``most``."""
+    return consecutive([1] * size if size <= most else [size // 2, size - size // 2])
 
 
 def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> TangentialMotion:
@@ -184,16 +189,14 @@ def _march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) -
         return _march(laws, normal.take(index))
 
     shape = normal.scene.shape
-    size = math.prod(shape)
-    if shape and size == 1 and observer is None:  # one impact is faster as plain numbers
-        return TangentialMotion.joined([part((0,) * len(shape))], shape)
+    if shape == (1,) and observer is None:  # one impact is faster as plain numbers
+        return TangentialMotion.joined([part(0)], shape)
     motion, raised = _attempt(laws, normal, observer)
     if not shape or observer is not None or succeeded(motion.status):
         return motion
     if laws.integrator.own_statuses and not raised:
         return motion
-    parts = np.ndindex(shape) if size <= FEW else halves(shape)
-    return TangentialMotion.joined([part(index) for index in parts], shape)
+    return TangentialMotion.joined([part(each) for each in _parts(*shape, most=FEW)], shape)
 
 
 def _attempt(

@@ -20,7 +20,7 @@ from contactlab.contracts.sampled_motion import NormalMotions
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import filled, merged, spread
+from contactlab.numeric.arrays import consecutive, filled, merged, spread
 from contactlab.numeric.checks import Mask, Real
 
 #: Impacts of a sweep that an integrator receives at a time, by default.
@@ -121,28 +121,20 @@ class TangentialMotion:
         """
         if len(motions) == 1 and shape and np.shape(motions[0].status) == shape:
             return motions[0]
-        counters: Counter[str] = Counter()
-        for motion in motions:
-            counters.update(motion.counters)
-        entries: dict[str, Any] = {}
-        for name in (*cls.numbers(), "status", "detail"):
-            kind = float if name in cls.numbers() else object
-            parts = [np.ravel(np.asarray(getattr(each, name), dtype=kind)) for each in motions]
-            entries[name] = np.concatenate(parts).reshape(shape)
-        if any(motion.normal is not None for motion in motions):
-            entries["normal"] = _consecutive(motions, shape)
-        return cls(**entries, counters=dict(counters))
+        places = consecutive(np.size(motion.status) for motion in motions)
+        return cls.merged(list(zip(places, motions, strict=True)), shape)
 
     @classmethod
     def merged(cls, parts: Sequence[tuple[Any, Self]], shape: tuple[int, ...]) -> Self:
-        """Return one motion of ``shape`` from pairs of a mask and the motion of its impacts.
+        """Return one motion of ``shape`` from pairs of a place and the motion of its impacts.
 
         An impact in several parts has the motion of the last of these parts.
 
         Parameters
         ----------
-        parts : sequence of (array of bool, TangentialMotion)
-            Masks of shape ``shape``, each with the motion of the impacts that it marks.
+        parts : sequence of (array of bool or slice, TangentialMotion)
+            Masks of shape ``shape``, or slices of the batch in C order, each with the motion of
+            its impacts.
         shape : tuple of int
             Shape of the whole batch.
         """
@@ -202,17 +194,6 @@ class TangentialMotion:
         return attrs.evolve(
             self, status=statuses, detail=np.where(failing, detail, self.detail).astype(object)
         )
-
-
-def _consecutive(motions: Sequence[TangentialMotion], shape: tuple[int, ...]) -> NormalMotions:
-    """Return the normal motion of consecutive parts of a batch."""
-    place = np.arange(math.prod(shape)).reshape(shape)
-    parts: list[tuple[Any, Any]] = []
-    end = 0
-    for motion in motions:
-        first, end = end, end + np.size(motion.slip_velocity_change)
-        parts.append(((place >= first) & (place < end), motion.normal))
-    return NormalMotions(shape, tuple(parts))
 
 
 class Integrator(Law):

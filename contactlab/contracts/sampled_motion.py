@@ -130,9 +130,9 @@ class NormalMotions:
     ----------
     shape : tuple of int
         Shape of the whole batch.
-    parts : tuple of (array of bool, NormalMotion or None)
-        Masks of the batch, each with the motion of the impacts that it marks; None for impacts
-        whose normal motion friction does not change.
+    parts : tuple of (array of bool or slice, NormalMotion or None)
+        Masks or slices of the batch, each with the motion of its impacts; None for impacts whose
+        normal motion friction does not change.
     """
 
     shape: tuple[int, ...]
@@ -147,5 +147,9 @@ def gathered(
         return spread(math.nan, shape)
     if isinstance(normal, NormalMotion):
         return of(normal)
-    each = [(mask, gathered(part, of, (int(np.sum(mask)),))) for mask, part in normal.parts]
+    each = []
+    for place, part in normal.parts:
+        slices = isinstance(place, slice)
+        size = place.stop - place.start if slices else int(np.count_nonzero(place))
+        each.append((place, gathered(part, of, (size,))))
     return merged(each, normal.shape)

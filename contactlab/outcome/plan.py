@@ -12,7 +12,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.numeric.arrays import every, share, some, taken
+from contactlab.numeric.arrays import consecutive, every, merged, share, some, taken
 from contactlab.numeric.checks import Real
 from contactlab.outcome.columns import json_value
 
@@ -62,7 +62,8 @@ class PlanColumns(NamedTuple):
     @classmethod
     def nothing(cls, shape: tuple[int, ...]) -> PlanColumns:
         """Return the columns of impacts of which nothing is known."""
-        return cls(np.full(shape, UNKNOWN), np.full(shape, math.nan) if shape else math.nan)
+        code = np.full(shape, UNKNOWN, dtype=np.int16)
+        return cls(code, np.full(shape, math.nan) if shape else math.nan)
 
     @classmethod
     def joined(cls, parts: Sequence[PlanColumns], shape: tuple[int, ...]) -> PlanColumns:
@@ -70,14 +71,13 @@ class PlanColumns(NamedTuple):
         if len(parts) == 1 and np.shape(parts[0].code) == shape == np.shape(parts[0].psi2_error):
             return parts[0]
         reasons = tuple(dict.fromkeys(reason for part in parts for reason in part.reasons))
-        codes, errors = [], []
+        codes = []
         for part in parts:
-            places = [reasons.index(reason) for reason in part.reasons]
-            code = np.array([*places, UNKNOWN, ENDLESS, MARCHED])[part.code]
-            codes.append(np.ravel(code))
-            errors.append(np.broadcast_to(part.psi2_error, codes[-1].shape))
-        code, error = (np.concatenate(each).reshape(shape) for each in (codes, errors))
-        return cls(code, error, reasons)
+            numbers = [reasons.index(reason) for reason in part.reasons]
+            codes.append(np.array([*numbers, UNKNOWN, ENDLESS, MARCHED])[part.code])
+        places = consecutive(map(np.size, codes))
+        error = merged(list(zip(places, (part.psi2_error for part in parts), strict=True)), shape)
+        return cls(merged(list(zip(places, codes, strict=True)), shape, np.int16), error, reasons)
 
     def take(self, part: Any) -> PlanColumns:
         """Return the columns of some impacts of a batch."""
@@ -298,16 +298,15 @@ def _plan(words: Sequence[Clauses], columns: PlanColumns) -> Plan:
 def _joined(parts: Sequence[Clauses], sizes: Sequence[int]) -> Clauses:
     """Return the clauses of all parts; those of the same text and code are one."""
     same: dict[tuple[str, str], Clause] = {}
-    ends = np.cumsum([0, *sizes])
-    for first, end, clauses in zip(ends[:-1], ends[1:], parts, strict=True):
+    size = sum(sizes)
+    for place, clauses in zip(consecutive(sizes), parts, strict=True):
         for clause in clauses:
-            nowhere = np.zeros(ends[-1], dtype=bool)
-            values = clause.values and tuple(np.full(ends[-1], math.nan) for _ in clause.values)
-            empty = clause._replace(where=nowhere, values=values)
+            values = clause.values and tuple(np.full(size, math.nan) for _ in clause.values)
+            empty = clause._replace(where=np.zeros(size, dtype=bool), values=values)
             whole = same.setdefault((clause.text, clause.code), empty)
-            whole.where[first:end] |= clause.where
+            whole.where[place] |= clause.where
             for entries, more in zip(whole.values or (), clause.values or (), strict=True):
-                entries[first:end] = np.fmax(entries[first:end], more)
+                entries[place] = np.fmax(entries[place], more)
     return tuple(same.values())
 
 

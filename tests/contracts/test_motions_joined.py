@@ -8,7 +8,6 @@ import pytest
 import contactlab
 from contactlab import Scene, Status
 from contactlab.contracts import NormalContact, SampledMotion, TangentialMotion
-from contactlab.contracts.integrator import _consecutive
 from contactlab.contracts.sampled_motion import gathered
 
 GOOD, BAD = Status.SUCCESS, Status.NON_FINITE
@@ -90,12 +89,6 @@ def test_normal_motions_of_parts_are_joined():
     joined = TangentialMotion.joined(parts, (2, 2))
     times = gathered(joined.normal, lambda motion: motion.duration, (2, 2))
     assert times == pytest.approx(np.array([[2.0, math.nan], [math.nan, 3.0]]), nan_ok=True)
-    masks = [mask.tolist() for mask, _ in _consecutive(parts, (4,)).parts]
-    assert masks == [
-        [True, False, False, False],
-        [False, True, True, False],
-        [False, False, False, True],
-    ]
 
 
 def test_parts_with_masks_are_merged_and_the_last_one_counts():
