@@ -222,6 +222,15 @@ class Integrator(Law):
     9. An integrator that offers ``marks`` ends a step at every mark of a stepped law. One that
        offers ``normal_motion`` asks ``law.normal_motion`` for the last state and returns the
        answer as ``TangentialMotion.normal``.
+
+    Parameters of methods
+    ---------------------
+    normal : NormalMotion
+        Normal motion of all impacts of ``scene``.
+    tangential : TangentialLaw
+        The law that is run.
+    scene : Scene
+        One impact or a batch.
     """
 
     kind: ClassVar[str] = "integrator"
@@ -241,11 +250,6 @@ class Integrator(Law):
         """Return the number of impacts that a sweep should pass at a time.
 
         Large chunks hide the cost of a call; small chunks lose little by an interruption.
-
-        Parameters
-        ----------
-        tangential : TangentialLaw
-            The law that is run.
         """
         return CHUNK
 
@@ -255,30 +259,11 @@ class Integrator(Law):
         tangential: TangentialLaw,
         scene: Scene,
     ) -> tuple[str, ...]:
-        """Return sentences for the plan of these impacts; empty by default.
-
-        Parameters
-        ----------
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        tangential : TangentialLaw
-            The law that is run.
-        scene : Scene
-            One impact or a batch.
-        """
+        """Return sentences for the plan of these impacts; empty by default."""
         return ()
 
     def resolution_for(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return the resolution used for each impact: by default the value of the option.
-
-        Parameters
-        ----------
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        tangential : TangentialLaw
-            The law that is run.
-        scene : Scene
-            One impact or a batch.
 
         Returns
         -------
@@ -296,15 +281,6 @@ class Integrator(Law):
         """Return the declared bound of the numerical error of psi2, of the batch shape.
 
         NaN, the default, means not declared.
-
-        Parameters
-        ----------
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        tangential : TangentialLaw
-            The law that is run.
-        scene : Scene
-            One impact or a batch.
         """
         return math.nan
 
@@ -320,12 +296,6 @@ class Integrator(Law):
 
         Parameters
         ----------
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        tangential : TangentialLaw
-            A law of the class ``tangential_contract``.
-        scene : Scene
-            One impact or a batch.
         observer : callable, optional
             Called with a ``Sample`` at increasing times (clause 3).
         """

@@ -92,6 +92,13 @@ class TangentialLaw(Law):
     6. ``cautions`` returns doubts about the model.
     7. ``books_bound`` is a bound of the relative error of the energy books; infinite, the default,
        means not declared.
+
+    Parameters of methods
+    ---------------------
+    scene : Scene
+        One impact or a batch.
+    normal : NormalMotion
+        Normal motion of all impacts of ``scene``.
     """
 
     kind: ClassVar[str] = "tangential"
@@ -103,11 +110,6 @@ class TangentialLaw(Law):
         declared: the plan then cautions of an imbalance above 0.01, and 1 counts as success. The
         error that an integrator controls is allowed in addition.
 
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-
         Returns
         -------
         float or array
@@ -116,15 +118,7 @@ class TangentialLaw(Law):
         return math.inf
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return the whole-impact answers: by default for central impacts and for mu = 0.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        """
+        """Return the whole-impact answers: by default for central impacts and for mu = 0."""
         slip: Any = scene.slip_velocity
         friction: Any = scene.friction_coefficient
         central, smooth = slip == 0.0, friction == 0.0
@@ -145,8 +139,6 @@ class TangentialLaw(Law):
 
         Parameters
         ----------
-        scene : Scene
-            A batch.
         accuracy : float or None
             The error that the integrator controls: answers with a larger one are not used.
         """
@@ -157,25 +149,13 @@ class TangentialLaw(Law):
 
         Parameters
         ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
         steps : int or array of int
             Steps of each impact from first touch to separation.
         """
         return math.nan
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return one sentence for each doubt about the model; by default on unlike bodies.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        """
+        """Return one sentence for each doubt about the model; by default on unlike bodies."""
         return coupling(scene)
 
 
@@ -195,15 +175,7 @@ class WholeImpactTangentialLaw(TangentialLaw):
 
     @abstractmethod
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return whole-impact answers that together hold for all impacts.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        """
+        """Return whole-impact answers that together hold for all impacts."""
         return super().whole_impacts(scene, normal)
 
 
@@ -280,19 +252,16 @@ class SteppedTangentialLaw(TangentialLaw):
     8. ``normal_motion(state)`` returns the normal motion from first touch to the instant of
        ``state``, if the friction changes it. The results are then those of this motion. Only
        integrators that offer ``normal_motion`` run such a law.
+
+    Parameters of methods
+    ---------------------
+    state : object
+        The state that ``start`` or the last step returned.
     """
 
     @abstractmethod
     def start(self, scene: Scene, normal: NormalMotion) -> Any:
-        """Return the state at first touch.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        """
+        """Return the state at first touch."""
 
     @abstractmethod
     def advance(
@@ -302,8 +271,6 @@ class SteppedTangentialLaw(TangentialLaw):
 
         Parameters
         ----------
-        state : object
-            The state that ``start`` or the last step returned.
         increment : Increment
             Displacement, slip velocity, mean friction load and duration of the step.
         before, after : NormalContact
@@ -311,26 +278,11 @@ class SteppedTangentialLaw(TangentialLaw):
         """
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return an upper bound of the tangential stiffness, in N/m, of the batch shape.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        """
+        """Return an upper bound of the tangential stiffness, in N/m, of the batch shape."""
         return 0.0
 
     def marks(self, scene: Scene, normal: NormalMotion) -> Array | None:
         """Return the phases of ``normal`` at which steps must end; None, the default, for none.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
 
         Returns
         -------
@@ -344,22 +296,11 @@ class SteppedTangentialLaw(TangentialLaw):
 
         None, the default, means that friction does not change the normal motion.
         ``contactlab.contracts.SampledMotion`` makes a motion from samples.
-
-        Parameters
-        ----------
-        state : object
-            The state that ``advance`` returned.
         """
         return None
 
     def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:
-        """Return named arrays of ``state`` for the history (traction, stuck, ...).
-
-        Parameters
-        ----------
-        state : object
-            The state that ``start`` or ``advance`` returned.
-        """
+        """Return named arrays of ``state`` for the history (traction, stuck, ...)."""
         return {}
 
 
@@ -384,10 +325,6 @@ class AllStepsTangentialLaw(SteppedTangentialLaw):
 
         Parameters
         ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
         steps : Steps
             The steps, with the normal contact at each.
         """
