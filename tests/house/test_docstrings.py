@@ -19,10 +19,8 @@ PUBLIC = {
 }
 #: A line of a section of parameters: one name or several, and maybe their type.
 ENTRY = re.compile(r"^ *(\*{0,2}\w+(?:, \*{0,2}\w+)*)(?: :.*)?$", re.MULTILINE)
-#: The text of such sections; a contract tells parameters of its methods once, at the class.
-SECTIONS = re.compile(
-    r"(?:Parameters|Attributes|Parameters of methods)\n-+\n(.*?)(?=\n\n\w[\w ]*\n---|\Z)", re.DOTALL
-)
+#: The text of such sections.
+SECTIONS = re.compile(r"(?:Parameters|Attributes)\n-+\n(.*?)(?=\n\n\w[\w ]*\n---|\Z)", re.DOTALL)
 
 
 def members(owner):
@@ -60,8 +58,10 @@ def parameters(value):
 
 def undocumented(value, owner=None):
     """Return the parameters of which no section says anything, of the object or its classes."""
-    texts = [inspect.getdoc(each) for each in (value, *getattr(owner, "__mro__", ()))]
-    sections = "\n".join(entry for text in texts for entry in SECTIONS.findall(text or ""))
+    # A contract tells the parameters of its methods once, at the class.
+    classes = (inspect.getdoc(each) or "" for each in getattr(owner, "__mro__", ()))
+    told = [text.partition("Parameters of methods\n")[2] for text in classes]
+    sections = "\n".join((*SECTIONS.findall(inspect.getdoc(value) or ""), *told))
     told = {name.strip(" *") for line in ENTRY.findall(sections) for name in line.split(",")}
     return [name for name in parameters(value) if name not in told]
 
