@@ -37,17 +37,7 @@ def estimated(laws: Laws, result: ImpactResult) -> Real:
     convergence is assumed. If a tightened tolerance cannot be kept, the tolerance stays, and the
     estimate leaves out the error in time. The estimate never includes errors of the model. If the
     answers do not differ, or no law has a finer resolution, the estimate is what the plan declares.
-
-    Parameters
-    ----------
-    laws : Laws
-        The laws of the result.
-    result : ImpactResult
-
-    Returns
-    -------
-    float or array
-        NaN where a run failed, and where nothing is declared and no resolution shows an error.
+    NaN where a run failed, and where nothing is declared and no resolution shows an error.
     """
     scene = result.scene
     successes = _successes(result.status)

@@ -19,7 +19,6 @@ from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import books_bound
 from contactlab.impact.coupling import three_numbers
 from contactlab.impact.scene import Scene
 from contactlab.impact.unit_slips import unit_slips
@@ -55,16 +54,7 @@ SOURCES = {source: name for name, source in ENDS.items()}
 
 
 def columns_of(normal: NormalMotion, laws: Laws, known: Sequence[Answer]) -> PlanColumns:
-    """Return the columns of the plan: why impacts are not marched, and the declared error.
-
-    Parameters
-    ----------
-    normal : NormalMotion
-        Normal motion of the scene.
-    laws : Laws
-    known : sequence of Answer
-        Whole-impact answers; their impacts are not marched.
-    """
+    """Return the columns of the plan: why impacts are not marched, and the declared error."""
     shape = normal.scene.shape
     if not shape:
         code: Any = MARCHED if normal.status is Status.SUCCESS else ENDLESS
@@ -91,15 +81,8 @@ def plan_of(
 ) -> Plan:
     """Return the plan of a scene, with words that are made when they are first read.
 
-    Parameters
-    ----------
-    laws : Laws
-    scene : Scene
-    columns : PlanColumns
-    motion : NormalMotion or Motion
-        The normal motion before a run; the motion, with the numbers of failed impacts, after it.
-    history : bool or "fields"
-        True if a history was requested, ``"fields"`` if one with fields was.
+    ``motion`` is the normal motion before a run; after it the motion, with the numbers of impacts
+    that failed.
     """
 
     def words() -> tuple[Clauses, Clauses, Clauses]:
@@ -190,7 +173,7 @@ def _asked(law: Law, question: Callable[..., tuple[str, ...]], *about: Any) -> l
 
 def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
     """Return the caution of an imbalance of the energy books for which no bound is declared."""
-    undeclared: Any = books_bound(laws.tangential, scene) == math.inf
+    undeclared: Any = laws.tangential.books_bound(scene) == math.inf
     if not some(undeclared):
         return []
     share: Any = np.abs(ledger(scene, motion).relative_imbalance)
@@ -268,16 +251,7 @@ def _no_history(history: bool | str, columns: PlanColumns, marched: Mask) -> str
 
 
 def _error(normal: NormalMotion, laws: Laws, known: Sequence[Answer], marched: Mask) -> Any:
-    """Return the declared numerical error of psi2: of one impact a float, of a batch an array.
-
-    Parameters
-    ----------
-    normal : NormalMotion
-    laws : Laws
-    known : sequence of Answer
-    marched : array of bool
-        Impacts that no whole-impact answer is for.
-    """
+    """Return the declared numerical error of psi2: of one impact a float, of a batch an array."""
     scene = normal.scene
     rounding = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
     if not (scene.shape or marched):

@@ -21,7 +21,6 @@ from contactlab.contracts.integrator import Observer, TangentialMotion
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import NormalMotions
 from contactlab.contracts.status import Status, succeeded
-from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import consecutive, every, some
 from contactlab.numeric.checks import refuse
@@ -42,6 +41,7 @@ class Prepared(NamedTuple):
     normal: NormalMotion
     known: list[Answer]
     columns: PlanColumns
+    books_bound: Any
 
 
 @np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
@@ -50,21 +50,8 @@ def outcome(
 ) -> tuple[PlanColumns, Motion]:
     """Return columns of the plan, and motion; a law that raises costs its impacts only.
 
-    Numbers of impacts that failed are what the laws made of them.
-
-    Parameters
-    ----------
-    laws : Laws
-    scene : Scene
-    history : bool or "fields"
-        The history that is requested.
-    recorder : Recorder or None
-        Keeps the history.
-
-    Raises
-    ------
-    ValueError
-        If a history is asked of a batch whose impacts have instants of their own.
+    Numbers of impacts that failed are what the laws made of them. A history of a batch is refused
+    if its impacts have instants of their own.
     """
     shape = scene.shape
     if history and shape and not laws.integrator.common_instants:
@@ -86,8 +73,7 @@ def outcome(
     tangential = _tangential(laws, prepared, recorder)
     motion = sound(Motion.along(prepared.normal, tangential))
     # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
-    bound: Any = books_bound(laws.tangential, scene)
-    bound = bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
+    bound = prepared.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
     motion = balanced(motion, scene, bound)
     return prepared.columns, motion if succeeded(motion.status) else _named(laws, motion)
 
@@ -119,18 +105,13 @@ def _named(laws: Laws, motion: Motion) -> Motion:
 
 
 def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
-    """Return normal motion, whole-impact answers and columns of the plan of a scene.
-
-    Raises
-    ------
-    LawFaultError
-        If a law raises while it is asked for whole-impact answers or declared errors.
-    """
+    """Return what a scene needs before the march, or raise LawFaultError if a law raises."""
     normal = normal_or_failed(laws, scene)
     accuracy = laws.integrator.accuracy
     with faults.blaming(laws.tangential):
         known = answers(normal, laws.tangential, history=history, accuracy=accuracy)
-        return Prepared(normal, known, columns_of(normal, laws, known))
+        bound = laws.tangential.books_bound(scene)
+        return Prepared(normal, known, columns_of(normal, laws, known), bound)
 
 
 def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
@@ -156,7 +137,7 @@ def _parts(size: int, *, most: int) -> list[slice]:
 
 def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> TangentialMotion:
     """Return the tangential motion, by whole-impact answers where there are any, else marched."""
-    normal, known, columns = prepared
+    normal, known, columns, _ = prepared
     shape, marched = normal.scene.shape, columns.marched
     if every(marched):
         return _march(laws, normal, recorder)

@@ -159,12 +159,6 @@ class TangentialLaw(Law):
         return coupling(scene)
 
 
-def books_bound(law: TangentialLaw, scene: Scene) -> Real:
-    """Return ``law.books_bound(scene)``; earlier laws have a number in place of the method."""
-    bound: Any = law.books_bound
-    return bound(scene) if callable(bound) else bound  # type: ignore[no-any-return]
-
-
 class WholeImpactTangentialLaw(TangentialLaw):
     """Base of tangential laws that have a whole-impact answer for every impact.
 

@@ -2,7 +2,7 @@
 
 import math
 from types import SimpleNamespace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -11,7 +11,6 @@ import pytest
 import contactlab
 from contactlab import Scene
 from contactlab.contracts import TangentialLaw, WholeImpact, from_change, no_force, sliding
-from contactlab.contracts.tangential import books_bound
 from contactlab.testing.load_paths import scene
 
 HERTZ = contactlab.create("normal.hertz")
@@ -163,17 +162,3 @@ def test_what_a_law_does_not_declare():
     assert dict(law.expected_failures) == {}
     assert law.refuses(HERTZ) is None
     assert law.accept(impact) is None
-
-
-def test_a_bound_of_books_may_be_a_number():
-    """Laws written before the method had one."""
-
-    class Earlier(Bare):
-        books_bound: ClassVar[Any] = 0.25
-
-    class Later(Bare):
-        def books_bound(self, scene):
-            return 0.5 * scene.friction_coefficient
-
-    assert books_bound(Earlier(), scene(2.0, CHI)) == 0.25
-    assert books_bound(Later(), scene(2.0, CHI)) == 0.15
