@@ -132,11 +132,6 @@ def test_the_error_of_a_solved_motion_is_that_of_its_load_impulse():
         assert [clause.code for clause in one.computed if "error" in str(clause)] == [PSI2_ERROR]
 
 
-def test_the_time_of_a_sweep_is_that_of_the_sweep():
-    result = Simulation(tangential="coulomb").sweep(Scene.nondimensional(psi1=[1.0, 2.0], chi=1.0))
-    assert 0.0 < result.run_time < 60.0
-
-
 @attrs.frozen(kw_only=True)
 class Counting(WholeImpactTangentialLaw):
     """A whole impact whose error falls as 1/terms; it notes the terms of each run."""

@@ -38,12 +38,6 @@ def columns(motion):
     return [np.asarray(getattr(motion, name)).tolist() for name in NAMES]
 
 
-def test_what_a_motion_has_by_default():
-    motion = one(1.0)
-    assert (motion.status, motion.detail, motion.counters, motion.normal) == (GOOD, "", {}, None)
-    assert TangentialMotion.numbers() == ("slip_velocity_change", "friction_work")
-
-
 def test_one_sentence_for_a_batch_goes_to_the_impacts_that_failed():
     motion = many([1.0, 2.0, 3.0], [GOOD, BAD, GOOD], "it broke")
     assert motion.detail.tolist() == ["", "it broke", ""]

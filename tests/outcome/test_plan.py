@@ -17,7 +17,6 @@ from contactlab.contracts import (
     TangentialResponse,
     WholeImpactTangentialLaw,
 )
-from contactlab.contracts.error_model import range_of
 from contactlab.contracts.whole_impact import no_force
 from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION
 from tests.laws.normal_laws import Damped, ForceFree, LinearSpring
@@ -121,23 +120,6 @@ class Clutches(NormalLaw):
         if np.ndim(approach) == 0:
             overlap = float(overlap)
         return NormalContact(1e7 * approach, 0.0 * approach, overlap), state
-
-
-def test_the_range_that_an_error_is_a_share_of():
-    """The lesser of 4 chi and 2 |psi1|, in m/s, alone and in a batch."""
-    psi1 = [-3.0, 0.2, 0.0, 50.0]
-    widths = [4.0 * CHI, 0.4, 0.0, 4.0 * CHI]
-    assert range_of(scene(psi1)).width.tolist() == pytest.approx(widths)
-    for one, width in zip(psi1, widths, strict=True):
-        assert range_of(scene(one)) == pytest.approx((1.0, width, abs(one)))
-
-
-def test_fields_are_kept_only_where_they_are_asked_for():
-    simulation = Simulation(**SPRINGS)
-    assert simulation.run(scene(), history=True).history.fields == {}
-    kept = simulation.run(scene(), history="fields").history
-    assert kept.fields
-    assert {len(field) for field in kept.fields.values()} == {len(kept.time)}
 
 
 def test_a_solved_normal_motion_is_not_declared_exact():
