@@ -37,7 +37,8 @@ class NormalLaw(Law):
     5. The normal motion is integrated from ``respond``, before any friction, to the tolerance
        ``contactlab.compose.normal_motion.TOLERANCE``. A ``ClosedFormNormalLaw`` returns its
        motion itself.
-    6. ``cautions`` returns doubts about the model. ``plastic`` is True for a law whose bodies
+    6. ``cautions`` returns doubts about the model when a plan is read, as those of a
+       ``TangentialLaw``. ``plastic`` is True for a law whose bodies
        yield; such a law has no caution about yield.
     7. ``dissipation`` is the energy that the law takes from a motion. It is asked of a motion that
        friction has changed, whose loss of kinetic energy is not the law's alone.

@@ -89,7 +89,9 @@ class TangentialLaw(Law):
     5. ``psi2_error`` is a bound of the error of psi2 from the law's own discretisation and
        from ``steps`` even steps of an integrator of second order; infinite ``steps`` add no
        error. NaN, the default, means not declared.
-    6. ``cautions`` returns doubts about the model.
+    6. ``cautions`` returns doubts about the model. The method is asked when a plan is read, about
+       the whole batch; after a run ``normal`` has the ends and maxima of the run at hand, and all
+       else is computed again.
     7. ``books_bound`` is a bound of the relative error of the energy books; infinite, the default,
        means not declared.
 

@@ -132,11 +132,3 @@ def test_impacts_that_fail_keep_the_first_reason():
     assert each.detail.tolist() == ["a", "it broke", ""]
     assert motion.failing(np.array([False, True, False]), BAD, "other") is motion
     assert motion.failing(True, BAD, "x").status.tolist() == [BAD] * 3
-
-
-def test_one_impact_fails():
-    alone = one(1.0)
-    failed = alone.failing(True, BAD, "it broke")
-    assert (failed.status, failed.detail, failed.slip_velocity_change) == (BAD, "it broke", 1.0)
-    assert alone.failing(False, BAD, "it broke") is alone
-    assert failed.failing(True, Status.UNBALANCED, "energy") is failed

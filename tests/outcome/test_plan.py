@@ -189,13 +189,6 @@ def test_a_sweep_in_parts_has_the_plan_of_the_whole():
         assert joined == once
 
 
-def test_the_plan_of_one_impact_of_a_batch():
-    plan = Simulation(**SPRINGS).plan(scene(MIXED))
-    assert [bool(plan[index].marched) for index in range(4)] == [False, True, False, False]
-    assert isinstance(plan[1].psi2_error, float)
-    np.testing.assert_array_equal(plan[1:3].psi2_error, plan.psi2_error[1:3])
-
-
 @attrs.frozen(kw_only=True)
 class Partly(WholeImpactTangentialLaw):
     """Knows impacts below psi = 2 only, in a contract that promises all."""
