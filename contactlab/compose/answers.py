@@ -54,17 +54,7 @@ def answers(
     The list is empty if fields are requested, or the history of a batch: tractions and stick/slip
     fields come of a march only, and the impacts of a batch share the time axis of its history. If
     the law can be marched, an answer without a course is not used for a history, and no answer
-    with a larger error than ``accuracy`` is used.
-
-    Parameters
-    ----------
-    normal : NormalMotion
-        Normal motion of the scene.
-    tangential : TangentialLaw
-    history : bool or "fields"
-        True if a history was requested, ``"fields"`` if one with fields was.
-    accuracy : float or None
-        Error of psi2 over max(1, abs(psi1)) that the integrator controls; None for no bound.
+    with a larger error than ``accuracy`` is used, which is of psi2 over max(1, abs(psi1)).
     """
     scene = normal.scene
     shape = scene.shape

@@ -35,21 +35,11 @@ def estimated(laws: Laws, result: ImpactResult) -> Real:
     Each impact is run again at two finer resolutions of all laws that have a resolution: normal
     law, tangential law and, if the impact is marched, integrator. The estimate is the distance of
     psi2 from the finest answer, plus what the finest leaves by the ratio of the two changes, at
-    least half the last change, and no less than rounding. If a tightened tolerance cannot be kept, the
-    tolerance stays, and the estimate leaves out the error in time. The estimate never includes
-    errors of the model. If the answers do not differ, or no law has a finer resolution, the
-    estimate is what the plan declares.
-
-    Parameters
-    ----------
-    laws : Laws
-        The laws of the result.
-    result : ImpactResult
-
-    Returns
-    -------
-    float or array
-        NaN where a run failed, and where nothing is declared and no resolution shows an error.
+    least half the last change, and no less than rounding. If a tightened tolerance cannot be
+    kept, the tolerance stays, and the estimate leaves out the error in time. The estimate never
+    includes errors of the model. If the answers do not differ, or no law has a finer resolution,
+    the estimate is what the plan declares. NaN where a run failed, and where nothing is declared
+    and no resolution shows an error.
     """
     scene = result.scene
     successes = _successes(result.status)

@@ -24,7 +24,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.plan import Plan
+from contactlab.outcome.plan import PlanColumns
 
 ABOUT, PIECES = "sweep.json", "impacts-*.npz"
 #: Statuses of impacts that were not computed: a resumed sweep computes them.
@@ -170,13 +170,13 @@ def _checksum(arrays: Mapping[str, Any]) -> str:
 
 def _arrays(piece: Piece) -> dict[str, Any]:
     """Return the entries of a piece as arrays of numbers and text."""
-    chunk, plan, motion = piece
+    chunk, columns, motion = piece
     arrays: dict[str, Any] = {name: getattr(motion, name) for name in motion.numbers()}
     arrays["place"] = np.array(chunk)
     arrays["status"] = np.array([status.name for status in motion.status])
     arrays["detail"] = np.array(list(motion.detail), dtype=np.str_)
     arrays["counters"] = np.array(json.dumps(dict(motion.counters)))
-    arrays |= plan.to_arrays()
+    arrays |= columns.to_arrays()
     return arrays
 
 
@@ -204,4 +204,4 @@ def _piece(content: Mapping[str, Any]) -> Piece:
         if np.shape(getattr(motion, name)) != (stop - first,):
             count = np.size(getattr(motion, name))
             raise ValueError(f"{name} has {count} impacts where its place has {stop - first}")
-    return Piece(Chunk(first, stop), Plan.from_arrays(content), motion)
+    return Piece(Chunk(first, stop), PlanColumns.from_arrays(content), motion)

@@ -28,6 +28,14 @@ class Points(NamedTuple):
     approach: Array
     displacement: Array
 
+    def moved(self, column: Array, first: Any) -> tuple[Array, Array]:
+        """Return the change of a column over each step from ``first`` on, and its rate."""
+        moved, drift = (
+            np.diff(column, axis=0, prepend=first),
+            np.diff(self.time, axis=0, prepend=0.0),
+        )
+        return moved, np.divide(moved, drift, out=np.zeros_like(moved), where=drift > 0.0)
+
 
 class Followed(NamedTuple):
     """Columns of a path by name, arrays of shape (K, ...), and the states of the tangential law."""
@@ -46,15 +54,7 @@ def advanced(
 ) -> tuple[list[tuple[Any, Any, Any]], tuple[Any, ...]]:
     """Return force (N), friction work (J) and settled of each step, and the state after it.
 
-    Parameters
-    ----------
-    law : SteppedTangentialLaw
-    state : object
-        State of the law at the beginning.
-    before : NormalContact
-        Normal contact at the beginning.
-    steps : iterable of (Increment, NormalContact)
-        Each step, and the normal contact at its end.
+    ``state`` and ``before`` are those at the beginning; a step has the contact at its end.
     """
     answers, states = [], []
     for increment, after in steps:
@@ -114,9 +114,7 @@ def followed(
 
 def _pressed(normal: NormalLaw, scene: Scene, points: Points) -> list[NormalContact]:
     """Return the normal contact at each point."""
-    drift = np.diff(points.time, axis=0, prepend=0.0)
-    moved = np.diff(points.approach, axis=0, prepend=0.0)
-    rates = np.divide(moved, drift, out=np.zeros_like(moved), where=drift > 0.0)
+    _, rates = points.moved(points.approach, 0.0)
     contacts = []
     with faults.blaming(normal) as blamed:
         state = normal.start(scene)
@@ -132,15 +130,13 @@ def _motion(
     normal: NormalLaw, scene: Scene, points: Points, contacts: list[NormalContact]
 ) -> SampledMotion:
     """Return the normal motion along a path."""
-    drift = np.diff(points.time, axis=0, prepend=0.0)
-    moved = np.diff(points.approach, axis=0, prepend=0.0)
     columns = (_column(rows, scene.shape) for rows in zip(*contacts, strict=True))
     return SampledMotion(
         normal,
         scene,
         time=points.time,
         approach=points.approach,
-        rate=np.divide(moved, drift, out=np.zeros_like(moved), where=drift > 0.0),
+        rate=points.moved(points.approach, 0.0)[1],
         contact=NormalContact(*columns),
     )
 
@@ -150,8 +146,7 @@ def _steps(
 ) -> Iterable[tuple[Increment, NormalContact]]:
     """Iterate over the steps, and count them; the first one presses only."""
     drift = np.diff(points.time, axis=0, prepend=0.0)
-    moved = np.diff(points.displacement, axis=0, prepend=points.displacement[:1])
-    velocity = np.divide(moved, drift, out=np.zeros_like(moved), where=drift > 0.0)
+    moved, velocity = points.moved(points.displacement, points.displacement[:1])
     rows = zip(*(_rows(each) for each in (moved, velocity, drift)), contacts, strict=True)
     for blamed.step, (by, speed, time, after) in enumerate(rows, 1):
         # The force acts on no body: the path is prescribed.

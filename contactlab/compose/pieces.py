@@ -1,4 +1,4 @@
-"""Pieces of a sweep: consecutive impacts with their plan and their motion."""
+"""Pieces of a sweep: consecutive impacts with columns of their plan and their motion."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from contactlab.contracts.status import Status
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.plan import Plan
+from contactlab.outcome.plan import PlanColumns
 
 
 class Chunk(NamedTuple):
@@ -22,14 +22,14 @@ class Chunk(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """The plan and the motion of a chunk."""
+    """The columns of the plan and the motion of a chunk."""
 
     chunk: Chunk
-    plan: Plan
+    columns: PlanColumns
     motion: Motion
 
 
 def unsolved(chunk: Chunk, status: Status, detail: str = "") -> Piece:
     """Return the piece of a chunk without answers: every impact has ``status``."""
     shape = (chunk.size,)
-    return Piece(chunk, Plan.nothing(shape), Motion.nothing(shape, status, detail))
+    return Piece(chunk, PlanColumns.nothing(shape), Motion.nothing(shape, status, detail))

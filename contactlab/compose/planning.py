@@ -1,92 +1,214 @@
-"""Makes the plan of a scene from its normal motion and the declarations of the laws."""
+"""The plan of a scene: its columns from the answers of the laws, its words when they are read."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
 
 from contactlab.compose.answers import NONE, ONE, Answer, Mask, separated
 from contactlab.compose.composition import Laws
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.contracts import faults
 from contactlab.contracts.error_model import psi_magnitude
+from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
+from contactlab.impact.coupling import three_numbers
+from contactlab.impact.scene import Scene
 from contactlab.impact.unit_slips import unit_slips, unlikely
-from contactlab.numeric.arrays import every, some, spread
-from contactlab.outcome.plan import BOOKS, PSI2_ERROR, TANGENTIAL_MOTION, UNCHECKED, Clause, Plan
+from contactlab.numeric.arrays import every, some, spread, taken
+from contactlab.outcome.energy import ledger
+from contactlab.outcome.motion import ENDS, Motion
+from contactlab.outcome.plan import (
+    ENDLESS,
+    MARCHED,
+    PSI2_ERROR,
+    TANGENTIAL_MOTION,
+    UNKNOWN,
+    Clause,
+    Clauses,
+    Plan,
+    PlanColumns,
+    Reason,
+)
 
 #: Error of what is known in closed form, over max(1, |psi1|).
 CLOSED_FORM = 1e-12
 #: Advice of a plan if the error is not declared.
 ADVICE = "; run(scene, estimate_error=True) estimates it"
+#: Entry of a plan whose friction work is a difference of energies.
+UNCHECKED = (
+    "check of the energy books: closed by construction, not checked; the friction work is the "
+    "energy that the velocities lose"
+)
+#: Undeclared imbalances over the energy at the start are cautioned of from here on.
+BOOKS_OFF = 0.01
+#: Entries of a motion by the names that a normal motion has for them.
+SOURCES = {source: name for name, source in ENDS.items()}
 
 
-def make_plan(
-    normal: NormalMotion,
+def columns_of(normal: NormalMotion, laws: Laws, known: Sequence[Answer]) -> PlanColumns:
+    """Return the columns of the plan: why impacts are not marched, and the declared error."""
+    shape = normal.scene.shape
+    if not shape:
+        code: Any = MARCHED if normal.status is Status.SUCCESS else ENDLESS
+        marched: Any = code == MARCHED and not known
+        code = 0 if known else code
+    else:
+        marched, code = separated(normal), np.full(shape, ENDLESS, dtype=np.int16)
+        code[marched] = MARCHED
+        for place, answer in enumerate(known):
+            code[answer.where] = place
+            marched &= ~answer.where
+    reasons = tuple(
+        Reason(each.reason, each.balanced, each.fields is not None) for _, each in known
+    )
+    return PlanColumns(code, _error(normal, laws, known, marched), reasons)
+
+
+def plan_of(
     laws: Laws,
-    known: Sequence[Answer],
-    *,
+    scene: Scene,
+    columns: PlanColumns,
+    motion: NormalMotion | Motion,
     history: bool | str = False,
 ) -> Plan:
-    """Return what the scene needs of the three laws.
+    """Return the plan of a scene, with words that are made when they are first read.
 
-    Parameters
-    ----------
-    normal : NormalMotion
-        Normal motion of the scene.
-    laws : Laws
-    known : sequence of Answer
-        Whole-impact answers; their impacts are not marched.
-    history : bool or "fields"
-        True if a history was requested, ``"fields"`` if one with fields was.
+    ``motion`` is the normal motion before a run; after it the motion, with the numbers of impacts
+    that failed.
     """
-    scene = normal.scene
-    ended, marched = _ended_and_marched(normal, known)
-    error = _error(normal, laws, known, marched)
-    cautions: tuple[str, ...] = ()  # those of the laws, which are asked now: they may raise
-    if some(ended):
-        cautions = laws.normal.cautions(scene, normal) + laws.tangential.cautions(scene, normal)
-    if some(marched):
-        part = normal if every(marched) else normal.take(marched)
-        cautions += laws.integrator.remarks(part, laws.tangential, part.scene)
 
-    # Kept until the plan is read: neither the normal motion nor the numbers of the answers.
-    normal_law = normal.law
-    fields = any(answer.known.fields is not None for answer in known)
-    reasons = [(answer.known.reason, answer.where, answer.known.balanced) for answer in known]
-
-    def clauses() -> tuple[tuple[Clause, ...], tuple[Clause, ...], tuple[Clause, ...]]:
-        everywhere = np.ones(scene.shape, dtype=bool) if scene.shape else ONE
+    def words() -> tuple[Clauses, Clauses, Clauses]:
+        masks = _Masks.of(columns)
+        if not some(masks.known):
+            return (), (), ()
         how = "integrated from first touch to separation"
-        if isinstance(normal_law, ClosedFormNormalLaw):
+        if isinstance(laws.normal, ClosedFormNormalLaw):
             how = "in closed form"
-        law = f"{type(normal_law).__name__}, {how}{_defaults(normal_law)}"
-        computed = [Clause(f"normal motion: {law}", everywhere)]
-        if some(marched):
-            text = "tangential motion: {!r} over {!r}"
-            computed.append(
-                Clause(text, marched, (laws.integrator, laws.tangential), TANGENTIAL_MOTION)
-            )
-        left_out = _not_marched(reasons, ended)
-        if reason := _no_history(history, marched, fields=fields):
-            left_out.append(Clause(reason, everywhere))
-        return (
-            (*computed, *_error_clauses(error, ended)),
-            tuple(left_out),
-            tuple(
-                Clause(text, everywhere)
-                for text in (*unit_slips(scene), *unlikely(scene), *cautions, *_taken(normal_law))
-            ),
-        )
+        law = f"{type(laws.normal).__name__}, {how}{_defaults(laws.normal)}"
+        computed = [Clause(f"normal motion: {law}", masks.known)]
+        if some(masks.marched):
+            text = f"tangential motion: {laws.integrator!r} over {laws.tangential!r}"
+            computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
+        computed += _error_clauses(columns.psi2_error, masks.ended)
+        left_out = _not_marched(columns, masks)
+        if reason := _no_history(history, columns, masks.marched):
+            left_out.append(Clause(reason, masks.known))
+        with np.errstate(under="ignore"):
+            cautions = _cautions(laws, scene, motion, masks)
+        return tuple(computed), tuple(left_out), cautions
 
-    return Plan(late=clauses, marched=marched, psi2_error=error)
+    return Plan(columns=columns, late=words)
 
 
-def _taken(law: Any) -> tuple[str, ...]:
+class _Masks(NamedTuple):
+    """Impacts with a normal motion, those that the motion ends, others, and those marched."""
+
+    known: Mask
+    ended: Mask
+    endless: Mask
+    marched: Mask
+
+    @classmethod
+    def of(cls, columns: PlanColumns) -> _Masks:
+        """Return the masks of a plan's columns."""
+        code: Any = columns.code
+        if isinstance(code, int):  # NumPy takes longer to make a mask than to say what it says
+            return SINGLE[min(code, 0)]
+        masks = code != UNKNOWN, code > ENDLESS, code == ENDLESS, code == MARCHED
+        return cls(*map(np.asarray, masks))
+
+
+#: Masks of one impact, by its code; 0 for any reason.
+SINGLE = {
+    0: _Masks(ONE, ONE, NONE, NONE),
+    MARCHED: _Masks(ONE, ONE, NONE, ONE),
+    ENDLESS: _Masks(ONE, NONE, ONE, NONE),
+}
+
+
+def _cautions(laws: Laws, scene: Scene, motion: NormalMotion | Motion, masks: _Masks) -> Clauses:
+    """Return the cautions about numbers of the scene, of the laws, and of the energy books."""
+
+    def of(part: Mask) -> Any:
+        if not isinstance(motion, Motion):
+            return motion if every(part) else motion.take(part)
+        if every(part):
+            return _Ends(laws.normal, scene, motion)
+        return _Ends(laws.normal, scene.take(part), taken(motion, scene.shape, part))
+
+    known = masks.known
+    whole = scene if every(known) else scene.take(known)
+    said = [*unit_slips(whole), *unlikely(whole)]
+    if some(masks.ended):
+        ends = of(known)
+        for law in (laws.normal, laws.tangential):
+            said += _asked(law, law.cautions, whole, ends)
+    if some(masks.marched):
+        ends = of(masks.marched)
+        said += _asked(laws.integrator, laws.integrator.remarks, ends, laws.tangential, ends.scene)
+    said += _by_default(laws.normal)
+    clauses = [Clause(text, known) for text in said]
+    if isinstance(motion, Motion):
+        clauses += _books(laws, scene, motion)
+    vectors = three_numbers(scene)
+    return (*clauses, *(Clause(text, np.ones(scene.shape, dtype=bool)) for text in vectors))
+
+
+def _asked(law: Law, question: Callable[..., tuple[str, ...]], *about: Any) -> list[str]:
+    """Return what a law says; if it raises, what it raised."""
+    try:
+        return list(question(*about))
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # the numbers are sound without; a plug-in ends no process
+        return [f"cautions of {type(law).__name__}: not known, {faults.raised(error)}"]
+
+
+def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
+    """Return the caution of an imbalance of the energy books for which no bound is declared."""
+    undeclared: Any = laws.tangential.books_bound(scene) == math.inf
+    if not some(undeclared):
+        return []
+    share: Any = np.abs(ledger(scene, motion).relative_imbalance)
+    where = np.asarray(undeclared & (share > BOOKS_OFF) & (motion.status == Status.SUCCESS))
+    if not where.any():
+        return []
+    text = (
+        f"energy books: off by {{:.2g}} of the energy at the start, and "
+        f"{type(laws.tangential).__name__} declares no bound (books_bound); with more steps a "
+        "numerical error falls, what the law makes by its nature stays"
+    )
+    return [Clause(text, where, (np.asarray(share),))]
+
+
+class _Ends:
+    """The normal motion of a run by its end and its maxima; the rest is made when it is asked."""
+
+    def __init__(self, law: Any, scene: Scene, motion: Motion) -> None:
+        self.law, self.scene, self._motion = law, scene, motion
+        self.offers = law.offers
+
+    def __getattr__(self, name: str) -> Any:
+        """Return an entry of the motion, or of the normal motion made again."""
+        if name in SOURCES:
+            return getattr(self._motion, SOURCES[name])
+        return getattr(self._course, name)
+
+    @cached_property
+    def _course(self) -> NormalMotion:
+        """The normal motion, made again."""
+        return normal_motion(self.law, self.scene)
+
+
+def _by_default(law: Any) -> tuple[str, ...]:
     """Return the caution of a restitution that nobody gave."""
     kept = _defaults(law).partition("restitution = ")[2]
     if not kept:
@@ -113,51 +235,34 @@ def _defaults(law: Any) -> str:
     return f"; {', '.join(kept)} by default" if kept else ""
 
 
-def _ended_and_marched(normal: NormalMotion, known: Sequence[Answer]) -> tuple[Mask, Mask]:
-    """Return the impacts whose normal motion ends, and the ones among them to be marched."""
-    if not normal.scene.shape:
-        if normal.status is not Status.SUCCESS:
-            return NONE, NONE
-        return ONE, NONE if known else ONE
-    ended = separated(normal)
-    marched = ended.copy()
-    for answer in known:
-        marched &= ~answer.where
-    return ended, marched
-
-
-def _not_marched(reasons: Sequence[tuple[str, Mask, bool]], ended: Mask) -> list[Clause]:
-    """Return why impacts are not marched."""
+def _not_marched(columns: PlanColumns, masks: _Masks) -> list[Clause]:
+    """Return why impacts are not marched, and whose books check nothing."""
     march = "march of the tangential motion"
-    clauses = [Clause(f"{march}: {reason}", where) for reason, where, _ in reasons]
-    clauses += [Clause(UNCHECKED, where, code=BOOKS) for _, where, balanced in reasons if balanced]
-    if not every(ended):
-        clauses.append(Clause(f"{march}: the normal motion came to no end", ~ended))
+    single = not masks.known.ndim
+    clauses = [
+        Clause(f"{march}: {reason.text}", ONE if single else columns.code == place)
+        for place, reason in enumerate(columns.reasons)
+    ]
+    if any(reason.unchecked for reason in columns.reasons):
+        clauses.append(Clause(UNCHECKED, ONE if single else columns.unchecked))
+    if some(masks.endless):
+        clauses.append(Clause(f"{march}: the normal motion came to no end", masks.endless))
     return clauses
 
 
-def _no_history(history: bool | str, marched: Mask, *, fields: bool) -> str | None:
+def _no_history(history: bool | str, columns: PlanColumns, marched: Mask) -> str | None:
     """Return what a history leaves out, and why."""
     if not history:
         return "history: not asked for"
     if history != "fields":
         return "traction and stick/slip fields: not asked for (history='fields')"
-    if not (some(marched) or fields):
+    if not (some(marched) or any(reason.fields for reason in columns.reasons)):
         return "traction and stick/slip fields: there is no march to take them from"
     return None
 
 
 def _error(normal: NormalMotion, laws: Laws, known: Sequence[Answer], marched: Mask) -> Any:
-    """Return the declared numerical error of psi2: of one impact a float, of a batch an array.
-
-    Parameters
-    ----------
-    normal : NormalMotion
-    laws : Laws
-    known : sequence of Answer
-    marched : array of bool
-        Impacts that no whole-impact answer is for.
-    """
+    """Return the declared numerical error of psi2: of one impact a float, of a batch an array."""
     scene = normal.scene
     rounding = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
     if not (scene.shape or marched):
@@ -179,10 +284,8 @@ def _error_clauses(error: Any, ended: Mask) -> list[Clause]:
     if ended.ndim:
         undeclared = ended & np.isnan(error)
         declared = ended & ~undeclared
-    elif math.isnan(error):
-        undeclared, declared = ended, NONE
     else:
-        undeclared, declared = NONE, ended
+        undeclared, declared = (ended, NONE) if math.isnan(error) else (NONE, ended)
     clauses = []
     if some(declared):
         text = "numerical error of psi2: at most {:.2g}, declared"

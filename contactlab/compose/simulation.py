@@ -13,19 +13,22 @@ import numpy as np
 from contactlab.compose import composition, eccentric, solve
 from contactlab.compose.composition import Laws
 from contactlab.compose.error_estimate import estimated
+from contactlab.compose.planning import plan_of
 from contactlab.compose.sweep import swept
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.status import succeeded
 from contactlab.contracts.tangential import TangentialLaw
-from contactlab.impact.coupling import three_numbers
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import taken
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import arguments_told
 from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.history import NO_HISTORY, Recorder
-from contactlab.outcome.plan import Clause, Plan
+from contactlab.outcome.motion import without_failures
+from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
 
 if TYPE_CHECKING:
@@ -83,7 +86,7 @@ class Simulation:
         laws.accept(_scene(scene))
         with np.errstate(under="ignore"):
             prepared = solve.prepare(laws, scene, _history(history))
-        return _complete(prepared.plan, scene)
+        return plan_of(laws, scene, prepared.columns, prepared.normal, history)
 
     @overload
     def run(
@@ -128,11 +131,17 @@ class Simulation:
         laws.accept(_scene(scene))
         if _history(history):
             recorder = Recorder(scene.shape, with_fields=history == "fields")
-        plan, motion = solve.outcome(laws, scene, history, recorder)
+        flat = scene
+        if len(scene.shape) > 1:  # laws and integrators are run over one axis
+            flat = scene.take(np.ones(scene.shape, dtype=bool))
+        columns, motion = solve.outcome(laws, flat, history, recorder)
+        if flat is not scene:
+            place = np.arange(flat.shape[0]).reshape(scene.shape)
+            columns, motion = columns.take(place), taken(motion, flat.shape, place)
         result = ImpactResult(
             scene=scene,
-            plan=_complete(plan, scene),
-            motion=motion,
+            plan=plan_of(laws, scene, columns, motion, history),
+            motion=motion if succeeded(motion.status) else without_failures(motion),
             laws=composition.versions(*laws),
             history=NO_HISTORY if recorder is None else recorder.history(),
             run_time=time.perf_counter() - started,
@@ -201,14 +210,14 @@ class Simulation:
             )
         laws = self.laws
         laws.accept(batch)
-        plan, motion = swept(
+        columns, motion = swept(
             laws, batch, progress=progress, chunk=chunk, executor=executor, keep=keep
         )
         return ImpactResult(
             scene=batch,
-            plan=_complete(plan, batch),
-            motion=motion,
-            laws=composition.versions(*self.laws),
+            plan=plan_of(laws, batch, columns, motion),
+            motion=motion if succeeded(motion.status) else without_failures(motion),
+            laws=composition.versions(*laws),
             run_time=time.perf_counter() - started,
         )
 
@@ -226,16 +235,6 @@ class Simulation:
     def laws(self) -> Laws:
         """The three laws: normal, tangential, integrator."""
         return Laws(self.normal, self.tangential, self.integrator)
-
-
-def _complete(plan: Plan, scene: Scene) -> Plan:
-    """Return the plan with the cautions about the whole batch, which no chunk can have."""
-    cautions = three_numbers(scene)
-    if not cautions:
-        return plan
-    everywhere = np.ones(scene.shape, dtype=bool)
-    more = tuple(Clause(text, everywhere) for text in cautions)
-    return plan.changed(cautions=plan.cautions + more)
 
 
 def _scene(scene: object) -> Scene:

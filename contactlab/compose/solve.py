@@ -13,22 +13,21 @@ from contactlab.compose.answers import Answer, answers, show
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.pieces import Chunk, Piece
-from contactlab.compose.planning import make_plan
+from contactlab.compose.planning import columns_of
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.solved_motion import FailedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.integrator import Observer, TangentialMotion
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import NormalMotions
-from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import books_bound
+from contactlab.contracts.status import Status, succeeded
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import every, halves, some
+from contactlab.numeric.arrays import consecutive, every, some
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.energy import balanced
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion, sound
-from contactlab.outcome.plan import Plan
+from contactlab.outcome.plan import PlanColumns
 
 #: Friction work over the energy at the start is this many times less accurate than psi2.
 WORK_ACCURACY = 10.0
@@ -37,32 +36,22 @@ FEW = 8
 
 
 class Prepared(NamedTuple):
-    """Normal motion, whole-impact answers and plan of a scene, made before the march."""
+    """Normal motion, whole-impact answers and columns of the plan, made before the march."""
 
     normal: NormalMotion
     known: list[Answer]
-    plan: Plan
+    columns: PlanColumns
+    books_bound: Any
 
 
 @np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
 def outcome(
     laws: Laws, scene: Scene, history: bool | str, recorder: Recorder | None
-) -> tuple[Plan, Motion]:
-    """Return plan and motion; a law that raises in a batch costs those impacts only.
+) -> tuple[PlanColumns, Motion]:
+    """Return columns of the plan, and motion; a law that raises costs its impacts only.
 
-    Parameters
-    ----------
-    laws : Laws
-    scene : Scene
-    history : bool or "fields"
-        The history that is requested; the plan states what it leaves out.
-    recorder : Recorder or None
-        Keeps the history.
-
-    Raises
-    ------
-    ValueError
-        If a history is asked of a batch whose impacts have instants of their own.
+    Numbers of impacts that failed are what the laws made of them. A history of a batch is refused
+    if its impacts have instants of their own.
     """
     shape = scene.shape
     if history and shape and not laws.integrator.common_instants:
@@ -77,30 +66,29 @@ def outcome(
     except faults.LawFaultError as fault:
         if recorder is None and math.prod(shape) > 1:
             return _by_halves(laws, scene)
-        return Plan.nothing(shape), _named(laws, Motion.nothing(shape, fault.status, fault.detail))
+        nothing = PlanColumns.nothing(shape)
+        return nothing, _named(laws, Motion.nothing(shape, fault.status, fault.detail))
     if isinstance(prepared.normal, FailedMotion) and math.prod(shape) > 1:
         return _by_halves(laws, scene)
     tangential = _tangential(laws, prepared, recorder)
     motion = sound(Motion.along(prepared.normal, tangential))
     # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
-    bound: Any = books_bound(laws.tangential, scene)
-    bound = bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
-    return prepared.plan, _named(laws, balanced(motion, scene, bound))
+    bound = prepared.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
+    motion = balanced(motion, scene, bound)
+    return prepared.columns, motion if succeeded(motion.status) else _named(laws, motion)
 
 
 def solved(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
     """Return the piece of a sweep's chunk, a block at a time; ``scene`` is the chunk alone."""
     ends = range(0, chunk.size, block)
     scenes = (scene.take(slice(first, min(first + block, chunk.size))) for first in ends)
-    plans, motions = zip(*(outcome(laws, each, False, None) for each in scenes), strict=True)
-    return Piece(chunk, Plan.joined(plans), Motion.joined(motions, (chunk.size,)))
+    columns, motions = zip(*(outcome(laws, each, False, None) for each in scenes), strict=True)
+    shape = (chunk.size,)
+    return Piece(chunk, PlanColumns.joined(columns, shape), Motion.joined(motions, shape))
 
 
 def _named(laws: Laws, motion: Motion) -> Motion:
     """Return the motion, its sentences with the distribution of the law that each blames."""
-    if not (motion.detail if isinstance(motion.detail, str) else np.any(motion.detail)):
-        return motion
-
     names = [(type(law).__name__, REGISTRY.describe(law)) for law in laws]
 
     def named(sentence: str) -> str:
@@ -117,18 +105,13 @@ def _named(laws: Laws, motion: Motion) -> Motion:
 
 
 def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
-    """Return normal motion, whole-impact answers and plan of a scene.
-
-    Raises
-    ------
-    LawFaultError
-        If a law raises while it is asked for whole-impact answers or cautions.
-    """
+    """Return what a scene needs before the march, or raise LawFaultError if a law raises."""
     normal = normal_or_failed(laws, scene)
     accuracy = laws.integrator.accuracy
     with faults.blaming(laws.tangential):
         known = answers(normal, laws.tangential, history=history, accuracy=accuracy)
-        return Prepared(normal, known, make_plan(normal, laws, known, history=history))
+        bound = laws.tangential.books_bound(scene)
+        return Prepared(normal, known, columns_of(normal, laws, known), bound)
 
 
 def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
@@ -139,18 +122,23 @@ def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
         return FailedMotion(laws.normal, scene, fault.status, fault.detail)
 
 
-def _by_halves(laws: Laws, scene: Scene) -> tuple[Plan, Motion]:
-    """Return plan and motion of a batch, half by half, down to the impacts that fail."""
-    shape = scene.shape
-    parts = [outcome(laws, scene.take(half), False, None) for half in halves(shape)]
-    plans, motions = zip(*parts, strict=True)
-    return Plan.joined(plans, shape), Motion.joined(motions, shape)
+def _by_halves(laws: Laws, scene: Scene) -> tuple[PlanColumns, Motion]:
+    """Return columns and motion of a batch, half by half, down to the impacts that fail."""
+    size = scene.shape[0]
+    parts = [outcome(laws, scene.take(half), False, None) for half in _parts(size, most=1)]
+    columns, motions = zip(*parts, strict=True)
+    return PlanColumns.joined(columns, (size,)), Motion.joined(motions, (size,))
+
+
+def _parts(size: int, *, most: int) -> list[slice]:
+    """Return the two halves of a batch, or its impacts if there are at most ``most``."""
+    return consecutive([1] * size if size <= most else [size // 2, size - size // 2])
 
 
 def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> TangentialMotion:
     """Return the tangential motion, by whole-impact answers where there are any, else marched."""
-    normal, known, plan = prepared
-    shape, marched = normal.scene.shape, plan.marched
+    normal, known, columns, _ = prepared
+    shape, marched = normal.scene.shape, columns.marched
     if every(marched):
         return _march(laws, normal, recorder)
     if recorder is not None and not some(marched):
@@ -182,16 +170,14 @@ def _march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) -
         return _march(laws, normal.take(index))
 
     shape = normal.scene.shape
-    size = math.prod(shape)
-    if shape and size == 1 and observer is None:  # one impact is faster as plain numbers
-        return TangentialMotion.joined([part((0,) * len(shape))], shape)
+    if shape == (1,) and observer is None:  # one impact is faster as plain numbers
+        return TangentialMotion.joined([part(0)], shape)
     motion, raised = _attempt(laws, normal, observer)
-    if not shape or observer is not None or np.all(motion.status == Status.SUCCESS):
+    if not shape or observer is not None or succeeded(motion.status):
         return motion
     if laws.integrator.own_statuses and not raised:
         return motion
-    parts = np.ndindex(shape) if size <= FEW else halves(shape)
-    return TangentialMotion.joined([part(index) for index in parts], shape)
+    return TangentialMotion.joined([part(each) for each in _parts(*shape, most=FEW)], shape)
 
 
 def _attempt(

@@ -17,7 +17,7 @@ from contactlab.contracts.tangential import WholeImpactTangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import whole
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.plan import Plan
+from contactlab.outcome.plan import PlanColumns
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -45,8 +45,8 @@ def swept(
     chunk: int | None,
     executor: Executor | None,
     keep: str | Path | None,
-) -> tuple[Plan, Motion]:
-    """Return plan and motion of a one-dimensional batch; see ``Simulation.sweep``."""
+) -> tuple[PlanColumns, Motion]:
+    """Return columns of the plan and motion of a batch of one axis; see ``Simulation.sweep``."""
     size, block = scene.shape[0], block_of(laws)
     if laws.tangential.needs_no_march(scene, laws.integrator.accuracy):
         block = WHOLE_IMPACTS
@@ -80,8 +80,8 @@ def swept(
     finally:
         pieces.close()
     finished.sort(key=lambda piece: piece.chunk)
-    plan = Plan.joined([piece.plan for piece in finished])
-    return plan, Motion.joined([piece.motion for piece in finished], (size,))
+    columns = PlanColumns.joined([piece.columns for piece in finished], (size,))
+    return columns, Motion.joined([piece.motion for piece in finished], (size,))
 
 
 def _gaps(pieces: Iterable[Piece], size: int) -> list[Chunk]:

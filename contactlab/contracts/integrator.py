@@ -20,7 +20,7 @@ from contactlab.contracts.sampled_motion import NormalMotions
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import filled, merged, spread
+from contactlab.numeric.arrays import consecutive, filled, merged, spread
 from contactlab.numeric.checks import Mask, Real
 
 #: Impacts of a sweep that an integrator receives at a time, by default.
@@ -121,28 +121,20 @@ class TangentialMotion:
         """
         if len(motions) == 1 and shape and np.shape(motions[0].status) == shape:
             return motions[0]
-        counters: Counter[str] = Counter()
-        for motion in motions:
-            counters.update(motion.counters)
-        entries: dict[str, Any] = {}
-        for name in (*cls.numbers(), "status", "detail"):
-            kind = float if name in cls.numbers() else object
-            parts = [np.ravel(np.asarray(getattr(each, name), dtype=kind)) for each in motions]
-            entries[name] = np.concatenate(parts).reshape(shape)
-        if any(motion.normal is not None for motion in motions):
-            entries["normal"] = _consecutive(motions, shape)
-        return cls(**entries, counters=dict(counters))
+        places = consecutive(np.size(motion.status) for motion in motions)
+        return cls.merged(list(zip(places, motions, strict=True)), shape)
 
     @classmethod
     def merged(cls, parts: Sequence[tuple[Any, Self]], shape: tuple[int, ...]) -> Self:
-        """Return one motion of ``shape`` from pairs of a mask and the motion of its impacts.
+        """Return one motion of ``shape`` from pairs of a place and the motion of its impacts.
 
         An impact in several parts has the motion of the last of these parts.
 
         Parameters
         ----------
-        parts : sequence of (array of bool, TangentialMotion)
-            Masks of shape ``shape``, each with the motion of the impacts that it marks.
+        parts : sequence of (array of bool or slice, TangentialMotion)
+            Masks of shape ``shape``, or slices of the batch in C order, each with the motion of
+            its impacts.
         shape : tuple of int
             Shape of the whole batch.
         """
@@ -204,17 +196,6 @@ class TangentialMotion:
         )
 
 
-def _consecutive(motions: Sequence[TangentialMotion], shape: tuple[int, ...]) -> NormalMotions:
-    """Return the normal motion of consecutive parts of a batch."""
-    place = np.arange(math.prod(shape)).reshape(shape)
-    parts: list[tuple[Any, Any]] = []
-    end = 0
-    for motion in motions:
-        first, end = end, end + np.size(motion.slip_velocity_change)
-        parts.append(((place >= first) & (place < end), motion.normal))
-    return NormalMotions(shape, tuple(parts))
-
-
 class Integrator(Law):
     """Base of integrators, which follow the tangential motion along a normal motion.
 
@@ -241,6 +222,15 @@ class Integrator(Law):
     9. An integrator that offers ``marks`` ends a step at every mark of a stepped law. One that
        offers ``normal_motion`` asks ``law.normal_motion`` for the last state and returns the
        answer as ``TangentialMotion.normal``.
+
+    Parameters of methods
+    ---------------------
+    normal : NormalMotion
+        Normal motion of all impacts of ``scene``.
+    tangential : TangentialLaw
+        The law that is run.
+    scene : Scene
+        One impact or a batch.
     """
 
     kind: ClassVar[str] = "integrator"
@@ -260,11 +250,6 @@ class Integrator(Law):
         """Return the number of impacts that a sweep should pass at a time.
 
         Large chunks hide the cost of a call; small chunks lose little by an interruption.
-
-        Parameters
-        ----------
-        tangential : TangentialLaw
-            The law that is run.
         """
         return CHUNK
 
@@ -274,30 +259,11 @@ class Integrator(Law):
         tangential: TangentialLaw,
         scene: Scene,
     ) -> tuple[str, ...]:
-        """Return sentences for the plan of these impacts; empty by default.
-
-        Parameters
-        ----------
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        tangential : TangentialLaw
-            The law that is run.
-        scene : Scene
-            One impact or a batch.
-        """
+        """Return sentences for the plan of these impacts; empty by default."""
         return ()
 
     def resolution_for(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return the resolution used for each impact: by default the value of the option.
-
-        Parameters
-        ----------
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        tangential : TangentialLaw
-            The law that is run.
-        scene : Scene
-            One impact or a batch.
 
         Returns
         -------
@@ -315,15 +281,6 @@ class Integrator(Law):
         """Return the declared bound of the numerical error of psi2, of the batch shape.
 
         NaN, the default, means not declared.
-
-        Parameters
-        ----------
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        tangential : TangentialLaw
-            The law that is run.
-        scene : Scene
-            One impact or a batch.
         """
         return math.nan
 
@@ -339,12 +296,6 @@ class Integrator(Law):
 
         Parameters
         ----------
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        tangential : TangentialLaw
-            A law of the class ``tangential_contract``.
-        scene : Scene
-            One impact or a batch.
         observer : callable, optional
             Called with a ``Sample`` at increasing times (clause 3).
         """

@@ -72,6 +72,15 @@ class NormalMotion(ABC):
         Status of each impact; the numbers of an impact without success are meaningless.
     detail : str, or array of str
         What failed; empty on success.
+
+    Parameters of methods
+    ---------------------
+    phase : float or array
+        Phase from 0 at first touch to pi at separation.
+    fraction : float or array
+        Fraction of the duration, from 0 to 1.
+    part : slice, array of bool or int, int or tuple of int
+        Index of an array of the batch shape.
     """
 
     law: Law
@@ -119,11 +128,6 @@ class NormalMotion(ABC):
 
         ``phase`` broadcasts against the batch shape: K phases of shape (K, 1, ..., 1) give
         samples of shape (K, ...).
-
-        Parameters
-        ----------
-        phase : float or array
-            Phase from 0 at first touch to pi at separation.
         """
 
     @abstractmethod
@@ -132,22 +136,11 @@ class NormalMotion(ABC):
 
         Integrators with even steps use it. The error does no harm: ``at`` returns the exact time
         of that phase.
-
-        Parameters
-        ----------
-        fraction : float or array
-            Fraction of the duration, from 0 to 1; broadcasts against the batch shape.
         """
 
     @abstractmethod
     def take(self, part: Any) -> NormalMotion:
-        """Return the motion of the impacts that ``part`` indexes.
-
-        Parameters
-        ----------
-        part : slice, array of bool or int, int or tuple of int
-            Index of an array of the batch shape.
-        """
+        """Return the motion of the impacts that ``part`` indexes."""
 
 
 class ScaledContact(NamedTuple):
@@ -188,23 +181,11 @@ class ClosedFormMotion(NormalMotion):
 
     @abstractmethod
     def scaled(self, phase: NDArray[np.float64]) -> ScaledContact:
-        """Return the scaled motion of one impact at many phases, as arrays of shape (K,).
-
-        Parameters
-        ----------
-        phase : array, shape (K,)
-            Phases from 0 at first touch to pi at separation.
-        """
+        """Return the scaled motion of one impact at many phases, as arrays of shape (K,)."""
 
     @abstractmethod
     def scaled_at(self, phase: float) -> ScaledContact:
-        """Return the scaled motion of one impact at one phase, as floats.
-
-        Parameters
-        ----------
-        phase : float
-            Phase from 0 at first touch to pi at separation.
-        """
+        """Return the scaled motion of one impact at one phase, as floats."""
 
     @abstractmethod
     def phase_at_rate(self, rate: Real) -> Real:

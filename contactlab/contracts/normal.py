@@ -34,10 +34,18 @@ class NormalLaw(Law):
     5. The normal motion is integrated from ``respond``, before any friction, to the tolerance
        ``contactlab.compose.normal_motion.TOLERANCE``. A ``ClosedFormNormalLaw`` returns its
        motion itself.
-    6. ``cautions`` returns doubts about the model. ``plastic`` is True for a law whose bodies
+    6. ``cautions`` returns doubts about the model when a plan is read, as those of a
+       ``TangentialLaw``. ``plastic`` is True for a law whose bodies
        yield; such a law has no caution about yield.
     7. ``dissipation`` is the energy that the law takes from a motion. It is asked of a motion that
        friction has changed, whose loss of kinetic energy is not the law's alone.
+
+    Parameters of methods
+    ---------------------
+    scene : Scene
+        One impact or a batch.
+    motion : NormalMotion
+        A motion under this law of all impacts; friction may have changed it.
     """
 
     kind: ClassVar[str] = "normal"
@@ -45,13 +53,7 @@ class NormalLaw(Law):
 
     @abstractmethod
     def start(self, scene: Scene) -> Any:
-        """Return the state before first touch.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        """
+        """Return the state before first touch."""
 
     @abstractmethod
     def respond(self, state: Any, approach: Real, rate: Real) -> tuple[NormalContact, Any]:
@@ -71,24 +73,11 @@ class NormalLaw(Law):
         """Return the energy in J that the law dissipates along a motion, of the batch shape.
 
         NaN, the default, means not declared. An elastic law returns 0.
-
-        Parameters
-        ----------
-        motion : NormalMotion
-            A motion under this law, which friction may have changed.
         """
         return math.nan
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return one sentence for each doubt about the model.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        motion : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        """
+        """Return one sentence for each doubt about the model."""
         if scene.sphere is None:
             return ()
         cautions = () if self.plastic else yielding(scene)
@@ -102,11 +91,6 @@ class ClosedFormNormalLaw(NormalLaw):
     @abstractmethod
     def motion(self, scene: Scene) -> ClosedFormMotion:
         """Return the motion from first touch to separation.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
 
         Returns
         -------

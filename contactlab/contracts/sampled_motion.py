@@ -68,13 +68,7 @@ class SampledMotion(NormalMotion):
         )
 
     def at(self, phase: Real) -> NormalSample:
-        """Return the motion at ``phase``, by linear interpolation.
-
-        Parameters
-        ----------
-        phase : float or array
-            Phase from 0 at first touch to pi at the last sample.
-        """
+        """Return the motion at ``phase``, by linear interpolation."""
         fraction = np.asarray(phase, dtype=np.float64) / math.pi
         outer = np.broadcast_shapes(fraction.shape, self.scene.shape)
         time = np.broadcast_to(fraction * self.duration, outer)
@@ -92,23 +86,11 @@ class SampledMotion(NormalMotion):
         return NormalSample(when, depth, rate, NormalContact(force, radius, overlap, load), impulse)
 
     def phase(self, fraction: Real) -> Real:
-        """Return pi times the fraction.
-
-        Parameters
-        ----------
-        fraction : float or array
-            Fraction of the duration, from 0 to 1.
-        """
+        """Return pi times the fraction."""
         return math.pi * np.asarray(fraction)
 
     def take(self, part: Any) -> SampledMotion:
-        """Return the motion of some impacts.
-
-        Parameters
-        ----------
-        part : slice, array of bool or int, int or tuple of int
-            Index of an array of the batch shape.
-        """
+        """Return the motion of some impacts."""
         index = (slice(1, None), *(part if isinstance(part, tuple) else (part,)))
         time = self._time[index]
         depth, rate, *contact, _ = (column[index] for column in self._columns)
@@ -130,9 +112,9 @@ class NormalMotions:
     ----------
     shape : tuple of int
         Shape of the whole batch.
-    parts : tuple of (array of bool, NormalMotion or None)
-        Masks of the batch, each with the motion of the impacts that it marks; None for impacts
-        whose normal motion friction does not change.
+    parts : tuple of (array of bool or slice, NormalMotion or None)
+        Masks or slices of the batch, each with the motion of its impacts; None for impacts whose
+        normal motion friction does not change.
     """
 
     shape: tuple[int, ...]
@@ -147,5 +129,9 @@ def gathered(
         return spread(math.nan, shape)
     if isinstance(normal, NormalMotion):
         return of(normal)
-    each = [(mask, gathered(part, of, (int(np.sum(mask)),))) for mask, part in normal.parts]
+    each = []
+    for place, part in normal.parts:
+        slices = isinstance(place, slice)
+        size = place.stop - place.start if slices else int(np.count_nonzero(place))
+        each.append((place, gathered(part, of, (size,))))
     return merged(each, normal.shape)

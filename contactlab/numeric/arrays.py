@@ -7,8 +7,9 @@ broadcasts to ``shape``.
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -78,11 +79,21 @@ def taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
 
 
 def merged(parts: Sequence[tuple[Any, Any]], shape: tuple[int, ...], kind: Any = float) -> Any:
-    """Return an array of ``shape`` from (mask, values) pairs; later pairs overwrite earlier."""
-    entry = np.empty(shape, dtype=kind)
+    """Return an array of ``shape`` from pairs of a place and its values; later pairs overwrite.
+
+    A place is a mask of ``shape``, or a slice of the batch in C order.
+    """
+    entry = np.empty(math.prod(shape), dtype=kind)
     for where, values in parts:
-        entry[where] = np.ravel(np.asarray(values, dtype=kind)) if np.ndim(values) else values
-    return entry
+        place = where if isinstance(where, slice) else np.ravel(where)
+        entry[place] = np.ravel(np.asarray(values, dtype=kind)) if np.ndim(values) else values
+    return entry.reshape(shape)
+
+
+def consecutive(sizes: Iterable[int]) -> list[slice]:
+    """Return the places of consecutive parts of a batch, as slices."""
+    ends = list(itertools.accumulate(sizes, initial=0))
+    return [slice(*pair) for pair in itertools.pairwise(ends)]
 
 
 def spread(value: Any, shape: tuple[int, ...]) -> Any:
@@ -104,13 +115,6 @@ def flat(value: Any, shape: tuple[int, ...]) -> Any:
 def filled(value: Any, shape: tuple[int, ...]) -> Any:
     """Return ``value`` for one impact, or an object array of ``shape`` filled with it."""
     return np.full(shape, value, dtype=object) if shape else value
-
-
-def halves(shape: tuple[int, ...]) -> tuple[Any, Any]:
-    """Return masks of the first and the second half of a batch."""
-    size = math.prod(shape)
-    first = np.arange(size).reshape(shape) < size // 2
-    return first, ~first
 
 
 def some(mask: Any) -> bool:

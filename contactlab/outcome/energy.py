@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import attrs
@@ -23,6 +24,8 @@ LARGEST_RESTITUTION = 1.02
 #: nothing too. The capped spring of discrete-element codes makes some energy; its slip velocity
 #: stays below this bound between elastic spheres, and exceeds it under strongly damped normal laws.
 LARGEST_SLIP = 1.1
+#: Without a declared bound an imbalance above the whole energy at the start is a failure.
+LARGEST_UNDECLARED = 1.0
 
 
 def _energy() -> Any:
@@ -126,9 +129,9 @@ def _start_and_slip_loss(pair: Pair, speed: Real, slip: Real, change: Real) -> t
 def balanced(motion: Motion, scene: Scene, bound: Real) -> Motion:
     """Return ``motion`` with status ``UNBALANCED`` where the energy books do not balance.
 
-    The imbalance over the energy at the start exceeds ``bound``, or the bodies separate or slip
-    faster than at first touch. If friction changed the normal motion, one of the two may gain what
-    the other loses, and the sum of both energies is judged.
+    The imbalance over the energy at the start exceeds ``bound``, or 1 if that is infinite, or the
+    bodies separate or slip faster than at first touch. If friction changed the normal motion, one
+    of the two may gain what the other loses, and the sum of both energies is judged.
     """
     if not scene.shape and motion.exchange == 0.0 and _balances(motion, scene, bound):
         return motion
@@ -141,6 +144,7 @@ def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
     slip: Any = scene.slip_velocity
     change: Any = motion.slip_velocity_change
     start, slip_loss = _start_and_slip_loss(scene.pair, speed, slip, change)
+    bound = LARGEST_UNDECLARED if bound == math.inf else bound
     return not (
         abs(motion.normal_velocity) > LARGEST_RESTITUTION * speed
         or abs(slip_loss - motion.friction_work) > bound * start
@@ -180,6 +184,10 @@ def _with_unbalanced(motion: Motion, scene: Scene, bound: Real) -> Motion:
     if some(gaining):
         detail = _sentences("The bodies gain {:.2g} of their energy.", books.end / books.start - 1)
         motion = motion.failing(gaining, Status.UNBALANCED, detail)
+    vast = (bound == math.inf) & (imbalance > LARGEST_UNDECLARED * books.start)
+    if some(vast):
+        detail = _sentences("Off by {:.3g} times the energy at the start.", imbalance / books.start)
+        motion = motion.failing(vast, Status.UNBALANCED, detail)
     return motion
 
 

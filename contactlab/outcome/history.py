@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Literal
 
 import attrs
@@ -97,7 +98,7 @@ def _names() -> list[str]:
 
 
 class Recorder:
-    """An observer that keeps every sample, with the law's fields if ``with_fields``.
+    """An observer that keeps every sample of a flat batch, with fields if ``with_fields``.
 
     ``stepwise`` asks for a march step by step, which fields need in any case.
     """
@@ -122,10 +123,15 @@ class Recorder:
         """Return the history of the samples; its arrays have length 0 if there are none."""
         columns = {}
         for index, name in enumerate(_names()):
-            column = np.empty((len(self._rows), *self._shape))
+            column = np.empty((len(self._rows), math.prod(self._shape)))
             for instant, row in enumerate(self._rows):
                 column[instant] = row[index]
-            columns[name] = column
+            columns[name] = column.reshape(-1, *self._shape)
         keys = self._fields[0] if self._fields else {}
         fields = {key: np.array([entry[key] for entry in self._fields]) for key in keys}
+        if len(self._shape) > 1:  # what is recorded has one axis
+            fields = {
+                key: field.reshape(-1, *self._shape, *field.shape[2:])
+                for key, field in fields.items()
+            }
         return History(**columns, fields=fields)

@@ -132,3 +132,13 @@ def sound(motion: Motion) -> Motion:
     bad = [name.replace("_", " ") for name, value in values.items() if not np.isfinite(value).all()]
     sentence = f"Not finite at the end of contact: {', '.join(bad)}."
     return motion.failing(~good, Status.NON_FINITE, sentence)
+
+
+def without_failures(motion: Motion) -> Motion:
+    """Return ``motion`` with NaN for every number of the impacts that failed."""
+    good, shape = motion.status == Status.SUCCESS, np.shape(motion.status)
+    numbers = {
+        name: locked(spread(np.where(good, getattr(motion, name), math.nan), shape))
+        for name in Motion.numbers()
+    }
+    return attrs.evolve(motion, **numbers)

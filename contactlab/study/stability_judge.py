@@ -15,9 +15,9 @@ from contactlab.compose.solved_motion import ACCURACY
 from contactlab.contracts import ClosedFormNormalLaw
 from contactlab.contracts.error_model import LARGEST_SHARE, range_of
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion, sound
+from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
 from contactlab.study.stability_cases import Case
 from contactlab.study.stability_references import (
@@ -128,7 +128,7 @@ def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
     law, integrator = simulation.tangential, simulation.integrator
     normal = simulation.normal_motion(scene)
     tangential = integrator.integrate(normal, law, scene, None)
-    plan = simulation.plan(scene).changed(
+    plan = Plan(
         marched=np.ones(scene.shape, dtype=bool),
         psi2_error=integrator.psi2_error(normal, law, scene),
     )
@@ -168,7 +168,7 @@ def _wrong(simulation: Simulation, result: ImpactResult, error: float, bound: fl
         result,
         bound,
         passive="books" not in tangential.expected_failures,
-        books_bound=float(np.max(books_bound(tangential, result.scene))),
+        books_bound=float(np.max(tangential.books_bound(result.scene))),
         load_impulse=None if elastic else load_impulse(result.scene, normal),
     )
     if error > bound:

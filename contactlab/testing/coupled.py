@@ -10,7 +10,6 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import Integrator, Law, NormalLaw, SteppedTangentialLaw, TangentialLaw
 from contactlab.contracts.sampled_motion import gathered
-from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
 from contactlab.testing.check import apply_if, check, hold, hold_success
 from contactlab.testing.coupled_laws import Exchanging, Marked
@@ -113,7 +112,7 @@ def marks_grow(law: Any) -> None:
 def books_bound_told(law: Any) -> None:
     """The bound of the energy books is a number >= 0 for each impact (TangentialLaw, 7)."""
     for impact in (scene(ANGLES[1], CHI), scene(np.array(ANGLES), CHI)):
-        bound = np.asarray(books_bound(law, impact), dtype=np.float64)
+        bound = np.asarray(law.books_bound(impact), dtype=np.float64)
         good = bound.shape in ((), impact.shape) and (bound >= 0.0).all()
         hold(good, f"books_bound = {bound!r}: must be at least 0, of shape {impact.shape} or ().")
 

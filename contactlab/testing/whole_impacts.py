@@ -13,7 +13,6 @@ from contactlab.compose.answers import answers
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalLaw, NormalMotion, TangentialLaw, WholeImpact
-from contactlab.contracts.tangential import books_bound
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import spread
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold
@@ -157,7 +156,7 @@ def whole_impact_form(law: Any) -> None:
             f" Bound: {QUADRATURE * largest:.2g}.",
         )
         lost = float(trapezoid(force * (slip + gained), sample.time))
-        bound = float(np.max(books_bound(law, impact)))
+        bound = float(np.max(law.books_bound(impact)))
         room = QUADRATURE * max(energy, largest * abs(slip))
         room += bound * energy if np.isfinite(bound) else 0.0
         hold(

@@ -9,7 +9,6 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab.cli.main import main
 from contactlab.contracts import NormalMotion, WholeImpact
 from tests.compose.error_scenes import numbers
 from tests.laws.outside_laws import Walton
@@ -153,19 +152,6 @@ def test_a_false_declaration_is_said_loudly():
     batch = Scene.nondimensional(psi1=[0.0, 5.0, 9.0], chi=1.0)
     said = str(Simulation(tangential=Boasts()).run(batch, estimate_error=True))
     assert f"caution: {false} for 2 of 3 impacts" in said
-
-
-@pytest.mark.parametrize("json_wanted", [False, True])
-def test_a_false_declaration_is_said_on_the_command_line(monkeypatch, capsys, json_wanted):
-    false = Simulation(tangential=Boasts())
-    monkeypatch.setattr(
-        "contactlab.cli.run.inputs",
-        lambda _: (None, Scene.nondimensional(psi1=9.0, chi=1.0), false),
-    )
-    assert main(["run", "--psi1", "9", "--chi", "1", *(["--json"] * json_wanted)]) == 0
-    told = capsys.readouterr()
-    where = told.err if json_wanted else told.out
-    assert "the declared numerical error of psi2 is false: at most 9e-12" in where
 
 
 def test_a_coarse_answer_is_told_so():

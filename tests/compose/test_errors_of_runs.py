@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Scene, Simulation, Status
+from contactlab import Encounter, Material, Scene, Simulation, Sphere, Status, collide
+from contactlab.compose.collision import VECTORS
 from contactlab.contracts import (
     SteppedTangentialLaw,
     TangentialResponse,
@@ -15,6 +16,8 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.whole_impact import from_change
 from contactlab.numeric.checks import count
+from contactlab.outcome.columns import COLUMNS, QUANTITIES
+from contactlab.outcome.export import write_csv
 from contactlab.outcome.plan import PSI2_ERROR
 from tests.compose.test_error_estimate import Tight, Wanders
 from tests.laws.normal_laws import LinearSpring
@@ -129,11 +132,6 @@ def test_the_error_of_a_solved_motion_is_that_of_its_load_impulse():
         assert [clause.code for clause in one.computed if "error" in str(clause)] == [PSI2_ERROR]
 
 
-def test_the_time_of_a_sweep_is_that_of_the_sweep():
-    result = Simulation(tangential="coulomb").sweep(Scene.nondimensional(psi1=[1.0, 2.0], chi=1.0))
-    assert 0.0 < result.run_time < 60.0
-
-
 @attrs.frozen(kw_only=True)
 class Counting(WholeImpactTangentialLaw):
     """A whole impact whose error falls as 1/terms; it notes the terms of each run."""
@@ -197,3 +195,96 @@ def test_a_tolerance_is_divided_by_four_times_the_square_of_the_factor():
     simulation = Simulation(tangential=Wanders(), integrator=Timed(tolerance=1e-2))
     simulation.run(Scene.nondimensional(psi1=5.0, chi=1.0), estimate_error=True).check()
     assert Timed.seen == pytest.approx([1e-2, 1e-2 / 16.0, 1e-2 / 64.0])
+
+
+@attrs.frozen(kw_only=True)
+class Faulty(SteppedTangentialLaw):
+    """The limit mu P from start to end; from a step on it errs where the ball turns fast."""
+
+    api_version: ClassVar[int] = 2
+
+    fault: str = "raises"
+    step: int = 1
+    factor: float = 1e3
+
+    def start(self, scene, normal):
+        return scene.friction_coefficient, scene.spin > 100.0, 1
+
+    def advance(self, state, increment, before, after):
+        friction, fast, step = state
+        wrong = np.asarray(fast & (step >= self.step))
+        force = friction * increment.friction_load
+        work = force * increment.displacement
+        if self.fault == "raises" and wrong.any():
+            raise ArithmeticError("lost")
+        if self.fault == "malformed" and wrong.any():
+            force = "much"
+        if self.fault == "works":
+            work = work * np.where(wrong, self.factor, 1.0)
+        settled = ~wrong if self.fault == "unsettled" else True
+        return TangentialResponse(force, work, settled), (friction, fast, step + 1)
+
+
+FAULTS = {
+    "raises": "LAW_RAISED", "malformed": "MALFORMED", "unsettled": "UNSETTLED",
+    "works": "UNBALANCED",
+}  # fmt: skip
+#: Quantities of a result that are given, not answered.
+GIVEN = {
+    "psi1", "chi", "normal_speed", "tangential_velocity", "spin", "incidence_angle",
+    "incidence_angle_deg",
+}  # fmt: skip
+STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850)
+#: A turning ball, slipping throughout: the spins that do not fail, and that do.
+SLOW, FAST = 90.0, 110.0
+
+
+def struck(spin):
+    met = Encounter(
+        Sphere(0.01, STEEL), Sphere(0.02, STEEL), 0.1, normal=[0, 0, 1], velocity=[0.01, 0, 0.1],
+        spin=np.multiply.outer(spin, [0, 1.0, 0]),
+    )  # fmt: skip
+    return met, met.scene
+
+
+@pytest.mark.parametrize(("fault", "status"), FAULTS.items())
+@pytest.mark.parametrize("step", [1, 20])
+def test_no_number_of_a_failed_impact_can_be_taken_for_an_answer(fault, status, step, tmp_path):
+    simulation = Simulation(tangential=Faulty(fault=fault, step=step), integrator="symplectic")
+    met, scene = struck(FAST)
+    both_met, both_scene = struck([SLOW, FAST])
+    single, batch = simulation.run(scene, history=True), simulation.run(both_scene)
+    assert [each.name for each in (single.status, *batch.status)] == [status, "SUCCESS", status]
+    for name, column in QUANTITIES.items():
+        finite = [bool(np.isfinite(each)) for each in (column.of(single), *column.of(batch))]
+        assert finite == [name in GIVEN, True, name in GIVEN], name
+    books = single.energy.to_dict()
+    assert {name for name, value in books.items() if value is not None} == {"start", "checked"}
+    assert np.isnan([getattr(single.motion, name) for name in single.motion.numbers()]).all()
+    course = single.history
+    assert len(course.time) >= step - 1
+    assert np.isfinite(course.tangential_force[: step - 1]).all()
+    write_csv(batch, tmp_path / "both.csv")
+    good, bad = (line.count("nan") for line in (tmp_path / "both.csv").read_text().split()[-2:])
+    assert (good, bad) == (0, len(COLUMNS) - len(GIVEN))
+    for found, last in ((collide(met, simulation), ...), (collide(both_met, simulation), 1)):
+        vectors = np.array([getattr(found, name)[last] for name, _ in VECTORS])
+        assert np.isnan(vectors[:, 0]).all()
+
+
+@pytest.mark.parametrize("spin", [FAST, [SLOW, FAST]])
+@pytest.mark.parametrize("factor", [1e3, 1.5, 1.001])
+def test_books_that_nobody_declared_are_told_with_their_size(spin, factor):
+    """The work misses by factor - 1 of the energy that slip throughout takes."""
+    _, scene = struck(spin)
+    lost = Simulation(tangential="coulomb").run(scene).energy
+    share = float(np.ravel((factor - 1.0) * lost.friction_work / lost.start)[-1])
+    law = Faulty(fault="works", factor=factor)
+    result = Simulation(tangential=law, integrator="symplectic").run(scene)
+    told = [str(caution) for caution in result.plan.cautions if "energy books" in str(caution)]
+    if share > 1.0:
+        assert f"Off by {share:.3g} times" in [*result.failures.values()][-1]
+    assert len(told) == (1.0 > share > 0.01)
+    for sentence in told:
+        assert f": off by {share:.2g} of the energy at the start, and Faulty" in sentence
+        assert ("(1 of 2 impacts)" in sentence) is bool(scene.shape)

@@ -209,7 +209,7 @@ def test_an_observer_is_shown_plain_numbers_or_arrays(psi1):
     """As in a march: numbers of one impact, arrays of a batch."""
     scene, seen = Scene.nondimensional(psi1=psi1, chi=CHI), []
     simulation = Simulation(tangential=Halves(), integrator="symplectic")
-    normal, known, _ = prepare(simulation.laws, scene, True)
+    normal, known, *_ = prepare(simulation.laws, scene, True)
     show(normal, known, seen.append)
     assert len(seen) == INSTANTS
     kind = np.ndarray if scene.shape else float

@@ -2,7 +2,7 @@
 
 import math
 from types import SimpleNamespace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -10,8 +10,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene
-from contactlab.contracts import TangentialLaw, WholeImpact, from_change, no_force, sliding
-from contactlab.contracts.tangential import books_bound
+from contactlab.contracts import TangentialLaw, from_change, no_force, sliding
 from contactlab.testing.load_paths import scene
 
 HERTZ = contactlab.create("normal.hertz")
@@ -118,14 +117,6 @@ def test_a_change_of_psi_is_one_of_velocity_and_of_energy():
     assert np.all(many.slip_velocity_change / unit == pytest.approx([1.5, 1.5, 0.5, -1.5, -1.5]))
 
 
-def test_what_an_answer_leaves_out():
-    answer = WholeImpact(where=True, slip_velocity_change=0.0, friction_work=0.0, reason="")
-    assert math.isnan(answer.psi2_error)
-    assert answer.status is contactlab.Status.SUCCESS
-    assert (answer.course, answer.fields, answer.normal, answer.counter) == (None,) * 4
-    assert (answer.detail, answer.balanced) == ("", False)
-
-
 @attrs.frozen(kw_only=True)
 class Bare(TangentialLaw):
     """A law that states nothing."""
@@ -150,30 +141,3 @@ def test_a_central_impact_and_one_without_friction_are_answered_by_every_law():
     mu = np.array([0.0, 0.3])
     mixed = Scene(None, None, mu, 0.83, 0.5, pair=scene(2.0, CHI).pair)
     assert reasons(mixed) == [([True, False], SMOOTH)]
-
-
-def test_what_a_law_does_not_declare():
-    law, impact = Bare(), scene(2.0, CHI)
-    normal = HERTZ.motion(impact)
-    assert law.books_bound(impact) == math.inf
-    assert law.needs_no_march(impact, 1e-9) is False
-    assert math.isnan(law.psi2_error(impact, normal, 100))
-    assert law.cautions(impact, normal) == ()
-    assert (law.needs, law.offers, law.resolution) == (frozenset(), frozenset(), None)
-    assert dict(law.expected_failures) == {}
-    assert law.refuses(HERTZ) is None
-    assert law.accept(impact) is None
-
-
-def test_a_bound_of_books_may_be_a_number():
-    """Laws written before the method had one."""
-
-    class Earlier(Bare):
-        books_bound: ClassVar[Any] = 0.25
-
-    class Later(Bare):
-        def books_bound(self, scene):
-            return 0.5 * scene.friction_coefficient
-
-    assert books_bound(Earlier(), scene(2.0, CHI)) == 0.25
-    assert books_bound(Later(), scene(2.0, CHI)) == 0.15

@@ -9,7 +9,7 @@ import pytest
 from contactlab import Scene
 from contactlab.contracts import NormalContact
 from contactlab.contracts.contact import without_tension
-from contactlab.contracts.error_model import psi_magnitude, range_of
+from contactlab.contracts.error_model import range_of
 from contactlab.testing.load_paths import scene
 
 NAN = math.nan
@@ -84,20 +84,3 @@ def test_the_range_of_a_huge_scene_warns_of_nothing():
         found = range_of(huge)
     assert found.unit[0] == math.inf
     assert found.width == pytest.approx([0.2, 0.2])
-
-
-@pytest.mark.parametrize(
-    ("psi1", "magnitude"), [(0.0, 1.0), (0.9, 1.0), (1.5, 1.5), (-1.5, 1.5), (-0.5, 1.0)]
-)
-def test_relative_errors_are_of_one_or_of_psi1(psi1, magnitude):
-    assert psi_magnitude(scene(psi1, 1.0)) == pytest.approx(magnitude)
-    assert psi_magnitude(scene(np.array([psi1, 3.0]), 1.0)) == pytest.approx([magnitude, 3.0])
-
-
-def test_without_friction_relative_errors_are_of_one():
-    given = scene(1.0, 1.0)
-    smooth = Scene(None, None, 0.0, 0.83, 0.5, pair=given.pair)
-    assert psi_magnitude(smooth) == 1.0
-    both = Scene(None, None, np.array([0.0, 0.3]), 0.83, 0.5, pair=given.pair)
-    psi1 = 0.5 * given.pair.stiffness_ratio / (0.3 * 0.83)
-    assert psi_magnitude(both) == pytest.approx([1.0, psi1])

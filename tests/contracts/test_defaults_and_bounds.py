@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Scene, Status
-from contactlab.contracts import Integrator, NormalLaw, SteppedTangentialLaw, Stretch
-from contactlab.contracts.restitution import RESTITUTIONS, one_of_two, restitution, root
-from contactlab.testing.laws import DampedHertz, Slider
-from contactlab.testing.load_paths import scene
+from contactlab import Scene
+from contactlab.contracts.restitution import restitution, root
+from contactlab.testing.laws import DampedHertz
 
 NAN = math.nan
 STEEL = contactlab.Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
@@ -38,12 +36,6 @@ def test_any_other_restitution_is_refused(value):
         Restored(restitution=value)
 
 
-def test_the_rule_of_a_restitution_for_each_impact():
-    values = np.array([np.nextafter(0.01, 0.0), 0.01, 1.0, np.nextafter(1.0, 2.0)])
-    assert RESTITUTIONS.holds(values).tolist() == [False, True, True, False]
-    assert RESTITUTIONS.sentence == "must be from 0.01 to 1: rebound over approach velocity"
-
-
 def test_a_root_is_found_to_the_last_bit():
     assert root(lambda x: x * x - 2.0, 0.0, 2.0) == pytest.approx(2.0**0.5, rel=3e-16)
     assert root(lambda x: -1.0 if x < 0.3 else 0.0, 0.0, 1.0) == 0.3
@@ -51,24 +43,6 @@ def test_a_root_is_found_to_the_last_bit():
     assert root(lambda x: -1.0 if x < 0.5 else 0.0, 0.0, 0.9) == 0.5
     assert root(lambda _: -1.0, 0.0, 1.0) == 1.0
     assert root(lambda _: 1.0, 0.25, 1.0) == np.nextafter(0.25, 1.0)
-
-
-@pytest.mark.parametrize(
-    ("first", "second", "left"),
-    [(None, None, (7.0, None)), (2.0, None, (2.0, None)), (None, 3.0, (None, 3.0))],
-)
-def test_one_of_two_options_is_enough(first, second, left):
-    law = SimpleNamespace(damping=first, loss=second)
-    one_of_two(law, "damping", "loss", default=7.0)
-    assert (law.damping, law.loss) == left
-
-
-def test_both_of_two_options_are_refused():
-    law = SimpleNamespace(damping=0.0, loss=np.array([1.0, 2.0]))
-    with pytest.raises(
-        ValueError, match=r"damping, loss = .*only one of the two may be given; each"
-    ):
-        one_of_two(law, "damping", "loss", default=7.0)
 
 
 class Plastic(DampedHertz):
@@ -108,55 +82,3 @@ def test_a_plastic_law_is_not_doubted_for_yield():
     assert Plastic().cautions(impact, small) == ()
     wide = SimpleNamespace(maximum_radius=0.2 * impact.pair.radius)
     assert [told[:3] for told in DampedHertz().cautions(impact, wide)] == [caution[:3], "C ="]
-
-
-@attrs.frozen(kw_only=True)
-class Bare(Integrator):
-    """An integrator that states nothing."""
-
-    api_version: ClassVar[int] = 2
-    tangential_contract: ClassVar[type] = SteppedTangentialLaw
-    steps: int = 30
-
-    def integrate(self, normal, tangential, scene, observer=None):
-        raise NotImplementedError
-
-
-class Stepping(Bare):
-    resolution: ClassVar[str] = "steps"
-
-
-def test_what_an_integrator_does_not_declare():
-    law, given = Slider(), (None, Slider(), scene(1.0, 1.0))
-    assert (Bare().accuracy, Bare.order, Bare.common_instants, Bare.own_statuses) == (
-        None, None, True, False,
-    )  # fmt: skip
-    assert Bare().chunk(law) == 1000
-    assert Bare().remarks(*given) == ()
-    assert (Bare().resolution_for(*given), Stepping().resolution_for(*given)) == (0.0, 30.0)
-    assert math.isnan(Bare().psi2_error(*given))
-    assert Bare.normal_contract is NormalLaw
-
-
-def test_what_a_stepped_law_does_not_declare():
-    law, impact = Slider(), scene(1.0, 1.0)
-    assert law.stiffness(impact, None) == 0.0
-    assert law.marks(impact, None) is None
-    assert law.normal_motion("state") is None
-    assert dict(law.fields("state")) == {}
-    assert math.isnan(DampedHertz().dissipation(None))
-    assert DampedHertz.plastic is False
-
-
-def test_a_stretch_has_no_fields_and_no_solves_by_default():
-    class Straight(Stretch):
-        def states(self, contact):
-            raise NotImplementedError
-
-    assert dict(Straight().fields(None, None, 1.0)) == {}
-    assert Straight.solves == 0
-    assert contactlab.contracts.PathTangentialLaw.linear_below == 0.0
-
-
-def test_success_alone_is_true():
-    assert [status for status in Status if status] == [Status.SUCCESS]

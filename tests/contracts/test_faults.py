@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab.contracts import Status, faults
-from contactlab.contracts.faults import LawFaultError, blaming, malformed, raised, sentence
+from contactlab.contracts import Status
+from contactlab.contracts.faults import LawFaultError, blaming, malformed, sentence
 
 LAW = contactlab.create("tangential.coulomb")
 
@@ -65,24 +65,6 @@ def test_a_fault_is_told_with_its_step_and_time(time, when):
     assert told == f"At step 3{when}: force nan, from Coulomb."
 
 
-def test_the_time_may_be_left_out():
-    assert sentence(LAW, "force nan", 3) == "At step 3: force nan, from Coulomb."
-
-
-def fails():
-    raise KeyError("stiffness")
-
-
-LINE = fails.__code__.co_firstlineno + 1
-TOLD = f"KeyError: 'stiffness' (fails, line {LINE})"
-
-
-def test_an_error_is_told_by_type_message_and_place():
-    with pytest.raises(KeyError) as error:
-        fails()
-    assert raised(error.value) == TOLD
-
-
 def steps(error, step):
     """Raise an error in a step of a law."""
     with blaming(LAW) as blamed:
@@ -110,10 +92,3 @@ def test_an_interruption_or_a_fault_told_before_passes_through(error):
     with pytest.raises(type(error)) as same:
         steps(error, 5)
     assert same.value is error
-
-
-def test_a_step_without_an_error_is_no_fault():
-    with blaming(LAW) as blamed:
-        pass
-    assert (blamed.law, blamed.step) == (LAW, 1)
-    assert faults.blaming is blaming

@@ -8,7 +8,6 @@ import pytest
 import contactlab
 from contactlab import Scene, Status
 from contactlab.contracts import NormalContact, SampledMotion, TangentialMotion
-from contactlab.contracts.integrator import _consecutive
 from contactlab.contracts.sampled_motion import gathered
 
 GOOD, BAD = Status.SUCCESS, Status.NON_FINITE
@@ -37,12 +36,6 @@ def normal(duration):
 
 def columns(motion):
     return [np.asarray(getattr(motion, name)).tolist() for name in NAMES]
-
-
-def test_what_a_motion_has_by_default():
-    motion = one(1.0)
-    assert (motion.status, motion.detail, motion.counters, motion.normal) == (GOOD, "", {}, None)
-    assert TangentialMotion.numbers() == ("slip_velocity_change", "friction_work")
 
 
 def test_one_sentence_for_a_batch_goes_to_the_impacts_that_failed():
@@ -90,12 +83,6 @@ def test_normal_motions_of_parts_are_joined():
     joined = TangentialMotion.joined(parts, (2, 2))
     times = gathered(joined.normal, lambda motion: motion.duration, (2, 2))
     assert times == pytest.approx(np.array([[2.0, math.nan], [math.nan, 3.0]]), nan_ok=True)
-    masks = [mask.tolist() for mask, _ in _consecutive(parts, (4,)).parts]
-    assert masks == [
-        [True, False, False, False],
-        [False, True, True, False],
-        [False, False, False, True],
-    ]
 
 
 def test_parts_with_masks_are_merged_and_the_last_one_counts():
@@ -145,11 +132,3 @@ def test_impacts_that_fail_keep_the_first_reason():
     assert each.detail.tolist() == ["a", "it broke", ""]
     assert motion.failing(np.array([False, True, False]), BAD, "other") is motion
     assert motion.failing(True, BAD, "x").status.tolist() == [BAD] * 3
-
-
-def test_one_impact_fails():
-    alone = one(1.0)
-    failed = alone.failing(True, BAD, "it broke")
-    assert (failed.status, failed.detail, failed.slip_velocity_change) == (BAD, "it broke", 1.0)
-    assert alone.failing(False, BAD, "it broke") is alone
-    assert failed.failing(True, Status.UNBALANCED, "energy") is failed

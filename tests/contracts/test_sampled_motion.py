@@ -7,7 +7,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene
-from contactlab.contracts import NormalContact, NormalMotion, SampledMotion
+from contactlab.contracts import NormalContact, SampledMotion
 from contactlab.contracts.motion import MOST_SHARED
 from contactlab.contracts.sampled_motion import NormalMotions, gathered
 
@@ -151,10 +151,3 @@ def test_what_equal_motions_share_is_made_once_and_stays_bounded():
     assert motion.once("a", make) == 3
     assert motion.once("b", make) == 11
     assert motion.shared == {"b": 11}
-
-
-def test_what_a_motion_does_not_state():
-    assert NormalMotion.status is contactlab.Status.SUCCESS
-    assert NormalMotion.detail == ""
-    assert math.isnan(NormalMotion.accuracy)
-    assert NormalMotion.shared is None

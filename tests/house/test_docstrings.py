@@ -33,16 +33,16 @@ def members(owner):
             if not name.startswith("_") and isinstance(
                 found, type(members) | property | cached_property
             ):
-                yield f"{base.__name__}.{name}", found
+                yield f"{base.__name__}.{name}", (found, base)
 
 
 def entries():
-    """Yield every public name with its object, members of classes included, each once."""
-    found = dict(PUBLIC)
+    """Yield every public name, members included, with its object and the class of a member."""
+    found = {name: (value, None) for name, value in PUBLIC.items()}
     for value in PUBLIC.values():
         if inspect.isclass(value):
             found.update(members(value))
-    return found.items()
+    return [(name, *both) for name, both in found.items()]
 
 
 def parameters(value):
@@ -56,19 +56,22 @@ def parameters(value):
     return []
 
 
-def undocumented(value):
-    """Return the parameters of which the docstring says nothing in a section."""
-    sections = "\n".join(SECTIONS.findall(inspect.getdoc(value) or ""))
+def undocumented(value, owner=None):
+    """Return the parameters of which no section says anything, of the object or its classes."""
+    # A contract tells the parameters of its methods once, at the class.
+    classes = (inspect.getdoc(each) or "" for each in getattr(owner, "__mro__", ()))
+    told = [text.partition("Parameters of methods\n")[2] for text in classes]
+    sections = "\n".join((*SECTIONS.findall(inspect.getdoc(value) or ""), *told))
     told = {name.strip(" *") for line in ENTRY.findall(sections) for name in line.split(",")}
     return [name for name in parameters(value) if name not in told]
 
 
-@pytest.mark.parametrize(("name", "value"), entries())
-def test_a_public_name_is_documented(name, value):
+@pytest.mark.parametrize(("name", "value", "owner"), entries())
+def test_a_public_name_is_documented(name, value, owner):
     text = value.func.__doc__ if isinstance(value, cached_property) else value.__doc__
     assert text, f"{name} has no docstring"
     assert text.strip().partition("\n\n")[0].endswith((".", ":"))
-    assert undocumented(value) == []
+    assert undocumented(value, owner) == []
 
 
 def test_all_of_the_public_names_are_looked_at():

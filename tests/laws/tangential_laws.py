@@ -12,7 +12,9 @@ class Creator(SteppedTangentialLaw):
     """Makes energy, and says that its books close to a thousandth."""
 
     api_version: ClassVar[int] = 2
-    books_bound: ClassVar[float] = 1e-3
+
+    def books_bound(self, scene):
+        return 1e-3
 
     def start(self, scene, normal):
         return scene.friction_coefficient

@@ -28,6 +28,8 @@ def slip_gained(form, normal, psi1, chi):
     ).sweep(scene(psi1, chi))
     mass, slip = result.scene.pair.tangential_mass, np.abs(result.scene.slip_velocity)
     after = np.abs(result.rebound_slip_velocity) / slip
+    for impact, sentence in result.failures.items():
+        after[impact] = float(re.search("slips (.*) times as fast as it met", sentence)[1])
     before = 0.5 * mass * slip**2
     return after, after**2 - 1.0 + result.energy.friction_work / before
 

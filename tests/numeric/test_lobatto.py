@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 
-from contactlab.numeric import lobatto as panels
 from contactlab.numeric.lobatto import basis, first_fall, lobatto, row, rows, value_at
 
 NODES = lobatto(20)
@@ -113,18 +112,3 @@ def test_a_dip_at_the_edge_of_what_is_looked_at_is_none():
     assert falls(lambda t: 2.0 - t) == (math.inf, -1)
     assert falls(lambda t: 1.0 + t) == (math.inf, -1)
     assert falls(lambda t: 1.0 + 0.0 * t) == (math.inf, -1)
-
-
-def test_a_root_is_looked_for_in_so_many_steps(monkeypatch):
-    """One step is that of the secant between two finer points."""
-    monkeypatch.setattr(panels, "ROOT_CAP", 1)
-
-    def curve(t):
-        return 1.0 - t - 0.5 * t**2
-
-    fine = NODES.fine
-    k = int(np.argmax(curve(fine) < 0.0))
-    a, b = fine[k - 1], fine[k]
-    secant = (curve(a) * b - curve(b) * a) / (curve(a) - curve(b))
-    assert falls(curve)[0] == pytest.approx(secant, abs=1e-15)
-    assert abs(secant - (math.sqrt(3.0) - 1.0)) > 1e-6

@@ -175,20 +175,6 @@ def test_arrays_are_equal_by_shape_and_numbers():
     assert Options(ratio=None) != Options(ratio=0.0)
 
 
-@attrs.frozen
-class Holder:
-    """Fields that hold objects of some classes."""
-
-    one: object = checks.instance(int, remedy="give a whole one")
-    other: object = checks.instance(int, str, optional=True, default=None)
-
-
-def test_an_object_of_another_class_is_refused():
-    assert Holder(1).other is None
-    assert refusal(Holder, None) == "one = None: must be a int; give a whole one"
-    assert refusal(Holder, 1, 2.0) == "other = 2.0: must be a int or a str"
-
-
 def test_the_nearest_name():
     assert nearest("ab", ["ac"]) == "did you mean 'ac'? "  # alike by half
     assert nearest("ab", ["acd"]) == ""

@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab import Material, Scene, Sphere, Status
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.plan import BOOKS, Clause, Plan
+from contactlab.outcome.plan import MARCHED, UNKNOWN, Clause, Plan, PlanColumns, Reason
 from contactlab.outcome.result import ImpactResult
 
 SOFT = Material(shear_modulus=1e9, poisson_ratio=0.0)
@@ -51,12 +51,13 @@ def plan(shape=(), *, error=0.01, marched=True, unchecked=False, cautions=()):
     """Return a plan of an error, of impacts whose books check nothing, and of cautions."""
     everywhere = np.ones(shape, dtype=bool)
     books = np.array(np.broadcast_to(unchecked, shape))
+    code = np.where(books, 0, np.where(marched, MARCHED, UNKNOWN))
+    error = np.array(np.broadcast_to(error, shape), dtype=float) if shape else error
     return Plan(
         computed=(Clause("normal motion: Hertz", everywhere),),
-        left_out=(Clause("books", books, code=BOOKS),) if books.any() else (),
+        left_out=(Clause("books", books),) if books.any() else (),
         cautions=tuple(Clause(text, everywhere) for text in cautions),
-        marched=np.array(np.broadcast_to(marched, shape)),
-        psi2_error=np.array(np.broadcast_to(error, shape), dtype=float) if shape else error,
+        columns=PlanColumns(code, error, (Reason("known", unchecked=True),)),
     )
 
 

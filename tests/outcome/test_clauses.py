@@ -3,9 +3,8 @@
 import math
 
 import numpy as np
-import pytest
 
-from contactlab.outcome.plan import Clause, Plan, Span
+from contactlab.outcome.plan import Clause, Plan
 from tests.outcome.made import plan
 
 NAN = math.nan
@@ -25,41 +24,20 @@ def test_a_clause_has_its_share_before_the_colon():
         assert Clause("never: {:g}", where(flags), (where(value),)).words == "never: nan"
 
 
-@pytest.mark.parametrize(
-    ("text", "numbers"),
-    [
-        ("raised from 5 to 1.5e-3", ["5", "1.5e-3"]),
-        ("law2 of eq. (45), 3x", ["45"]),
-        ("at 0.25 GPa: 1e9 and 2.5", ["0.25", "1e9", "2.5"]),
-        ("{braces} of 7", ["7"]),
-    ],
-)
-def test_the_numbers_of_a_sentence(text, numbers):
-    template = Clause(text, where(True)).template
-    assert [value.text for value in template.values] == numbers
-    assert [value.low for value in template.values] == [float(each) for each in numbers]
-    assert template.words == text
-
-
-def test_a_range_of_numbers():
-    assert str(Span(2.0, 2.0, "2.00")) == "2.00"
-    assert str(Span(2.0, 3.14159, "2.00")) == "2..3.142"
-
-
 def parts():
     """Return plans of two impacts and of three, with one clause in common."""
     text = "error: at most {:.2g}"
     first = Plan(
         computed=(Clause(text, where(True, False), (where(0.1, 0.2),)),),
         left_out=(),
-        cautions=(Clause("raised to 7", where(False, True), code="steps"),),
+        cautions=(Clause("steps raised", where(False, True), code="steps"),),
         marched=where(True, False),
         psi2_error=where(0.1, 0.2),
     )
     second = Plan(
         computed=(Clause(text, where(True, True, False), (where(0.3, 0.4, 9.0),)),),
         left_out=(Clause("history", where(True, True, True)),),
-        cautions=(Clause("raised to 9", where(True, False, False), code="steps"),),
+        cautions=(Clause("steps raised", where(True, False, False), code="steps"),),
         marched=where(False, True, True),
         psi2_error=0.5,
     )  # fmt: skip
@@ -71,7 +49,7 @@ def test_a_plan_joined_from_its_parts():
     assert str(joined).splitlines() == [
         "computed: error (3 of 5 impacts): at most 0.4",
         "left out: history (3 of 5 impacts)",
-        "caution:  raised to 7..9 (2 of 5 impacts)",
+        "caution:  steps raised (2 of 5 impacts)",
     ]
     assert [clause.where.tolist() for clause in (*joined.computed, *joined.cautions)] == [
         [True, False, True, True, False],
@@ -81,20 +59,12 @@ def test_a_plan_joined_from_its_parts():
     assert joined.psi2_error.tolist() == [0.1, 0.2, 0.5, 0.5, 0.5]
     assert joined.cautions[0].code == "steps"
     assert str(joined[0]) == "computed: error: at most 0.1"
-    assert str(joined[1]) == "caution:  raised to 7..9"
+    assert str(joined[1]) == "caution:  steps raised"
     wide = Plan.joined(parts(), (5, 1))
     assert wide.psi2_error.shape == wide.marched.shape == (5, 1)
     first, second = parts()
-    assert Plan.joined([first]) is first
+    assert Plan.joined([first]).psi2_error.tolist() == [0.1, 0.2]
     assert Plan.joined([second]).psi2_error.tolist() == [0.5] * 3
-    kept = Plan.from_arrays(joined.to_arrays())
-    assert str(kept) == str(joined)
-    for kind in ("computed", "left_out", "cautions"):
-        array = joined.to_arrays()[f"{kind}_where"]
-        assert (array.dtype, array.shape) == (np.dtype(bool), (1, 5))
-    empty = Plan.nothing((2,)).to_arrays()
-    assert empty["cautions_where"].dtype == bool
-    assert empty["cautions_values"].dtype == np.float64
 
 
 def test_a_plan_as_a_mapping():

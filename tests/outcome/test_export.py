@@ -7,9 +7,7 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation
-from contactlab.outcome import columns
-from contactlab.outcome.columns import COMPARISON_TABLE, QUANTITIES, SWEEP_TABLE
-from contactlab.outcome.export import to_dict, write_csv, write_history_csv, write_json, write_npz
+from contactlab.outcome.export import write_csv, write_history_csv, write_json, write_npz
 
 SIM = Simulation(tangential="coulomb", integrator="symplectic")
 SINGLE = Scene.nondimensional(psi1=2.0, chi=1.4411764706)
@@ -18,14 +16,6 @@ BATCH = Scene.nondimensional(psi1=np.array([0.0, 2.0, 7.0]), chi=1.4411764706)
 
 def table(path):
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
-
-
-def test_dict_has_the_keys_relied_on():
-    content = to_dict(SIM.run(SINGLE))
-    assert {"psi2", "status", "run_time_s", "energy", "plan", "laws", "counters"} <= set(content)
-    assert content["status"] == "SUCCESS"
-    assert content["energy"]["start"] > content["energy"]["end"]
-    assert content["laws"]["tangential"].startswith("coulomb (contactlab ")
 
 
 def test_json_round_trip(tmp_path):
@@ -64,27 +54,6 @@ def test_a_file_gets_the_name_asked_for_and_angles_keep_their_unit(tmp_path):
     headings = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()[0]
     assert "local_rebound_angle (rad)" in headings
     assert "normal_velocity (1)" in headings
-
-
-def test_the_tables_for_reading_name_columns():
-    assert set(SWEEP_TABLE) | set(COMPARISON_TABLE) <= set(QUANTITIES)
-
-
-def test_a_new_column_is_one_line(monkeypatch, tmp_path):
-    """Every file has it, and quantities by name, an angle in degrees too."""
-    line = columns.Column("turned", "rad", "local_rebound_angle")
-    monkeypatch.setattr(columns, "COLUMNS", (*columns.COLUMNS, line))
-    result = SIM.run(SINGLE)
-    turned = result.local_rebound_angle
-    assert to_dict(result)["turned"] == turned
-    write_csv(result, tmp_path / "a.csv")
-    assert float(table(tmp_path / "a.csv")[0]["turned (rad)"]) == turned
-    write_npz(result, tmp_path / "a.npz")
-    with np.load(tmp_path / "a.npz") as content:
-        assert content["turned"] == turned
-    found = columns.numeric_columns()
-    assert found["turned"].of(result) == turned
-    assert found["turned_deg"].of(result) == pytest.approx(np.degrees(turned), rel=1e-15)
 
 
 def test_npz_round_trip(tmp_path):

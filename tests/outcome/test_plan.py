@@ -10,7 +10,6 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
-from contactlab.compose import planning
 from contactlab.contracts import (
     NormalContact,
     NormalLaw,
@@ -18,9 +17,8 @@ from contactlab.contracts import (
     TangentialResponse,
     WholeImpactTangentialLaw,
 )
-from contactlab.contracts.error_model import range_of
 from contactlab.contracts.whole_impact import no_force
-from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
+from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION
 from tests.laws.normal_laws import Damped, ForceFree, LinearSpring
 
 CHI = 1.4411764706
@@ -124,23 +122,6 @@ class Clutches(NormalLaw):
         return NormalContact(1e7 * approach, 0.0 * approach, overlap), state
 
 
-def test_the_range_that_an_error_is_a_share_of():
-    """The lesser of 4 chi and 2 |psi1|, in m/s, alone and in a batch."""
-    psi1 = [-3.0, 0.2, 0.0, 50.0]
-    widths = [4.0 * CHI, 0.4, 0.0, 4.0 * CHI]
-    assert range_of(scene(psi1)).width.tolist() == pytest.approx(widths)
-    for one, width in zip(psi1, widths, strict=True):
-        assert range_of(scene(one)) == pytest.approx((1.0, width, abs(one)))
-
-
-def test_fields_are_kept_only_where_they_are_asked_for():
-    simulation = Simulation(**SPRINGS)
-    assert simulation.run(scene(), history=True).history.fields == {}
-    kept = simulation.run(scene(), history="fields").history
-    assert kept.fields
-    assert {len(field) for field in kept.fields.values()} == {len(kept.time)}
-
-
 def test_a_solved_normal_motion_is_not_declared_exact():
     """Its load impulse is good to 1e-7, and friction can change psi by 4 chi."""
     plan = Simulation(normal=LinearSpring(), tangential="coulomb").plan(scene(MIXED))
@@ -206,13 +187,6 @@ def test_a_sweep_in_parts_has_the_plan_of_the_whole():
         once = {str(text).partition(" at most")[0]: where
                 for text, where in said(getattr(whole, kind)).items()}  # fmt: skip
         assert joined == once
-
-
-def test_the_plan_of_one_impact_of_a_batch():
-    plan = Simulation(**SPRINGS).plan(scene(MIXED))
-    assert [bool(plan[index].marched) for index in range(4)] == [False, True, False, False]
-    assert isinstance(plan[1].psi2_error, float)
-    np.testing.assert_array_equal(plan[1:3].psi2_error, plan.psi2_error[1:3])
 
 
 @attrs.frozen(kw_only=True)
@@ -286,64 +260,48 @@ def test_the_error_of_a_sweep_in_parts_is_the_largest_of_its_parts():
     assert first == f"numerical error of psi2: at most {plan.psi2_error[0]:.2g}, declared"
 
 
-def test_numbers_of_a_law_that_differ_between_parts_are_a_range():
-    whole = Clause("steps raised from 5 to 75: eq. (45)", np.ones(2, dtype=bool))
-    other = Clause("steps raised from 5 to 120: eq. (45)", np.ones(3, dtype=bool))
-    parts = [Plan(computed=(each,), left_out=(), marched=each.where) for each in (whole, other)]
-    (clause,) = Plan.joined(parts).computed
-    assert clause.words == "steps raised from 5 to 75..120: eq. (45)"
-    assert Plan.joined(parts[:1]).computed[0].words == whole.words
-
-
 def test_one_impact_of_a_batch_has_the_clauses_that_are_said_of_it():
     plan = Simulation(**SPRINGS).plan(scene(MIXED))
     alone = [Simulation(**SPRINGS).plan(scene(psi1)) for psi1 in MIXED]
     assert [str(plan[index]) for index in range(len(MIXED))] == list(map(str, alone))
 
 
-def test_a_plan_survives_its_arrays():
-    plan = Simulation(**SPRINGS).plan(scene(MIXED))
-    again = Plan.from_arrays(plan.to_arrays())
-    assert str(again) == str(plan)
-    assert str(again[1]) == str(plan[1])
+@attrs.frozen(kw_only=True)
+class Doubtful(SteppedTangentialLaw):
+    """Says how many impacts it was asked about, and counts how often."""
+
+    api_version: ClassVar[int] = 2
+    asked: ClassVar[list] = []
+
+    def cautions(self, scene, normal):
+        self.asked.append(scene.shape)
+        return (f"doubt: {np.max(normal.maximum_force):.3g} N over {scene.shape}, law's {{odd}} 3",)
+
+    def start(self, scene, normal):
+        return None
+
+    def advance(self, state, increment, before, after):
+        return TangentialResponse(0.0 * increment.velocity, 0.0 * increment.velocity), state
 
 
-def test_words_with_braces_are_words():
-    clause = Clause("a law's {odd} words of 3", np.array(True))
-    assert (clause.words, clause.template.words) == ("a law's {odd} words of 3",) * 2
-
-
-def test_a_clause_is_found_by_its_code_whatever_its_words():
-    scene = Scene.nondimensional(psi1=np.array([0.5, 1.0, 2.0]), chi=1.4412)
-    plan = Simulation(tangential="springs").plan(scene)
-    joined = Plan.joined([plan[:1], plan[1:]])
-    copy = Plan.from_arrays(joined.to_arrays())
-    for each in (plan, plan[1], joined, copy):
-        codes = [clause.code for clause in each.computed]
-        assert codes == ["", TANGENTIAL_MOTION, PSI2_ERROR]
-
-
-def test_clauses_of_unlike_codes_are_not_joined():
-    where = np.ones(1, dtype=bool)
-    plans = [
-        Plan(computed=(Clause("the same words", where, code=code),), left_out=(), marched=where)
-        for code in ("a", "b")
-    ]
-    assert [clause.code for clause in Plan.joined(plans).computed] == ["a", "b"]
-
-
-def test_a_plan_is_worded_when_it_is_read_and_may_travel_before(monkeypatch):
+def test_a_plan_is_worded_once_from_the_whole_batch_when_it_is_read_and_may_travel_before(tmp_path):
     """The words of one impact cost more than its closed form; nobody may read them."""
-    worded = []
-    real = planning.unit_slips
-    monkeypatch.setattr(planning, "unit_slips", lambda scene: worded.append(1) or real(scene))
-    result = Simulation(tangential="coulomb").run(scene())
-    assert np.isfinite(result.psi2)
-    assert not worded
-    travelled = pickle.loads(pickle.dumps(result.plan))
-    assert worded == [1]
-    assert str(travelled) == str(result.plan)
-    assert worded == [1]  # once
+    Doubtful.asked.clear()
+    simulation = Simulation(tangential=Doubtful(), integrator="symplectic")
+    batch = scene([0.5, 1.2, 9.0, 50.0])
+    for keep in (None, tmp_path / "kept", tmp_path / "kept"):
+        result = simulation.sweep(batch, chunk=1, keep=keep)
+        assert not Doubtful.asked
+        travelled = pickle.loads(pickle.dumps(result.plan))
+        force = result.motion.maximum_force.max()
+        expected = f"doubt: {force:.3g} N over (4,), law's {{odd}} 3"
+        for plan in (result.plan, travelled, result.plan[1]):
+            assert list(map(str, plan.cautions)) == [expected]
+        assert Doubtful.asked == [(4,)]
+        Doubtful.asked.clear()
+        assert [clause.code for clause in travelled.computed] == ["", TANGENTIAL_MOTION, PSI2_ERROR]
+        assert str(travelled) == str(result.plan) == str(simulation.plan(batch))
+        Doubtful.asked.clear()
     other = result.plan.changed(left_out=(), psi2_error=0.5)
     assert (other.left_out, other.psi2_error) == ((), 0.5)
     assert other.computed == result.plan.computed

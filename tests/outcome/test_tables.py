@@ -5,13 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from contactlab import HalfSpace, Scene, Sphere, Status
+from contactlab import HalfSpace, Scene, Status
 from contactlab.outcome.tables import (
     CLOSED,
     answer,
     closing,
-    evenly,
-    heading,
     largest_imbalance,
     number,
     scene_section,
@@ -43,21 +41,6 @@ def test_numbers_as_text(value, text):
 )  # fmt: skip
 def test_times_as_text(seconds, text):
     assert time(seconds) == text
-
-
-def test_digits_and_headings():
-    assert number(math.pi, digits=3) == "3.14"
-    assert heading("psi2", "1") == "psi2"
-    assert heading("spin", "rad/s") == "spin (rad/s)"
-
-
-@pytest.mark.parametrize(
-    ("count", "most", "rows"),
-    [(3, None, [0, 1, 2]), (3, 5, [0, 1, 2]), (11, 3, [0, 5, 10]), (10, 4, [0, 3, 6, 9]),
-     (5, 1, [0]), (1, None, [0])],
-)  # fmt: skip
-def test_rows_are_evenly_spread(count, most, rows):
-    assert evenly(count, most) == rows
 
 
 def test_the_answer():
@@ -234,9 +217,3 @@ def test_the_last_lines_of_a_batch_count_its_failures():
     assert [words for _, words in closing(few)[3:]] == [
         f"{NOT_FINITE} b (2 impacts)", f"{NOT_FINITE} a", f"{NOT_FINITE} c",
     ]  # fmt: skip
-
-
-def test_a_struck_ball_is_a_sphere():
-    other = Sphere(0.25, SOFT, mass=1.0)
-    names = [row[0] for row in scene_section(Scene(BALL, other, 0.1, 1.0)).rows]
-    assert names[4:6] == ["struck sphere: radius", "struck sphere: mass"]

@@ -172,10 +172,12 @@ def test_a_normal_law_is_named(fault, tangential, integrator, scene):
 def test_the_motion_so_far_is_kept(fault, integrator):
     """Six of all the steps acted before the fault."""
     answer, _, _ = TANGENTIAL[fault]
-    result = Simulation(tangential=Friction(answer=answer), integrator=integrator).run(SCENE)
+    simulation = Simulation(tangential=Friction(answer=answer), integrator=integrator)
+    result = simulation.run(SCENE, history=True)
     assert result.motion.counters["steps"] == AT
-    so_far = result.motion.slip_velocity_change
-    assert np.isnan(so_far) if fault == "nan" else -0.1 < so_far < 0.0
+    assert np.isnan(result.psi2)
+    so_far = result.history.slip_velocity[AT - 2] - SCENE.slip_velocity
+    assert -0.1 < so_far < 0.0
 
 
 @attrs.frozen(kw_only=True)

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from contactlab import Scene, Simulation, create
-from contactlab.contracts.status import Status
 
 #: Nodes. psi1 has more of them around 1, where coupling acts most: below 1 the contact sticks at
 #: first touch, above 1 it slips. chi runs from a shell of nu = 0.5 to a ball with a dense core.
@@ -22,6 +21,14 @@ POISSON_RATIO = (0.0, 0.5)
 COUPLING_NUMBER = (0.25, 0.5, 1.0, 2.0, 4.0)
 #: At 32 rings and 8 angles the shift is known to about 2e-3.
 RINGS, ANGLES = 32, 8
+
+
+class Lossy(type(create("tangential.halfspace"))):  # type: ignore[misc]
+    """The half-space law with one-way coupling, which loses up to 0.14 Lambda² of the energy."""
+
+    def books_bound(self, scene: Scene) -> float:
+        """Return the imbalance of the largest coupling number."""
+        return 0.14 * COUPLING_NUMBER[-1] ** 2
 
 
 def shift(psi1: Any, chi: Any, poisson_ratio: Any, numbers: Any) -> Any:
@@ -51,11 +58,5 @@ def build(file: Path) -> None:
 
 def _psi2(coupling: str, scene: Scene) -> Any:
     """Return psi2 with that coupling; every step of every impact must settle."""
-    law = create(
-        "tangential.halfspace", coupling=coupling, rings=RINGS, angles=ANGLES, extrapolate=False
-    )
-    result = Simulation(tangential=law).run(scene)
-    # One-way coupling loses energy by itself: above Lambda = 2 the books miss by more than 2 %.
-    if set(np.ravel(result.status)) - {Status.SUCCESS, Status.UNBALANCED}:
-        result.check()
-    return result.psi2
+    law = Lossy(coupling=coupling, rings=RINGS, angles=ANGLES, extrapolate=False)
+    return Simulation(tangential=law).run(scene).check().psi2
