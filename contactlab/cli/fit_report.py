@@ -44,7 +44,6 @@ def describe(fit: Fit) -> str:
         parts.append(f"columns not used: {', '.join(fit.measurements.unused)}")
     if fit.reduced_chi_square is not None:
         parts.append(f"reduced chi square: {fit.reduced_chi_square:.3g}")
-    parts += [f"caution: {caution}" for caution in fit.cautions]
     parts += [f"note: {note}" for note in fit.notes]
     return "\n\n".join(parts)
 
@@ -65,7 +64,7 @@ def ranking(ranked: list[Ranked]) -> str:
 
 
 def write_residuals(path: Path, shown: list[Ranked]) -> None:
-    """Write the residuals as CSV, a row for each measured number and law."""
+    """Write the residuals as CSV, law row for each measured number and law."""
     rows: list[list[Any]] = []
     entries: list[str] = []
     for law in shown:

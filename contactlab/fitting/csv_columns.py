@@ -35,7 +35,6 @@ ENDINGS = sorted(
     ((f"_{unit.replace('/', '_')}", unit) for pair in CONVERSIONS for unit in pair),
     key=lambda ending: -len(ending[0]),
 )
-UNITS = {unit for pair in CONVERSIONS for unit in pair} | {"1", "s", "m", "kg"}
 SAME_UNITS = {"°": "deg", "degrees": "deg", "-": "1"}
 #: Other names of the entry ``angle_deg``.
 ANGLES = ("angle", "incidence_angle", "incidence_angle_deg")
@@ -60,16 +59,11 @@ class Heading(NamedTuple):
 def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
     """Return the role, the name and the factor of a column."""
     alias = columns.get(text.strip(), text)
-    if alias is not text and alias.lstrip().startswith("-"):  # the sign was read the other way
-        turned = read_heading(text, {text.strip(): alias.lstrip()[1:]})
-        return turned._replace(factor=-turned.factor)
     if alias.lstrip().startswith("#") or not alias.strip():
         return Heading("unused", text)
     error, name, unit = _name_and_unit(alias)
     if alias is not text and not unit:
         unit = _name_and_unit(text)[2]
-        if unit not in UNITS:  # a remark in brackets, as "(from normal)"
-            unit = ""
     if name in ANGLES and not error:
         return Heading("given", "angle_deg", _factor(text, name, unit, "deg"))
     if name in ENTRIES and not error:

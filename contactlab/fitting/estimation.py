@@ -20,7 +20,6 @@ from contactlab.fitting.model import Model, scene_of, simulation_of
 from contactlab.fitting.parameters import Setup, parameter_named
 from contactlab.fitting.plausible import unlikely_parameters
 from contactlab.fitting.problem import Problem, solved, starting
-from contactlab.fitting.sensitivity import cautions, serving
 from contactlab.fitting.slips import slips
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
@@ -105,7 +104,6 @@ def fit(
     counted = None if samples else progress
     values, *others = _solutions(problem, counted)
     left_out: tuple[str, ...] = ()
-    measured = table.measured
     slipped: list[str] = []
     if idle := determined.idle(problem, values):
         left_out = (f"{', '.join(idle)}: not met, for no parameter moves it under these laws",)
@@ -125,11 +123,7 @@ def fit(
         if not causes:
             raise
         raise ValueError(f"{'. '.join(causes)}. As it is, {error}") from None
-    served = serving(problem, measured, values)
-    notes = (*left_out, *served, *slipped, *outcome.notes)
-    errors = [estimate.standard_error for estimate in outcome.parameters.values()]
-    beside = cautions(problem, table, values, errors)
-    outcome = attrs.evolve(outcome, notes=notes, cautions=beside)
+    outcome = attrs.evolve(outcome, notes=(*left_out, *slipped, *outcome.notes))
     if counted is not None:
         counted(1, 1)
     if not samples:

@@ -66,9 +66,6 @@ class Fit:
         Sum of squares of residuals over their stated errors, per degree of freedom; None
         without stated errors.
     notes : tuple of str
-    cautions : tuple of str
-        Doubts about the model at the fitted scenes, and shifts of the parameters that the
-        intervals do not hold.
     samples : int
         Samples of the bootstrap; fewer than requested after Ctrl-C, 0 without a bootstrap.
     """
@@ -81,7 +78,6 @@ class Fit:
     aic: float
     reduced_chi_square: float | None = None
     notes: tuple[str, ...] = ()
-    cautions: tuple[str, ...] = ()
     samples: int = 0
 
     def __getitem__(self, name: str) -> float:
@@ -136,7 +132,6 @@ class Fit:
             "measured": {name: json_value(values) for name, values in content.measured.items()},
             "predicted": {name: json_value(values) for name, values in self.predicted.items()},
             "notes": list(self.notes),
-            "cautions": list(self.cautions),
             "samples": self.samples,
         }
 
@@ -154,5 +149,4 @@ class Fit:
                 )
         for name, rms in self.rms.items():
             lines.append(f"  {name:24} rms {rms:.3g}, largest {self.largest[name]:.3g}")
-        lines += [f"  caution: {caution}" for caution in self.cautions]
         return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])

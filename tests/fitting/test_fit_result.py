@@ -58,7 +58,6 @@ def test_a_fit_as_plain_numbers():
         "given": {"psi1": [1.0, 2.0, 3.0]},
         "measured": {"psi2": [0.5, None, -1.0], "rebound_spin": [1.0, 2.0, 6.0]},
         "predicted": {"psi2": [0.1, 7.0, -0.7], "rebound_spin": [1.0, 1.0, 3.0]},
-        "cautions": [],
         "notes": ["a", "b"],
         "samples": 7,
     }  # fmt: skip

@@ -194,8 +194,7 @@ def test_quantities_that_no_parameter_moves_are_told_first(monkeypatch):
     more = {"normal_restitution": np.full(6, 0.9), "rebound_normal_velocity (m/s)": np.full(6, 1.0)}
     found = fit(DATA | more, BODIES)
     words = "not met, for no parameter moves it under these laws"
-    assert found.notes[0] == f"normal_restitution, rebound_normal_velocity: {words}"
-    assert found.notes[-1] == "a slip"
+    assert found.notes == (f"normal_restitution, rebound_normal_velocity: {words}", "a slip")
     assert list(found.counts) == ["tangential_restitution"]
 
 
