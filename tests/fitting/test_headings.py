@@ -75,6 +75,12 @@ def test_a_heading_is_read(text, role, name, factor):
         ("t_ms", "contact_time", Heading("measured", "contact_time", 1e-3)),
         ("w", "#", Heading("unused", "w")),
         ("w", " ", Heading("unused", "w")),
+        ("n (rpm)", "-rebound_spin", Heading("measured", "rebound_spin", -TURN / 60.0)),
+        ("n", "-spin (rad/s)", Heading("given", "spin", -1.0)),
+        ("a (from normal)", "angle_deg", Heading("given", "angle_deg", 1.0)),
+        ("a (from normal)", "incidence_angle (deg)", Heading("given", "angle_deg", 1.0)),
+        ("a [rad from normal]", "angle", Heading("given", "angle_deg", 360.0 / TURN)),
+        ("v (mm / s)", "speed", Heading("given", "speed", 1e-3)),
     ],
 )
 def test_a_heading_of_another_name_keeps_its_unit(text, alias, expected):
@@ -119,6 +125,11 @@ def unknown(text, near="", known=KNOWN):
         (
             "psi2 (m)",
             "heading 'psi2 (m)': is in m, which is not known here; write 'psi2 (1)'",
+        ),
+        (
+            "normal_restitution (in percent)",
+            "heading 'normal_restitution (in percent)': is in percent, which is not known here; "
+            "write 'normal_restitution (1)'",
         ),
         (
             "incidence_angle",

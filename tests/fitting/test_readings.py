@@ -47,9 +47,13 @@ SPINS = [
     "in rad/s under a heading in rpm",
     "in rev/s",
     "in deg/s",
-    "of the opposite sign",
+    "of the opposite sign (--column HEADING=-spin turns it)",
 ]
 SURFACE = "measured from the surface, not from the normal"
+
+
+def turned_by(name):
+    return f"of the opposite sign (--column HEADING=-{name} turns it)"
 
 
 def ways(name, listed):
@@ -65,7 +69,7 @@ def test_every_reading_of_a_restitution_over_angles():
         *ways("angle_deg", ["in radians", SURFACE]),
         *ways("speed", SPEED),
         *BALL,
-        *ways("tangential_restitution", ["in percent", "of the opposite sign"]),
+        *ways("tangential_restitution", ["in percent", turned_by("tangential_restitution")]),
         "tangential_restitution looks as if its numbers were those of slip_restitution",
         *shifts("tangential_restitution", "looks"),
     ]
@@ -81,11 +85,11 @@ def test_every_reading_of_velocities_with_spin():
           for name in ("normal_speed", "tangential_velocity")),
         *ways("spin", SPINS),
         *BALL,
-        *ways("rebound_tangential_velocity", [*SPEED, "of the opposite sign"]),
+        *ways("rebound_tangential_velocity", [*SPEED, turned_by("rebound_tangential_velocity")]),
         "rebound_tangential_velocity looks as if its numbers were those of rebound_slip_velocity",
         *ways("contact_time", ["in ms", "in µs", "in s under a heading in ms",
                                "in ms under a heading in µs", "in s under a heading in µs",
-                               "of the opposite sign"]),
+                               turned_by("contact_time")]),
         *shifts("rebound_tangential_velocity and contact_time"),
     ]  # fmt: skip
 
@@ -93,11 +97,11 @@ def test_every_reading_of_velocities_with_spin():
 def test_every_reading_of_angles_and_of_a_pair_of_them():
     out = {"rebound_angle (rad)": np.linspace(0.1, 1.0, COUNT),
            "local_rebound_angle (rad)": np.linspace(-0.5, 1.0, COUNT)}  # fmt: skip
-    degrees = ["in radians", "in degrees under a heading in rad", "of the opposite sign", SURFACE]
+    degrees = ["in radians", "in degrees under a heading in rad"]
     found = list(read(POLAR | out))
     assert found[10:] == [
-        *ways("rebound_angle", degrees),
-        *ways("local_rebound_angle", degrees),
+        *(word for name in ("rebound_angle", "local_rebound_angle")
+          for word in ways(name, [*degrees, turned_by(name), SURFACE])),
         "rebound_angle and local_rebound_angle look as if exchanged",
         *shifts("rebound_angle and local_rebound_angle"),
         *(f"angle_deg and rebound_angle and local_rebound_angle look as if {way}"
@@ -175,7 +179,7 @@ def test_the_impacts_of_exchanged_velocities_other_spins_and_balls():
         ("rebound_angle (rad)", "in radians", 360.0 / TURN, 0.0),
         ("rebound_spin (rad/s)", "in rpm", TURN / 60.0, 0.0),
         ("rebound_spin (rad/s)", "in rad/s under a heading in rpm", 60.0 / TURN, 0.0),
-        ("rebound_spin (rad/s)", "of the opposite sign", -1.0, 0.0),
+        ("rebound_spin (rad/s)", turned_by("rebound_spin"), -1.0, 0.0),
         ("contact_time (s)", "in ms", 1e-3, 0.0),
         ("contact_time (s)", "in µs", 1e-6, 0.0),
         ("contact_time (s)", "in s under a heading in ms", 1e3, 0.0),
