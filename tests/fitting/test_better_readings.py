@@ -1,12 +1,10 @@
 """Which other readings of a table are told: scores, limits and sentences."""
 
 import math
-import re
 
 import attrs
 import numpy as np
 import pytest
-from scipy.stats import f as f_distribution
 
 from contactlab import Simulation
 from contactlab.fitting import slips
@@ -188,59 +186,3 @@ def test_the_best_of_two_searches_is_the_score_without_some_numbers(monkeypatch)
     found = slips._without(table, np.array([1.5]), fewer)
     expected = 8.0 * np.log(np.mean((Y - 2.0 * X)[:-1] ** 2) + (1e-6 * np.abs(Y).max()) ** 2)
     assert found == pytest.approx(expected)
-
-
-@pytest.mark.parametrize("off", [6.0, -4.0])
-def test_a_tilt_is_told_with_its_sign_and_the_corrected_fit(off):
-    angles = np.linspace(30.0, 70.0, 10)
-    values = 1.0 - 0.2 / np.tan(np.radians(angles)) + 1e-4 * np.resize([1.0, -1.0, 0.3], 10)
-    columns = {"angle_deg": angles + off, "speed (m/s)": np.full(10, 2.0),
-               "tangential_restitution": values}  # fmt: skip
-    problem, given = problem_of(columns)
-    best = slips.solved(problem, np.array([0.1]))
-    chance, told = slips.tilted(problem, given, best)
-    size, side = abs(off), "large" if off > 0.0 else "small"
-    found = re.fullmatch(
-        rf"angle_deg looks as if all numbers were {size:.2g} degrees too {side}, as by the zero of "
-        r"a protractor: read so, residuals are (\d+) times smaller, and friction_coefficient "
-        r"(0\.\d+)",
-        told,
-    )
-    assert found
-    assert float(found[2]) == pytest.approx(0.1, rel=2e-2)
-    assert 0.0 < chance < 1e-10
-    assert slips.tilted(problem, (), best)[1].startswith("the angle of incidence looks as if all")
-    few = {name: numbers[:4] for name, numbers in columns.items()}
-    assert slips.tilted(*problem_of(few), best) == (1.0, "")  # two degrees of freedom are left
-    sound, given = problem_of(columns | {"angle_deg": angles})
-    assert slips.tilted(sound, given, np.array([0.1])) == (1.0, "")
-
-
-@pytest.mark.parametrize(
-    ("count", "better", "likely", "told"),
-    [
-        (10, 20.0, 0.01, True),
-        (10, 19.99, 0.01, False),
-        (10, 20.0, 0.0101, False),
-        (40, 80.0 * math.log(2.0) + 0.01, 0.0, True),
-        (40, 80.0 * math.log(2.0) - 0.01, 0.0, False),
-    ],
-)
-def test_a_tilt_halves_the_residuals_and_is_certain(count, better, likely, told, monkeypatch):
-    """Its chance is that of the F test of one parameter more."""
-    columns = {name: np.resize(values, count) for name, values in (POLAR | E_T).items()}
-    problem, given = problem_of(columns)
-    found = iter([100.0, 100.0 - better])
-    monkeypatch.setattr(slips, "_scores", lambda *_: np.array([next(found)]))
-    monkeypatch.setattr(slips, "chance_of", lambda *_: likely)
-    monkeypatch.setattr(slips, "solved", lambda _, at: at + 0.5)
-    chance, sentence = slips.tilted(problem, given, np.array([0.1]))
-    if not told:
-        assert (chance, sentence) == (1.0, "")
-        return
-    square = math.exp(better / count)
-    assert chance == pytest.approx(f_distribution.sf((square - 1.0) * (count - 2), 1, count - 2))
-    assert sentence.startswith("angle_deg looks as if all numbers were 0.5 degrees too large, as")
-    assert sentence.endswith(
-        f"residuals are {math.sqrt(square):.2g} times smaller, and friction_coefficient 0.6"
-    )

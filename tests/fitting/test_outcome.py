@@ -176,7 +176,7 @@ def refused_fit(causes, monkeypatch):
         raise ValueError("refused")
 
     diagnosis = attrs.evolve(NOTHING, slips=tuple(causes), robust=[None])
-    monkeypatch.setattr(estimation, "diagnosed", lambda *_: diagnosis)
+    monkeypatch.setattr(estimation, "diagnosed", lambda *_, **__: diagnosis)
     monkeypatch.setattr(estimation.determined, "check_precise", refuse)
     with pytest.raises(ValueError, match="refused") as caught:
         fit(DATA, BODIES)

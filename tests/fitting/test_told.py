@@ -5,11 +5,9 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from contactlab.fitting import diagnosis, outliers, patterns
+from contactlab.fitting import diagnosis
 from contactlab.fitting.diagnosis import end_notes, error_notes, moved
 from contactlab.fitting.fit_result import Estimate
-from contactlab.fitting.outliers import Outliers
-from contactlab.fitting.patterns import Pattern
 from tests.fitting.lines import line, option
 
 
@@ -18,53 +16,6 @@ class Given:
     """A table of which only the columns before the impact are needed."""
 
     given: tuple = ()
-
-
-@pytest.mark.parametrize(
-    ("tilt", "far", "seen", "expected"),
-    [
-        ((1.0, ""), 1.0, [1.0], []),
-        ((1e-6, "tilt"), 1e-5, [1.0], ["tilt"]),
-        ((1e-6, "tilt"), 1e-6, [1.0], ["tilt"]),
-        ((1e-6, "tilt"), 1e-7, [1.0, 1.0], ["far"]),
-        ((1.0, ""), 1e-7, [1.0, 1.0], ["far"]),
-        ((1.0, ""), 1e-7, [1e-6, 1.0], ["far", "or, with every number kept, seen 0"]),
-        ((1.0, ""), 1e-7, [0.99e-5, 1.0], ["far", "or, with every number kept, seen 0"]),
-        ((1.0, ""), 1e-7, [1e-5, 1.0], ["far"]),
-        ((1.0, ""), 1e-7, [1e-7, 1e-4], ["far", "or, with every number kept, seen 0", "seen 1"]),
-        ((1.0, ""), 1e-7, [1e-8], ["seen 0"]),
-        ((1.0, ""), 1.0, [0.99e-3], ["seen 0"]),
-        ((1.0, ""), 1.0, [1e-3], []),
-        ((1.0, ""), 1e-7, [1.0, 1e-3], ["far"]),
-    ],
-)
-def test_of_several_causes_the_least_likely_by_chance_is_told(
-    tilt, far, seen, expected, monkeypatch
-):
-    """The leverage of what is left is told at the end; after outliers it is that of the rest."""
-    whole = line({"y": np.ones(4)}, option("a"))
-    rest = line({"y": np.ones(4)}, option("a"))
-    places = {"y": np.array([0])} if far < 1.0 else {}
-    chances = iter(enumerate(seen))
-    asked = []
-
-    def pattern(problem, *_):
-        asked.append(problem)
-        place, chance = next(chances)
-        return Pattern(chance, f"seen {place}")
-
-    monkeypatch.setattr(diagnosis, "tilted", lambda *_: tilt)
-    monkeypatch.setattr(patterns, "pattern", pattern)
-    monkeypatch.setattr(outliers, "described", lambda *_: ["far"])
-    monkeypatch.setattr(
-        patterns, "leverage", lambda problem, values, _: [(problem is rest, values.tolist())]
-    )
-    found = diagnosis._others(
-        whole, Given(), np.array([1.0]), Outliers(far, places, rest, np.array([2.0]))
-    )
-    ends = [] if expected == ["tilt"] else [(True, [2.0]) if "far" in expected else (False, [1.0])]
-    assert list(found) == [*expected, *ends]
-    assert asked == [whole, rest][: len(seen)] if expected != ["tilt"] else asked == []
 
 
 @pytest.mark.parametrize(
