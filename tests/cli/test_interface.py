@@ -39,7 +39,8 @@ LAWS""",
 --chi START:STOP:COUNT type=numbers: inertia ratio (38); or one number""",
     "COLUMN": """
 --column HEADING=NAME default=[] type=_column Append: name a column of the CSV: 'impact angle \
-[deg]=incidence_angle'; 'remark=#' leaves it unread; may be repeated""",
+[deg]=incidence_angle'; a name with - before turns the sign, 'remark=#' leaves the column unread; \
+may be repeated""",
     "MEASURED": """
 --measured DATA.csv type=Path: measured impacts to set beside the laws, with the headings of \
 contactlab fit
