@@ -202,8 +202,8 @@ def add_columns(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="HEADING=NAME",
-        help="name a column of the CSV: 'impact angle [deg]=incidence_angle'; 'remark=#' leaves "
-        "it unread; may be repeated",
+        help="name a column of the CSV: 'impact angle [deg]=incidence_angle'; a name with - before "
+        "turns the sign, 'remark=#' leaves the column unread; may be repeated",
     )
 
 

@@ -137,6 +137,10 @@ def _report(fitted: Fit, ranked: list[Ranked], *, complete: bool, as_json: bool)
     print(describe(fitted))
     if ranked:
         print("\n" + ranking(ranked))
+        for law in ranked:
+            if law.fit and law.fit is not fitted:
+                for text in law.fit.cautions:
+                    print(f"\ncaution of {law.name}: {text}")
     if not complete:
         print("\nnot complete: interrupted")
 

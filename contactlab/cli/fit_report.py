@@ -45,6 +45,7 @@ def describe(fit: Fit) -> str:
     if fit.reduced_chi_square is not None:
         parts.append(f"reduced chi square: {fit.reduced_chi_square:.3g}")
     parts += [f"note: {note}" for note in fit.notes]
+    parts += [f"caution: {caution}" for caution in fit.cautions]
     return "\n\n".join(parts)
 
 

@@ -36,6 +36,8 @@ ENDINGS = sorted(
     key=lambda ending: -len(ending[0]),
 )
 SAME_UNITS = {"°": "deg", "degrees": "deg", "-": "1"}
+#: Words in brackets that are units, known or not.
+UNITS = {unit for pair in CONVERSIONS for unit in pair} | set(SAME_UNITS) | {"%", "percent"}
 #: Other names of the entry ``angle_deg``.
 ANGLES = ("angle", "incidence_angle", "incidence_angle_deg")
 ERROR = "_error"
@@ -59,6 +61,9 @@ class Heading(NamedTuple):
 def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
     """Return the role, the name and the factor of a column."""
     alias = columns.get(text.strip(), text)
+    if alias is not text and alias.startswith("-"):
+        heading = read_heading(text, {text.strip(): alias[1:]})
+        return heading._replace(factor=-heading.factor)
     if alias.lstrip().startswith("#") or not alias.strip():
         return Heading("unused", text)
     error, name, unit = _name_and_unit(alias)
@@ -94,7 +99,10 @@ def _name_and_unit(text: str) -> tuple[bool, str, str]:
     if not parts:
         raise ValueError(f"heading {text!r}: write a name and its unit, as in 'speed (m/s)'")
     name, unit = re.sub(r"[\s-]+", "_", parts[1].lower()), (parts[2] or "").strip()
-    unit = SAME_UNITS.get(unit, unit)
+    words = re.sub(r"\s*/\s*", "/", unit).split()
+    if len(words) > 1:  # such as "from normal", or "deg from normal"
+        words = [word for word in words if word in UNITS]
+    unit = SAME_UNITS.get(words[0], words[0]) if words else ""
     error = name.endswith(ERROR)
     name = name.removesuffix(ERROR)
     if name not in ENTRIES and name not in QUANTITIES and name not in ANGLES:

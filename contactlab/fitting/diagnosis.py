@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import attrs
 import numpy as np
@@ -13,7 +14,9 @@ from contactlab.fitting import outliers, patterns, plausible
 from contactlab.fitting.fit_result import Estimate
 from contactlab.fitting.measurements import Measurements
 from contactlab.fitting.problem import Problem
-from contactlab.fitting.slips import slips, tilted
+from contactlab.fitting.slips import loosened, lossy, slips
+from contactlab.impact.coupling import LEFT_OUT, coupling_shift
+from contactlab.outcome.columns import QUANTITIES
 
 Array = NDArray[np.float64]
 
@@ -21,6 +24,8 @@ Array = NDArray[np.float64]
 CHANCE = 1e-3
 #: The same limit beside outliers, which explain the residuals better.
 POSSIBLE = 1e-5
+#: One error common to all impacts is preferred to a curve that is less likely by less than this.
+SIMPLER = 100.0
 #: Reduced chi square above which stated errors are too small, or the law does not fit.
 LARGE_CHI_SQUARE = 2.0
 #: Share of the stated errors below which residuals suggest another unit, or limits.
@@ -38,7 +43,7 @@ class Diagnosis:
     slips : tuple of str
         Columns that a fit meets far better if read another way, and implausible numbers.
     others : tuple of str
-        Outliers, patterns and leverage; empty after a slip, which would explain them.
+        Outliers, patterns and leverage; empty after a slip or a loss, which would explain them.
     robust : list of float or None
         Values of the robust fit; None for too few numbers.
     """
@@ -53,8 +58,13 @@ class Diagnosis:
         return self.slips + self.others
 
 
-def diagnosed(problem: Problem, table: Measurements, values: Array) -> Diagnosis:
-    """Return the diagnosis of a measurement at the best values, shape (parameters,)."""
+def diagnosed(
+    problem: Problem, table: Measurements, values: Array, *, explained: bool = False
+) -> Diagnosis:
+    """Return the diagnosis of a measurement at the best values, shape (parameters,).
+
+    If the residuals are ``explained`` already, there are no sentences on what they look like.
+    """
     robust: list[float] | list[None] = [None] * len(values)
     far = outliers.none(problem, values)
     if sum(problem.counts.values()) >= outliers.LEAST + len(values) - 1:
@@ -63,7 +73,7 @@ def diagnosed(problem: Problem, table: Measurements, values: Array) -> Diagnosis
     certain, possible = slips(problem, table.given, values, far.rest.measured)
     unlikely = plausible.unlikely_numbers(problem, table)
     slipped = (*certain, *unlikely)
-    others = () if slipped else (*_others(problem, table, values, far), *possible)
+    others = () if slipped or explained else (*_others(problem, table, values, far), *possible)
     return Diagnosis(slips=slipped, others=others, robust=robust)
 
 
@@ -71,22 +81,64 @@ def _others(
     problem: Problem, table: Measurements, values: Array, far: outliers.Outliers
 ) -> tuple[str, ...]:
     """Return sentences on outliers, patterns and leverage."""
-    chance, tilt = tilted(problem, table.given, values)
-    if tilt and chance <= far.chance:
-        return (tilt,)
     sentences: list[str] = []
-    scales = problem.scales(problem.residuals(values[None]))
-    seen = patterns.pattern(problem, values, scales, table.given)
+    scales, seen = _seen(problem, table, values)
     if far.places and far.chance <= seen.chance:
         sentences += outliers.described(problem, far)
         if seen.chance < POSSIBLE:
             sentences.append(f"or, with every number kept, {seen.words}")
         problem, values = far.rest, far.values
-        scales = problem.scales(problem.residuals(values[None]))
-        seen = patterns.pattern(problem, values, scales, table.given)
+        scales, seen = _seen(problem, table, values)
     if seen.chance < CHANCE:
         sentences.append(seen.words)
     return (*sentences, *patterns.leverage(problem, values, scales))
+
+
+def _seen(
+    problem: Problem, table: Measurements, values: Array
+) -> tuple[Mapping[str, Any], patterns.Pattern]:
+    """Return the error of each quantity, and what scatter makes with the least chance."""
+    scales = problem.scales(problem.residuals(values[None]))
+    pattern = patterns.pattern(problem, values, scales, table.given)
+    common = loosened(problem, table.given, values)
+    return scales, common if common.chance < SIMPLER * pattern.chance else pattern
+
+
+def lost(problem: Problem, values: Array) -> list[str]:
+    """Return a sentence if the measured normal motion has another restitution than the laws."""
+    seen = lossy(problem, values)
+    return [seen.words] if seen.chance < CHANCE else []
+
+
+def cautions(problem: Problem, values: Array) -> list[str]:
+    """Return the cautions of the impacts, with the shift of each parameter where one is known.
+
+    The shift is that by coupling, in size: the shifts of psi2 of all impacts, each in the worse
+    direction, times the derivatives of the best values by the measured numbers.
+    """
+    result = problem.model.impacts(values)
+    said = result.cautions
+    coupled = [text.startswith(LEFT_OUT) for text in said]
+    if not any(coupled):
+        return said
+    change = coupling_shift(result.scene) / np.asarray(result.scene.psi_scale)
+    velocity = result.motion.slip_velocity_change + change
+    motion = attrs.evolve(result.motion, slip_velocity_change=velocity)
+    shifted = attrs.evolve(result, motion=motion)
+    scales = problem.scales(problem.residuals(values[None]))
+    inverse = np.linalg.pinv(problem.linearised(values, scales)[1])
+    moves, first = np.zeros((len(values), *result.scene.shape)), 0
+    for name, numbers in problem.measured.items():
+        rows = np.flatnonzero(np.isfinite(numbers))
+        part, first = inverse[:, first : first + len(rows)], first + len(rows)
+        off = (QUANTITIES[name].of(shifted) - QUANTITIES[name].of(result)) / scales[name]
+        moves[:, rows] += part * off[rows]
+    sizes = zip(problem.model.parameters, np.abs(moves).sum(axis=1), strict=True)
+    moved = ", ".join(f"{parameter.name} by up to about {size:.1g}" for parameter, size in sizes)
+    return [
+        f"{text}; this moves {moved}" if is_it else text
+        for text, is_it in zip(said, coupled, strict=True)
+    ]
 
 
 def moved(estimates: Mapping[str, Estimate]) -> list[str]:

@@ -13,14 +13,22 @@ from numpy.typing import NDArray
 
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import determined
-from contactlab.fitting.diagnosis import Diagnosis, diagnosed, end_notes, error_notes, moved
+from contactlab.fitting.diagnosis import (
+    Diagnosis,
+    cautions,
+    diagnosed,
+    end_notes,
+    error_notes,
+    lost,
+    moved,
+)
 from contactlab.fitting.fit_result import Estimate, Fit
 from contactlab.fitting.measurements import Measurements, read_measurements
 from contactlab.fitting.model import Model, scene_of, simulation_of
 from contactlab.fitting.parameters import Setup, parameter_named
 from contactlab.fitting.plausible import unlikely_parameters
 from contactlab.fitting.problem import Problem, solved, starting
-from contactlab.fitting.slips import slips
+from contactlab.fitting.slips import assumed, slips
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
 from contactlab.outcome.result import ImpactError
@@ -105,13 +113,15 @@ def fit(
     values, *others = _solutions(problem, counted)
     left_out: tuple[str, ...] = ()
     slipped: list[str] = []
+    every = problem
     if idle := determined.idle(problem, values):
         left_out = (f"{', '.join(idle)}: not met, for no parameter moves it under these laws",)
         slipped, _ = slips(problem, table.given, values, problem.measured)
+        slipped = slipped or lost(problem, values)
         table = table.only([name for name in table.measured if name not in idle])
         problem = _problem(table, scene, parameters, laws)
         values, *others = _solutions(problem)
-    diagnosis = diagnosed(problem, table, values)
+    diagnosis = diagnosed(problem, table, values, explained=bool(slipped))
     try:
         determined.check_scatter(problem)
         determined.check_determined(problem, values)
@@ -123,7 +133,9 @@ def fit(
         if not causes:
             raise
         raise ValueError(f"{'. '.join(causes)}. As it is, {error}") from None
-    outcome = attrs.evolve(outcome, notes=(*left_out, *slipped, *outcome.notes))
+    notes = (*left_out, *slipped, *outcome.notes)
+    warned = (*cautions(problem, values), *(() if notes else assumed(every, values, reaches)))
+    outcome = attrs.evolve(outcome, notes=notes, cautions=warned)
     if counted is not None:
         counted(1, 1)
     if not samples:

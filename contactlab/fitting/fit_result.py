@@ -66,6 +66,9 @@ class Fit:
         Sum of squares of residuals over their stated errors, per degree of freedom; None
         without stated errors.
     notes : tuple of str
+        What the measurement looks like: reasons to look at it.
+    cautions : tuple of str
+        Errors of the model that the intervals do not hold, with their size where it is known.
     samples : int
         Samples of the bootstrap; fewer than requested after Ctrl-C, 0 without a bootstrap.
     """
@@ -78,6 +81,7 @@ class Fit:
     aic: float
     reduced_chi_square: float | None = None
     notes: tuple[str, ...] = ()
+    cautions: tuple[str, ...] = ()
     samples: int = 0
 
     def __getitem__(self, name: str) -> float:
@@ -132,6 +136,7 @@ class Fit:
             "measured": {name: json_value(values) for name, values in content.measured.items()},
             "predicted": {name: json_value(values) for name, values in self.predicted.items()},
             "notes": list(self.notes),
+            "cautions": list(self.cautions),
             "samples": self.samples,
         }
 
@@ -149,4 +154,5 @@ class Fit:
                 )
         for name, rms in self.rms.items():
             lines.append(f"  {name:24} rms {rms:.3g}, largest {self.largest[name]:.3g}")
-        return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
+        lines += [f"  note: {note}" for note in self.notes]
+        return "\n".join([*lines, *(f"  caution: {caution}" for caution in self.cautions)])

@@ -88,7 +88,8 @@ def read_measurements(content: object, *, columns: Mapping[str, str] | None = No
         heading begins with ``#`` is not read.
     columns : mapping of str to str, optional
         Names for headings of another kind: ``{"impact angle [deg]": "incidence_angle"}``. The
-        unit is that of the name, else that of the heading. ``"#"`` leaves the column unread.
+        unit is that of the name, else that of the heading. ``"-rebound_spin"`` turns the sign,
+        ``"#"`` leaves the column unread.
 
     Raises
     ------

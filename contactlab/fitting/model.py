@@ -15,6 +15,7 @@ from contactlab.fitting.parameters import Parameter, Setup
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import QUANTITIES
+from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.study.interrupts import uninterrupted
 
@@ -81,11 +82,25 @@ class Model:
             each = parameter.batched and many > 1
             value = np.repeat(column, count) if each else float(column[0])
             setup = parameter.applied(setup, value)
-        if self.tabled or setup.simulation is None:
-            result = tabulated.impacts(setup.scene, setup.simulation)
-        else:
-            result = uninterrupted(setup.simulation.sweep(setup.scene)).check()
+        result = self._impacts(setup)
         return {name: QUANTITIES[name].of(result).reshape(many, count) for name in quantities}
+
+    def _impacts(self, setup: Setup) -> ImpactResult:
+        """Return the impacts of a scene under its laws."""
+        if self.tabled or setup.simulation is None:
+            return tabulated.impacts(setup.scene, setup.simulation)
+        return uninterrupted(setup.simulation.sweep(setup.scene)).check()
+
+    def impacts(self, values: Array) -> ImpactResult:
+        """Return the impacts, shape (n,), at values of the parameters, shape (parameters,)."""
+        return self._impacts(self._setup(values.tolist()))
+
+    def _setup(self, values: Sequence[float]) -> Setup:
+        """Return scene and laws at values of the parameters."""
+        setup = self.setup
+        for parameter, value in zip(self.parameters, values, strict=True):
+            setup = parameter.applied(setup, value)
+        return setup
 
     def _times(self, many: int) -> Scene:
         """Return the batch of impacts repeated ``many`` times."""
@@ -102,10 +117,7 @@ class Model:
 
     def laws(self, values: Array) -> str:
         """Return the laws in words, with the values of the parameters."""
-        setup = self.setup
-        for parameter, value in zip(self.parameters, values.tolist(), strict=True):
-            setup = parameter.applied(setup, float(f"{value:.6g}"))
-        simulation = setup.simulation
+        simulation = self._setup([float(f"{value:.6g}") for value in values]).simulation
         if simulation is None:
             return TABULATED
         if self.tabled:

@@ -146,14 +146,14 @@ def parameter_named(name: str, setup: Setup) -> Parameter:
     near = nearest(name, [*choices, *short])
     listed = f"known here: {', '.join(choices)}" if choices else "nothing can be fitted here"
     remedy = "; options of a law are there once it is chosen and they have a number"
-    if having := _laws_with(name.rpartition(".")[2]):
+    if having := laws_with(name.rpartition(".")[2]):
         remedy = f"; it is an option of {', '.join(having)}: choose one of them"
     raise ValueError(
         f"parameters = {name!r}: scene and laws have no such number; {near}{listed}{remedy}"
     )
 
 
-def _laws_with(option: str) -> list[str]:
+def laws_with(option: str) -> list[str]:
     """Return the installed normal and tangential laws with an option of that name."""
     kinds = [kind for kind in KINDS if kind != "integrator"]
     names = [name for kind in kinds for name in REGISTRY.names(kind)]

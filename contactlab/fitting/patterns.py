@@ -30,6 +30,10 @@ class Pattern(NamedTuple):
     words: str
 
 
+#: No pattern: the chance is that of any scatter.
+NO_PATTERN = Pattern(1.0, "")
+
+
 def pattern(
     problem: Problem, values: Array, scales: Mapping[str, Any], columns: Mapping[str, Array]
 ) -> Pattern:
@@ -62,7 +66,7 @@ def pattern(
     same = [name for name in ranks if ORDER not in ranks and _in_order(ranks[name])]
     tests += _changes(problem, weighted, jacobian, max(least.values()), same)
     if not tests:
-        return Pattern(1.0, "")
+        return NO_PATTERN
     clearest = min(tests)
     return clearest._replace(chance=clearest.chance * len(tests))
 

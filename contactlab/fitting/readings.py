@@ -40,6 +40,8 @@ MISTAKEN["rad"] = MISTAKEN["deg"]
 #: Least count of numbers that shows a shift by a row.
 ROWS = 6
 SURFACE, SIGN = "measured from the surface, not from the normal", "of the opposite sign"
+#: How a column of the opposite sign is read; beside the words on it.
+TURNED = " (--column HEADING=-{} turns it)"
 #: Quantities of the centre and of the contact point, which are easily exchanged.
 TAKEN_FOR = {
     "rebound_angle_deg": "local_rebound_angle_deg",
@@ -110,7 +112,8 @@ def _impacts(scene: Scene, given: Collection[str]) -> Iterator[tuple[str, Scene]
     if np.any(scene.spin):
         for way, factor in (MISTAKEN["rad/s"] | {SIGN: -1.0}).items():
             spin = factor * np.asarray(scene.spin)
-            yield f"spin looks as if {way}", attrs.evolve(scene, spin=spin)
+            mend = TURNED.format("spin") if way == SIGN else ""
+            yield f"spin looks as if {way}{mend}", attrs.evolve(scene, spin=spin)
     for way, factor in {"in mm": 1e-3, "in cm": 1e-2, "the diameter": 0.5}.items():
         assert scene.sphere is not None
         ball = attrs.evolve(scene.sphere, radius=factor * np.asarray(scene.sphere.radius)[()])
@@ -134,7 +137,8 @@ def _numbers(problem: Problem) -> Iterator[Reading]:
         unit = QUANTITIES[name].unit
         for way, factor in (MISTAKEN.get(unit, {}) | {SIGN: -1.0}).items():
             read = _with(problem, name, _way(name, way))
-            yield Reading(f"{name} looks as if {way}", read, {name: abs(factor)})
+            mend = TURNED.format(name) if way == SIGN else ""
+            yield Reading(f"{name} looks as if {way}{mend}", read, {name: abs(factor)})
         if unit in ("deg", "rad"):
             read = _with(problem, name, _way(name, SURFACE))
             yield Reading(f"{name} looks as if {SURFACE}", read, {})

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.compose.names import short_name
+from contactlab.compose.rebound import DAMPED_ERROR, DAMPED_RESTITUTION, damped, damped_error
+from contactlab.compose.simulation import Simulation
+from contactlab.fitting import tabulated
 from contactlab.fitting.f_test import SPARE, chance_of
 from contactlab.fitting.model import Model
-from contactlab.fitting.parameters import Parameter, Setup, parameter_named
+from contactlab.fitting.parameters import Parameter, Setup, laws_with, parameter_named
+from contactlab.fitting.patterns import NO_PATTERN, Pattern
 from contactlab.fitting.problem import Problem, grid, solved
 from contactlab.fitting.readings import Reading, readings, turned
 from contactlab.numeric.checks import Real
@@ -31,6 +36,10 @@ LISTED, ALIKE = 3, 6.0
 WORTH_TILTING = 1e-2
 #: Largest tilt, in degrees.
 TILT = 15.0
+#: The option of normal laws that is tried, and the start of its search.
+RESTITUTION, SOME_LOSS = "normal.restitution", 0.9
+#: Restitutions tried in place of 1, and the difference of scores that excludes one (95 %).
+LOSSES, EXCLUDED = (0.95, 0.9, 0.85, 0.8, 0.7, 0.6, 0.5), 3.84
 #: Residuals below this share of the largest number are numerical error.
 LEAST = 1e-6
 
@@ -159,10 +168,14 @@ def _sentence(problem: Problem, values: Array, better: list[Read]) -> str:
     times = math.exp((own - best.score) / (2.0 * sum(counts)))
     listed = "; or ".join(read.reading.words for read in better)
     parameters = best.reading.problem.model.parameters
-    estimates = ", ".join(
-        f"{p.name} {value:.4g}" for p, value in zip(parameters, best.values, strict=True)
-    )
+    estimates = _listed(parameters[: len(values)], best.values)
     return f"{listed}: read so, residuals are {times:.2g} times smaller, and {estimates}"
+
+
+def _listed(parameters: Sequence[Parameter], values: Array) -> str:
+    """Return the parameters with their values."""
+    pairs = zip(parameters, values, strict=False)  # an error that was tried may be beyond
+    return ", ".join(f"{parameter.name} {value:.4g}" for parameter, value in pairs)
 
 
 class AngleOffset(Parameter):
@@ -175,40 +188,122 @@ class AngleOffset(Parameter):
         return setup._replace(scene=turned(scene, angle - np.radians(value), ()))
 
 
-def tilted(problem: Problem, given: Collection[str], values: Array) -> tuple[float, str]:
-    """Return the chance that scatter looks like a common error of angles, and a sentence on it.
+def loosened(problem: Problem, given: Collection[str], values: Array) -> Pattern:
+    """Return the chance that scatter looks like an error common to all impacts, and a sentence.
 
-    The chance is 1 and the sentence empty unless the fit is far better with that error corrected.
+    Errors that are tried are a common excess of all angles and a wrong restitution.
+    """
+    if problem.model.setup.scene.sphere is None:
+        return NO_PATTERN
+    return _better_with(problem, values, _tilted(problem, given, values), _restituted(problem))
+
+
+def lossy(problem: Problem, values: Array) -> Pattern:
+    """Return the chance that scatter looks like a wrong restitution, and a sentence on it."""
+    scene, simulation = problem.model.setup
+    if simulation is None or tabulated.holds(simulation):
+        return _better_with(problem, values, _restituted(problem))
+    if scene.sphere is None or "elastic_hertz" not in simulation.normal.offers:
+        return NO_PATTERN
+    quick = _elastic(problem)
+    return _better_with(quick, solved(quick, _first(quick)), _restituted(quick))
+
+
+#: A problem with one more parameter, the start of that parameter, and words on its best value.
+Wider = tuple[Problem | None, float, Callable[[float], str]]
+
+
+def _better_with(problem: Problem, values: Array, *tried: Wider) -> Pattern:
+    """Return the chance of the best of some parameters more, and a sentence on those as good.
+
+    The chance is that of the F test of one parameter, times the number tried.
     """
     from scipy.special import fdtrc  # only a fit needs scipy
 
     counts, sizes = list(problem.counts.values()), _sizes(problem)
-    freedom = sum(counts) - len(values) - 1
-    if problem.model.setup.scene.sphere is None or freedom < SPARE:
-        return 1.0, ""
+    number = sum(counts)
+    freedom = number - len(values) - 1
+    if freedom < SPARE:
+        return NO_PATTERN
+    own = float(_scores(Reading("", problem, {}), values[None], counts, sizes)[0])
+    found = []
+    for wider, start, words in tried:
+        if wider is not None:
+            best = solved(wider, np.append(values, start))
+            reading = Reading(words(float(best[-1])), wider, {})
+            found.append(Read(reading, float(_scores(reading, best[None], counts, sizes)[0]), best))
+    found.sort(key=lambda read: read.score)
+    if not found or found[0].score >= own:
+        return NO_PATTERN
+    ratio = math.expm1((own - found[0].score) / number) * freedom
+    alike = [read for read in found if read.score - found[0].score < ALIKE]
+    chance = float(fdtrc(1, freedom, ratio)) * len(found)
+    return Pattern(chance, _sentence(problem, values, alike))
+
+
+def _tilted(problem: Problem, given: Collection[str], values: Array) -> Wider:
+    """Return the problem with a common excess of all angles; None if scatter looks as much so."""
     name = "angle_deg" if "angle_deg" in given else "the angle of incidence"
+
+    def words(excess: float) -> str:
+        size = f"{abs(excess):.2g} degrees too {'large' if excess > 0.0 else 'small'}"
+        return f"{name} looks as if all numbers were {size}, as by the zero of a protractor"
+
     offset = AngleOffset(name=name, unit="deg", least=-TILT, most=TILT, starts=(0.0,))
     model = attrs.evolve(problem.model, parameters=(*problem.model.parameters, offset))
     wider = attrs.evolve(problem, model=model)
-    at = np.append(values, 0.0)
-    weighted, slopes = wider.linearised(at, problem.scales(problem.residuals(values[None])))
+    scales = problem.scales(problem.residuals(values[None]))
+    weighted, slopes = wider.linearised(np.append(values, 0.0), scales)
     if chance_of(weighted, slopes[:, :-1], slopes[:, -1:], 0.0) > WORTH_TILTING:
-        return 1.0, ""
-    best = solved(wider, at)
-    own, corrected = (
-        float(_scores(Reading("", fitted, {}), point[None], counts, sizes)[0])
-        for fitted, point in ((problem, values), (wider, best))
-    )
-    if own - corrected < max(CERTAIN, 2.0 * sum(counts) * math.log(SMALLER)):
-        return 1.0, ""
-    times = math.exp((own - corrected) / (2.0 * sum(counts)))
-    estimates = ", ".join(
-        f"{p.name} {value:.4g}"
-        for p, value in zip(problem.model.parameters, best[:-1], strict=True)
-    )
-    sentence = (
-        f"{name} looks as if all numbers were {abs(best[-1]):.2g} degrees too "
-        f"{'large' if best[-1] > 0.0 else 'small'}, as by the zero of a protractor: read so, "
-        f"residuals are {times:.2g} times smaller, and {estimates}"
-    )
-    return float(fdtrc(1, freedom, (times**2 - 1.0) * freedom)), sentence
+        return None, 0.0, words
+    return wider, 0.0, words
+
+
+def _restituted(problem: Problem) -> Wider:
+    """Return the problem with a restitution to fit; None without a table of such impacts."""
+    setup, parameters = problem.model.setup, problem.model.parameters
+    laws: Any = setup.simulation or Simulation(normal=damped(1.0).normal)
+    own = getattr(laws.normal, "restitution", 1.0)
+
+    def words(restitution: float) -> str:
+        lossy = ", ".join(map(short_name, laws_with("restitution")))
+        return (
+            f"the impacts look as if their restitution were {restitution:.3g} in place of "
+            f"{own:.3g} (an option of the normal laws {lossy})"
+        )
+
+    names = [parameter.name for parameter in parameters]
+    error = damped_error(setup.scene.chi, DAMPED_RESTITUTION)
+    if RESTITUTION in names or not tabulated.holds(laws) or not np.all(error <= DAMPED_ERROR):
+        return None, own, words
+    wider = setup._replace(simulation=laws)
+    more = attrs.evolve(parameter_named(RESTITUTION, wider), least=DAMPED_RESTITUTION)
+    model = Model(setup=wider, parameters=(*parameters, more))
+    return attrs.evolve(problem, model=model), SOME_LOSS, words
+
+
+def assumed(problem: Problem, values: Array, reaches: Array) -> list[str]:
+    """Return a sentence on an assumed restitution if another one moves a parameter as much.
+
+    The sentence tells the least restitution of a few that the data do not exclude, if a parameter
+    then lies outside of its interval, of half-widths ``reaches``.
+    """
+    wider = None if problem.model.setup.simulation else _restituted(problem)[0]
+    if wider is None:
+        return []
+    counts, sizes = list(problem.counts.values()), _sizes(problem)
+    limit = float(_scores(Reading("", problem, {}), values[None], counts, sizes)[0]) + EXCLUDED
+    *parameters, more = wider.model.parameters
+    sentence: list[str] = []
+    for restitution in LOSSES:
+        laws = more.applied(wider.model.setup, restitution)
+        fixed = attrs.evolve(problem, model=Model(setup=laws, parameters=tuple(parameters)))
+        best = solved(fixed, values)
+        if _scores(Reading("", fixed, {}), best[None], counts, sizes)[0] > limit:
+            break
+        if np.any(np.abs(best - values) > reaches):
+            sentence = [
+                f"restitution 1 is assumed; {restitution:g} meets the data as well: "
+                f"{_listed(parameters, best)} (model, not scatter)"
+            ]
+    return sentence

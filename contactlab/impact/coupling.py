@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 #: Shift of psi2 by one-way coupling, to 0.002, by the half-space law; its builder is
 #: ``python -m table_builders coupling build``. The nodes are psi1, chi, nu, and Lambda.
 FILE = Path(__file__).with_name("coupling.csv")
+#: Beginning of the caution of coupling.
+LEFT_OUT = "unlike bodies: the elastic coupling of pressure and slip is left out"
 #: Smallest shift of psi2 with a caution.
 LEAST_SHIFT = 1e-3
 
@@ -102,10 +104,6 @@ def coupling(scene: Scene) -> tuple[str, ...]:
             scene.chi,
         )
     )
-    start = (
-        "unlike bodies: the elastic coupling of pressure and slip is left out, "
-        "Lambda = kappa beta/mu"
-    )
     upto = "up to " if scene.shape else ""
     if not np.any(shift >= LEAST_SHIFT):
         return ()
@@ -114,9 +112,9 @@ def coupling(scene: Scene) -> tuple[str, ...]:
     low, high = axes[1][0], axes[1][-1]
     rough = "" if low <= chi[worst] <= high else f"; a rough guide at chi = {chi[worst]:.3g}"
     return (
-        f"{start} = {number[worst]:.2g}; it moves psi2 by {upto}{beyond}{shift[worst]:.1g} (model, "
-        f"not numerical error; by a table of half-space solutions, chi from {low:g} to {high:g}"
-        f"{rough})",
+        f"{LEFT_OUT}, Lambda = kappa beta/mu = {number[worst]:.2g}; it moves psi2 by "
+        f"{upto}{beyond}{shift[worst]:.1g} (model, not numerical error; by a table "
+        f"of half-space solutions, chi from {low:g} to {high:g}{rough})",
     )
 
 

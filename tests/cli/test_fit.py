@@ -9,6 +9,7 @@ from contactlab.fitting import estimation
 from tests.cli.conftest import EXAMPLES
 
 KHARAZ = EXAMPLES / "kharaz2001.toml"
+HALF = "options = { normal = { restitution = 0.5 } }"
 E_T = ("--quantity", "tangential_restitution")
 
 
@@ -84,6 +85,44 @@ def test_a_parameter_has_a_row_with_its_intervals(run, impacts):
     told = [float(number) for number in row.split()[1:]]
     expected = [one["value"], one["standard_error"], *one["interval_95"], *one["bootstrap_95"]]
     assert told == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("own", "options", "laws"),
+    [
+        ("", (), "exact elastic law (tabulated rebound)"),
+        ("", ("--normal", "hertz"), "exact elastic law (tabulated rebound)"),
+        ('normal = "hertz"\ntangential = "springs"', (), "exact elastic law (tabulated rebound)"),
+        ('normal = "tsuji"', (), "Tsuji(restitution=0.9), partial slip (tabulated rebound)"),
+        (f'normal = "tsuji"\n{HALF}', (), "Tsuji(restitution=0.5)"),
+        (f'normal = "tsuji"\n{HALF}', ("--normal", "hunt_crossley", "--laws", "coulomb"),
+         "HuntCrossley(restitution=0.9, damping=None), Coulomb(), Events"),
+        ("", ("--set", "normal.restitution=0.8", "--normal", "tsuji"), "Tsuji(restitution=0.8)"),
+        ("", ("--laws", "springs", "--integrator", "paper"), "Hertz(), Springs(springs=50"),
+    ],
+)  # fmt: skip
+def test_laws_are_those_of_the_file_and_of_the_options(run, impacts, tmp_path, own, options, laws):
+    """The exact law is the table unless a normal law or an option is asked for."""
+    bodies = tmp_path / "bodies.toml"
+    steel = "radius = 0.01\nmaterial = 'steel'"
+    bodies.write_text(
+        f"[sphere]\n{steel}\n[target]\nkind = 'half-space'\nmaterial = 'steel'\n[impact]\n"
+        f"speed = 2.0\n[simulation]\n{own}\n",
+        encoding="utf-8",
+    )
+    ran = run("fit", impacts, bodies, "--bootstrap", 0, "--json", *options)
+    assert json.loads(ran.out)["laws"].startswith(laws)
+
+
+def test_cautions_are_told_of_every_law(run):
+    options = ("fit", KHARAZ, *E_T, "--laws", "exact,coulomb", "--bootstrap", 0)
+    content = json.loads(run(*options, "--json").out)
+    exact, coulomb = (one["fit"]["cautions"] for one in content["ranking"])
+    assert content["cautions"] == exact
+    assert any("this moves friction_coefficient by up to" in text for text in exact)
+    text = run(*options).out
+    assert all(f"caution: {one}" in text for one in exact)
+    assert all(f"caution of coulomb: {one}" in text for one in coulomb)
 
 
 def test_restitution_of_a_damped_law_comes_out_of_kharaz(run):

@@ -5,7 +5,8 @@ from typing import NamedTuple
 import attrs
 import numpy as np
 
-from contactlab import HalfSpace, Scene, Simulation, Sphere, fit
+from contactlab import HalfSpace, Scene, Simulation, Sphere, create, fit
+from contactlab.fitting.tabulated import impacts
 from contactlab.outcome.columns import QUANTITIES
 from tests.fitting.impacts import STEEL
 
@@ -34,8 +35,11 @@ def heading(name):
     return f"{name} ({QUANTITIES[name].unit})"
 
 
-def draw(seed, *, outliers):
-    """Return a measurement of 8 to 40 impacts: scatter of 0.3 to 3 % of the greatest value."""
+def draw(seed, *, outliers, restitution=1.0, tilt=0.0, only=None):
+    """Return a measurement of 8 to 40 impacts: scatter of 0.3 to 3 % of the greatest value.
+
+    ``tilt`` is added to the angles in the columns; ``only`` names the parameters to fit.
+    """
     rng = np.random.default_rng([19, seed])
     count = int(rng.integers(8, 41))
     friction = float(rng.uniform(0.05, 0.3))
@@ -49,7 +53,10 @@ def draw(seed, *, outliers):
         tangential_velocity=speeds * np.sin(radians),
     )
     rebounds = Simulation(tangential="fronts").sweep(scene).check()
-    columns = {"angle_deg": angles, "speed (m/s)": speeds}
+    if restitution < 1.0:
+        law = create("normal.tsuji", restitution=restitution)
+        rebounds = impacts(scene, Simulation(normal=law))
+    columns = {"angle_deg": angles + tilt, "speed (m/s)": speeds}
     bad = rng.random(count) < SHARE if outliers else np.zeros(count, dtype=bool)
     if outliers and not bad.any():
         bad[rng.integers(count)] = True
@@ -64,6 +71,7 @@ def draw(seed, *, outliers):
     truth = {"friction_coefficient": friction}
     if rng.random() < 1 / 3:
         truth["stiffness_ratio"] = KAPPA
+    truth = {name: truth[name] for name in only or truth}
     return Draw(columns, truth, tuple((np.flatnonzero(bad) + 1).tolist()))
 
 
@@ -78,6 +86,7 @@ class Outcome(NamedTuple):
 
     covered: dict
     notes: tuple
+    cautions: tuple = ()
 
 
 def outcome(one):
@@ -94,7 +103,7 @@ def outcome(one):
         name: found.parameters[name].interval[0] <= truth <= found.parameters[name].interval[1]
         for name, truth in one.truth.items()
     }
-    return Outcome(held, found.notes)
+    return Outcome(held, found.notes, found.cautions)
 
 
 def figures(outcomes):

@@ -1,34 +1,20 @@
 """What a fit says of a measurement: against closed forms, and nothing of a sound one."""
 
+import re
+
 import numpy as np
 import pytest
-from scipy.stats import f as f_distribution
+from scipy.stats import chi2
 
 from contactlab import Simulation, fit
-from contactlab.fitting import outliers, patterns
-from contactlab.fitting.measurements import read_measurements
-from contactlab.fitting.model import Model, scene_of
-from contactlab.fitting.parameters import Setup, parameter_named
-from contactlab.fitting.problem import Problem
-from contactlab.fitting.readings import readings
+from contactlab.fitting.diagnosis import error_notes, moved
+from contactlab.fitting.fit_result import Estimate
 from tests.fitting.impacts import ANGLES, BODIES, restitution, scene, table
+from tests.fitting.lines import line, option
 
 SCATTER = 0.004 * np.random.default_rng(5).standard_normal(len(ANGLES))
 SLIPPING = np.linspace(45.0, 70.0, 12)
 SLOPE = 2.0 / np.tan(np.radians(SLIPPING))
-
-
-def problem_of(measurements):
-    read = read_measurements(measurements)
-    setup = Setup(scene_of(BODIES, read.given, len(read)), None)
-    model = Model(setup=setup, parameters=(parameter_named("friction_coefficient", setup),))
-    return Problem(model=model, measured=read.measured, errors=read.errors)
-
-
-def square(columns, numbers):
-    """Return the sum of squares that a straight fit leaves."""
-    found = np.linalg.lstsq(columns, numbers, rcond=None)[0]
-    return float(np.sum((numbers - columns @ found) ** 2))
 
 
 def spins(sign):
@@ -43,18 +29,14 @@ def test_a_spin_without_its_sign_is_found():
     assert fit(spins(1.0), BODIES).notes == ()
 
 
-def test_a_shift_by_a_row_is_judged_by_the_same_rows_as_the_table():
-    """Each way drops one row at an end; the table that it is compared with drops the same."""
-    problem = problem_of(table(restitution(0.12)))
-    shifts = [each for each in readings(problem, ["angle_deg"]) if "a row too" in each.words]
-    (before,) = problem.measured.values()
-    for low, shift in zip((True, False), shifts, strict=True):
-        (values,), (rest,) = shift.problem.measured.values(), shift.rest.values()
-        held, dropped = (slice(1, None), 0) if low else (slice(None, -1), -1)
-        assert np.isnan(rest[dropped])
-        assert np.array_equal(rest[held], before[held])
-        shifted = before[1:] if low else before[:-1]
-        assert np.array_equal(values[~np.isnan(values)], shifted)
+def test_a_slip_is_told_under_any_law():
+    """Tried by the table of the exact law, and judged by the law of the fit."""
+    laws = Simulation(tangential="coulomb")
+    spin = laws.sweep(scene(0.12)).check().rebound_spin
+    values = restitution(0.12, laws=laws) + SCATTER
+    found = fit(table(values, **{"rebound_spin (rpm)": spin * (1.0 + SCATTER)}), BODIES,
+                simulation=laws)  # fmt: skip
+    assert "rebound_spin looks as if in rad/s under a heading in rpm" in str(found)
 
 
 def test_an_impact_far_from_the_others_is_found():
@@ -75,37 +57,6 @@ def test_without_the_outliers_the_fit_is_the_one_that_the_sentence_gives():
     mu = fit(table(values[kept], ANGLES[kept]), BODIES)["friction_coefficient"]
     assert "impacts 3 and 8 are off" in note
     assert f"friction_coefficient is {mu:.4g}" in note
-
-
-def test_the_chance_of_outliers_is_that_of_the_f_test():
-    """In gross slip the law is a straight line: a column for each number that is left out."""
-    values = 1.0 - 0.1 * SLOPE + SCATTER
-    values[[3, 9]] += 0.05
-    problem = problem_of(table(values, SLIPPING))
-    best, scales = outliers.robust(problem, np.array([0.1]))
-    found = outliers.outliers(problem, best, scales)
-    assert found.places["tangential_restitution"].tolist() == [3, 9]
-    plain = square(SLOPE[:, None], 1.0 - values)
-    left = square(np.column_stack([SLOPE, np.eye(12)[:, [3, 9]]]), 1.0 - values)
-    chance = f_distribution.sf((plain - left) / 2.0 / (left / 9.0), 2, 9) * 66.0
-    assert found.chance == pytest.approx(chance, rel=0.05)
-
-
-def test_the_chance_of_a_pattern_is_that_of_the_f_test():
-    """Of a curve over the angle, which varies alone: one test of a cubic, seven of a change."""
-    rank = np.linspace(-1.0, 1.0, 12)
-    values = 1.0 - 0.1 * SLOPE + SCATTER + 0.03 * (2.5 * rank**3 - 1.5 * rank)
-    problem = problem_of(table(values, SLIPPING))
-    best = np.array([fit(table(values, SLIPPING), BODIES)["friction_coefficient"]])
-    columns = {"angle_deg": SLIPPING, "speed": np.full(12, 2.0)}
-    found = patterns.pattern(problem, best, problem.sizes(), columns)
-    plain = square(SLOPE[:, None], 1.0 - values)
-    terms = (rank, 1.5 * rank**2 - 0.5, 2.5 * rank**3 - 1.5 * rank)
-    curves = np.column_stack([SLOPE, *terms])
-    left = square(curves, 1.0 - values)
-    chance = f_distribution.sf((plain - left) / 3.0 / (left / 8.0), 3, 8)
-    assert "follow angle_deg" in found.words
-    assert found.chance == pytest.approx(chance * (1 + 7), rel=0.05)
 
 
 def test_a_number_that_decides_alone_is_told():
@@ -175,3 +126,61 @@ def test_other_laws_than_the_table_s_are_marched():
     found = fit(table(values), BODIES, simulation=laws)
     assert "Coulomb" in found.laws
     assert found["friction_coefficient"] == pytest.approx(0.12, abs=1e-6)
+
+
+def test_a_robust_value_outside_of_its_interval_is_told():
+    def estimate(robust):
+        return Estimate(name="a", unit="1", value=1.0, standard_error=0.1, interval=(0.5, 1.5),
+                        robust=robust)  # fmt: skip
+
+    inside = {str(robust): estimate(robust) for robust in (None, 0.5, 1.0, 1.5)}
+    assert moved(inside) == []
+    told = moved(inside | {"low": estimate(0.49), "high": estimate(1.51234)})
+    assert [re.search(r"gives (\w+ = [\d.]+), outside", text)[1] for text in told] == [
+        "low = 0.49", "high = 1.512"
+    ]  # fmt: skip
+
+
+def noted(ratio, count, *, values=None):
+    """Return the notes on residuals whose rms per degree of freedom is ``ratio`` errors."""
+    pulls = np.resize([1.0, -1.0], count) * ratio * np.sqrt((count - 1) / count)
+    y = pulls if values is None else values
+    off = line({"y": y, "z": np.full(count, 0.0)}, option("a"), errors={"y": np.ones(count)},
+               x=np.zeros(count))  # fmt: skip
+    return error_notes(off, np.array([0.0]))
+
+
+@pytest.mark.parametrize(
+    ("ratio", "count", "expected"),
+    [
+        (1.0, 40, ""),
+        (1.41, 40, ""),  # chi square per degree of freedom 1.99
+        (1.42, 40, "1.4 times the errors given: these are too small"),
+        (2.0, 4, ""),  # chance does it once in 140 times
+        (3.0, 4, "3 times the errors given: these are too small"),
+        (0.51, 40, ""),
+        (0.49, 40, "0.49 times the errors given: these are too large"),
+        (0.49, 8, ""),
+        (0.2, 8, "0.2 times the errors given: these are too large"),
+        (9.0, 1, ""),  # no degree of freedom
+        (9.0, 2, "9 times the errors given: these are too small"),
+    ],
+)
+def test_errors_that_the_scatter_contradicts(ratio, count, expected):
+    """Beyond a factor of two in the square, or below one half, and beyond chance."""
+    freedom = count - 1
+    if freedom:
+        square = freedom * ratio**2
+        unlikely = (
+            chi2.sf(square, freedom) < 1e-3 if ratio > 1 else chi2.cdf(square, freedom) < 1e-3
+        )
+        assert bool(expected) == (unlikely and (ratio**2 > 2.0 or ratio < 0.5))
+    notes = noted(ratio, count)
+    assert len(notes) == bool(expected)
+    assert expected in "".join(notes)
+
+
+def test_equal_numbers_do_not_show_their_scatter():
+    assert noted(0.0, 20, values=np.full(20, 0.01)) == []
+    assert "too small" in noted(0.0, 20, values=np.full(20, 9.0))[0]
+    assert "too large" in noted(0.0, 20, values=np.array([0.01, *[0.0] * 19]))[0]

@@ -205,19 +205,6 @@ def test_standard_errors_are_the_spread_of_estimates():
 
 
 @pytest.mark.slow
-def test_intervals_cover_the_truth_as_often_as_they_say():
-    """95 % of 200 draws; by chance 90 to 98 but for one time in two hundred."""
-    true, covered = restitution(0.12), np.zeros(2)
-    for seed in range(200):
-        found = fit(table(scattered(true, 0.01, seed)), BODIES, parameters=BOTH)
-        for place, (one, truth) in enumerate(
-            zip(found.parameters.values(), (0.12, 14 / 17), strict=True)
-        ):
-            covered[place] += one.interval[0] <= truth <= one.interval[1]
-    assert np.all((covered / 200 >= 0.90) & (covered / 200 <= 0.98)), covered
-
-
-@pytest.mark.slow
 def test_intervals_of_the_bootstrap_cover_the_truth():
     """The bootstrap of few numbers is somewhat narrow: 12 impacts, 0.8 and more."""
     true, covered = restitution(0.12), 0

@@ -27,7 +27,10 @@ def test_a_fit_as_text():
         made().parameters["mu"], name="normal.v", unit="m/s", value=2.0, standard_error=0.5,
         interval=(1.0, 3.0), bootstrap=(1.23456, 2.98765),
     )  # fmt: skip
-    found = attrs.evolve(made(notes=("look",)), parameters=made().parameters | {"normal.v": speed})
+    found = attrs.evolve(
+        made(notes=("look",), cautions=("beware",)),
+        parameters=made().parameters | {"normal.v": speed},
+    )
     assert repr(found).splitlines() == [
         "Fit of 3 impacts to some laws",
         "  mu                       0.12346 ± 0.012, 95 % 0.1 to 0.2",
@@ -35,6 +38,7 @@ def test_a_fit_as_text():
         "  psi2                     rms 0.354, largest 0.4",
         "  rebound_spin             rms 1.83, largest 3",
         "  note: look",
+        "  caution: beware",
     ]
 
 
@@ -42,7 +46,8 @@ def test_a_fit_as_plain_numbers():
     nan = Estimate(name="mu", unit="1", value=0.5, standard_error=np.nan,
                    interval=(np.nan, np.nan), bootstrap=(0.4, 0.6), robust=0.51)  # fmt: skip
     found = attrs.evolve(
-        made(notes=("a", "b"), samples=7, reduced_chi_square=np.nan), parameters={"mu": nan}
+        made(notes=("a", "b"), cautions=("c",), samples=7, reduced_chi_square=np.nan),
+        parameters={"mu": nan},
     )
     assert found.to_dict() == {
         "laws": "some laws",
@@ -59,6 +64,7 @@ def test_a_fit_as_plain_numbers():
         "measured": {"psi2": [0.5, None, -1.0], "rebound_spin": [1.0, 2.0, 6.0]},
         "predicted": {"psi2": [0.1, 7.0, -0.7], "rebound_spin": [1.0, 1.0, 3.0]},
         "notes": ["a", "b"],
+        "cautions": ["c"],
         "samples": 7,
     }  # fmt: skip
     plain = made(reduced_chi_square=1.5).to_dict()

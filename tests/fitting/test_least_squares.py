@@ -6,22 +6,12 @@ import numpy as np
 import pytest
 from scipy.stats import f as f_distribution
 
-from contactlab.fitting import problem as module
 from contactlab.fitting.f_test import chance_of, orthonormal
-from contactlab.fitting.parameters import FRICTION_STARTS
-from contactlab.fitting.problem import Problem, grid, minimum, solved, starting
-from tests.fitting.lines import B, X, line, option
+from contactlab.fitting.problem import minimum, solved, starting
+from tests.fitting.lines import X, line, option
 
 Y = np.array([2.0, np.nan, 7.0, 9.0])
 Z = np.array([6.0, 6.6, -7.0, np.nan])
-
-
-def test_counts_sizes_and_bounds():
-    found = line({"y": Y, "z": Z, "q": np.zeros(4)}, option("a", -1.0, 5.0), option("b", 0.0, 2.0))
-    assert found.counts == {"y": 3, "z": 3, "q": 4}
-    assert found.sizes() == {"y": 9.0, "z": 7.0, "q": 1.0}
-    low, high = found.bounds()
-    assert (low.tolist(), high.tolist()) == ([-1.0, 0.0], [5.0, 2.0])
 
 
 def test_scales_are_stated_errors_or_the_rms_of_residuals():
@@ -36,15 +26,6 @@ def test_scales_are_stated_errors_or_the_rms_of_residuals():
     told = found.scales(residuals)
     assert (told["y"], told["q"]) == (pytest.approx(math.sqrt(3.0)), pytest.approx(1e-3))
     assert told["z"] is error
-
-
-def test_residuals_over_errors_stand_in_the_order_of_the_quantities_without_gaps():
-    found = line({"z": Z, "y": Y}, errors={"y": np.array([1.0, 1.0, 2.0, 4.0])})
-    points = np.array([[2.0, 1.0], [0.0, 0.0]])
-    weighted = found.weighted(points, {"z": 0.5, "y": found.errors["y"]})
-    assert weighted == pytest.approx(
-        np.array([[0.0, 1.2, -26.0, -1.0, 0.0, 0.0], [12.0, 13.2, -14.0, 2.0, 3.5, 2.25]])
-    )
 
 
 def test_the_criterion_of_known_and_unknown_errors():
@@ -86,36 +67,6 @@ def test_derivatives_are_differences_inside_the_bounds(value, ends):
     assert found.model.calls == [3]  # one batch
 
 
-def test_derivatives_by_two_parameters():
-    found = line({"y": np.array([1.0, 2.0, 3.0, 4.0])})
-    weighted, slopes = found.linearised(np.array([2.0, 1.0]), {"y": 1.0})
-    assert weighted == pytest.approx(-X - 1.0)
-    assert slopes == pytest.approx(np.column_stack([-X, -np.ones(4)]))
-
-
-@pytest.mark.parametrize(
-    ("starts", "expected"),
-    [
-        ((2.0, 1.0, 3.0, 1.0), [1.0, 2.0, 3.0]),
-        (tuple(float(k) for k in range(400)), list(range(400))),
-        (tuple(float(k) for k in range(401)), [k + (k >= 200) for k in range(400)]),
-    ],
-)
-def test_a_grid_of_one_parameter_has_at_most_400_starts(starts, expected):
-    found = grid((option("a", starts=starts),))
-    assert found.shape == (len(expected), 1)
-    assert found[:, 0].tolist() == expected
-
-
-def test_a_grid_of_two_parameters_has_20_starts_of_each_at_most():
-    many = tuple(float(k) for k in range(39))
-    found = grid((option("a", starts=many), B))
-    assert found.shape == (40, 2)
-    assert found[:4].tolist() == [[0.0, -1.0], [0.0, 1.0], [2.0, -1.0], [2.0, 1.0]]
-    assert found[-1].tolist() == [38.0, 1.0]
-    assert len(grid((option("a", starts=many),) * 3)) == 7**3
-
-
 @pytest.mark.parametrize(
     ("starts", "expected"),
     [
@@ -134,24 +85,6 @@ def test_searches_start_at_the_least_costs_of_the_grid(starts, expected):
     assert [start[0] for start in found] == pytest.approx(expected)
 
 
-def test_at_most_four_searches_of_the_best_starts(monkeypatch):
-    costs = np.array([5.0, 0.0, 9.0, 3.0, 9.0, 1.0, 9.0, 2.0, 9.0, 4.0])
-    monkeypatch.setattr(Problem, "weighted", lambda *_: np.sqrt(costs)[:, None])
-    many = option("a", starts=tuple(float(k) for k in range(10)))
-    found = starting(line({"y": X}, many))
-    assert [start[0] for start in found] == [1.0, 5.0, 7.0, 3.0]
-    costs[:] = 1.0
-    assert [start[0] for start in starting(line({"y": X}, many))] == [0.0]
-
-
-def test_a_start_is_least_along_every_axis(monkeypatch):
-    costs = np.array([[4.0, 1.0, 4.0], [3.0, 2.0, 0.5]])
-    monkeypatch.setattr(Problem, "weighted", lambda *_: np.sqrt(costs).reshape(-1, 1))
-    axes = option("a", starts=(0.0, 1.0)), option("b", starts=(5.0, 6.0, 7.0))
-    found = starting(line({"y": X}, *axes))
-    assert [start.tolist() for start in found] == [[1.0, 7.0], [0.0, 6.0]]
-
-
 def test_quantities_are_weighted_by_their_own_residuals():
     """Likelihood of two means of one number: the weights are those of the scatter about it."""
     rng = np.random.default_rng(3)
@@ -165,22 +98,6 @@ def test_quantities_are_weighted_by_their_own_residuals():
         found, before = found_again, found
     assert found == pytest.approx(before, rel=1e-12)
     assert solved(line({"y": y, "z": z}, one), np.array([1.0]))[0] == pytest.approx(found, rel=1e-5)
-
-
-def test_stated_errors_need_no_rounds(monkeypatch):
-    searches = []
-    monkeypatch.setattr(
-        module, "minimum", lambda _, start, scales: searches.append(scales) or start
-    )
-    measured, error = {"y": X, "z": X}, np.ones(4)
-    solved(line(measured, errors={"y": error, "z": error}), np.array([1.0, 0.0]))
-    assert len(searches) == 1
-    solved(line({"y": X}), np.array([1.0, 0.0]))
-    assert len(searches) == 2
-    solved(line(measured, errors={"y": error}), np.array([1.0, 0.0]), {"y": error, "z": 50.0})
-    assert [scales["z"] for scales in searches[2:]] == pytest.approx(
-        [50.0, math.sqrt(0.25 * np.sum((X - 3.0) ** 2)), math.sqrt(0.25 * np.sum((X - 3.0) ** 2))]
-    )
 
 
 def test_a_search_begins_and_ends_inside_the_bounds():
@@ -222,10 +139,3 @@ def test_columns_of_zeros_span_nothing():
     assert basis.shape == (3, 2)
     assert basis.T @ basis == pytest.approx(np.eye(2))
     assert basis @ (basis.T @ columns) == pytest.approx(columns, abs=1e-12)
-
-
-def test_frictions_of_the_grid_are_evenly_apart_in_ratio():
-    assert len(FRICTION_STARTS) == 25
-    ratios = np.diff(np.log(FRICTION_STARTS))
-    assert ratios == pytest.approx(np.full(24, math.log(1000.0) / 24.0))
-    assert FRICTION_STARTS[0] == pytest.approx(0.004)

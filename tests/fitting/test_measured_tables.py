@@ -77,29 +77,6 @@ def test_impacts_with_none_of_the_chosen_quantities_are_left_out():
         found.only(["rebound_spin"])
 
 
-@pytest.mark.parametrize(
-    ("columns", "words"),
-    [
-        ({"psi2": [[0.1]]}, "psi2 = [[0.1]]: must be a list of numbers; one for each impact"),
-        ({"psi2": []}, "psi2 = []: must be a list of numbers; one for each impact"),
-        ({"psi2": [np.nan, np.inf]},
-         "psi2 = [nan, inf]: must be finite; leave out what was not measured"),
-        ({"psi2": [1.0], "psi2_error": [-0.1]},
-         "psi2_error: must be positive wherever psi2 was measured"),
-        ({"psi2": [1.0, 2.0], "psi2_error": [0.1, np.nan]},
-         "psi2_error: must be positive wherever psi2 was measured"),
-        ({"angle_deg": [1.0], "psi2": [1.0, 2.0], "psi2_error": [0.1]},
-         "the columns must be of equal length; they have angle_deg 1, psi2 2, psi2_error 1"),
-        ({"psi2": [1.0], "rebound_angle_deg": [np.nan]}, "rebound_angle_deg: holds no number"),
-        ({"angle_deg": [1.0]}, "nothing was measured: no column is a quantity of a rebound"),
-        ({"psi2": [1.0], "psi2 (1)": [1.0]}, "heading 'psi2 (1)': psi2 is there twice"),
-    ],
-)  # fmt: skip
-def test_columns_that_do_not_belong_together(columns, words):
-    with pytest.raises(ValueError, match=re.escape(words)):
-        read_measurements(columns)
-
-
 def test_an_error_may_be_missing_where_nothing_was_measured():
     found = read_measurements({"psi2": [1.0, np.nan], "psi2_error": [0.1, np.nan]})
     np.testing.assert_array_equal(found.errors["psi2"], [0.1, np.nan])

@@ -1,17 +1,14 @@
 """Parameters of scenes and laws: their ranges, their starts, and the laws that they change."""
 
 import math
-import re
 
 import attrs
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation, create
-from contactlab.compose.registry import REGISTRY, PluginError
-from contactlab.fitting import fit, tabulated
-from contactlab.fitting.model import Model, scene_of, simulation_of
-from contactlab.fitting.parameters import Parameter, Setup, _range, parameter_named
+from contactlab import Simulation, create
+from contactlab.fitting.model import Model, scene_of
+from contactlab.fitting.parameters import Setup, _range, parameter_named
 from contactlab.numeric.checks import FINITE, GYRATION, NON_NEGATIVE, POISSON, POSITIVE, Rule
 from tests.fitting.impacts import ANGLES, BODIES, scene
 from tests.laws.outside_laws import Walton
@@ -84,30 +81,19 @@ def test_only_real_options_of_laws_are_fitted_not_those_of_integrators():
             named(name, simulation)
 
 
-def test_a_name_that_is_not_there_is_told_with_what_is():
-    with pytest.raises(ValueError, match="parameters = 'frction'") as caught:
-        named("frction")
-    assert str(caught.value) == (
-        "parameters = 'frction': scene and laws have no such number; did you mean "
-        "'friction_coefficient'? known here: friction_coefficient, stiffness_ratio; options of a "
-        "law are there once it is chosen and they have a number"
-    )
-    empty = Scene.nondimensional(psi1=1.0, chi=1.0)
-    with pytest.raises(ValueError, match="parameters = 'qq'") as caught:
-        named("qq", bodies=empty)
-    assert str(caught.value) == (
-        "parameters = 'qq': scene and laws have no such number; nothing can be fitted here; "
-        "options of a law are there once it is chosen and they have a number"
-    )
-    with pytest.raises(ValueError, match="normal") as caught:
-        named("tangential.restitution", TSUJI)
-    told = str(caught.value)
-    assert "did you mean 'normal.restitution'? " in told
-    assert "known here: friction_coefficient, stiffness_ratio, normal.restitution" in told
-    listed = re.search(r"it is an option of (.*): choose one of them$", told)[1].split(", ")
-    assert {"normal.tsuji", "normal.hunt_crossley"} <= set(listed)
-    assert "normal.hertz" not in listed
-    assert not [name for name in listed if name.startswith("integrator")]
+@pytest.mark.parametrize(
+    ("name", "simulation", "words"),
+    [
+        ("frction", None, "did you mean 'friction_coefficient'"),
+        ("tangential.restitution", TSUJI, "did you mean 'normal.restitution'"),
+        ("slip_restitution", None, "it is an option of tangential.walton: choose one of them"),
+    ],
+)
+def test_a_name_that_is_not_there_is_told_with_what_is(name, simulation, words):
+    with pytest.raises(ValueError, match="scene and laws have no such number") as caught:
+        named(name, simulation)
+    assert words in str(caught.value)
+    assert "known here: friction_coefficient, stiffness_ratio" in str(caught.value)
 
 
 def test_two_options_of_one_name_need_their_kinds():
@@ -151,39 +137,6 @@ def test_laws_in_words():
     assert not stepped.tabled
     words = stepped.laws(np.array([0.5]))
     assert words == f"Tsuji(restitution=0.5), {coulomb.tangential!r}, {coulomb.integrator!r}"
-
-
-def test_the_table_holds_for_its_own_laws_alone():
-    assert tabulated.holds(None)
-    assert tabulated.holds(TSUJI)
-    assert not tabulated.holds(Simulation(normal="hertz", tangential="coulomb"))
-    assert not tabulated.holds(Simulation(normal="tsuji", tangential="coulomb"))
-    assert not tabulated.holds(Simulation(normal="hunt_crossley"))
-    walton = model("beta", simulation=Simulation(tangential=Walton()))
-    assert not walton.tabled
-
-
-def test_a_point_that_was_seen_is_not_run_again(monkeypatch):
-    one = model("friction_coefficient", "stiffness_ratio")
-    runs = []
-    together = Model._together
-    monkeypatch.setattr(
-        Model,
-        "_together",
-        lambda me, points, names: runs.append(points) or together(me, points, names),
-    )
-    points = np.array([[0.1, 0.8], [0.2, 0.8], [0.1, 0.8]])
-    first = one.predicted(points, ["psi2"])["psi2"]
-    assert [len(run) for run in runs] == [3]
-    np.testing.assert_array_equal(first[0], first[2])
-    again = one.predicted(points[1:], ["psi2"])["psi2"]
-    np.testing.assert_array_equal(again, first[1:])
-    assert len(runs) == 1
-    one.predicted(points[:1], ["psi2", "rebound_spin"])
-    assert len(runs) == 2
-    monkeypatch.setattr("contactlab.fitting.model.REMEMBERED", 1)
-    one.predicted(points[:1], ["psi2"])  # forgotten, and run again
-    assert len(runs) == 3
 
 
 def test_points_with_different_options_of_laws_run_apart():
@@ -235,48 +188,3 @@ def test_a_scene_is_one_impact_or_as_many_as_were_measured():
         ValueError, match=r"^scene = \(3,\): must be one impact, or the 2 that were"
     ):
         scene_of(three, {}, 2)
-
-
-def test_laws_are_a_simulation():
-    assert simulation_of(None) is None
-    assert simulation_of(TSUJI) is TSUJI
-    words = "simulation = 3: must be a Simulation; or None for the exact elastic law"
-    with pytest.raises(ValueError, match=f"^{words}$"):
-        simulation_of(3)
-
-
-def test_parameters_are_a_list_of_different_names():
-    data = {"psi1": [1.0], "slip_restitution": [0.1]}
-    for names, words in (
-        ("beta", "parameters = 'beta': must be a list of names; ['friction_coefficient']"),
-        ([], "parameters = []: must be a list of names; ['friction_coefficient']"),
-    ):
-        with pytest.raises(ValueError, match=f"^{re.escape(words)}$"):
-            fit(data | {"psi1": [1.0]}, BODIES, parameters=names)
-
-
-def test_a_parameter_of_ones_own_is_batched_and_has_no_unit():
-    class Own(Parameter):
-        def applied(self, setup, value):
-            return setup
-
-    own = Own(name="own", least=-1.0, most=3.0, starts=(0.0,))
-    assert (own.width, own.batched, own.unit) == (4.0, True, "1")
-
-
-def test_a_broken_plug_in_is_no_remedy(monkeypatch):
-    """Laws that cannot be loaded are not among those that have the option."""
-    usual = REGISTRY.law_class
-
-    def broken(name):
-        if name == "normal.tsuji":
-            raise PluginError("broken")
-        if name == "normal.hunt_crossley":
-            raise ValueError("not a law")
-        return usual(name)
-
-    monkeypatch.setattr(REGISTRY, "law_class", broken)
-    with pytest.raises(ValueError, match="it is an option of") as caught:
-        named("restitution")
-    assert "tsuji" not in str(caught.value)
-    assert "hunt_crossley" not in str(caught.value)

@@ -25,49 +25,30 @@ def sentences(columns, *, scene=BODIES):
     return unlikely_numbers(Problem(model=model, measured=table.measured, errors={}), table)
 
 
-def unit(name, value):
-    return [f"{name} of about {value} is unlikely: look at its unit"]
-
-
 @pytest.mark.parametrize(
     ("columns", "told"),
     [
-        ({"speed (m/s)": [1e-3, 1e-3]}, []),
-        ({"speed (m/s)": [0.99e-3, 0.99e-3]}, unit("speed", "0.00099")),
-        ({"speed (m/s)": [300.0, 300.0]}, []),
-        ({"speed (m/s)": [301.0, 301.0, 2.0]}, unit("speed", "301")),
-        ({"speed (m/s)": [400.0, 2.0, 2.0]}, []),
-        ({"normal_speed (m/s)": [1e-3]}, []),
-        ({"normal_speed (m/s)": [0.9e-3]}, unit("normal_speed", "0.0009")),
-        ({"normal_speed (m/s)": [300.0]}, []),
-        ({"normal_speed (m/s)": [310.0]}, unit("normal_speed", "310")),
-        ({"spin (rad/s)": [-1e5, 0.0]}, []),
-        ({"spin (rad/s)": [-1.01e5, 0.0, 0.0]}, unit("spin", "1.01e+05")),
-        ({"spin (rad/s)": [1e-7, 0.0]}, []),
-        ({"spin (rad/s)": [0.0]}, []),
+        ({"speed (m/s)": [1e-3, 1e-3]}, ""),
+        ({"speed (m/s)": [0.99e-3, 0.99e-3]}, "speed of about 0.00099 is unlikely"),
+        ({"speed (m/s)": [301.0, 301.0, 2.0]}, "speed of about 301 is unlikely"),
+        ({"speed (m/s)": [400.0, 2.0, 2.0]}, ""),
+        ({"normal_speed (m/s)": [0.9e-3]}, "normal_speed of about 0.0009 is unlikely"),
+        ({"normal_speed (m/s)": [300.0]}, ""),
+        ({"spin (rad/s)": [-1e5, 0.0]}, ""),
+        ({"spin (rad/s)": [-1.01e5, 0.0, 0.0]}, "spin of about 1.01e+05 is unlikely"),
+        ({"spin (rad/s)": [1e-7, 0.0]}, ""),
+        ({"angle_deg": [0.1, 0.5, 1.57]}, "between 0.1 and 1.57 degrees: it may be in radians"),
+        ({"angle_deg": [-1.57, 0.0, 0.2]}, "it may be in radians"),
+        ({"angle_deg": [0.1, 0.2, 0.3]}, ""),
+        ({"angle_deg": [0.1, 0.5, 1.58]}, ""),
+        ({"angle_deg": [0.5, 1.5]}, ""),
     ],
 )
-def test_the_median_magnitude_of_what_moves_decides(columns, told):
-    assert sentences(columns) == told
-
-
-def radians(least, most):
-    return [f"angle_deg lies between {least} and {most} degrees: it may be in radians"]
-
-
-@pytest.mark.parametrize(
-    ("angles", "told"),
-    [
-        ([0.1, 0.5, 1.57], radians("0.1", "1.57")),
-        ([-1.57, 0.0, 0.2], radians("-1.57", "0.2")),
-        ([0.1, 0.2, 0.31], radians("0.1", "0.31")),
-        ([0.1, 0.2, 0.3], []),
-        ([0.1, 0.5, 1.58], []),
-        ([0.5, 1.5], []),
-    ],
-)
-def test_small_angles_may_be_in_radians(angles, told):
-    assert sentences({"angle_deg": angles, "speed (m/s)": [2.0] * len(angles)}) == told
+def test_numbers_before_the_impact(columns, told):
+    """The median magnitude of what moves decides on a unit, the greatest one on radians."""
+    found = sentences(columns)
+    assert len(found) == bool(told)
+    assert told in "".join(found)
 
 
 @pytest.mark.parametrize(
@@ -87,40 +68,34 @@ def test_a_scene_without_bodies_has_no_radius():
     assert unlikely_numbers(Problem(model=model, measured=table.measured, errors={}), table) == []
 
 
-def beyond(name, count, least, most):
-    return [
-        f"{name}: {count} numbers lie beyond {least} and {most}, which no rebound does: look at "
-        "its unit, its sign and whether columns have moved"
-    ]
-
-
 @pytest.mark.parametrize(
-    ("name", "values", "told"),
+    ("name", "values", "outside"),
     [
-        ("normal_restitution", [-0.1, 1.1], []),
-        ("normal_restitution", [-0.11, 0.5], beyond("normal_restitution", 1, "-0.1", "1.1")),
-        ("normal_restitution", [0.5, 1.11], beyond("normal_restitution", 1, "-0.1", "1.1")),
-        ("slip_restitution", [-1.1, 1.1], []),
-        ("slip_restitution", [-1.11, 0.0], beyond("slip_restitution", 1, "-1.1", "1.1")),
-        ("slip_restitution", [1.11, 2.0], beyond("slip_restitution", 2, "-1.1", "1.1")),
-        (E_T, [-0.1, 1.1], []),
-        (E_T, [1.11, 0.5], beyond(E_T, 1, "-0.1", "1.1")),
-        (E_T, [-0.11, 0.5], beyond(E_T, 1, "-0.1", "1.1")),
-        (E_T, [9.0, 0.5, 0.5], []),  # no more than a third
-        (E_T, [9.0, 0.5, np.nan], beyond(E_T, 1, "-0.1", "1.1")),  # of those measured
-        ("rebound_speed (m/s)", [-5.0, 900.0], []),
+        ("normal_restitution", [-0.1, 1.1], 0),
+        ("normal_restitution", [-0.11, 0.5], 1),
+        ("normal_restitution", [0.5, 1.11], 1),
+        ("slip_restitution", [-1.1, 1.1], 0),
+        ("slip_restitution", [-1.11, 0.0], 1),
+        ("slip_restitution", [1.11, 2.0], 2),
+        (E_T, [-0.1, 1.1], 0),
+        (E_T, [1.11, 0.5], 1),
+        (E_T, [9.0, 0.5, 0.5], 0),  # no more than a third
+        (E_T, [9.0, 0.5, np.nan], 1),  # of those measured
+        ("rebound_speed (m/s)", [-5.0, 900.0], 0),
     ],
 )
-def test_what_no_rebound_does(name, values, told):
-    assert sentences({"slip_restitution": [0.5] * len(values)} | {name: values}) == told
+def test_what_no_rebound_does(name, values, outside):
+    found = sentences({"slip_restitution": [0.5] * len(values)} | {name: values})
+    assert len(found) == bool(outside)
+    if outside:
+        assert found[0].startswith(f"{name}: {outside} numbers lie beyond ")
 
 
 def test_a_spin_before_may_give_any_tangential_velocity():
     spun = {"spin (rad/s)": [0.0, 100.0], E_T: [-3.0, 4.0]}
     assert sentences(spun) == []
-    assert sentences(spun | {"normal_restitution": [2.0, 2.0]}) == (
-        beyond("normal_restitution", 2, "-0.1", "1.1")
-    )
+    (told,) = sentences(spun | {"normal_restitution": [2.0, 2.0]})
+    assert told.startswith("normal_restitution: 2 numbers")
 
 
 ICE = "slides on thin ice or sticks like soft rubber"
@@ -145,9 +120,6 @@ ICE = "slides on thin ice or sticks like soft rubber"
 )
 def test_a_parameter_whose_whole_interval_is_implausible(name, interval, words):
     problem = Problem(model=None, measured={"psi2": [1.0], E_T: [1.0]}, errors={})
-    low, high = interval
-    told = (
-        f"{name} from {low:.3g} to {high:.3g} is unlikely, as if a pair of materials that {words}: "
-        f"look at the units of psi2, {E_T}, speed, the radius"
-    )
-    assert unlikely_parameters(problem, {name: interval}) == ([told] if words else [])
+    found = unlikely_parameters(problem, {name: interval})
+    assert len(found) == bool(words)
+    assert words in "".join(found)

@@ -40,106 +40,18 @@ CARTESIAN = {"normal_speed (m/s)": np.full(COUNT, 2.0),
 SPUN = {"spin (rad/s)": np.linspace(-10.0, 40.0, COUNT)}
 E_T = {"tangential_restitution": np.linspace(0.5, 0.9, COUNT)}
 BALL = [f"the radius of the sphere looks as if {way}" for way in ("in mm", "in cm", "the diameter")]
-SPEED = ["in mm/s", "in cm/s", "in km/h", "in m/s under a heading in mm/s",
-         "in m/s under a heading in cm/s"]  # fmt: skip
 SPINS = [
     "in rpm",
     "in rad/s under a heading in rpm",
     "in rev/s",
     "in deg/s",
-    "of the opposite sign",
+    "of the opposite sign (--column HEADING=-spin turns it)",
 ]
 SURFACE = "measured from the surface, not from the normal"
 
 
-def ways(name, listed):
-    return [f"{name} looks as if {way}" for way in listed]
-
-
-def shifts(names, look="look"):
-    return [f"{names} {look} as if written a row too {way}" for way in ("low", "high")]
-
-
-def test_every_reading_of_a_restitution_over_angles():
-    assert list(read(POLAR | E_T)) == [
-        *ways("angle_deg", ["in radians", SURFACE]),
-        *ways("speed", SPEED),
-        *BALL,
-        *ways("tangential_restitution", ["in percent", "of the opposite sign"]),
-        "tangential_restitution looks as if its numbers were those of slip_restitution",
-        *shifts("tangential_restitution", "looks"),
-    ]
-
-
-def test_every_reading_of_velocities_with_spin():
-    columns = CARTESIAN | SPUN | {"rebound_tangential_velocity (m/s)": np.linspace(1.0, 2.0, COUNT),
-                                  "contact_time (s)": np.full(COUNT, 1e-5)}  # fmt: skip
-    assert list(read(columns)) == [
-        *ways("the angle of incidence", [SURFACE]),  # of up to 56 degrees: not in radians
-        "normal_speed and tangential_velocity look as if exchanged",
-        *(f"{name} looks as if {way}" for way in SPEED
-          for name in ("normal_speed", "tangential_velocity")),
-        *ways("spin", SPINS),
-        *BALL,
-        *ways("rebound_tangential_velocity", [*SPEED, "of the opposite sign"]),
-        "rebound_tangential_velocity looks as if its numbers were those of rebound_slip_velocity",
-        *ways("contact_time", ["in ms", "in µs", "in s under a heading in ms",
-                               "in ms under a heading in µs", "in s under a heading in µs",
-                               "of the opposite sign"]),
-        *shifts("rebound_tangential_velocity and contact_time"),
-    ]  # fmt: skip
-
-
-def test_every_reading_of_angles_and_of_a_pair_of_them():
-    out = {"rebound_angle (rad)": np.linspace(0.1, 1.0, COUNT),
-           "local_rebound_angle (rad)": np.linspace(-0.5, 1.0, COUNT)}  # fmt: skip
-    degrees = ["in radians", "in degrees under a heading in rad", "of the opposite sign", SURFACE]
-    found = list(read(POLAR | out))
-    assert found[10:] == [
-        *ways("rebound_angle", degrees),
-        *ways("local_rebound_angle", degrees),
-        "rebound_angle and local_rebound_angle look as if exchanged",
-        *shifts("rebound_angle and local_rebound_angle"),
-        *(f"angle_deg and rebound_angle and local_rebound_angle look as if {way}"
-          for way in ("in radians", SURFACE)),
-    ]  # fmt: skip
-
-
-def test_fewer_than_six_numbers_show_no_shift():
-    short = {name: values[:5] for name, values in (POLAR | E_T).items()}
-    assert not [words for words in read(short) if "row" in words]
-    gap = E_T | {"slip_restitution": np.array([0.1, np.nan, *[0.1] * 4])}
-    assert not [words for words in read(POLAR | gap) if "row" in words]
-    assert [words for words in read(POLAR | E_T) if "row" in words]
-
-
-@pytest.mark.parametrize(
-    ("words", "angle", "speed"),
-    [
-        ("angle_deg looks as if in radians", np.degrees(POLAR["angle_deg"]), POLAR["speed (m/s)"]),
-        (f"angle_deg looks as if {SURFACE}", 90.0 - POLAR["angle_deg"], POLAR["speed (m/s)"]),
-        ("speed looks as if in mm/s", POLAR["angle_deg"], 1e-3 * POLAR["speed (m/s)"]),
-        ("speed looks as if in cm/s", POLAR["angle_deg"], 1e-2 * POLAR["speed (m/s)"]),
-        ("speed looks as if in km/h", POLAR["angle_deg"], POLAR["speed (m/s)"] / 3.6),
-        (
-            "speed looks as if in m/s under a heading in mm/s",
-            POLAR["angle_deg"],
-            1e3 * POLAR["speed (m/s)"],
-        ),
-        (
-            "speed looks as if in m/s under a heading in cm/s",
-            POLAR["angle_deg"],
-            1e2 * POLAR["speed (m/s)"],
-        ),
-    ],
-)
-def test_the_impacts_of_another_angle_or_speed(words, angle, speed):
-    reading = read(POLAR | E_T)[words]
-    scene = reading.problem.model.setup.scene
-    assert scene.normal_speed == pytest.approx(speed * np.cos(np.radians(angle)))
-    assert scene.tangential_velocity == pytest.approx(speed * np.sin(np.radians(angle)))
-    assert reading.problem.measured["tangential_restitution"] is not None
-    assert (dict(reading.factors), reading.rest) == ({}, None)
+def turned_by(name):
+    return f"of the opposite sign (--column HEADING=-{name} turns it)"
 
 
 def test_the_impacts_of_exchanged_velocities_other_spins_and_balls():
@@ -175,7 +87,7 @@ def test_the_impacts_of_exchanged_velocities_other_spins_and_balls():
         ("rebound_angle (rad)", "in radians", 360.0 / TURN, 0.0),
         ("rebound_spin (rad/s)", "in rpm", TURN / 60.0, 0.0),
         ("rebound_spin (rad/s)", "in rad/s under a heading in rpm", 60.0 / TURN, 0.0),
-        ("rebound_spin (rad/s)", "of the opposite sign", -1.0, 0.0),
+        ("rebound_spin (rad/s)", turned_by("rebound_spin"), -1.0, 0.0),
         ("contact_time (s)", "in ms", 1e-3, 0.0),
         ("contact_time (s)", "in µs", 1e-6, 0.0),
         ("contact_time (s)", "in s under a heading in ms", 1e3, 0.0),
@@ -203,21 +115,6 @@ def test_both_angles_read_another_way():
         assert both.problem.model.setup.scene == alone.problem.model.setup.scene
         assert both.problem.measured["rebound_angle_deg"] == pytest.approx(values)
         assert dict(both.factors) == pytest.approx({"rebound_angle_deg": factor})
-
-
-def test_quantities_under_other_names_keep_their_order_and_errors():
-    errors = {"tangential_restitution_error": np.full(COUNT, 0.1)}
-    twin = read(POLAR | E_T | errors)[
-        "tangential_restitution looks as if its numbers were those of slip_restitution"
-    ].problem
-    assert list(twin.measured) == list(twin.errors) == ["slip_restitution"]
-    np.testing.assert_array_equal(twin.measured["slip_restitution"], E_T["tangential_restitution"])
-    two = E_T | errors | {"normal_restitution": np.full(COUNT, 0.8)}
-    words = "tangential_restitution and normal_restitution look as if exchanged"
-    swapped = read(POLAR | two)[words].problem
-    assert list(swapped.measured) == ["normal_restitution", "tangential_restitution"]
-    assert list(swapped.errors) == ["normal_restitution"]
-    assert swapped.measured["tangential_restitution"].tolist() == [0.8] * COUNT
 
 
 def test_impacts_are_turned_at_the_speed_that_was_measured():

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from contactlab import Simulation, fit
+from contactlab import Scene, Simulation, fit
 from contactlab.fitting import read_measurements
 from contactlab.scene_file import read_scene
 from tests.fitting.impacts import BODIES, restitution, table
@@ -64,6 +64,16 @@ def test_a_law_without_the_property_is_no_help():
     told = refused(table(scattered(GRAZING), GRAZING), "stiffness_ratio", simulation=laws)
     assert "no rebound of these laws depends on stiffness_ratio" in told
     assert "fix it" in told
+
+
+def test_a_scene_without_bodies_is_advised_by_psi1():
+    """Impacts that slip throughout say nothing of a restitution of the slip."""
+    psi1 = np.linspace(8.0, 10.0, 4)
+    batch = Scene.nondimensional(psi1=psi1, chi=1.4412)
+    laws = Simulation(tangential="walton")
+    with pytest.raises(ValueError, match=r"measure psi2 at psi1 (of|from) .*slip_restitution"):
+        fit({"psi2": laws.sweep(batch).check().psi2}, batch, parameters=["slip_restitution"],
+            simulation=laws)  # fmt: skip
 
 
 def test_restitution_needs_a_measurement_of_it():
@@ -190,6 +200,9 @@ def test_bad_arguments(arguments, words):
         ({"slip_restitution": [1.0], "slip_restitution_error": [0.0]}, "must be positive"),
         ({"slip_restitution": [1.0], "psi2_error": [0.1]}, "there is no column psi2"),
         ({"rebound_angle (deg)": [1.0], "rebound_angle_deg": [1.0]}, "there twice"),
+        ({"psi2": [[0.1]]}, "must be a list of numbers"),
+        ({"psi2": []}, "must be a list of numbers"),
+        ({"psi2": [1.0, 2.0], "psi2_error": [0.1, np.nan]}, "must be positive"),
     ],
 )
 def test_bad_columns(columns, words):
@@ -227,6 +240,8 @@ def test_bad_names_of_columns(names, words):
         ("psi2,angle_deg\n1,2\n\n1,x\n", "line 4, 'angle_deg': 'x' is not a number"),
         ("psi2,angle_deg\n1,\n", "line 2, 'angle_deg': is empty"),
         ("psi2,psi2\n1,2\n", "the same heading"),
+        ("psi2,angle_deg\n0.5,1,2\n", "line 2: has 3 columns, the headings are 2"),
+        ('psi2,angle_deg\n"1,002",2\n', "line 2, 'psi2': '1,002' is not a number"),
     ],
 )
 def test_bad_files(tmp_path, text, words):

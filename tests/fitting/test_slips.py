@@ -5,10 +5,8 @@ silent with the truth inside; 13 refused and 3 answered without naming the colum
 and 30 in each of the two further series of scatter that none was looked at with beforehand.
 """
 
-import numpy as np
 import pytest
 
-from contactlab.fitting.readings import MISTAKEN
 from tests.fitting.slips import answer, kind, slips
 
 SLIPS = slips()
@@ -36,22 +34,6 @@ CAUSES = {
     "spin before in rpm": "spin looks as if in rpm",
     "sign of the spin before": "spin looks as if of the opposite sign",
 }
-
-
-def test_mistaken_units_are_those_units():
-    """One turn, revolution, hour and minute, written out."""
-    turn = 2.0 * np.pi
-    assert MISTAKEN["rad/s"]["in rev/s"] == pytest.approx(turn)
-    assert MISTAKEN["rad/s"]["in rpm"] == pytest.approx(turn / 60.0)
-    assert MISTAKEN["rad/s"]["in deg/s"] == pytest.approx(turn / 360.0)
-    assert MISTAKEN["deg"]["in radians"] == pytest.approx(360.0 / turn)
-    assert MISTAKEN["m/s"]["in km/h"] == pytest.approx(1000.0 / 3600.0)
-    for unit, ways in MISTAKEN.items():  # what is mistaken one way may be mistaken the other
-        for way, factor in ways.items():
-            written, _, heading = way.partition(" under a heading in ")
-            other = ways.get(f"in {heading}") if heading else None
-            if other is not None and written == f"in {unit}":
-                assert factor * other == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("name", SLIPS)
