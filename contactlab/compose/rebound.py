@@ -97,14 +97,14 @@ def rebound(
         Return d psi2/d psi1 and d psi2/d chi too, for chi up to 2.5. Both are tabulated to 1e-6 at
         any tolerance (5e-5 for psi1 just above 1, chi 1.83 to 1.92).
     restitution : float or array_like
-        e of the normal motion, from 0.01 to 1, broadcast against ``psi1``. Each different value
-        costs a call of its own. Below 1 the law is Tsuji's (``normal.tsuji``) with
-        Coulomb's law at every point, and ``tolerance`` has no effect. For chi from 0.8 to 1.8 and e
-        from 0.5 a table holds psi2 to 1e-3; elsewhere up to chi = 10 rings give psi2 to 4e-3, in
-        about ten milliseconds per impact; beyond, annuli answer, with an error that is not
-        declared. The choice of law is a model error: at the same e other laws differ in psi2, for
-        chi up to 1.8 at e = 0.9 the viscoelastic law by up to 0.021, Hunt and Crossley's by 0.11, a
-        linear spring by 0.62.
+        e of the normal motion, from 0.01 to 1, broadcast against ``psi1``. Below 1 the law is
+        Tsuji's (``normal.tsuji``) with Coulomb's law at every point, and ``tolerance`` has no
+        effect. For chi from 0.8 to 1.8 and e from 0.5 a table holds psi2 to 1e-3, whether all
+        impacts have one e or each its own; elsewhere up to chi = 10 rings give psi2 to 4e-3, in
+        about ten milliseconds per impact, and each different e takes more; beyond, annuli answer,
+        with an error that is not declared. The choice of law is a model error: at the same e other
+        laws differ in psi2, for chi up to 1.8 at e = 0.9 the viscoelastic law by up to 0.021, Hunt
+        and Crossley's by 0.11, a linear spring by 0.62.
 
     Returns
     -------
@@ -231,26 +231,26 @@ def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
 
 def _each(psi1: Array, chi: Array, restitution: Array, tolerance: float) -> Array:
     """Return psi2 of impacts with a restitution each, shape (impacts,)."""
-    psi2 = np.empty_like(psi1)
-    for value in np.unique(restitution).tolist():
-        part = restitution == value
-        if value == 1.0:
-            psi2[part] = _solve(psi1[part], chi[part], tolerance)
-        else:
-            psi2[part] = _damped(psi1[part], chi[part], value)
+    psi2, elastic = np.empty_like(psi1), restitution == 1.0
+    if elastic.any():
+        psi2[elastic] = _solve(psi1[elastic], chi[elastic], tolerance)
+    if not elastic.all():
+        psi2[~elastic] = _damped(psi1[~elastic], chi[~elastic], restitution[~elastic])
     return psi2
 
 
-def _damped(psi1: Array, chi: Array, restitution: float) -> Array:
+def _damped(psi1: Array, chi: Array, restitution: Real) -> Array:
     """Return psi2, shape (impacts,), under Tsuji's law; by annuli beyond the largest chi."""
     psi2, left = np.empty_like(psi1), np.ones(psi1.shape, dtype=bool)
-    table = _table(DAMPED)
+    table, each = _table(DAMPED), np.broadcast_to(restitution, psi1.shape)
     if table is not None:
         in_range = chi <= DAMPED_LARGEST_CHI
-        psi2[in_range], left = table(psi1[in_range], chi[in_range], restitution), ~in_range
-    if left.any():
-        change = _change(damped(restitution), psi1[left], chi[left])
-        psi2[left] = np.copysign(1.0, psi1[left]) * (np.abs(psi1[left]) + change)
+        e = restitution if isinstance(restitution, float) else restitution[in_range]
+        psi2[in_range], left = table(psi1[in_range], chi[in_range], e), ~in_range
+    for value in np.unique(each[left]).tolist():
+        part = left & (each == value)
+        change = _change(damped(value), psi1[part], chi[part])
+        psi2[part] = np.copysign(1.0, psi1[part]) * (np.abs(psi1[part]) + change)
     return psi2
 
 
@@ -269,7 +269,7 @@ def damped(restitution: float) -> Simulation:
     )
 
 
-def damped_error(chi: Real, restitution: float) -> Any:
+def damped_error(chi: Real, restitution: Real) -> Any:
     """Return the bound of the error of psi2 below a restitution of 1; NaN if not measured."""
     if _table(DAMPED) is None:
         return np.full(np.shape(chi), np.nan)
