@@ -6,29 +6,26 @@ import math
 import os
 from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, cast, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.hookspecs import PROJECT
-from contactlab.compose.installed import BLOCK_VARIABLE, blocks
+from contactlab.compose.installed import BLOCK_VARIABLE
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.numeric.checks import POSITIVE, Real, Rule, paired, real, refuse
 
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation
+    from contactlab.contracts.whole_impact import Tabulated
 
 Array = NDArray[np.float64]
 
-#: Group of entry points of functions (psi1, chi, derivatives=False) that return psi2 from a table,
-#: and the name that is used here. The entry point may be blocked, like a law: "rebound.elastic".
-GROUP, TABLE = "contactlab.rebound", "elastic"
-#: Name of the function (psi1, chi, restitution) for a restitution below 1, and its largest chi.
-DAMPED, DAMPED_LARGEST_CHI = "damped", 10.0
-#: Range of chi and least restitution of its table, and the largest errors of psi2 in the table and
-#: outside, against Coulomb's law at every point: ``tests/laws/test_damped_table.py``.
+#: Largest chi of the law for a restitution below 1; the range of chi and the least restitution of
+#: its table, and the largest errors of psi2 in the table and outside, against Coulomb's law at
+#: every point: ``tests/laws/test_damped_table.py``.
+DAMPED_LARGEST_CHI = 10.0
 DAMPED_CHI, DAMPED_RESTITUTION = (0.8, 1.8), 0.5
 DAMPED_ERROR, BEYOND_ERROR = 1e-3, 4e-3
 #: Number of annuli beyond the largest chi; the steps are four times as many.
@@ -121,7 +118,8 @@ def rebound(
         For bad input, with the argument, its value, the index of the first bad number, the rule
         and the remedy.
     ValueError, PluginError
-        If the law ``tangential.fronts`` is needed, but is blocked or cannot be imported.
+        If ``tangential.fronts``, or ``normal.tsuji`` below a restitution of 1, is blocked or cannot
+        be imported.
     ImpactError
         If an impact cannot be solved; no such impact has been found.
 
@@ -140,9 +138,7 @@ def rebound(
         and (tolerance is USUAL or (isinstance(tolerance, float) and TABULATED < tolerance < 1.0))
         and _in_table(psi1, chi)
     ):
-        quick = _kept_table(os.environ.get(BLOCK_VARIABLE))
-        if quick is not None:
-            return quick(psi1, chi)  # type: ignore[no-any-return]
+        return _table("tangential")(psi1, chi)  # type: ignore[no-any-return]
     incidence = real(
         "psi1",
         psi1,
@@ -183,14 +179,10 @@ def rebound(
     answer = float(psi2) if psi2.ndim == 0 else psi2
     if not derivatives:
         return answer
-    table = _table()
-    if table is None:
-        remedy = f"install a plug-in that offers {GROUP}: {TABLE}, and do not block it"
-        raise refuse("derivatives", derivatives, "are available from a table only", remedy)
     if not (ratios <= TABULATED_CHI).all():
         rule = f"derivatives are tabulated up to chi = {TABULATED_CHI}"
         raise refuse("chi", float(ratios.max()), rule, "take differences of psi2 beyond")
-    _, by_psi1, by_chi = table(velocity, ratio, derivatives=True)
+    _, by_psi1, by_chi = _table("tangential")(velocity, ratio, derivatives=True)
     if psi2.ndim == 0:
         return answer, float(by_psi1), float(by_chi)
     return answer, by_psi1, by_chi
@@ -216,16 +208,14 @@ def _in_table(psi1: Any, chi: Any) -> bool:
 
 def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
     """Return psi2, shape (impacts,), from the table where chi is in range, else solved."""
-    table = _table() if tolerance > TABULATED else None
-    if table is None:
-        return _exact(psi1, chi)
-    tabulated = chi <= TABULATED_CHI
+    tabulated = (chi <= TABULATED_CHI) & (tolerance > TABULATED)
     if tabulated.all():
-        return np.asarray(table(psi1, chi))
+        return np.asarray(_table("tangential")(psi1, chi))
     psi2 = np.empty_like(psi1)
     if tabulated.any():
-        psi2[tabulated] = table(psi1[tabulated], chi[tabulated])
-    psi2[~tabulated] = _exact(psi1[~tabulated], chi[~tabulated])
+        psi2[tabulated] = _table("tangential")(psi1[tabulated], chi[tabulated])
+    if not tabulated.all():
+        psi2[~tabulated] = _exact(psi1[~tabulated], chi[~tabulated])
     return psi2
 
 
@@ -241,14 +231,15 @@ def _each(psi1: Array, chi: Array, restitution: Array, tolerance: float) -> Arra
 
 def _damped(psi1: Array, chi: Array, restitution: Real) -> Array:
     """Return psi2, shape (impacts,), under Tsuji's law; by annuli beyond the largest chi."""
-    psi2, left = np.empty_like(psi1), np.ones(psi1.shape, dtype=bool)
-    table, each = _table(DAMPED), np.broadcast_to(restitution, psi1.shape)
-    if table is not None:
-        in_range = chi <= DAMPED_LARGEST_CHI
-        e = restitution if isinstance(restitution, float) else restitution[in_range]
-        psi2[in_range], left = table(psi1[in_range], chi[in_range], e), ~in_range
-    for value in np.unique(each[left]).tolist():
-        part = left & (each == value)
+    beyond = chi > DAMPED_LARGEST_CHI
+    if not beyond.any():
+        return np.asarray(_table("normal")(psi1, chi, restitution=restitution))
+    psi2, each = np.empty_like(psi1), np.broadcast_to(restitution, psi1.shape)
+    if not beyond.all():
+        part = ~beyond
+        psi2[part] = _table("normal")(psi1[part], chi[part], restitution=each[part])
+    for value in np.unique(each[beyond]).tolist():
+        part = beyond & (each == value)
         change = _change(damped(value), psi1[part], chi[part])
         psi2[part] = np.copysign(1.0, psi1[part]) * (np.abs(psi1[part]) + change)
     return psi2
@@ -271,42 +262,24 @@ def damped(restitution: float) -> Simulation:
 
 def damped_error(chi: Real, restitution: Real) -> Any:
     """Return the bound of the error of psi2 below a restitution of 1; NaN if not measured."""
-    if _table(DAMPED) is None:
-        return np.full(np.shape(chi), np.nan)
     inside = (chi >= DAMPED_CHI[0]) & (chi <= DAMPED_CHI[1]) & (restitution >= DAMPED_RESTITUTION)
     measured = np.asarray(chi) <= DAMPED_LARGEST_CHI
     return np.where(inside, DAMPED_ERROR, np.where(measured, BEYOND_ERROR, np.nan))
 
 
-def _table(name: str = TABLE) -> Callable[..., Any] | None:
-    """Return a tabulated rebound, if one is installed and not blocked."""
-    return _installed(name, os.environ.get(BLOCK_VARIABLE, ""))
+def _table(kind: str) -> Callable[..., Any]:
+    """Return psi2 of a law: of the exact tangential law, or of the normal law of a restitution."""
+    return _kept_table(kind, os.environ.get(BLOCK_VARIABLE))
 
 
 @cache
-def _kept_table(_: Any) -> Callable[..., Any] | None:
-    """Return the table of elastic impacts while the blocking is the same."""
-    return _table()
+def _kept_table(kind: str, _: Any) -> Callable[..., Any]:
+    """Return the function of a law while the blocking is the same."""
+    from contactlab.compose import composition  # takes long to import
 
-
-@cache
-def _installed(name: str, blocking: str) -> Callable[..., Any] | None:
-    """Return the function of an entry point; contactlab's own if several distributions have one."""
-    from importlib import metadata  # takes 20 ms to import
-
-    entries, points = set(blocking.replace(",", " ").split()), {}
-    for point in metadata.entry_points(group=GROUP, name=name):
-        distribution = point.dist.name if point.dist is not None else "unknown"
-        if not blocks(entries, f"rebound.{name}", distribution):
-            points[distribution] = point
-    if not points:
-        return None
-    if len(points) > 1 and PROJECT not in points:
-        distributions = ", ".join(sorted(points))
-        rule, remedy = "is offered by several distributions", f"block all but one: {BLOCK_VARIABLE}"
-        raise refuse(f"{GROUP}: {name}", distributions, rule, remedy)
-    point = points.get(PROJECT) or next(iter(points.values()))
-    return cast("Callable[..., Any]", point.load())
+    names = composition.EXACT if kind == "tangential" else composition.RESTITUTION
+    law: Tabulated = composition.law(kind, names[kind])
+    return law.rebound
 
 
 def _exact(psi1: Array, chi: Array) -> Array:

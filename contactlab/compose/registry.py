@@ -42,8 +42,6 @@ __all__ = [
 FORMER = {
     "tangential.tabulated": "it is the table from which 'tangential.fronts' answers: use that",
 }
-#: Beginnings of the names of other plug-ins that may be blocked.
-OTHER_GROUPS = ("rebound.",)
 
 
 class Registry:
@@ -96,8 +94,7 @@ class Registry:
         unknown = {
             entry
             for entry in blocked_names() - self._warned
-            if not parted(entry)[1].startswith(OTHER_GROUPS)
-            and not any(blocks({entry}, info.name, info.distribution) for info in infos)
+            if not any(blocks({entry}, info.name, info.distribution) for info in infos)
         }
         self._warned |= unknown
         names = {text for info in infos for text in (info.name, info.qualified, info.distribution)}

@@ -29,7 +29,13 @@ from contactlab.contracts.tangential import (
     TangentialResponse,
     WholeImpactTangentialLaw,
 )
-from contactlab.contracts.whole_impact import WholeImpact, from_change, no_force, sliding
+from contactlab.contracts.whole_impact import (
+    Tabulated,
+    WholeImpact,
+    from_change,
+    no_force,
+    sliding,
+)
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import (
@@ -74,6 +80,7 @@ __all__ = [
     "SteppedTangentialLaw",
     "Steps",
     "Stretch",
+    "Tabulated",
     "TangentialLaw",
     "TangentialMotion",
     "TangentialResponse",

@@ -1,4 +1,4 @@
-"""Where ``rebound`` answers from a table, what it declares of its error, and who may offer one."""
+"""Where ``rebound`` answers from a table, and what it declares of its error."""
 
 import math
 
@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation, Sphere, collide, create, rebound
-from contactlab.compose import rebound as rebounds
 from contactlab.compose.rebound import (
     BEYOND_ERROR,
     DAMPED_ERROR,
@@ -20,20 +19,8 @@ from contactlab.compose.rebound import CHI as CHI_RULE
 from tests.compose.test_collision import STEEL, meeting
 
 CHI = 49.0 / 34.0
+E_09 = {"restitution": 0.9}
 BEYOND = math.nextafter(TABULATED_CHI, 3.0)
-
-
-@pytest.fixture
-def fresh():
-    """Forget which tables are installed, before and after."""
-
-    def forget():
-        rebounds._installed.cache_clear()
-        rebounds._kept_table.cache_clear()
-
-    forget()
-    yield
-    forget()
 
 
 @pytest.mark.parametrize("count", [1, FEW, FEW + 1, 2 * FEW])
@@ -149,42 +136,8 @@ def test_the_plan_of_a_heavy_core_says_that_no_error_was_measured():
     assert math.isnan(plan.psi2_error)
 
 
-@pytest.mark.usefixtures("fresh")
-def test_without_a_table_annuli_answer(monkeypatch):
-    """To the error of the table, which they do not declare."""
-    tabulated = rebound([1.0, -2.0], CHI, restitution=0.9)
-    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "rebound.damped")
-    annuli = rebound([1.0, -2.0], CHI, restitution=0.9)
-    assert 0.0 < np.abs(annuli - tabulated).max() < 2.0 * DAMPED_ERROR
-    assert np.isnan(damped_error(CHI, 0.9))
-    assert np.isnan(damped_error(np.array([CHI, 1.0]), 0.9)).tolist() == [True, True]
-
-
-@pytest.mark.usefixtures("fresh")
-def test_without_a_table_there_are_no_derivatives(monkeypatch):
-    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "rebound.elastic")
-    assert rebound(1.2, CHI) == pytest.approx(-0.1805193, abs=1e-6)
-    with pytest.raises(ValueError, match=" ") as caught:
-        rebound(1.2, CHI, derivatives=True)
-    assert str(caught.value) == (
-        "derivatives = True: are available from a table only; install a plug-in that offers "
-        "contactlab.rebound: elastic, and do not block it"
-    )
-
-
-@pytest.mark.usefixtures("fresh")
-def test_of_two_strangers_tables_neither_is_taken(install, tmp_path, monkeypatch):
-    for name, answer in (("second", 8.0), ("first", 7.0)):
-        install(name, f"{name}_table", f"def rebound(*_, **__):\n    return {answer}\n")
-        path = tmp_path / f"{name}-1.5.dist-info" / "entry_points.txt"
-        path.write_text(f"[contactlab.rebound]\nelastic = {name}_table:rebound\n")
-    ours = "contactlab:rebound.elastic"
-    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", ours)
-    with pytest.raises(ValueError, match=" ") as caught:
-        rebound(1.2, CHI)
-    assert str(caught.value) == (
-        "contactlab.rebound: elastic = 'first, second': is offered by several distributions; "
-        "block all but one: CONTACTLAB_BLOCK_PLUGINS"
-    )
-    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", f"{ours}, first")
-    assert rebound(1.2, CHI) == 8.0
+@pytest.mark.parametrize(("law", "options"), [("tangential.fronts", {}), ("normal.tsuji", E_09)])
+def test_a_blocked_law_does_not_answer(law, options, monkeypatch):
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", law)
+    with pytest.raises(ValueError, match=f"{law}.*blocked"):
+        rebound(1.2, CHI, **options)

@@ -128,7 +128,7 @@ def test_an_installation_changes_the_stamp(tmp_path, monkeypatch):
 
 
 def test_a_blocked_name_that_is_not_installed_is_told_once(registry, monkeypatch):
-    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "normal.hertzz rebound.elastic zzzzzz")
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "normal.hertzz zzzzzz")
     with pytest.warns(PluginWarning) as told:
         registry.installed()
     assert [str(one.message) for one in told] == [

@@ -13,6 +13,7 @@ from contactlab.contracts import (
     NormalMotion,
     PathTangentialLaw,
     Stretch,
+    Tabulated,
     WholeImpact,
     flag,
     from_change,
@@ -28,7 +29,7 @@ REASON = "psi2 is tabulated; a history, or a tolerance below 1e-9, follows the i
 
 
 @attrs.frozen(kw_only=True)
-class Fronts(PathTangentialLaw):
+class Fronts(PathTangentialLaw, Tabulated):
     """The continuum limit of the annulus law, with no discretisation.
 
     Where the contact sticks and where it slips is a short list of fronts; between changes
@@ -51,6 +52,7 @@ class Fronts(PathTangentialLaw):
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"elastic_hertz"})
     linear_below: ClassVar[float] = 1e-8
+    rebound = staticmethod(rebound)
 
     table: bool = flag(default=True)
 
