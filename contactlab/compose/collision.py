@@ -22,6 +22,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import Real, real, refuse
 from contactlab.numeric.names import attributes_told
+from contactlab.numeric.vectors import LEAST
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
 from contactlab.outcome.motion import Motion
@@ -34,8 +35,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 SEPARATING = ("refuse", "pass")
-#: Restitutions of a batch that have plans of their own.
-MOST_PLANS = 20
+#: Different restitutions beyond which a plan rounds them down to hundredths: its cautions of the
+#: normal law take a millisecond for each.
+MANY = 100
 #: Vectors after a collision, name and unit.
 VECTORS = (
     ("velocity", "m/s"), ("spin", "rad/s"), ("target_velocity", "m/s"), ("target_spin", "rad/s"),
@@ -132,7 +134,10 @@ class Collision:
         scene = self._met.scene
         if isinstance(self.restitution, float):
             return _run(_simulation(self.restitution), scene)
-        parts = [(mask, _run(_simulation(value), scene.take(mask))) for mask, value in self._parts]
+        parts = [
+            (mask, _run(_simulation(value), scene.take(mask)))
+            for mask, value in _alike(self._restitutions)
+        ]
         return ImpactResult(
             scene=scene,
             plan=_joined([(mask, part.plan) for mask, part in parts]),
@@ -151,26 +156,23 @@ class Collision:
         if self.known is not None:
             plan = self.known.plan
         elif isinstance(self.restitution, float):
-            plan = _planned(met.scene, self.restitution)
+            plan = _planned(met.scene, self.restitution, self.restitution)
         else:
-            scene, each = met.scene, self._each
-            groups = [each == value for value in np.unique(each)[:MOST_PLANS]]
-            if len(groups) == MOST_PLANS:  # one plan for all damped impacts
-                groups = [mask for mask in (each == 1.0, each < 1.0) if mask.any()]
-            plan = _joined([(mask, _planned(scene.take(mask), each[mask])) for mask in groups])
+            each = self._restitutions
+            rounded = np.floor(100.0 * each) / 100.0
+            plan = _joined(
+                [
+                    (mask, _planned(met.scene.take(mask), value, each[mask]))
+                    for mask, value in _alike(each if np.unique(each).size <= MANY else rounded)
+                ]
+            )
         return collision_plan(plan, met, passed)
 
     @property
-    def _each(self) -> Array:
+    def _restitutions(self) -> Array:
         """The restitution of each encounter that collided."""
         each = np.broadcast_to(self.restitution, self.encounter.shape)
-        return each if np.all(self.collided) else each[self.collided]
-
-    @property
-    def _parts(self) -> list[tuple[Any, float]]:
-        """Masks of the encounters that collided, and the restitution of each mask."""
-        each = self._each
-        return [(each == value, value) for value in np.unique(each).tolist()]
+        return np.asarray(each if np.all(self.collided) else each[self.collided])
 
     @property
     def status(self) -> Any:
@@ -288,12 +290,13 @@ def collide(
         single one.
     restitution : float, array of shape (...,), or callable
         e of the normal motion without a simulation, from 0.01 to 1: one number, one for each
-        encounter, or a function that is given the speeds of approach in m/s (0 where bodies
-        separate) and returns e. Below 1 the law is Tsuji's,
-        with Coulomb's law at every point: from a table for e from 0.5 and chi from 0.8 to 1.8
-        (solid spheres), by rings elsewhere. ``Collision.plan`` states the error of psi2. Other laws
-        of the same e give another psi2, at e = 0.9 by up to 0.021 (viscoelastic) or 0.62 (a linear
-        spring): see ``contactlab.rebound``.
+        encounter, or a function that returns either for the normal speeds of approach in m/s, a
+        float or an array of shape (...,); where bodies separate the speed reads 1 m/s and the
+        answer is not used. Below 1 the law is Tsuji's, with Coulomb's law at every point: from a
+        table for e from 0.5 and chi from 0.8 to 1.8 (solid spheres), at half a microsecond per
+        encounter with any number of different e, and by rings elsewhere, in milliseconds.
+        ``Collision.plan`` states the error of psi2. Other laws of the same e give another psi2, at
+        e = 0.9 by up to 0.021 (viscoelastic) or 0.62 (a linear spring): see ``contactlab.rebound``.
     separating : "refuse" or "pass"
         For bodies that do not approach each other: an error with the index of the first, or both
         bodies unchanged, with ``Collision.collided`` False.
@@ -331,7 +334,7 @@ def collide(
     if separating not in SEPARATING:
         raise refuse("separating", separating, "must be 'refuse' or 'pass'")
     if callable(restitution):
-        restitution = restitution(np.maximum(_approach(encounter), 0.0))
+        restitution = _at_speeds(restitution, encounter)
     e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
     if not isinstance(e, float):
         e = _spread(e, encounter.shape)
@@ -361,14 +364,6 @@ def collide(
     return Collision(encounter=encounter, **moved, simulation=simulation, known=result)
 
 
-def _approach(encounter: Encounter) -> Any:
-    """Return the speeds of approach in m/s, of the batch shape."""
-    approach = np.empty(encounter.shape)
-    for where, part in encounter.parts():
-        approach.reshape(-1)[where] = part.meeting().approach
-    return approach if encounter.shape else float(approach)
-
-
 def _alone(simulation: Simulation | None, given: Any, restitution: Any) -> None:
     """Refuse a restitution beside a simulation."""
     if simulation is not None and np.any(restitution != 1.0):
@@ -381,11 +376,15 @@ def _simulation(restitution: float) -> Simulation:
     return Simulation() if restitution == 1.0 else damped(restitution)
 
 
-def _planned(scene: Scene, restitution: Any) -> Plan:
-    """Return the plan of impacts that are all elastic, or all damped."""
-    least = float(np.min(restitution))  # the plan of one value serves all but their own words
-    plan = _simulation(least).plan(scene)
-    return plan if least == 1.0 else by_rebound(plan, scene.chi, restitution)
+def _planned(scene: Scene, restitution: float, each: Real) -> Plan:
+    """Return the plan of impacts, with the cautions of one restitution and the errors of each."""
+    plan = _simulation(restitution).plan(scene)
+    return plan if restitution == 1.0 else by_rebound(plan, scene.chi, each)
+
+
+def _alike(restitution: Array) -> list[tuple[Any, float]]:
+    """Return masks of equal restitutions, and the restitution of each mask."""
+    return [(restitution == value, value) for value in np.unique(restitution).tolist()]
 
 
 def _joined(parts: list[tuple[Any, Plan]]) -> Plan:
@@ -402,6 +401,16 @@ def _spread(restitution: Any, shape: tuple[int, ...]) -> Any:
     except ValueError:
         rule = f"must be one number, or of the shape {shape} of the encounters"
         raise refuse("restitution", restitution, rule) from None
+
+
+def _at_speeds(restitution: Callable[[Any], Any], encounter: Encounter) -> Any:
+    """Return the restitution at the normal speed of each encounter; 1 where bodies separate."""
+    shape, approach = encounter.shape, encounter.meeting().approach
+    apart = np.broadcast_to(~(np.asarray(approach) >= LEAST), shape)
+    speed = np.where(apart, 1.0, approach)
+    each = np.array(_spread(restitution(speed if shape else float(speed)), shape))
+    each[apart] = 1.0
+    return each
 
 
 def _run(simulation: Simulation, scene: Any) -> ImpactResult:

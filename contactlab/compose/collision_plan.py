@@ -9,6 +9,7 @@ import numpy as np
 from contactlab.compose.rebound import damped_error
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import some
+from contactlab.numeric.checks import Real
 from contactlab.numeric.vectors import components
 from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
 
@@ -40,7 +41,7 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
     return plan.changed(left_out=tuple(left_out))
 
 
-def by_rebound(plan: Plan, chi: Any, restitution: Any) -> Plan:
+def by_rebound(plan: Plan, chi: Any, restitution: Real) -> Plan:
     """Return the plan with the answers of ``rebound`` in place of those of the laws.
 
     Parameters
@@ -58,18 +59,24 @@ def by_rebound(plan: Plan, chi: Any, restitution: Any) -> Plan:
     if not np.isnan(bound[unknown]).all():
         error_words = "at most {:g} beside Coulomb's law at every point, of contactlab.rebound"
     low, high = float(np.min(restitution)), float(np.max(restitution))
-    told = f"{low:g}" if low == high else f"{low:g} to {high:g}"
-    laws = f"contactlab.rebound with restitution={told}"
-    texts = {
-        TANGENTIAL_MOTION: f"tangential motion: {laws}",
-        PSI2_ERROR: f"numerical error of psi2: {error_words}",
+    told = f"{low:g}" if low == high else f"{low:.4g}..{high:.4g}"
+    said: dict[str, tuple[str, tuple[Any, ...] | None]] = {
+        TANGENTIAL_MOTION: (
+            f"tangential motion: contactlab.rebound with restitution={told}",
+            None,
+        ),
+        PSI2_ERROR: (
+            f"numerical error of psi2: {error_words}",
+            (np.where(unknown, bound, np.nan),),
+        ),
     }
     computed = []
     for clause in plan.computed:
-        if clause.code in texts and some(clause.where & unknown):
-            values = (np.where(unknown, bound, np.nan),)
-            clause = clause._replace(text=texts[clause.code], values=values)
-        computed.append(clause)
+        if clause.code in said and some(clause.where & unknown):
+            text, values = said[clause.code]
+            clause = clause._replace(text=text, values=values)
+        # the restitution was given, it is no default
+        computed.append(clause._replace(text=clause.text.partition("; restitution")[0]))
     error = np.where(unknown, bound, plan.psi2_error)
     return plan.changed(computed=tuple(computed), psi2_error=error if error.ndim else float(error))
 

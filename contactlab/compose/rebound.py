@@ -6,28 +6,26 @@ import math
 import os
 from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, cast, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.names import BLOCK_VARIABLE, PROJECT, blocks
+from contactlab.compose.names import BLOCK_VARIABLE
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.numeric.checks import POSITIVE, Real, Rule, paired, real, refuse
 
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation
+    from contactlab.contracts.whole_impact import Tabulated
 
 Array = NDArray[np.float64]
 
-#: Group of entry points of functions (psi1, chi, derivatives=False) that return psi2 from a table,
-#: and the name that is used here. The entry point may be blocked, like a law: "rebound.elastic".
-GROUP, TABLE = "contactlab.rebound", "elastic"
-#: Name of the function (psi1, chi, restitution) for a restitution below 1, and its largest chi.
-DAMPED, DAMPED_LARGEST_CHI = "damped", 10.0
-#: Range of chi and least restitution of its table, and the largest errors of psi2 in the table and
-#: outside, against Coulomb's law at every point: ``tests/laws/test_damped_table.py``.
+#: Largest chi of the law for a restitution below 1; the range of chi and the least restitution of
+#: its table, and the largest errors of psi2 in the table and outside, against Coulomb's law at
+#: every point: ``tests/laws/test_damped_table.py``.
+DAMPED_LARGEST_CHI = 10.0
 DAMPED_CHI, DAMPED_RESTITUTION = (0.8, 1.8), 0.5
 DAMPED_ERROR, BEYOND_ERROR = 1e-3, 4e-3
 #: Number of annuli beyond the largest chi; the steps are four times as many.
@@ -96,15 +94,14 @@ def rebound(
         Return d psi2/d psi1 and d psi2/d chi too, for chi up to 2.5. Both are tabulated to 1e-6 at
         any tolerance (5e-5 for psi1 just above 1, chi 1.83 to 1.92).
     restitution : float or array_like
-        e of the normal motion, from 0.01 to 1, broadcast against ``psi1``. An array costs half a
-        microsecond an impact in the table, and a call for each value outside. Below 1 the law is
+        e of the normal motion, from 0.01 to 1, broadcast against ``psi1``. Below 1 the law is
         Tsuji's (``normal.tsuji``) with Coulomb's law at every point, and ``tolerance`` has no
-        effect. For chi from 0.8 to 1.8 and e
-        from 0.5 a table holds psi2 to 1e-3; elsewhere up to chi = 10 rings give psi2 to 4e-3, in
-        about ten milliseconds per impact; beyond, annuli answer, with an error that is not
-        declared. The choice of law is a model error: at the same e other laws differ in psi2, for
-        chi up to 1.8 at e = 0.9 the viscoelastic law by up to 0.021, Hunt and Crossley's by 0.11, a
-        linear spring by 0.62.
+        effect. For chi from 0.8 to 1.8 and e from 0.5 a table holds psi2 to 1e-3, whether all
+        impacts have one e or each its own; elsewhere up to chi = 10 rings give psi2 to 4e-3, in
+        about ten milliseconds per impact, and each different e takes more; beyond, annuli answer,
+        with an error that is not declared. The choice of law is a model error: at the same e other
+        laws differ in psi2, for chi up to 1.8 at e = 0.9 the viscoelastic law by up to 0.021, Hunt
+        and Crossley's by 0.11, a linear spring by 0.62.
 
     Returns
     -------
@@ -121,7 +118,8 @@ def rebound(
         For bad input, with the argument, its value, the index of the first bad number, the rule
         and the remedy.
     ValueError, PluginError
-        If the law ``tangential.fronts`` is needed, but is blocked or cannot be imported.
+        If ``tangential.fronts``, or ``normal.tsuji`` below a restitution of 1, is blocked or cannot
+        be imported.
     ImpactError
         If an impact cannot be solved; no such impact has been found.
 
@@ -140,9 +138,7 @@ def rebound(
         and (tolerance is USUAL or (isinstance(tolerance, float) and TABULATED < tolerance < 1.0))
         and _in_table(psi1, chi)
     ):
-        quick = _kept_table(os.environ.get(BLOCK_VARIABLE))
-        if quick is not None:
-            return quick(psi1, chi)  # type: ignore[no-any-return]
+        return _table("tangential")(psi1, chi)  # type: ignore[no-any-return]
     incidence = real(
         "psi1",
         psi1,
@@ -183,14 +179,10 @@ def rebound(
     answer = float(psi2) if psi2.ndim == 0 else psi2
     if not derivatives:
         return answer
-    table = _table()
-    if table is None:
-        remedy = f"install a plug-in that offers {GROUP}: {TABLE}, and do not block it"
-        raise refuse("derivatives", derivatives, "are available from a table only", remedy)
     if not (ratios <= TABULATED_CHI).all():
         rule = f"derivatives are tabulated up to chi = {TABULATED_CHI}"
         raise refuse("chi", float(ratios.max()), rule, "take differences of psi2 beyond")
-    _, by_psi1, by_chi = table(velocity, ratio, derivatives=True)
+    _, by_psi1, by_chi = _table("tangential")(velocity, ratio, derivatives=True)
     if psi2.ndim == 0:
         return answer, float(by_psi1), float(by_chi)
     return answer, by_psi1, by_chi
@@ -216,16 +208,14 @@ def _in_table(psi1: Any, chi: Any) -> bool:
 
 def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
     """Return psi2, shape (impacts,), from the table where chi is in range, else solved."""
-    table = _table() if tolerance > TABULATED else None
-    if table is None:
-        return _exact(psi1, chi)
-    tabulated = chi <= TABULATED_CHI
+    tabulated = (chi <= TABULATED_CHI) & (tolerance > TABULATED)
     if tabulated.all():
-        return np.asarray(table(psi1, chi))
+        return np.asarray(_table("tangential")(psi1, chi))
     psi2 = np.empty_like(psi1)
     if tabulated.any():
-        psi2[tabulated] = table(psi1[tabulated], chi[tabulated])
-    psi2[~tabulated] = _exact(psi1[~tabulated], chi[~tabulated])
+        psi2[tabulated] = _table("tangential")(psi1[tabulated], chi[tabulated])
+    if not tabulated.all():
+        psi2[~tabulated] = _exact(psi1[~tabulated], chi[~tabulated])
     return psi2
 
 
@@ -235,22 +225,21 @@ def _each(psi1: Array, chi: Array, restitution: Array, tolerance: float) -> Arra
     if elastic.any():
         psi2[elastic] = _solve(psi1[elastic], chi[elastic], tolerance)
     if not elastic.all():
-        lossy = ~elastic
-        psi2[lossy] = _damped(psi1[lossy], chi[lossy], restitution[lossy])
+        psi2[~elastic] = _damped(psi1[~elastic], chi[~elastic], restitution[~elastic])
     return psi2
 
 
-def _damped(psi1: Array, chi: Array, restitution: Any) -> Array:
+def _damped(psi1: Array, chi: Array, restitution: Real) -> Array:
     """Return psi2, shape (impacts,), under Tsuji's law; by annuli beyond the largest chi."""
-    psi2, left = np.empty_like(psi1), np.ones(psi1.shape, dtype=bool)
-    each = np.broadcast_to(restitution, psi1.shape)
-    table = _table(DAMPED)
-    if table is not None:
-        in_range = chi <= DAMPED_LARGEST_CHI
-        e = each[in_range] if isinstance(restitution, np.ndarray) else restitution
-        psi2[in_range], left = table(psi1[in_range], chi[in_range], e), ~in_range
-    for value in np.unique(each[left]).tolist():
-        part = left & (each == value)
+    beyond = chi > DAMPED_LARGEST_CHI
+    if not beyond.any():
+        return np.asarray(_table("normal")(psi1, chi, restitution=restitution))
+    psi2, each = np.empty_like(psi1), np.broadcast_to(restitution, psi1.shape)
+    if not beyond.all():
+        part = ~beyond
+        psi2[part] = _table("normal")(psi1[part], chi[part], restitution=each[part])
+    for value in np.unique(each[beyond]).tolist():
+        part = beyond & (each == value)
         change = _change(damped(value), psi1[part], chi[part])
         psi2[part] = np.copysign(1.0, psi1[part]) * (np.abs(psi1[part]) + change)
     return psi2
@@ -271,44 +260,26 @@ def damped(restitution: float) -> Simulation:
     )
 
 
-def damped_error(chi: Real, restitution: float) -> Any:
+def damped_error(chi: Real, restitution: Real) -> Any:
     """Return the bound of the error of psi2 below a restitution of 1; NaN if not measured."""
-    if _table(DAMPED) is None:
-        return np.full(np.shape(chi), np.nan)
     inside = (chi >= DAMPED_CHI[0]) & (chi <= DAMPED_CHI[1]) & (restitution >= DAMPED_RESTITUTION)
     measured = np.asarray(chi) <= DAMPED_LARGEST_CHI
     return np.where(inside, DAMPED_ERROR, np.where(measured, BEYOND_ERROR, np.nan))
 
 
-def _table(name: str = TABLE) -> Callable[..., Any] | None:
-    """Return a tabulated rebound, if one is installed and not blocked."""
-    return _installed(name, os.environ.get(BLOCK_VARIABLE, ""))
+def _table(kind: str) -> Callable[..., Any]:
+    """Return psi2 of a law: of the exact tangential law, or of the normal law of a restitution."""
+    return _kept_table(kind, os.environ.get(BLOCK_VARIABLE))
 
 
 @cache
-def _kept_table(_: Any) -> Callable[..., Any] | None:
-    """Return the table of elastic impacts while the blocking is the same."""
-    return _table()
+def _kept_table(kind: str, _: Any) -> Callable[..., Any]:
+    """Return the function of a law while the blocking is the same."""
+    from contactlab.compose import composition  # takes long to import
 
-
-@cache
-def _installed(name: str, blocking: str) -> Callable[..., Any] | None:
-    """Return the function of an entry point; contactlab's own if several distributions have one."""
-    from importlib import metadata  # takes 20 ms to import
-
-    entries, points = set(blocking.replace(",", " ").split()), {}
-    for point in metadata.entry_points(group=GROUP, name=name):
-        distribution = point.dist.name if point.dist is not None else "unknown"
-        if not blocks(entries, f"rebound.{name}", distribution):
-            points[distribution] = point
-    if not points:
-        return None
-    if len(points) > 1 and PROJECT not in points:
-        distributions = ", ".join(sorted(points))
-        rule, remedy = "is offered by several distributions", f"block all but one: {BLOCK_VARIABLE}"
-        raise refuse(f"{GROUP}: {name}", distributions, rule, remedy)
-    point = points.get(PROJECT) or next(iter(points.values()))
-    return cast("Callable[..., Any]", point.load())
+    names = composition.EXACT if kind == "tangential" else composition.RESTITUTION
+    law: Tabulated = composition.law(kind, names[kind])
+    return law.rebound
 
 
 def _exact(psi1: Array, chi: Array) -> Array:

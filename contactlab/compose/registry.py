@@ -31,9 +31,6 @@ from contactlab.numeric.names import nearest
 
 __all__ = ["BLOCK_VARIABLE", "KINDS", "REGISTRY", "PluginError", "PluginInfo", "Registry"]
 
-#: Beginnings of the names of other plug-ins that may be blocked.
-OTHER_GROUPS = ("rebound.",)
-
 
 class PluginWarning(UserWarning):
     """A blocked name is not installed, or the entry points of a distribution are unreadable."""
@@ -87,11 +84,10 @@ class Registry:
             if any(blocks({entry}, info.name, info.distribution) for info in infos):
                 continue
             self._warned.add(entry)
-            if not parted(entry)[1].startswith(OTHER_GROUPS):
-                known = {name for info in infos for name in (info.name, info.distribution)}
-                told = f"{BLOCK_VARIABLE} names {entry!r}, which is not installed; "
-                text = (told + nearest(entry, known)).rstrip("; ")
-                warnings.warn(text, PluginWarning, stacklevel=4)
+            known = {name for info in infos for name in (info.name, info.distribution)}
+            told = f"{BLOCK_VARIABLE} names {entry!r}, which is not installed; "
+            text = (told + nearest(entry, known)).rstrip("; ")
+            warnings.warn(text, PluginWarning, stacklevel=4)
 
     def names(self, kind: str | None = None) -> list[str]:
         """Return the shortest names of laws that can be made, of one kind or of all kinds."""

@@ -38,7 +38,13 @@ from contactlab.contracts.tangential import (
     TangentialResponse,
     WholeImpactTangentialLaw,
 )
-from contactlab.contracts.whole_impact import WholeImpact, from_change, no_force, sliding
+from contactlab.contracts.whole_impact import (
+    Tabulated,
+    WholeImpact,
+    from_change,
+    no_force,
+    sliding,
+)
 from contactlab.impact.bodies import Pair
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
@@ -91,6 +97,7 @@ __all__ = [
     "SteppedTangentialLaw",
     "Steps",
     "Stretch",
+    "Tabulated",
     "TangentialLaw",
     "TangentialMotion",
     "TangentialResponse",

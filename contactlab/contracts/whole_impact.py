@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -72,6 +73,24 @@ class WholeImpact:
     normal: NormalMotion | None = None
     balanced: bool = False
     counter: str | None = None
+
+
+class Tabulated(ABC):
+    """Capability of a law: psi2 as a function of psi1 and chi, by which ``rebound`` answers."""
+
+    @staticmethod
+    @abstractmethod
+    def rebound(*impact: Any, **options: Any) -> Any:
+        """Return psi2, odd in psi1 to the last bit.
+
+        Parameters
+        ----------
+        *impact : float or array
+            psi1 and chi: checked numbers of one shape within the range of the law.
+        **options
+            ``restitution`` of a damped law, below 1, a float or an array of that shape;
+            ``derivatives`` of an elastic law: True for (psi2, d psi2/d psi1, d psi2/d chi).
+        """
 
 
 def from_change(

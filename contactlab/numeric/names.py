@@ -33,7 +33,8 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "shear_modulus_ratio": ("stiffness_ratio",),
     "rebound_velocity": ("rebound_tangential_velocity", "rebound_normal_velocity"),
     "final_velocity": ("rebound_tangential_velocity", "rebound_normal_velocity"),
-    "ball": ("sphere", "body"), "sphere": ("body",), "wall": ("target",), "plane": ("target",), "half_space": ("target",),
+    "ball": ("sphere", "body"), "sphere": ("body",), "wall": ("target",), "plane": ("target",),
+    "half_space": ("target",),
     "laws": ("simulation",), "output": ("out",), "plot": ("figure",), "jobs": ("workers",),
     "angle": ("angle_deg", "rebound_angle"), "psi": ("psi1",), "dt": ("steps",), "n": ("steps",),
 }  # fmt: skip

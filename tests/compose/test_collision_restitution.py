@@ -44,11 +44,78 @@ def test_gross_slip_with_a_restitution():
         assert drag == pytest.approx(full, rel=1e-3)
 
 
+def slower_is_bouncier(speed):
+    """Restitution of viscoelastic spheres to first order: 1 - C v^(1/5)."""
+    return 1.0 - 0.2 * speed**0.2
+
+
+def test_a_restitution_of_each_pair_is_that_of_the_pair_alone():
+    """By value, and by the speed of approach; out of the table too, and of bodies that separate."""
+    rng = np.random.default_rng(3)
+    count = 60
+    met = meeting(
+        target=BALL,
+        velocity=rng.normal((0, 0, -3), 2, size=(count, 3)),
+        spin=40 * rng.normal(size=(count, 3)),
+    )
+    speed, apart = -met.velocity[:, 2], ~met.approaching
+    assert 0 < apart.sum() < count / 2
+    e = rng.uniform(0.5, 1.0, count)
+    e[::7], e[3] = 1.0, 0.3
+    shaped = meeting(target=BALL, velocity=met.velocity[:, None], spin=met.spin[:, None])
+    for given, each in (
+        (e, e),
+        (slower_is_bouncier, slower_is_bouncier(np.abs(speed))),
+        (lambda _: 0.8, np.full(count, 0.8)),
+        (lambda _: e, e),
+    ):
+        made = collide(met, restitution=given, separating="pass")
+        assert made.normal_velocity[~apart] == pytest.approx(-(each * speed)[~apart], rel=1e-12)
+        for k in range(count):
+            one = collide(met.take(k), restitution=float(each[k]), separating="pass")
+            assert made.spin[k] == pytest.approx(one.spin, rel=1e-12, abs=1e-10)
+            assert made.velocity[k] == pytest.approx(one.velocity, rel=1e-12, abs=1e-12)
+    made = collide(met, restitution=slower_is_bouncier, separating="pass")
+    column = collide(shaped, restitution=slower_is_bouncier, separating="pass")
+    assert (column.spin[:, 0] == made.spin).all()
+    one = collide(met.take(1), restitution=slower_is_bouncier)
+    assert one.spin == pytest.approx(made.spin[1], rel=1e-12)
+    assert type(one.restitution) is float
+
+
+@pytest.mark.parametrize(
+    ("restitution", "word"),
+    [
+        (1.2, "restitution = 1.2: must be from"), (lambda v: np.nan * v, "must be from"),
+        (lambda v: np.where(v > 0.5, 1.01, 1.0), "index"), (lambda v: v[:2], "shape"),
+        (lambda _: [[0.9], [0.9, 0.8]], "shape"), (lambda _: None, "real number"),
+        (lambda _: "0.9", "real number"),
+    ],
+)  # fmt: skip
+def test_refused_restitutions(restitution, word):
+    met = meeting(velocity=[(0, 0, -1), (0, 0, -0.1), (0, 0, -1)])
+    with pytest.raises(ValueError, match=word):
+        collide(met, restitution=restitution)
+
+
 def test_a_restitution_stands_in_place_of_laws():
-    with pytest.raises(ValueError, match="restitution"):
-        collide(meeting(), Simulation(), restitution=0.9)
-    with pytest.raises(ValueError, match="restitution"):
-        collide(meeting(), restitution=1.2)
+    for given in (0.9, slower_is_bouncier):
+        with pytest.raises(ValueError, match="restitution"):
+            collide(meeting(), Simulation(), restitution=given)
+
+
+def test_the_plan_of_many_restitutions_is_as_short_as_that_of_one():
+    """Its cautions are those of the restitutions, to a hundredth; the errors are those of each."""
+    velocity = np.random.default_rng(4).normal((0, 0, -6), size=(3000, 3))
+    e = np.append(0.4, np.linspace(0.5, 0.9, 2999))
+    plan = collide(meeting(velocity=velocity), restitution=e).plan
+    lines = str(plan).splitlines()
+    assert len(lines) < 12
+    assert "computed: tangential motion: contactlab.rebound with restitution=0.4..0.9" in lines
+    assert plan.psi2_error.tolist() == [BEYOND_ERROR if one < 0.5 else DAMPED_ERROR for one in e]
+    assert "by default" not in str(plan)
+    few = collide(meeting(velocity=velocity[:3]), restitution=[0.62, 0.7, 0.9]).plan
+    assert any("restitution=0.62..0.9" in line for line in str(few).splitlines())
 
 
 def test_the_plan_of_a_restitution_says_who_answered():

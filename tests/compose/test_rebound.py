@@ -13,16 +13,11 @@ from tests.laws.reference import PSI1, PSI2, TABLE
 TOLERANCE = 1e-5
 
 
-@pytest.fixture(autouse=True)
-def _no_table(monkeypatch):
-    """What is tested here is the solution; the table has tests of its own."""
-    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "rebound.elastic")
-
-
 def exact(psi1, chi):
     psi1, chi = np.broadcast_arrays(np.asarray(psi1, float), np.asarray(chi, float))
     integrator = contactlab.create("integrator.events", tolerance=1e-9)
-    law = Simulation(tangential="fronts", integrator=integrator)
+    fronts = contactlab.create("tangential.fronts", table=False)
+    law = Simulation(tangential=fronts, integrator=integrator)
     return law.run(Scene.nondimensional(psi1=psi1, chi=chi)).check().psi2
 
 
@@ -133,12 +128,6 @@ def test_shapes():
 def test_refusals(arguments, word):
     with pytest.raises(ValueError, match=word):
         rebound(**arguments)
-
-
-def test_a_blocked_law_is_not_used(monkeypatch):
-    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "tangential.fronts, rebound.elastic")
-    with pytest.raises(ValueError, match="blocked"):
-        rebound(1.2, 1.44)
 
 
 def test_no_law_is_loaded_before_it_is_called():

@@ -1,4 +1,4 @@
-"""Where ``rebound`` answers from a table, what it declares of its error, and who may offer one."""
+"""Where ``rebound`` answers from a table, and what it declares of its error."""
 
 import math
 
@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation, Sphere, collide, create, rebound
-from contactlab.compose import rebound as rebounds
 from contactlab.compose.rebound import (
     BEYOND_ERROR,
     DAMPED_ERROR,
@@ -20,20 +19,8 @@ from contactlab.compose.rebound import CHI as CHI_RULE
 from tests.compose.test_collision import STEEL, meeting
 
 CHI = 49.0 / 34.0
+E_09 = {"restitution": 0.9}
 BEYOND = math.nextafter(TABULATED_CHI, 3.0)
-
-
-@pytest.fixture
-def fresh():
-    """Forget which tables are installed, before and after."""
-
-    def forget():
-        rebounds._installed.cache_clear()
-        rebounds._kept_table.cache_clear()
-
-    forget()
-    yield
-    forget()
 
 
 @pytest.mark.parametrize("count", [1, FEW, FEW + 1, 2 * FEW])
@@ -107,14 +94,18 @@ def test_derivatives_are_differences():
 
 
 def test_each_restitution_of_an_array_is_its_own():
-    psi1, e = np.array([1.0, -2.0, 3.0, 1.0]), np.array([0.9, 1.0, 0.6, 0.9])
-    together = rebound(psi1, CHI, restitution=e)
-    alone = [
-        rebound(float(one), CHI, restitution=float(each)) for one, each in zip(psi1, e, strict=True)
-    ]
-    assert together == pytest.approx(alone, abs=1e-12)
-    assert together[0] == together[3]
-    assert rebound(psi1, CHI, restitution=e[:, None]).shape == (4, 4)
+    """Over all pieces of the table, beside e = 1, and out of the table."""
+    draw = np.random.default_rng(8)
+    psi1, chi, e = draw.uniform(-9, 9, 400), draw.uniform(0.8, 1.8, 400), draw.uniform(0.5, 1, 400)
+    e[:100] = 1.0 - 10.0 ** draw.uniform(-12, -1, 100)
+    e[100:120], e[120:122], chi[122:124], chi[124] = 1.0, 0.3, 2.0, 10.5
+    alone = [rebound(*one[:2], restitution=one[2]) for one in np.transpose((psi1, chi, e)).tolist()]
+    assert rebound(psi1, chi, restitution=e) == pytest.approx(alone, abs=1e-12)
+    few = rebound(psi1[:3], chi[:3], restitution=e[:3])
+    assert few == pytest.approx(alone[:3], abs=1e-12)
+    assert (rebound(-psi1, chi, restitution=e) == -rebound(psi1, chi, restitution=e)).all()
+    assert rebound(psi1, CHI, restitution=e[:3, None]).shape == (3, 400)
+    assert rebound(2.0, CHI, restitution=[0.9, 0.8]).shape == (2,)
 
 
 @pytest.mark.parametrize(
@@ -145,42 +136,8 @@ def test_the_plan_of_a_heavy_core_says_that_no_error_was_measured():
     assert math.isnan(plan.psi2_error)
 
 
-@pytest.mark.usefixtures("fresh")
-def test_without_a_table_annuli_answer(monkeypatch):
-    """To the error of the table, which they do not declare."""
-    tabulated = rebound([1.0, -2.0], CHI, restitution=0.9)
-    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "rebound.damped")
-    annuli = rebound([1.0, -2.0], CHI, restitution=0.9)
-    assert 0.0 < np.abs(annuli - tabulated).max() < 2.0 * DAMPED_ERROR
-    assert np.isnan(damped_error(CHI, 0.9))
-    assert np.isnan(damped_error(np.array([CHI, 1.0]), 0.9)).tolist() == [True, True]
-
-
-@pytest.mark.usefixtures("fresh")
-def test_without_a_table_there_are_no_derivatives(monkeypatch):
-    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "rebound.elastic")
-    assert rebound(1.2, CHI) == pytest.approx(-0.1805193, abs=1e-6)
-    with pytest.raises(ValueError, match=" ") as caught:
-        rebound(1.2, CHI, derivatives=True)
-    assert str(caught.value) == (
-        "derivatives = True: are available from a table only; install a plug-in that offers "
-        "contactlab.rebound: elastic, and do not block it"
-    )
-
-
-@pytest.mark.usefixtures("fresh")
-def test_of_two_strangers_tables_neither_is_taken(install, tmp_path, monkeypatch):
-    for name, answer in (("second", 8.0), ("first", 7.0)):
-        install(name, f"{name}_table", f"def rebound(*_, **__):\n    return {answer}\n")
-        path = tmp_path / f"{name}-1.5.dist-info" / "entry_points.txt"
-        path.write_text(f"[contactlab.rebound]\nelastic = {name}_table:rebound\n")
-    ours = "contactlab:rebound.elastic"
-    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", ours)
-    with pytest.raises(ValueError, match=" ") as caught:
-        rebound(1.2, CHI)
-    assert str(caught.value) == (
-        "contactlab.rebound: elastic = 'first, second': is offered by several distributions; "
-        "block all but one: CONTACTLAB_BLOCK_PLUGINS"
-    )
-    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", f"{ours}, first")
-    assert rebound(1.2, CHI) == 8.0
+@pytest.mark.parametrize(("law", "options"), [("tangential.fronts", {}), ("normal.tsuji", E_09)])
+def test_a_blocked_law_does_not_answer(law, options, monkeypatch):
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", law)
+    with pytest.raises(ValueError, match=f"{law}.*blocked"):
+        rebound(1.2, CHI, **options)

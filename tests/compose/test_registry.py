@@ -8,7 +8,6 @@ import pytest
 
 import contactlab
 from contactlab import PluginError
-from contactlab.compose import rebound as rebounds
 from contactlab.compose.names import full_name, kind_of, short_name
 from contactlab.compose.registry import REGISTRY, PluginWarning
 
@@ -242,24 +241,6 @@ def test_names_are_taken_apart_and_put_together():
         assert full_name(kind_of(name), short_name(name)) == name
     assert short_name("a.b:normal.hertz") == "a.b:hertz"
     assert short_name("hertz") == "hertz"
-
-
-def test_a_rebound_of_a_stranger_takes_the_place_of_ours_only_where_ours_is_blocked(
-    install, tmp_path, monkeypatch
-):
-    install("usurper", "usurper_rebound", "def rebound(*_, **__):\n    return 7.0\n")
-    path = tmp_path / "usurper-1.5.dist-info" / "entry_points.txt"
-    path.write_text("[contactlab.rebound]\nelastic = usurper_rebound:rebound\n")
-    rebounds._installed.cache_clear()
-    rebounds._kept_table.cache_clear()
-    try:
-        assert contactlab.rebound(1.2, 49 / 34) == pytest.approx(-0.18052, abs=1e-5)
-        for blocking in ("contactlab:rebound.elastic", "contactlab:rebound.elastic usurp"):
-            monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", blocking)
-            assert contactlab.rebound(1.2, 49 / 34) == 7.0
-    finally:
-        rebounds._installed.cache_clear()
-        rebounds._kept_table.cache_clear()
 
 
 @pytest.mark.parametrize(

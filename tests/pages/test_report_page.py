@@ -196,8 +196,8 @@ def test_cite_takes_all_laws_that_were_compared(run):
     assert ran.status == 0
     keys = re.findall(r"^@\w+\{(\w+),", ran.out, re.MULTILINE)
     assert keys == [
-        "maw1976", "ciavarella1998", "jaeger1998", "keller1986", "wang1992", "mindlin1949", "thornton2011", "direnzo2005",
-        "contactlab",
+        "maw1976", "ciavarella1998", "jaeger1998", "keller1986", "wang1992",
+        "mindlin1949", "thornton2011", "direnzo2005", "contactlab",
     ]  # fmt: skip
     assert "did you mean" in run("cite", "--tangential", "coulomb,columb").err
 

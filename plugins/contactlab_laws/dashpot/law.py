@@ -11,6 +11,7 @@ from contactlab.contracts import (
     ClosedFormNormalLaw,
     NormalContact,
     NormalMotion,
+    Tabulated,
     without_tension,
 )
 from contactlab.contracts.restitution import restitution
@@ -41,7 +42,7 @@ def pressed(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float
 
 
 @attrs.frozen(kw_only=True)
-class Tsuji(ClosedFormNormalLaw):
+class Tsuji(ClosedFormNormalLaw, Tabulated):
     """Hertz's spring with a dashpot that gives the same restitution at any speed.
 
     P = k z^1.5 + 2 beta sqrt(1.25 M k) z^0.25 z', k = (4/3) E* sqrt(R), in N, positive in
@@ -82,6 +83,13 @@ class Tsuji(ClosedFormNormalLaw):
             return HertzMotion.of(self, scene)
         scaled = ScaledMotion(damping_of(self.restitution), 1.25)
         return DashpotMotion.of(self, scene, scaled, hertz_scales(scene).approach)
+
+    @staticmethod
+    def rebound(*impact: Any, **options: Any) -> Any:
+        """Return psi2 with Coulomb's law at every point, for chi up to 10."""
+        from contactlab_laws.tables import damped  # not for a normal motion
+
+        return damped.rebound(*impact, **options)
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, and how far psi2 moves with other laws of equal e."""

@@ -17,6 +17,7 @@ from contactlab.contracts import (
     NormalMotion,
     PathTangentialLaw,
     Stretch,
+    Tabulated,
     WholeImpact,
     flag,
     from_change,
@@ -32,7 +33,7 @@ REASON = "psi2 is tabulated; a history, or a tolerance below 1e-9, follows the i
 
 
 @attrs.frozen(kw_only=True)
-class Fronts(PathTangentialLaw, EccentricTangentialLaw):
+class Fronts(PathTangentialLaw, EccentricTangentialLaw, Tabulated):
     """The continuum limit of the annulus law, with no discretisation.
 
     Where the contact sticks and where it slips is a short list of fronts; between changes
@@ -55,6 +56,7 @@ class Fronts(PathTangentialLaw, EccentricTangentialLaw):
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"elastic_hertz"})
     linear_below: ClassVar[float] = 1e-8
+    rebound = staticmethod(rebound)
 
     table: bool = flag(default=True)
 

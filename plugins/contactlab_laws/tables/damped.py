@@ -1,7 +1,8 @@
 """psi2 of spheres with a restitution, by Tsuji's law with Coulomb's law at every point.
 
 Coordinates in which psi2(psi1, chi, e) is smooth: theory §11, "As a table". At one restitution
-the table is four patches in psi1 and chi.
+the table is four patches in psi1 and chi, which are kept; a restitution of each impact is a third
+coordinate.
 """
 
 from __future__ import annotations
@@ -9,15 +10,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache, cached_property, lru_cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import attrs
 import numpy as np
-from numpy.polynomial.chebyshev import chebvander
+from numpy.polynomial.chebyshev import chebval, chebvander
 from numpy.typing import NDArray
 
 from contactlab.compose.rebound import DAMPED_CHI, DAMPED_RESTITUTION
+from contactlab.numeric.checks import Real
 from contactlab_laws.tables.file import Stored, read
 from contactlab_laws.tables.patches import (
     Patches,
@@ -38,8 +41,6 @@ BORDERS = (0.0, 0.1 ** (1.0 / 3.0), 0.5 ** (1.0 / 3.0))
 STICKS, RINGS, TURNS, SLIPS = range(4)
 #: Impacts computed together: fewer cost more calls, more leave the processor's cache.
 CHUNK = 8192
-#: The same with a restitution each, whose tables are larger.
-CHUNK_EACH = 1024
 #: Fewer impacts than this are computed one by one.
 FEW = 12
 #: The last terms along psi1 are left out that together are no more than this: less than the
@@ -127,7 +128,7 @@ def section(restitution: float) -> Section:
 
 
 @np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
-def rebound(psi1: Array, chi: Array, restitution: Any) -> Array:
+def rebound(psi1: Array, chi: Array, restitution: Real) -> Array:
     """Return psi2, shape (impacts,), by the table or by rings; odd in psi1 to the last bit.
 
     Parameters
@@ -135,83 +136,39 @@ def rebound(psi1: Array, chi: Array, restitution: Any) -> Array:
     psi1 : array, shape (impacts,)
     chi : array, shape (impacts,)
         Up to 10, as far as the rings were tried.
-    restitution : float, or array of shape (impacts,)
+    restitution : float or array, shape (impacts,)
         e, below 1.
     """
-    speed, each = np.abs(psi1), isinstance(restitution, np.ndarray)
+    speed = np.abs(psi1)
     known = (chi >= CHI[0]) & (chi <= CHI[1]) & (restitution >= DAMPED_RESTITUTION)
-    table = tabulated_each if each else tabulated
     if known.all():
-        psi2 = table(speed, chi, restitution)
+        psi2 = tabulated(speed, chi, restitution)
     else:
         from contactlab_laws.rings.courses import by_rings  # a table needs no normal motion
 
-        e = np.broadcast_to(restitution, psi1.shape)
-        psi2 = np.empty(psi1.shape)
-        psi2[known] = table(speed[known], chi[known], e[known] if each else restitution)
-        for value in np.unique(e[~known]).tolist():
-            part = ~known & (e == value)
+        psi2, each = np.empty(psi1.shape), np.broadcast_to(restitution, psi1.shape)
+        if known.any():
+            e = restitution if isinstance(restitution, float) else restitution[known]
+            psi2[known] = tabulated(speed[known], chi[known], e)
+        for value in np.unique(each[~known]).tolist():
+            part = ~known & (each == value)
             psi2[part] = by_rings(speed[part], chi[part], value)
     return np.copysign(psi2, psi2 * np.where(psi1 < 0.0, -1.0, 1.0))
 
 
-def tabulated_each(speed: Array, chi: Array, restitution: Array) -> Array:
-    """Return psi2 of psi1 = speed >= 0, with a restitution each, shape (impacts,)."""
-    psi2 = np.empty(speed.shape)
-    pieces = depth(restitution) > BORDERS[1]
-    for half in (0, 1):
-        rows = np.flatnonzero(pieces == half)
-        for first in range(0, rows.size, CHUNK_EACH):
-            part = rows[first : first + CHUNK_EACH]
-            psi2[part] = _each(half, speed[part], chi[part], restitution[part])
-    return psi2
-
-
-def _each(half: int, speed: Array, chi: Array, e: Array) -> Array:
-    """Return psi2 in one piece of the depth t: the sections of all impacts at once."""
-    cuts, terms = (shipped().arrays[name][half] for name in ("cuts", "terms"))
-    rows, columns, layers = terms.shape[1:]
-    deep = _chebyshev(inner(depth(e), *BORDERS[half : half + 2]), layers)
-    across = _chebyshev(inner(chi, *CHI), columns)
-    sections = (cuts.reshape(-1, layers) @ deep).reshape(len(cuts), columns, -1)
-    borders = np.einsum("icn,cn->in", sections, across)
-    piece = (speed > borders).sum(axis=0)
-    psi2 = np.empty(speed.shape)
-    for number in range(SLIPS + 1):
-        who = np.flatnonzero(piece == number)
-        if not who.size:
-            continue
-        section = (terms[number].reshape(-1, layers) @ deep[:, who]).reshape(rows, columns, -1)
-        count = np.maximum(needed(np.abs(section).sum(axis=1).T, SMALL), 2)
-        along = _chebyshev(place(number, speed[who], borders[:, who]), rows)
-        along *= np.arange(rows)[:, None] < count
-        section *= across[:, who]
-        value = np.einsum("rn,rn->n", section.sum(axis=1), along)
-        psi2[who] = rough(number, speed[who], value, chi[who], e[who])
-    return psi2
-
-
-def _chebyshev(x: Array, count: int) -> Array:
-    """Return the first Chebyshev polynomials at x, shape (count, places)."""
-    values = np.empty((count, x.size))
-    values[0], values[1] = 1.0, x
-    for k in range(2, count):
-        np.multiply(2.0 * x, values[k - 1], out=values[k])
-        values[k] -= values[k - 2]
-    return values
-
-
-def tabulated(speed: Array, chi: Array, restitution: float) -> Array:
+def tabulated(speed: Array, chi: Array, restitution: Real) -> Array:
     """Return psi2 of psi1 = speed >= 0 from the table, shape (impacts,)."""
-    if not speed.size:
-        return speed
+    psi2 = np.empty(speed.shape)
+    parts = [slice(first, first + CHUNK) for first in range(0, speed.size, CHUNK)]
+    if not isinstance(restitution, float):
+        for part in parts:
+            psi2[part] = _each(speed[part], chi[part], restitution[part])
+        return psi2
     ours = section(restitution)
     if speed.size < FEW:
         pairs = zip(speed.tolist(), chi.tolist(), strict=True)
         return np.array([single(*pair, restitution, ours) for pair in pairs])
-    psi2 = np.empty(speed.shape)
-    for first in range(0, speed.size, CHUNK):
-        part = slice(first, first + CHUNK)
+    for part in parts:
         psi2[part] = _together(speed[part], chi[part], restitution, ours)
     return psi2
 
@@ -238,3 +195,34 @@ def _together(speed: Array, chi: Array, e: float, ours: Section) -> Array:
     for number, rows in parts:
         psi2[rows] = rough(number, speed[rows], psi2[rows], chi[rows], e)
     return psi2
+
+
+def _each(speed: Array, chi: Array, e: Array) -> Array:
+    """Return psi2 of impacts with a restitution each: of ``Section``, to rounding."""
+    stored, t, psi2 = shipped().arrays, depth(e), np.empty_like(speed)
+    across = np.ascontiguousarray(chebvander(inner(chi, *CHI), stored["terms"].shape[3] - 1).T)
+    for piece, ends in enumerate(pairwise(BORDERS)):
+        rows = np.flatnonzero((t > BORDERS[1]) == piece)
+        by_depth = chebvander(inner(t[rows], *ends), stored["terms"].shape[4] - 1).T
+        cuts = _sums(_at(stored["cuts"][piece], by_depth), across.take(rows, axis=1))
+        part = (speed[rows] > cuts).sum(axis=0)
+        for number, table in enumerate(stored["terms"][piece]):
+            mine = np.flatnonzero(part == number)
+            who = rows[mine]
+            terms, p = _at(table, by_depth.take(mine, axis=1)), speed[who]
+            values = _sums(terms, across.take(who, axis=1))
+            sizes = np.abs(terms, out=terms).sum(axis=1)
+            values[2:] *= (np.triu(np.ones((len(sizes), len(sizes)))) @ sizes)[2:] > SMALL
+            value = chebval(place(number, p, cuts.take(mine, axis=1)), values, tensor=False)
+            psi2[who] = rough(number, p, value, chi[who], e[who])
+    return psi2
+
+
+def _at(table: Array, by_depth: Array) -> Array:
+    """Return the terms, shape (rows, columns, impacts), at the restitution of each impact."""
+    return np.asarray(table.reshape(-1, len(by_depth)) @ by_depth).reshape(*table.shape[:2], -1)
+
+
+def _sums(terms: Array, by_chi: Array) -> Array:
+    """Return the sums over the polynomials of chi, shape (rows, impacts)."""
+    return np.asarray(np.einsum("ijn,jn->in", terms, by_chi))
