@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.fitting.model import Model
-from contactlab.fitting.parameters import Parameter
+from contactlab.fitting.parameters import Parameter, in_words
 from contactlab.fitting.problem import Problem
 from contactlab.impact.scene import Scene
 
@@ -74,9 +74,8 @@ def idle(problem: Problem, values: Array) -> list[str]:
     """
     effects = problem.linearised(values, problem.sizes())[1]
     effects = np.abs(effects * _sizes(problem.model.parameters, values)).max(axis=1)
-    ends = np.cumsum(list(problem.counts.values()))[:-1]
-    parts = zip(problem.measured, np.split(effects, ends), strict=True)
-    without_effect = [name for name, part in parts if part.max() < NO_EFFECT]
+    parts = problem.by_quantity(effects)
+    without_effect = [name for name, part in parts.items() if part.max() < NO_EFFECT]
     return without_effect if len(without_effect) < len(problem.measured) else []
 
 
@@ -117,15 +116,10 @@ def check_single(problem: Problem, minima: list[Array]) -> None:
     """Refuse data that two sets of parameter values meet about equally well."""
     for second in minima[1:]:
         if problem.criterion(second) - problem.criterion(minima[0]) < CLOSE:
-            both = " and ".join(
-                ", ".join(
-                    f"{parameter.name} = {value:.4g}"
-                    for parameter, value in zip(problem.model.parameters, values, strict=True)
-                )
-                for values in (minima[0], second)
-            )
+            ends = minima[0], second
+            both = " and ".join(in_words(problem.model.parameters, values) for values in ends)
             names = " and ".join(parameter.name for parameter in problem.model.parameters)
-            remedy = _telling_apart(problem.model, np.array([minima[0], second]))
+            remedy = _telling_apart(problem.model, np.array(ends))
             raise ValueError(
                 f"the data do not determine {names}: they are met as well by {both}; {remedy}"
             )

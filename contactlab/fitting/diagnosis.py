@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.fitting import outliers, patterns, plausible
+from contactlab.fitting.f_test import CHANCE
 from contactlab.fitting.fit_result import Estimate
 from contactlab.fitting.measurements import Measurements
 from contactlab.fitting.problem import Problem
@@ -20,9 +21,7 @@ from contactlab.outcome.columns import QUANTITIES
 
 Array = NDArray[np.float64]
 
-#: A pattern is reported if normal scatter under the right law makes it with less than this chance.
-CHANCE = 1e-3
-#: The same limit beside outliers, which explain the residuals better.
+#: The chance below which a pattern is reported beside outliers, which explain the residuals better.
 POSSIBLE = 1e-5
 #: One error common to all impacts is preferred to a curve that is less likely by less than this.
 SIMPLER = 100.0
@@ -126,14 +125,13 @@ def cautions(problem: Problem, values: Array) -> list[str]:
     motion = attrs.evolve(result.motion, slip_velocity_change=velocity)
     shifted = attrs.evolve(result, motion=motion)
     scales = problem.scales(problem.residuals(values[None]))
-    inverse = np.linalg.pinv(problem.linearised(values, scales)[1])
-    moves, first = np.zeros((len(values), *result.scene.shape)), 0
-    for name, numbers in problem.measured.items():
-        rows = np.flatnonzero(np.isfinite(numbers))
-        part, first = inverse[:, first : first + len(rows)], first + len(rows)
+    inverse = np.asarray(np.linalg.pinv(problem.linearised(values, scales)[1]), dtype=np.float64)
+    moves = np.zeros((*result.scene.shape, len(values)))
+    for name, part in problem.by_quantity(inverse.T).items():
         off = (QUANTITIES[name].of(shifted) - QUANTITIES[name].of(result)) / scales[name]
-        moves[:, rows] += part * off[rows]
-    sizes = zip(problem.model.parameters, np.abs(moves).sum(axis=1), strict=True)
+        rows = np.isfinite(problem.measured[name])
+        moves[rows] += part * off[rows, None]
+    sizes = zip(problem.model.parameters, np.abs(moves).sum(axis=0), strict=True)
     moved = ", ".join(f"{parameter.name} by up to about {size:.1g}" for parameter, size in sizes)
     return [
         f"{text}; this moves {moved}" if is_it else text

@@ -9,6 +9,8 @@ Array = NDArray[np.float64]
 
 #: Least degrees of freedom beside the parameters and the added terms.
 SPARE = 3
+#: Outliers and patterns are reported if normal scatter makes them with less than this chance.
+CHANCE = 1e-3
 #: Scatter below this share of the largest number is numerical error.
 NUMERICAL = 1e-4
 

@@ -10,7 +10,8 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.fitting.f_test import NUMERICAL
+from contactlab.fitting.f_test import CHANCE, NUMERICAL
+from contactlab.fitting.parameters import in_words
 from contactlab.fitting.problem import Problem, grid, minimum
 
 Array = NDArray[np.float64]
@@ -22,8 +23,6 @@ NORMAL = 1.4826
 CUTS = (20.0, 10.0, 6.0, 4.5, 3.5)
 #: Largest share of outliers, and least count of numbers that shows a scatter.
 FEW, LEAST = 0.3, 6
-#: Chance of taking normal scatter for outliers.
-CHANCE = 1e-3
 #: Most impacts that a sentence lists.
 LISTED = 8
 
@@ -137,10 +136,7 @@ def described(problem: Problem, far: Outliers) -> list[str]:
         name: problem.measured[name] - rows[0]
         for name, rows in problem.model.predicted(far.values[None], list(far.places)).items()
     }
-    without = ", ".join(
-        f"{parameter.name} is {value:.4g}"
-        for parameter, value in zip(problem.model.parameters, far.values, strict=True)
-    )
+    without = in_words(problem.model.parameters, far.values)
     sentences = []
     for name, places in far.places.items():
         kept = np.delete(residuals[name], places)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import abc
 import inspect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.compose.rebound import DAMPED_RESTITUTION
 from contactlab.compose.registry import KINDS, REGISTRY, PluginError
@@ -20,6 +21,8 @@ from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule
 from contactlab.numeric.names import nearest
+
+Array = NDArray[np.float64]
 
 #: Range of the friction coefficient, and starts of the searches.
 FRICTION, FRICTION_STARTS = (1e-6, 10.0), tuple(np.geomspace(0.004, 4.0, 25).tolist())
@@ -128,6 +131,12 @@ class LawOption(Parameter):
         laws = {kind: getattr(setup.simulation, kind) for kind in KINDS}
         laws[self.kind] = attrs.evolve(laws[self.kind], **{self.option: value})
         return setup._replace(simulation=Simulation(**laws))
+
+
+def in_words(parameters: Sequence[Parameter], values: Array) -> str:
+    """Return the parameters with their values, in words."""
+    pairs = zip(parameters, values.tolist(), strict=True)
+    return ", ".join(f"{parameter.name} {value:.4g}" for parameter, value in pairs)
 
 
 def parameter_named(name: str, setup: Setup) -> Parameter:

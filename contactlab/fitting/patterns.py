@@ -47,13 +47,12 @@ def pattern(
     of tests (Bonferroni).
     """
     weighted, jacobian = problem.linearised(values, scales)
-    ends = np.cumsum(list(problem.counts.values()))[:-1]
-    parts = zip(np.split(weighted, ends), np.split(jacobian, ends), strict=True)
+    residuals, slopes = problem.by_quantity(weighted), problem.by_quantity(jacobian)
     ranks = _ranked(columns, len(next(iter(problem.measured.values()))))
     sizes = problem.sizes()
     least = {n: (NUMERICAL * size / np.min(scales[n])) ** 2 for n, size in sizes.items()}
     tests = []
-    for (name, numbers), (residuals, slopes) in zip(problem.measured.items(), parts, strict=True):
+    for name, numbers in problem.measured.items():
         for column, rank in ranks.items():
             x = rank[np.isfinite(numbers)]
             terms = legendre.legvander(2.0 * (x - x.min()) / max(np.ptp(x), 1.0) - 1.0, DEGREE)
@@ -61,7 +60,7 @@ def pattern(
                 f"{name}: residuals follow {column}: look at that column, at what else has changed "
                 "with it, and at other laws"
             )
-            chance = chance_of(residuals, slopes, terms[:, 1:], least[name])
+            chance = chance_of(residuals[name], slopes[name], terms[:, 1:], least[name])
             tests.append(Pattern(chance, words))
     same = [name for name in ranks if ORDER not in ranks and _in_order(ranks[name])]
     tests += _changes(problem, weighted, jacobian, max(least.values()), same)
@@ -97,19 +96,16 @@ def _changes(
 def leverage(problem: Problem, values: Array, scales: Mapping[str, Any]) -> list[str]:
     """Return a sentence for each number that the fit meets at any value."""
     _, jacobian = problem.linearised(values, scales)
-    basis = orthonormal(jacobian)
-    shares = np.sum(basis**2, axis=1)
-    sentences, first = [], 0
-    for name, numbers in problem.measured.items():
-        rows = np.flatnonzero(np.isfinite(numbers))
-        part, first = shares[first : first + len(rows)], first + len(rows)
-        sentences += [
-            f"{name}: the fit runs through impact {row + 1} whatever was measured there (leverage "
-            f"{share:.2f}), so that an error in it would not show; measure more like it"
-            for row, share in zip(rows, part, strict=True)
-            if share > ALONE and len(shares) > jacobian.shape[1]
-        ]
-    return sentences
+    shares = problem.by_quantity(np.sum(orthonormal(jacobian) ** 2, axis=1))
+    if len(jacobian) <= jacobian.shape[1]:
+        return []
+    return [
+        f"{name}: the fit runs through impact {row + 1} whatever was measured there (leverage "
+        f"{share:.2f}), so that an error in it would not show; measure more like it"
+        for name, numbers in problem.measured.items()
+        for row, share in zip(np.flatnonzero(np.isfinite(numbers)), shares[name], strict=True)
+        if share > ALONE
+    ]
 
 
 def _ranked(columns: Mapping[str, Array], count: int) -> dict[str, Array]:

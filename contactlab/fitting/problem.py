@@ -54,6 +54,11 @@ class Problem:
         """Count of measured numbers, by quantity."""
         return {name: int(np.isfinite(v).sum()) for name, v in self.measured.items()}
 
+    def by_quantity(self, numbers: Array) -> dict[str, Array]:
+        """Return the rows of ``numbers``, shape (numbers, ...), of each quantity."""
+        ends = np.cumsum(list(self.counts.values()))[:-1]
+        return dict(zip(self.measured, np.split(numbers, ends), strict=True))
+
     def residuals(self, points: Array) -> dict[str, Array]:
         """Return measured less predicted, shape (m, n) by quantity, at points (m, parameters)."""
         predicted = self.model.predicted(points, list(self.measured))

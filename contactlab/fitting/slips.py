@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any, NamedTuple
 
 import attrs
@@ -16,7 +16,7 @@ from contactlab.compose.simulation import Simulation
 from contactlab.fitting import tabulated
 from contactlab.fitting.f_test import SPARE, chance_of
 from contactlab.fitting.model import Model
-from contactlab.fitting.parameters import Parameter, Setup, laws_with, parameter_named
+from contactlab.fitting.parameters import Parameter, Setup, in_words, laws_with, parameter_named
 from contactlab.fitting.patterns import NO_PATTERN, Pattern
 from contactlab.fitting.problem import Problem, grid, solved
 from contactlab.fitting.readings import Reading, readings, turned
@@ -90,9 +90,8 @@ def _under(problem: Problem, reading: Reading) -> Reading:
 def _without(problem: Problem, values: Array, numbers: Mapping[str, Array]) -> float:
     """Return the score of the measurement with only some of its numbers."""
     fewer = attrs.evolve(problem, measured=numbers)
-    counts, sizes = list(problem.counts.values()), _sizes(problem)
-    points = np.array([solved(fewer, start) for start in (values, _first(fewer))])
-    return float(np.min(_scores(Reading("", fewer, {}), points, counts, sizes)))
+    ends = (solved(fewer, start) for start in (values, _first(fewer)))
+    return min(_score(fewer, end, problem) for end in ends)
 
 
 def _elastic(problem: Problem) -> Problem:
@@ -101,28 +100,26 @@ def _elastic(problem: Problem) -> Problem:
     if model.setup.simulation is None:
         return problem
     setup = Setup(model.setup.scene, None)
-    names = {"friction_coefficient": None} | {
-        p.name: None for p in model.parameters if p.name == "stiffness_ratio"
-    }
+    names = ["friction_coefficient"]
+    names += [p.name for p in model.parameters if p.name == "stiffness_ratio"]
     parameters = tuple(parameter_named(name, setup) for name in names)
     return attrs.evolve(problem, model=Model(setup=setup, parameters=parameters))
 
 
 def _better(problem: Problem, values: Array, candidates: Iterable[Reading]) -> list[Read]:
     """Return the readings that fit far better than the measurement as it is, best first."""
-    counts, sizes = list(problem.counts.values()), _sizes(problem)
-    number = sum(counts)
-    own = float(_scores(Reading("", problem, {}), values[None], counts, sizes)[0])
+    number = sum(problem.counts.values())
+    own = _score(problem, values, problem)
     limit = own - max(CERTAIN, 2.0 * number * math.log(SMALLER))
     better = []
     for reading in candidates:
         points = grid(reading.problem.model.parameters)
-        rough = _scores(reading, points, counts, sizes)
+        rough = _scores(reading, points, problem)
         least = int(np.argmin(rough))
         if rough[least] - own > 2.0 * number * math.log(WORTH_FITTING):
             continue
         best = solved(reading.problem, points[least])
-        score = float(_scores(reading, best[None], counts, sizes)[0])
+        score = float(_scores(reading, best[None], problem)[0])
         if score < limit:
             better.append(Read(reading, score, best))
     better.sort(key=lambda read: read.score)
@@ -132,50 +129,43 @@ def _better(problem: Problem, values: Array, candidates: Iterable[Reading]) -> l
 def _first(problem: Problem) -> Array:
     """Return the best point of the grid of starts, shape (parameters,)."""
     points = grid(problem.model.parameters)
-    counts = list(problem.counts.values())
-    scores = _scores(Reading("", problem, {}), points, counts, _sizes(problem))
+    scores = _scores(Reading("", problem, {}), points, problem)
     return np.asarray(points[int(np.argmin(scores))])
 
 
-def _sizes(problem: Problem) -> list[float]:
-    """Return the size of the numbers of each measured quantity."""
-    return list(problem.sizes().values())
-
-
-def _scores(reading: Reading, points: Array, counts: list[int], sizes: list[float]) -> Array:
-    """Return -2 log likelihood of the numbers as measured, shape (points,).
+def _scores(reading: Reading, points: Array, table: Problem) -> Array:
+    """Return -2 log likelihood of the numbers as measured in ``table``, shape (points,).
 
     The scatter of each quantity is the rms of its residuals, weighted by stated errors.
     """
     problem = reading.problem
     scores = np.zeros(len(points))
-    residuals = problem.residuals(points)
-    for (name, rows), count, size in zip(residuals.items(), counts, sizes, strict=True):
+    rows_of, counts, sizes = problem.residuals(points), table.counts, table.sizes()
+    for (name, rows), own in zip(rows_of.items(), table.measured, strict=True):
         weights = 1.0
         if name in problem.errors:
             error = problem.errors[name]
             weights = error / np.sqrt(np.nanmean(error**2))
         residual = rows / (reading.factors.get(name, 1.0) * weights)
-        scores += count * np.log(np.nanmean(residual**2, axis=1) + (LEAST * size) ** 2)
+        mean = np.nanmean(residual**2, axis=1)
+        scores += counts[own] * np.log(mean + (LEAST * sizes[own]) ** 2)
     return scores
+
+
+def _score(problem: Problem, values: Array, table: Problem) -> float:
+    """Return -2 log likelihood at one point, with the numbers as they are."""
+    return float(_scores(Reading("", problem, {}), values[None], table)[0])
 
 
 def _sentence(problem: Problem, values: Array, better: list[Read]) -> str:
     """Return a sentence on the best readings, with the parameters of the first."""
     best = better[0]
-    counts, sizes = list(problem.counts.values()), _sizes(problem)
-    own = _scores(Reading("", problem, {}), values[None], counts, sizes)[0]
-    times = math.exp((own - best.score) / (2.0 * sum(counts)))
+    own = _score(problem, values, problem)
+    times = math.exp((own - best.score) / (2.0 * sum(problem.counts.values())))
     listed = "; or ".join(read.reading.words for read in better)
-    parameters = best.reading.problem.model.parameters
-    estimates = _listed(parameters[: len(values)], best.values)
+    parameters = best.reading.problem.model.parameters[: len(values)]  # without what was tried
+    estimates = in_words(parameters, best.values[: len(values)])
     return f"{listed}: read so, residuals are {times:.2g} times smaller, and {estimates}"
-
-
-def _listed(parameters: Sequence[Parameter], values: Array) -> str:
-    """Return the parameters with their values."""
-    pairs = zip(parameters, values, strict=False)  # an error that was tried may be beyond
-    return ", ".join(f"{parameter.name} {value:.4g}" for parameter, value in pairs)
 
 
 class AngleOffset(Parameter):
@@ -220,18 +210,17 @@ def _better_with(problem: Problem, values: Array, *tried: Wider) -> Pattern:
     """
     from scipy.special import fdtrc  # only a fit needs scipy
 
-    counts, sizes = list(problem.counts.values()), _sizes(problem)
-    number = sum(counts)
+    number = sum(problem.counts.values())
     freedom = number - len(values) - 1
     if freedom < SPARE:
         return NO_PATTERN
-    own = float(_scores(Reading("", problem, {}), values[None], counts, sizes)[0])
+    own = _score(problem, values, problem)
     found = []
     for wider, start, words in tried:
         if wider is not None:
             best = solved(wider, np.append(values, start))
             reading = Reading(words(float(best[-1])), wider, {})
-            found.append(Read(reading, float(_scores(reading, best[None], counts, sizes)[0]), best))
+            found.append(Read(reading, _score(wider, best, problem), best))
     found.sort(key=lambda read: read.score)
     if not found or found[0].score >= own:
         return NO_PATTERN
@@ -291,19 +280,18 @@ def assumed(problem: Problem, values: Array, reaches: Array) -> list[str]:
     wider = None if problem.model.setup.simulation else _restituted(problem)[0]
     if wider is None:
         return []
-    counts, sizes = list(problem.counts.values()), _sizes(problem)
-    limit = float(_scores(Reading("", problem, {}), values[None], counts, sizes)[0]) + EXCLUDED
+    limit = _score(problem, values, problem) + EXCLUDED
     *parameters, more = wider.model.parameters
     sentence: list[str] = []
     for restitution in LOSSES:
         laws = more.applied(wider.model.setup, restitution)
         fixed = attrs.evolve(problem, model=Model(setup=laws, parameters=tuple(parameters)))
         best = solved(fixed, values)
-        if _scores(Reading("", fixed, {}), best[None], counts, sizes)[0] > limit:
+        if _score(fixed, best, problem) > limit:
             break
         if np.any(np.abs(best - values) > reaches):
             sentence = [
                 f"restitution 1 is assumed; {restitution:g} meets the data as well: "
-                f"{_listed(parameters, best)} (model, not scatter)"
+                f"{in_words(parameters, best)} (model, not scatter)"
             ]
     return sentence
