@@ -153,41 +153,31 @@ def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
 
 
 @np.errstate(all="ignore")
-def _with_unbalanced(motion: Motion, scene: Scene, bound: Real) -> Motion:
+def _with_unbalanced(motion: Motion, scene: Scene, bound: Any) -> Motion:
     """Return ``motion`` with the status of each impact whose books do not balance."""
     coupled, alone = motion.exchange != 0.0, motion.exchange == 0.0
-    speed: Any = abs(motion.normal_velocity)
-    fast = (speed > LARGEST_RESTITUTION * scene.normal_speed) & alone
-    if some(fast):
-        detail = _sentences(
-            "The bodies part {:.4g} times as fast as they met.", speed / scene.normal_speed
-        )
-        motion = motion.failing(fast, Status.UNBALANCED, detail)
     books = ledger(scene, motion)
-    imbalance: Any = abs(books.imbalance)
-    unbalanced = imbalance > bound * books.start
-    if some(unbalanced):
-        share = abs(books.relative_imbalance)
-        detail = _sentences(
-            "Off by {:.2g} of the energy at the start; declared: {:.2g}.", share, bound
-        )
-        motion = motion.failing(unbalanced, Status.UNBALANCED, detail)
+    speed: Any = abs(motion.normal_velocity)
     before: Any = abs(scene.slip_velocity)
     after: Any = abs(scene.slip_velocity + motion.slip_velocity_change)
-    slips_fast = (after > LARGEST_SLIP * before) & alone
-    if some(slips_fast):
-        detail = _sentences(
-            "The contact slips {:.4g} times as fast as it met.", np.divide(after, before)
-        )
-        motion = motion.failing(slips_fast, Status.UNBALANCED, detail)
-    gaining = coupled & (books.end > LARGEST_RESTITUTION**2 * books.start)
-    if some(gaining):
-        detail = _sentences("The bodies gain {:.2g} of their energy.", books.end / books.start - 1)
-        motion = motion.failing(gaining, Status.UNBALANCED, detail)
-    vast = (bound == math.inf) & (imbalance > LARGEST_UNDECLARED * books.start)
-    if some(vast):
-        detail = _sentences("Off by {:.3g} times the energy at the start.", imbalance / books.start)
-        motion = motion.failing(vast, Status.UNBALANCED, detail)
+    imbalance: Any = abs(books.imbalance)
+    share: Any = np.divide(imbalance, books.start)
+    gained: Any = np.divide(books.end, books.start)
+    undeclared = bound == math.inf
+    for where, sentence, *numbers in (
+        (alone & (speed > LARGEST_RESTITUTION * scene.normal_speed),
+         "The bodies part {:.4g} times as fast as they met.", speed / scene.normal_speed),
+        (imbalance > bound * books.start,
+         "Off by {:.2g} of the energy at the start; declared: {:.2g}.", share, bound),
+        (alone & (after > LARGEST_SLIP * before),
+         "The contact slips {:.4g} times as fast as it met.", np.divide(after, before)),
+        (coupled & (gained > LARGEST_RESTITUTION**2),
+         "The bodies gain {:.2g} of their energy.", gained - 1.0),
+        (undeclared & (share > LARGEST_UNDECLARED),
+         "Off by {:.3g} times the energy at the start.", share),
+    ):  # fmt: skip
+        if some(where):
+            motion = motion.failing(where, Status.UNBALANCED, _sentences(sentence, *numbers))
     return motion
 
 

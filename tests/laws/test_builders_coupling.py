@@ -1,11 +1,7 @@
 """The builder of the table of elastic coupling: what it solves, and the file that it writes."""
 
-from types import SimpleNamespace
-
 import numpy as np
-import pytest
 
-from contactlab import Scene, Status
 from contactlab.impact.coupling import FILE
 from table_builders.coupling import build
 
@@ -50,31 +46,3 @@ def test_the_shipped_file_has_the_head_and_the_rows_of_the_builder():
         for nu in (0.0, 0.5)
         for psi1 in build.PSI1
     ]
-
-
-@pytest.mark.parametrize(
-    ("statuses", "checked"),
-    [
-        ([Status.SUCCESS, Status.SUCCESS], False),
-        ([Status.SUCCESS, Status.UNBALANCED], False),
-        ([Status.UNBALANCED, Status.UNSETTLED], True),
-    ],
-)
-def test_only_missed_books_are_let_pass(statuses, checked, monkeypatch):
-    class Laws:
-        def __init__(self, *, tangential):
-            assert (tangential.rings, tangential.angles) == (32, 8)
-            assert tangential.coupling == "one_way"
-            assert not tangential.extrapolate
-
-        def run(self, scene):
-            told = []
-            found = SimpleNamespace(status=np.array(statuses), psi2=scene.psi1, told=told)
-            found.check = lambda: told.append(True)
-            Laws.found = found
-            return found
-
-    monkeypatch.setattr(build, "Simulation", Laws)
-    scene = Scene.nondimensional(psi1=np.array([1.0, 2.0]), chi=1.4)
-    assert build._psi2("one_way", scene).tolist() == [1.0, 2.0]
-    assert bool(Laws.found.told) is checked
