@@ -28,7 +28,7 @@ LONGEST = 1.0
 #: Error of a step over a velocity, below which it is rounding: jams may multiply velocities by 1e8.
 ROUNDING = 1e-14
 #: Steps of an impact before it is given up; a hard one takes 40, one of kappa = 1e6 some 10,000.
-MOST_STEPS = 100_000
+MOST_STEPS = 20_000
 
 
 class Drawn(NamedTuple):
@@ -303,12 +303,12 @@ class Impact:
             for order in (ORDER, ORDER - 1):
                 size = abs(row[order])
                 if not size < math.inf:
-                    raise LostError("the velocities of a jam outgrow the numbers")
+                    raise LostError("The velocities of a jam outgrow the numbers")
                 if size > 0.0:
                     length = min(length, (tolerance / size) ** (1.0 / order))
         self.steps += 1
         if self.steps > MOST_STEPS:
-            raise LostError(f"the contact neither ends nor settles in {MOST_STEPS} steps")
+            raise LostError(f"The contact neither ends nor settles in {MOST_STEPS} steps")
         return first_fall(events, CAREFUL * length)
 
     def _arrive(self, rows: list[Series], t: float) -> None:
