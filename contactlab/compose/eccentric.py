@@ -11,6 +11,7 @@ import numpy as np
 from contactlab.compose import composition
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.solve import WORK_ACCURACY
 from contactlab.contracts import faults
 from contactlab.contracts.eccentric import (
     EccentricIntegrator,
@@ -20,15 +21,19 @@ from contactlab.contracts.eccentric import (
     IncrementalTangentialLaw,
     VectorTangentialLaw,
 )
+from contactlab.contracts.tangential import books_bound
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.hertz import hertz_scales
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.eccentric import EccentricRecorder, EccentricResult
+from contactlab.outcome.eccentric import EccentricRecorder, EccentricResult, balanced
 from contactlab.outcome.history import NO_HISTORY
 from contactlab.outcome.plan import Clause, Plan
 
 #: Impacts that are marched at a time: their springs stay in the processor's cache.
 BLOCK = 1000
+#: Least bound of the imbalance of the energy books: where W is nearly singular the energy is the
+#: small difference of large products.
+CANCELS = 1e-4
 #: Above this ratio of contact radius to R the theory of half-spaces is doubtful (theory §8).
 DOUBTFUL_SIZE_RATIO = 0.1
 
@@ -56,10 +61,12 @@ def run(laws: Laws, scene: EccentricScene, *, history: bool | str = False) -> Ec
         motion = _joined([_motion(laws, flat.take(place), None) for place in places])
     if flat is not scene:
         motion = _shaped(motion, scene.shape)
+    declared = books_bound(laws.tangential, scene.central)
+    bound = np.maximum(declared, CANCELS) + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
     return EccentricResult(
         scene=scene,
         plan=plan(laws, scene),
-        motion=motion,
+        motion=balanced(motion, scene, bound),
         run_time=time.perf_counter() - started,
         laws=composition.versions(*laws),
         history=NO_HISTORY if recorder is None else recorder.history(),

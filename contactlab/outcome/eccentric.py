@@ -15,7 +15,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Real
-from contactlab.outcome.energy import EnergyLedger
+from contactlab.outcome.energy import LARGEST_RESTITUTION, EnergyLedger
 from contactlab.outcome.history import NO_HISTORY, NoHistory
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactError
@@ -192,27 +192,12 @@ class EccentricResult:
     @property
     def impulse(self) -> Array:
         """Impulse on the target along n, t1 and t2, shape (..., 3), in N s."""
-        change = self.motion.velocity_change[..., None]
-        return np.asarray(-np.linalg.solve(self.scene.inverse_mass, change)[..., 0])
+        return impulse(self.scene, self.motion)
 
     @property
     def energy(self) -> EnergyLedger:
         """Energy books in J, of the relative motion at the contact: ½ v·W⁻¹·v is its energy."""
-        before = self.scene.velocity
-        impulse = self.impulse
-        with np.errstate(invalid="ignore", over="ignore"):
-            start = self.scene.kinetic_energy(before)
-            mean = before + 0.5 * self.motion.velocity_change
-            lost = np.einsum("...i,...i->...", impulse, mean)
-            lost = float(lost) if lost.ndim == 0 else lost
-            spent = self.motion.normal_loss + self.motion.friction_work
-            return EnergyLedger(
-                start=start,
-                end=start - lost,
-                normal_loss=self.motion.normal_loss,
-                friction_work=self.motion.friction_work,
-                imbalance=lost - spent,
-            )
+        return ledger(self.scene, self.motion)
 
     def __len__(self) -> int:
         """Return the number of impacts of a batch."""
@@ -243,3 +228,54 @@ class EccentricResult:
     def __iter__(self) -> Iterator[EccentricResult]:
         """Iterate over the impacts of a batch."""
         return (self[index] for index in range(len(self)))
+
+
+def impulse(scene: EccentricScene, motion: EccentricMotion) -> Array:
+    """Return the impulse on the target along n, t1 and t2, shape (..., 3), in N s."""
+    change = motion.velocity_change[..., None]
+    return np.asarray(-np.linalg.solve(scene.inverse_mass, change)[..., 0])
+
+
+def ledger(scene: EccentricScene, motion: EccentricMotion) -> EnergyLedger:
+    """Return the energy books in J of the relative motion at the contact."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        start = scene.kinetic_energy(scene.velocity)
+        mean = scene.velocity + 0.5 * motion.velocity_change
+        lost = np.einsum("...i,...i->...", impulse(scene, motion), mean)
+        lost = float(lost) if lost.ndim == 0 else lost
+        return EnergyLedger(
+            start=start,
+            end=start - lost,
+            normal_loss=motion.normal_loss,
+            friction_work=motion.friction_work,
+            imbalance=lost - (motion.normal_loss + motion.friction_work),
+        )
+
+
+def balanced(motion: EccentricMotion, scene: EccentricScene, bound: Any) -> EccentricMotion:
+    """Return ``motion`` with status ``UNBALANCED`` where the energy books do not balance.
+
+    The imbalance over the energy at the start exceeds ``bound``, or the bodies gain energy.
+    """
+    books = ledger(scene, motion)
+    with np.errstate(invalid="ignore"):
+        off: Any = np.abs(books.imbalance) > bound * books.start
+        gains: Any = books.end > LARGEST_RESTITUTION**2 * books.start
+    wrong = off | gains
+    if not np.any(wrong):
+        return motion
+    share = np.abs(np.where(gains, books.end - books.start, books.imbalance)) / books.start
+    sentence = f"Off by {float(np.max(share, where=wrong, initial=0.0)):.2g} of the energy."
+    nothing = EccentricMotion.nothing(scene.shape, Status.UNBALANCED, sentence)
+    if not scene.shape:
+        return attrs.evolve(nothing, counters=motion.counters)
+    entries = {
+        field.name: np.where(
+            wrong[..., None] if field.name == "velocity_change" else wrong,
+            getattr(nothing, field.name),
+            getattr(motion, field.name),
+        )
+        for field in attrs.fields(EccentricMotion)
+        if field.name != "counters"
+    }
+    return EccentricMotion(**entries, counters=motion.counters)

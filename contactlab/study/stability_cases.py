@@ -13,9 +13,11 @@ from contactlab.compose.composition import DEFAULT_NORMAL, misfit
 from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.study.bench_methods import Method
+from contactlab.study.stability_eccentric import eccentric_scenes, tried_eccentric
 
 #: A solid sphere of Poisson's ratio 0.3: the paper's own case.
 CHI = 49 / 34
@@ -79,6 +81,9 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
             yield _case(method, scene, {"integrator": {"steps": steps}})
     for normal in other_normal_laws(method):
         yield from _under(method, normal, quick=quick)
+    if tried_eccentric(method):
+        for label, make in eccentric_scenes(quick=quick):
+            yield _case(method, Extreme("eccentric", label, make), {})
     if method.whole:
         return
     for psi1, chi in QUICK_LADDER if quick else LADDER:
@@ -158,7 +163,7 @@ class Extreme(NamedTuple):
 
     family: str
     label: str
-    make: Callable[[], Scene]
+    make: Callable[[], Scene | EccentricScene]
 
 
 def extreme_scenes(*, quick: bool = False) -> list[Extreme]:

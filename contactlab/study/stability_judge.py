@@ -15,11 +15,13 @@ from contactlab.compose.solved_motion import ACCURACY
 from contactlab.contracts import ClosedFormNormalLaw
 from contactlab.contracts.error_model import LARGEST_SHARE, range_of
 from contactlab.contracts.status import Status
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
 from contactlab.study.stability_cases import Case
+from contactlab.study.stability_eccentric import judged_eccentric
 from contactlab.study.stability_references import (
     SETTLED,
     Reference,
@@ -84,8 +86,25 @@ def judge(case: Case) -> Outcome:
         simulation = case.method.simulation(case.options, normal=case.normal)
     except (ValueError, PluginError) as error:
         return Outcome.of(case, REFUSED, note=f"bad input: {error}")
+    if isinstance(scene, EccentricScene):
+        return _judge_eccentric(case, simulation, scene)
     reference = reference_for(simulation.tangential, simulation.normal)
     return judge_run(case, simulation, scene, reference)
+
+
+def _judge_eccentric(case: Case, simulation: Simulation, scene: EccentricScene) -> Outcome:
+    """Return the outcome of an eccentric impact, judged by its books and by rigid bodies."""
+    try:
+        with np.errstate(all="ignore"):
+            result = simulation.run(scene)
+    except Exception as error:
+        return Outcome.of(case, RAISED, note=f"{type(error).__name__}: {error}")
+    if result.failures:
+        return Outcome.of(case, REFUSED, note=result.failures[0], run_time_s=result.run_time)
+    apart, wrong = judged_eccentric(simulation, result)
+    outcome = WRONG if wrong else ANSWERED
+    note, time = "; ".join(wrong), result.run_time
+    return Outcome.of(case, outcome, error=apart, bound=UNDECLARED, note=note, run_time_s=time)
 
 
 def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Reference) -> Outcome:

@@ -35,7 +35,8 @@ from contactlab.testing.parametrize import parametrize_with_checks
 ORDER = (
     "every_law", "normal", "normal_contact", "normal_motions", "motion", "stepping", "friction",
     "stiffness", "energy", "memory", "point", "impacts", "whole_impacts", "coulomb", "unlike",
-    "rigid_bodies", "integrators", "integrator_faults", "accuracy", "declared_errors", "coupled",
+    "vectors", "rigid_bodies", "integrators", "integrator_faults", "accuracy", "declared_errors",
+    "coupled",
 )  # fmt: skip
 for _module in ORDER:
     importlib.import_module(f"contactlab.testing.{_module}")

@@ -455,6 +455,44 @@ def test_a_batch_answers_as_its_impacts():
     assert EXACT.run(table).psi2.ravel() == pytest.approx(EXACT.run(scene).psi2, rel=1e-12)
 
 
+HARD = [
+    # psi1, chi, lam, lam eta over 2 chi
+    (1e6, 0.5, -1000.0, 0.99), (1e6, 3.0, -1000.0, 0.99), (1e6, 3.0, -30.0, 0.9999),
+    (20.0, 0.5, -1000.0, 0.99), (1e6, 0.5, 2.0, 1.0 - 1e-6), (1e-12, 0.5, 1000.0, 0.99),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("psi1", "chi", "lam", "share"), HARD)
+def test_jams_of_bodies_that_hardly_move_end_with_balanced_books_or_a_status(psi1, chi, lam, share):
+    """Jams at up to 1e9 times the speed of approach ended never, or with twice the energy."""
+    scene = planar(psi1=psi1, chi=chi, lam=lam, eta=share * 2.0 * chi / lam)
+    for simulation in (EXACT, Simulation(tangential="springs")):
+        result = simulation.run(scene)
+        if result.status is Status.SUCCESS:
+            assert result.energy.end <= result.energy.start * (1.0 + 1e-3)
+            assert abs(result.energy.relative_imbalance) < 0.06
+        else:
+            assert math.isnan(result.psi2)
+            assert result.status in (Status.UNRESOLVED, Status.UNBALANCED)
+
+
+def test_books_that_do_not_balance_are_a_status():
+    class Pushing(type(create("tangential.linear_spring"))):
+        api_version = 2
+
+        def advance(self, state, increment, before, after):
+            response, new = super().advance(state, increment, before, after)
+            return response._replace(friction_work=3.0 * response.friction_work), new
+
+    simulation = Simulation(tangential=Pushing(), integrator="symplectic")
+    one = simulation.run(rod(-30.0, slip=0.5).scene)
+    assert one.status is Status.UNBALANCED
+    assert math.isnan(one.psi2)
+    many = simulation.run(planar(psi1=[3.0, 1e-9], chi=0.4, lam=0.0, eta=0.0))
+    assert [*many.status] == [Status.UNBALANCED, Status.SUCCESS]
+    assert np.isnan(many.psi2).tolist() == [True, False]
+
+
 def test_a_law_that_raises_has_a_status_and_no_number():
     class Faulty(type(create("tangential.mindlin_cap"))):
         api_version = 2

@@ -23,6 +23,7 @@ from tests.testing import broken_integrators as integrators
 from tests.testing import broken_laws as laws
 from tests.testing import broken_normal as normal
 from tests.testing import broken_rigid as rigid
+from tests.testing import broken_vectors as vectors
 from tests.testing import fresh_faults, sentences
 
 ROOT = Path(__file__).parents[2]
@@ -40,6 +41,7 @@ BROKEN = [
     *couplings.BROKEN,
     *fresh_faults.FAULTS,
     *rigid.BROKEN,
+    *vectors.BROKEN,
 ]
 
 
@@ -59,8 +61,9 @@ def failed(law):
         impacts.Knowing(),
         impacts.Whole(),
         normal.Stepwise(),
+        vectors.SoundVector(),
     ],
-    ids=["Sound", "TwoRequired", "Interpolates", "AllAtOnce", "Knowing", "Whole", "Stepwise"],
+    ids=lambda law: type(law).__name__,
 )
 def test_a_sound_law_passes_every_check(law):
     verdicts = {entry.verdict for entry in check_law(law)}
@@ -125,6 +128,16 @@ def test_sentences_are_compared_to_a_unit_in_the_last_place(expected, good):
 def test_a_fault_in_one_clause_fails_few_checks(broken, name):
     assert name in failed(broken())
     assert len(failed(broken())) <= 4
+
+
+@pytest.mark.parametrize(
+    ("broken", "name"),
+    [(law, name) for law, name, _ in vectors.BROKEN],
+    ids=[law.__name__ for law, _, _ in vectors.BROKEN],
+)
+def test_a_fault_in_vectors_or_in_the_future_fails_one_check(broken, name):
+    """Laws of numbers do not show it, and each check sees what no other does."""
+    assert failed(broken()) == [name]
 
 
 def test_what_cannot_be_run_is_not_passed():

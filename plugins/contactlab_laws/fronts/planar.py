@@ -25,8 +25,10 @@ from contactlab_laws.fronts.series import (
 CAREFUL = 0.9
 #: Longest step: beyond it forces turn more than events are looked for.
 LONGEST = 1.0
-#: Phases of an impact before it is given up; a hard one takes 40, one of kappa = 1e6 some 10,000.
-MOST_PHASES = 100_000
+#: Error of a step over a velocity, below which it is rounding: jams may multiply velocities by 1e8.
+ROUNDING = 1e-14
+#: Steps of an impact before it is given up; a hard one takes 40, one of kappa = 1e6 some 10,000.
+MOST_STEPS = 20_000
 
 
 class Drawn(NamedTuple):
@@ -104,15 +106,13 @@ class Impact:
         Raises
         ------
         LostError
-            If it does not end in ``MOST_PHASES``.
+            If it does not end in ``MOST_STEPS``.
         """
         slips = self.margin < 0.0 or (self.margin == 0.0 and self.laws.drive <= 0.0)
         phase: Phase | None = self._gross if slips else self._stuck
-        for _ in range(MOST_PHASES):
-            if phase is None:
-                return self
+        while phase is not None:
             phase = phase()
-        raise LostError(f"the contact neither ends nor settles in {MOST_PHASES} phases")
+        return self
 
     @property
     def change(self) -> float:
@@ -299,11 +299,16 @@ class Impact:
         """Return how far the series hold, or the first event within, and which."""
         length = LONGEST
         for row in rows:
+            tolerance = max(self.tolerance, ROUNDING * abs(row[0]))
             for order in (ORDER, ORDER - 1):
                 size = abs(row[order])
+                if not size < math.inf:
+                    raise LostError("The velocities of a jam outgrow the numbers")
                 if size > 0.0:
-                    length = min(length, (self.tolerance / size) ** (1.0 / order))
+                    length = min(length, (tolerance / size) ** (1.0 / order))
         self.steps += 1
+        if self.steps > MOST_STEPS:
+            raise LostError(f"The contact neither ends nor settles in {MOST_STEPS} steps")
         return first_fall(events, CAREFUL * length)
 
     def _arrive(self, rows: list[Series], t: float) -> None:

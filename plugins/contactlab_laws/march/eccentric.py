@@ -30,8 +30,8 @@ from contactlab.numeric.checks import shown
 
 #: A contact that lasts longer than so many times the approach without friction is given up.
 LONGEST = 100
-#: A step of the deepest contact that friction can make, over that of the frictionless one: at most.
-DEEPEST = 1e3
+#: Energy of the deepest contact that is followed, over that of the approach without friction.
+DEEPEST = 1e10
 
 
 def needed_steps(scene: EccentricScene, normal: NormalMotion, law: Any, phase_step: float) -> Any:
@@ -110,6 +110,11 @@ class _March:
         """Return the motion to the end of contact of all impacts."""
         try:
             self._follow(observer)
+            jammed = self.greatest[1] > DEEPEST**0.4 * np.asarray(self.normal.maximum_approach)
+            if np.any(jammed):
+                self.alive = jammed
+                sentence = "Friction presses the contact deeper than the steps resolve."
+                self._fail(Status.UNRESOLVED, sentence)
         except KeyboardInterrupt:
             raise
         except faults.LawFaultError as fault:

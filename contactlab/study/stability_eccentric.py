@@ -1,0 +1,120 @@
+"""Extreme eccentric impacts: jams, bodies that hardly move, stiff contacts; what must hold."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from contactlab.compose.simulation import Simulation
+from contactlab.contracts.eccentric import (
+    EccentricIntegrator,
+    EccentricTangentialLaw,
+    IncrementalTangentialLaw,
+)
+from contactlab.impact.bodies import Pair
+from contactlab.impact.eccentric import EccentricScene
+from contactlab.outcome.eccentric import EccentricResult
+from contactlab.study.bench_methods import Method
+
+#: 1 over 1 - lam eta/(2 chi): the condition of the inverse mass, scaled to ones on the diagonal.
+CONDITIONS, LAMS, CHIS = (1e2, 1e6), (0.3, -2.0, -1e3), (0.5, 3.0)
+PSI1 = (1e-12, 1.5, 1e6)
+#: kappa of stiff contacts; rods by angle, friction and slip over approach.
+KAPPAS, RODS = (1e2, 1e4, 1e6), ((15.0, 0.3, 0.0), (-30.0, 0.3, 0.5), (75.0, 0.01, 1e-9))
+#: Stiff contacts end as rigid bodies do, to this over the root of kappa (5e-3 at 1e4).
+STIFF, RIGID_DISTANCE = 1e4, 0.6
+#: Bound of energy from nothing over that at the start, and of the books of a law that declares none
+LARGEST_GAIN, BOOKS = 1e-3, 1e-3
+#: Error of velocities that a law at its default resolution may add, over the speeds.
+UNDECLARED = 0.01
+
+
+def eccentric_scenes(*, quick: bool) -> Iterator[tuple[str, Callable[[], EccentricScene]]]:
+    """Iterate over labels and makers of the scenes; ``quick`` takes those that are soon done."""
+    for condition in CONDITIONS[: 1 if quick else None]:
+        for lam in LAMS:
+            for chi in CHIS[: 1 if quick else None]:
+                eta = 2.0 * chi * (1.0 - 1.0 / condition) / lam
+                for psi1 in PSI1:
+                    label = f"psi1={psi1:g} chi={chi:g} lam={lam:g} condition={condition:g}"
+                    numbers = {"psi1": psi1, "chi": chi, "lam": lam, "eta": eta}
+                    yield label, partial(EccentricScene.nondimensional, **numbers)
+    for kappa in KAPPAS[: 1 if quick else None]:
+        for angle, friction, slip in RODS:
+            label = f"rod of {angle:g} degrees, mu={friction:g}, kappa={kappa:g}"
+            yield label, partial(rod, angle, friction, slip, kappa=kappa)
+
+
+def rod(angle: float, friction: float, slip: float, *, kappa: float) -> EccentricScene:
+    """Return a uniform rod of mass and length 1 that meets a plane with its end.
+
+    Parameters
+    ----------
+    angle : float
+        Between rod and normal, in degrees; positive where friction lessens the approach.
+    friction, slip : float
+        Coulomb's mu; slip velocity over the speed of approach.
+    kappa : float
+        G*/E* of the contact.
+    """
+    a, b = math.sin(math.radians(angle)) / 2.0, math.cos(math.radians(angle)) / 2.0
+    W = np.diag((1.0 + 12.0 * a * a, 1.0 + 12.0 * b * b, 1.0))
+    W[0, 1] = W[1, 0] = 12.0 * a * b
+    pair = Pair(
+        radius=1.0,
+        effective_modulus=1.0,
+        effective_shear_modulus=kappa,
+        normal_mass=1.0 / W[0, 0],
+        tangential_mass=1.0 / W[1, 1],
+    )
+    return EccentricScene(
+        pair=pair,
+        friction_coefficient=friction,
+        inverse_mass=W,
+        normal_speed=1.0,
+        slip_velocity=np.array((slip, 0.0)),
+    )
+
+
+def tried_eccentric(method: Method) -> bool:
+    """Return whether the method answers eccentric impacts, by partial slip or as rigid bodies."""
+    simulation = method.simulation({"tangential": {}, "integrator": {}})
+    law = simulation.tangential
+    if isinstance(law, EccentricTangentialLaw):
+        return True
+    incremental = isinstance(law, IncrementalTangentialLaw) and "partial_slip" in law.offers
+    return incremental and isinstance(simulation.integrator, EccentricIntegrator)
+
+
+def distance(one: EccentricResult, other: EccentricResult) -> Any:
+    """Return the distance of rates and slip velocities after two impacts, over v1."""
+    rate = np.subtract(one.normal_velocity, other.normal_velocity)
+    slip = (one.slip_velocity - other.slip_velocity)[..., 0] / one.scene.normal_speed
+    return np.hypot(rate, slip)
+
+
+def judged_eccentric(simulation: Simulation, result: EccentricResult) -> tuple[float, list[str]]:
+    """Return the distance from rigid bodies, NaN of a soft contact, and what is wrong."""
+    law, books, wrong = simulation.tangential, result.energy, []
+    numbers = (result.normal_velocity, result.psi2, books.end, books.imbalance)
+    if not np.all(np.isfinite(np.array(numbers, dtype=float))):
+        return math.nan, ["a number that is not finite"]
+    if "books" not in law.expected_failures:
+        start: Any = books.start
+        bound: Any = law.books_bound(result.scene.central)
+        bound = max(BOOKS, bound if np.isfinite(bound) else 0.0)
+        if books.end > start * (1.0 + LARGEST_GAIN):
+            wrong.append(f"{float(books.end / start - 1.0):.2g} of the energy from nothing")
+        if abs(books.imbalance) > bound * start:
+            wrong.append("energy books do not close")
+    if result.scene.kappa < STIFF or "partial_slip" not in law.offers:
+        return math.nan, wrong
+    rigid = Simulation(tangential="coulomb").run(result.scene).check()
+    error = float(distance(result, rigid))
+    if error > RIGID_DISTANCE * float(result.scene.kappa) ** -0.5 + UNDECLARED:
+        wrong.append(f"{error:.2g} of v1 from rigid bodies")
+    return error, wrong
