@@ -21,7 +21,6 @@ from contactlab.contracts.eccentric import (
     IncrementalTangentialLaw,
     VectorTangentialLaw,
 )
-from contactlab.contracts.tangential import books_bound
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.hertz import hertz_scales
 from contactlab.numeric.checks import refuse
@@ -61,7 +60,7 @@ def run(laws: Laws, scene: EccentricScene, *, history: bool | str = False) -> Ec
         motion = _joined([_motion(laws, flat.take(place), None) for place in places])
     if flat is not scene:
         motion = _shaped(motion, scene.shape)
-    declared = books_bound(laws.tangential, scene.central)
+    declared: Any = laws.tangential.books_bound(scene.central)
     bound = np.maximum(declared, CANCELS) + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
     return EccentricResult(
         scene=scene,

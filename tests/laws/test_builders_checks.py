@@ -13,66 +13,21 @@ from contactlab_laws.tables.file import read
 from table_builders.damped import checks, differences
 
 
-def test_impacts_by_rings_keep_their_shape(monkeypatch):
-    def rings(psi1, chi, e, *, counts):
-        assert counts == (64, 96, 128)
-        return e + psi1 - 3.0 * chi
-
-    monkeypatch.setattr(checks, "by_rings", rings)
-    found = checks.solve(np.array([[1.0], [2.0]]), np.array([0.0, 1.0, 2.0]), 5.0)
-    assert found.tolist() == [[6.0, 3.0, 0.0], [7.0, 4.0, 1.0]]
-
-
-@pytest.mark.parametrize(
-    ("largest", "answer", "said"),
-    [(DAMPED_ERROR, 0, "1.0e-03"), (1.5 * DAMPED_ERROR, 1, "1.5e-03")],
-)
-def test_verifying_draws_tells_and_judges(largest, answer, said, monkeypatch, capsys):
-    """The table is right but for each fourth impact of a batch, and worst in the third batch."""
-    drawn = []
-
-    def off(psi1, chi, e):
-        drawn.append((psi1, chi, e))
-        error = np.zeros(psi1.shape)
-        error[3::4] = -0.5 * largest
-        error[3] = -largest if len(drawn) == 3 else error[3]
-        return error
-
-    monkeypatch.setattr(checks, "rebound", off)
-    monkeypatch.setattr(checks, "solve", lambda *of: np.zeros(of[0].shape))
-    assert checks.verify(100, 5) == answer
+def test_verifying_draws_tells_and_judges(monkeypatch, capsys):
+    """By few rings, which are off by less than the table declares."""
+    monkeypatch.setattr(checks, "RINGS", 32)
+    assert [checks.verify(24, seed) for seed in (1, 2)] == [0, 0]
     lines = capsys.readouterr().out.splitlines()
+    assert lines[1:14] != lines[15:]
     stored = read(SHIPPED)
     begin = stored.checksum()[:12]
     assert lines[0] == f"{SHIPPED}: contactlab {stored.version}, {stored.built}, {begin}"
-    assert lines[-1] == f"largest {said}, declared 1e-03"
-    assert len(lines) == 14
-    for number, (line, (psi1, chi, e)) in enumerate(zip(lines[1:-1], drawn, strict=True)):
-        worst = largest if number == 2 else 0.5 * largest
-        rms = np.sqrt((worst**2 + 0.25 * largest**2) / 8)
-        assert line == (
-            f"e = {e:.6f}: largest {worst:.1e} at psi1 = {psi1[3]:.4f}, chi = {chi[3]:.4f}; "
-            f"rms {rms:.1e}"
-        )
-        assert psi1.shape == chi.shape == (8,)
-        assert 1e-5 <= 1.0 - e <= (0.1 if number % 3 == 0 else 0.5)
-    psi1, chi = (np.concatenate(each) for each in list(zip(*drawn, strict=True))[:2])
-    assert 0.0 <= psi1.min() < 0.5 < 8.5 < psi1.max() <= 9.0
-    assert 0.8 <= chi.min() < 0.9 < 1.7 < chi.max() <= 1.8
-    assert min(e for *_, e in drawn) < 0.7
-    near = np.log10([1.0 - e for *_, e in drawn[::3]])
-    assert near.min() < -3.0
-
-
-def test_a_batch_has_one_impact_at_least_and_another_seed_others(monkeypatch, capsys):
-    drawn = []
-    monkeypatch.setattr(checks, "rebound", lambda *of: drawn.append(of[0]) or of[0])
-    monkeypatch.setattr(checks, "solve", lambda *of: of[0])
-    for seed in (1, 1, 2):
-        assert checks.verify(7, seed) == 0
-    assert [each.size for each in drawn] == [1] * 36
-    assert drawn[:12] == drawn[12:24] != drawn[24:]
-    assert capsys.readouterr().out.count("largest 0.0e+00, declared 1e-03") == 3
+    numbers = [list(map(float, re.findall(r"(?<= )\d[\d.e-]*\d", line))) for line in lines[1:13]]
+    e, largest, psi1, chi, rms = np.transpose(numbers)
+    assert ((e >= 0.5) & (e < 1.0) & (psi1 <= 9.0) & (chi >= 0.8) & (chi <= 1.8)).all()
+    assert (e[::3] >= 0.9).all()
+    assert ((rms <= largest) & (largest <= 1.5 * rms)).all()
+    assert lines[13] == f"largest {largest.max():.1e}, declared {DAMPED_ERROR:.0e}"
 
 
 def test_the_fastest_run_counts(monkeypatch, capsys):
@@ -80,15 +35,8 @@ def test_the_fastest_run_counts(monkeypatch, capsys):
     clock = iter(np.cumsum([1.0, 7e-3, 1.0, 3e-3, 1.0, 5e-3, 1.0, 2e-3, 1.0, 4e-3]).tolist())
     monkeypatch.setattr(time, "process_time", lambda: next(clock))
     monkeypatch.setattr(checks, "TIMED", 10)
-    drawn = []
-    monkeypatch.setattr(checks, "rebound", lambda psi1, chi, e: drawn.append((psi1, chi, e)))
     assert checks.bench() == 0
     assert capsys.readouterr().out == "10 impacts: 200000 ns of processor time each\n"
-    psi1, chi, e = drawn[0]
-    assert (psi1.size, chi.size, e, len(drawn)) == (10, 10, 0.9, 5)
-    assert ((psi1 >= 0.0) & (psi1 <= 9.0) & (chi >= 0.8) & (chi <= 1.8)).all()
-    assert psi1.max() > 4.5
-    assert np.ptp(chi) > 0.5
 
 
 def test_the_impacts_of_the_differences():

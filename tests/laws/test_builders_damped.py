@@ -1,13 +1,10 @@
 """The builder of the table with a restitution, by hand and against closed forms."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from numpy.polynomial.chebyshev import chebval2d
 
-from contactlab_laws.rings.courses import tsuji
-from contactlab_laws.rings.rings import Course, History
+from contactlab_laws.halfspace.course import course
 from contactlab_laws.tables.damped import BORDERS, RINGS, SLIPS, STICKS, TURNS, Section, _together
 from contactlab_laws.tables.damped import place as place_of
 from contactlab_laws.tables.damped import rough as rough_of
@@ -20,6 +17,7 @@ from table_builders.damped.coordinates import (
     restitution,
     smooth,
 )
+from tests.laws.other_march import motion
 
 CUTS = (1.2, 2.2, 5.2)
 
@@ -85,56 +83,29 @@ def test_where_a_share_comes_to_one_for_good(share, psi1):
 def test_the_largest_share_is_that_before_the_slip_of_the_end():
     late = [0.1, 0.5, 0.6, 0.7, 0.2, 0.9, 1.0]
     early = [0.8, 0.5, 0.3, 0.2, 0.4, 0.9, 1.0]
-    share = np.array([late, early]).T[:, :, None]
-    assert build._largest(share, 2).tolist() == [[0.7], [0.8]]
+    assert build._largest(np.array([late, early]).T, 2).tolist() == [0.7, 0.8]
 
 
 def test_the_margin_is_the_least_excess_of_slip_in_unloading():
-    """The central limit, load over radius, is 0, 0.4, 1, 0.6, 0."""
-    course = Course(
-        edges=np.array([0.0, 0.5, 1.0]),
-        inside=np.array([0, 1, 2, 1, 0]),
-        time=np.array([0.0, 1.0, 2.0, 3.0, 5.0]),
-        load=np.array([0.0, 0.2, 1.0, 0.3, 0.0]),
-        impulse=np.zeros(5),
-    )
-    moved = np.zeros((4, 2, 2, 1))
-    moved[:, 1, :, 0] = [[-9.0, -9.0], [-9.0, -9.0], [0.1, -0.3], [-0.2, 0.4]]
-    history = History(np.empty(0), moved, np.empty(0), np.empty(0))
-    assert build._margin(history, course, 2) == pytest.approx(np.array([[0.2], [0.1]]))
+    """Of elastic spheres whose central limit falls as zeta, at the rate V <= 0."""
+    path = course(motion("hertz"), 8, 1)
+    rate = np.full((15, 2), 0.25)
+    rate[3:, 1] = [9.0] * 5 + [-0.75] * 7
+    steepest = -(np.diff(path.radius[8:16] ** 2) / np.diff(path.time[8:16, 0])).max()
+    assert 0.0 < steepest < 0.5
+    found = build._margin(rate, path, 8)
+    assert found == pytest.approx([0.25 + steepest, -0.75 + steepest], abs=1e-6)
 
 
-def test_pieces_between_cuts_are_no_narrower_than_their_least(monkeypatch):
-    monkeypatch.setattr(build, "LOOKED", 4)
-    monkeypatch.setattr(build, "_reaching", lambda *_: 7.0)
-    assert build.cuts_at(0.9, np.array([1.0, 1.5]), rings=6) == pytest.approx(
-        np.array([[7.0, 7.0], [7.02, 7.02], [7.04, 7.04]])
-    )
+def test_pieces_between_cuts_are_no_narrower_than_their_least():
+    cuts = build.cuts_at(0.9, np.array([0.8, 1.5]), rings=6)
+    assert (np.diff(cuts, axis=0) >= build.NARROWEST - 1e-12).all()
 
 
 def test_elastic_gross_slip_by_few_rings():
-    psi1, chi = np.array([8.0, 9.0]), np.array([1.0, 1.4])
-    found = build.by_half_space(tsuji(1.0), psi1, chi, rings=6)
+    psi1, chi = np.array([[8.0], [9.0]]), np.array([1.0, 1.4])
+    found = build.solve(psi1, chi, 1.0)
     assert found == pytest.approx(psi1 - 4.0 * chi, abs=1e-9)
-
-
-def test_psi2_is_extrapolated_in_the_number_of_rings(monkeypatch):
-    def follow(count, course, psi1, chi, friction):
-        assert course == ("motion", count)
-        assert friction.tolist() == [1.0, 1.0]
-        return SimpleNamespace(change=[None, -chi + 7.0 / count**2])
-
-    monkeypatch.setattr(build, "follow_all", follow)
-    monkeypatch.setattr(build, "halfspace_course", lambda *of: of[:2])
-    found = build.by_half_space("motion", np.array([3.0, 4.0]), np.array([1.0, 1.5]))
-    assert found == pytest.approx([2.0, 2.5], abs=1e-14)
-
-
-def test_impacts_of_one_restitution_keep_their_shape(monkeypatch):
-    monkeypatch.setattr(build, "tsuji", lambda e: 10.0 * e)
-    monkeypatch.setattr(build, "by_half_space", lambda motion, psi1, chi: motion + psi1 - 3 * chi)
-    found = build.solve(np.array([[1.0], [2.0]]), np.array([0.0, 1.0, 2.0]), 0.5)
-    assert found.tolist() == [[6.0, 3.0, 0.0], [7.0, 4.0, 1.0]]
 
 
 def cuts_of(t, chi):

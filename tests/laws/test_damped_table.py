@@ -7,13 +7,13 @@ from numpy.polynomial.polynomial import polyval
 import contactlab
 from contactlab import Scene, Simulation
 from contactlab.compose.rebound import BEYOND_ERROR, DAMPED_ERROR
-from contactlab_laws.rings.courses import by_rings, tsuji
-from contactlab_laws.tables.damped import BORDERS, depth, inner, rebound, section
+from contactlab_laws.halfspace.axisymmetric import rebound as by_rings_of
+from contactlab_laws.tables.damped import BORDERS, by_rings, depth, inner, rebound, section, tsuji
 from contactlab_laws.tables.damped import CHI as RANGE_OF_CHI
 from table_builders.damped import build
 from table_builders.damped.build import by_half_space
-from table_builders.damped.checks import solve
 from table_builders.damped.coordinates import restitution
+from tests.laws.other_march import limit
 from tests.laws.test_rings import REFERENCES
 
 CHI = 49 / 34
@@ -24,7 +24,7 @@ def test_table_is_rings_to_its_error(e):
     """At random impacts; ``python -m table_builders damped verify`` draws more."""
     draw = np.random.default_rng(round(1e4 * e))
     psi1, chi = draw.uniform(0.0, 9.0, 12), draw.uniform(0.8, 1.8, 12)
-    found = solve(psi1, chi, e, counts=(72, 96, 120, 144))
+    found = limit(psi1, chi, tsuji(e), counts=(72, 96, 120, 144))
     assert rebound(psi1, chi, e) == pytest.approx(found, abs=2e-4)
 
 
@@ -52,7 +52,8 @@ def test_table_is_another_march_to_its_error():
         if number % 3 == 0:
             e = 1.0 - 10.0 ** float(draw.uniform(-5.0, -1.0))
         psi1, chi = draw.uniform(0.0, 9.0, 20), draw.uniform(0.8, 1.8, 20)
-        assert rebound(psi1, chi, e) == pytest.approx(solve(psi1, chi, e), abs=3e-4)
+        other = limit(psi1, chi, tsuji(e), counts=(64, 96, 128))
+        assert rebound(psi1, chi, e) == pytest.approx(other, abs=3e-4)
 
 
 @pytest.mark.parametrize(("name", "e", "chi"), REFERENCES)
@@ -69,7 +70,7 @@ def test_references_of_another_program(name, e, chi):
 def test_beyond_the_table_rings_answer_to_their_error(largest, e):
     draw = np.random.default_rng(5)
     psi1, chi = draw.uniform(0.0, 9.0, 8), draw.uniform(0.5 * largest, largest, 8)
-    finer = solve(psi1, chi, e, counts=(96, 128))
+    finer = limit(psi1, chi, tsuji(e), counts=(96, 128))
     found = contactlab.rebound(psi1, chi, restitution=e)
     assert found == pytest.approx(finer, abs=BEYOND_ERROR)
     assert (contactlab.rebound(-psi1, chi, restitution=e) == -found).all()
@@ -126,6 +127,20 @@ def test_odd_to_the_last_bit_and_slip_throughout():
     assert psi2[0] == 0.0
 
 
+@pytest.mark.slow
+def test_beyond_the_table_random_impacts_are_those_of_more_rings():
+    """With a restitution each, over all psi1 up to slip throughout."""
+    draw = np.random.default_rng(27)
+    for low, high in ((0.01, 0.8), (0.8, 1.8), (1.8, 10.0)):
+        chi = draw.uniform(low, high, 50)
+        e = draw.uniform(0.01, 0.5 if low == 0.8 else 1.0, 50)
+        psi1 = draw.uniform(0.0, 2.0 * chi * (1.0 + e) + 1.0)
+        motions = [tsuji(each) for each in e.tolist()]
+        finer = by_rings_of(motions, np.arange(50), psi1, chi, 128)
+        found = contactlab.rebound(psi1, chi, restitution=e)
+        assert found == pytest.approx(finer, abs=BEYOND_ERROR)
+
+
 @pytest.mark.parametrize("chi", [0.001, 0.5, 9.0])
 def test_no_impact_gains_slip_velocity(chi):
     """By rings psi1 = 1e-19 came back as -1.17 at e = 0.3, chi = 0.001."""
@@ -140,7 +155,7 @@ def test_the_same_on_both_sides_of_the_border():
     chi = np.array([0.8, 0.8 - 1e-9, 1.8, 1.8 + 1e-9])
     found = contactlab.rebound(psi1, chi, restitution=0.9)
     assert found[0::2] == pytest.approx(found[1::2], abs=2e-4)
-    assert found[1] == pytest.approx(by_rings(psi1[1:2], chi[1:2], 0.9)[0], abs=1e-9)
+    assert found[1] == pytest.approx(by_rings(psi1[1:2], chi[1:2], np.array([0.9]))[0], abs=1e-9)
     low = contactlab.rebound(1.3, 1.0, restitution=0.4999)
     assert low == pytest.approx(contactlab.rebound(1.3, 1.0, restitution=0.5), abs=2e-4)
     assert isinstance(low, float)

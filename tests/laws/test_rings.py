@@ -1,18 +1,17 @@
-"""The reference solver with Coulomb's law at every point, against what it shares no code with."""
+"""Coulomb's law at every point, mode 0 of the half-space, against what it shares no code with."""
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
 import contactlab
-from contactlab import Scene
-from contactlab.compose.normal_motion import normal_motion
-from contactlab_laws.rings.courses import course, solve
-from contactlab_laws.rings.rings import rebound, rings, settle
+from contactlab_laws.halfspace import rings as division
+from contactlab_laws.halfspace.axisymmetric import rebound
+from contactlab_laws.halfspace.rings import rings, settle
+from tests.laws import other_march
+from tests.laws.other_march import motion
 
 CHI = 49 / 34
-#: Numbers of rings that are quick and leave at most 3e-4.
-QUICK = (48, 64, 80)
 #: psi2, theory §11, by rings of another program: normal law, e, chi, psi1.
 REFERENCES = {
     ("tsuji", 0.95, CHI): {0.1: 0.01946, 0.5: 0.03099, 1: -0.10738, 2: -0.85287, 4: -1.36345},
@@ -28,39 +27,50 @@ REFERENCES = {
 }
 
 
-def motion(name, **options):
-    """The motion of one impact, which in units of its own is that of all."""
-    law = contactlab.create(f"normal.{name}", **options)
-    return normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0))
+def half_space(psi1, chi, normal):
+    return rebound([normal], np.zeros(len(psi1), int), psi1, chi, 48)
 
 
+def other(psi1, chi, normal):
+    return other_march.limit(psi1, chi, normal, counts=(48, 64, 80))
+
+
+MARCHES = pytest.mark.parametrize("solve", [half_space, other])
+
+
+@MARCHES
 @pytest.mark.parametrize(("name", "e", "chi"), REFERENCES)
-def test_references_of_another_program(name, e, chi):
+def test_references_of_another_program(name, e, chi, solve):
     """Theory §11, ±1e-4."""
     psi1, expected = map(np.array, zip(*REFERENCES[name, e, chi].items(), strict=True))
-    ours = motion(name, restitution=e)
-    found = solve(psi1.astype(float), np.full(len(psi1), chi), ours, counts=QUICK)
+    found = solve(psi1.astype(float), np.full(len(psi1), chi), motion(name, restitution=e))
     assert found == pytest.approx(expected, abs=3e-4)
 
 
-def test_elastic_impacts_are_the_exact_answer():
+@MARCHES
+def test_elastic_impacts_are_the_exact_answer(solve):
+    """And gross slip, at any number of rings, the closed form psi1 - 4 chi."""
     psi1, chi = (each.ravel() for each in np.meshgrid((0.1, 0.7, 1.0, 1.5, 2.5, 4.0), (0.8, CHI)))
-    found = solve(psi1, chi, motion("hertz"), counts=QUICK)
+    found = solve(psi1, chi, motion("hertz"))
     assert found == pytest.approx(contactlab.rebound(psi1, chi), abs=3e-4)
-
-
-def test_second_order_in_rings():
-    psi1, chi = np.linspace(0.2, 4.4, 30), np.full(30, CHI)
-    exact, counts = contactlab.rebound(psi1, chi), (16, 32, 64)
-    off = [np.abs(rebound(psi1, chi, course(motion("hertz"), n)) - exact).max() for n in counts]
-    assert -np.polyfit(np.log(counts), np.log(off), 1)[0] > 1.7
-
-
-def test_gross_slip_is_exact():
-    """Closed form: psi2 = psi1 - 4 chi, at any number of rings."""
     psi1 = np.array([4.0 * CHI, 7.0, 100.0])
-    found = rebound(psi1, np.full(3, CHI), course(motion("hertz"), 8))
-    assert found == pytest.approx(psi1 - 4.0 * CHI, abs=1e-9)
+    for gross in (
+        rebound([motion("hertz")], np.zeros(3, int), psi1, np.full(3, CHI), 8),
+        other_march.rebound(psi1, np.full(3, CHI), motion("hertz"), 8),
+    ):
+        assert gross == pytest.approx(psi1 - 4.0 * CHI, abs=1e-9)
+
+
+def test_impacts_of_many_motions_are_those_alone():
+    """Some end at a larger radius than others, and wait."""
+    motions = [motion("tsuji", restitution=e) for e in (0.2, 0.6, 0.95)] + [motion("hertz")]
+    psi1, chi = np.array([1.2, 0.4, 2.0, 1.5, 3.0]), np.array([1.0, 1.4, 0.3, 2.0, 4.0])
+    which = np.array([0, 1, 2, 3, 0])
+    found = rebound(motions, which, psi1, chi, 16)
+    for k, each in enumerate(which):
+        part = slice(k, k + 1)
+        alone = rebound([motions[each]], np.zeros(1, int), psi1[part], chi[part], 16)
+        assert found[k] == pytest.approx(alone[0], abs=1e-12)
 
 
 def test_displacement_of_a_traction_by_quadrature():
@@ -106,3 +116,13 @@ def test_coulombs_law_at_every_point(seed):
     assert (slip[slips] * q[slips] > 0.0).all()
     assert slips.any()
     assert (~slips).any()
+
+
+def test_divisions_one_ring_at_a_time_or_none(monkeypatch):
+    psi1, chi, normal = np.array([0.3, 1.2, 2.0, 3.0]), np.full(4, 1.44), motion("hunt_crossley")
+    known = other_march.rebound(psi1, chi, normal, 20)
+    monkeypatch.setattr(division, "GENTLE", 0)
+    assert other_march.rebound(psi1, chi, normal, 20) == pytest.approx(known, abs=1e-10)
+    monkeypatch.setattr(division, "MOST_TRIES", 1)
+    with pytest.raises(RuntimeError, match=r"^\d impacts: no division into stick and slip was fou"):
+        other_march.rebound(psi1, chi, normal, 20)

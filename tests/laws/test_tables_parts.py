@@ -185,25 +185,6 @@ def test_few_and_many_damped_impacts_agree(e, count):
     assert (damped.rebound(-psi1, chi, e) == -found).all()
 
 
-@pytest.mark.parametrize(
-    ("e", "chi", "tabulated"),
-    [
-        (0.5, [0.8, 1.8], True),
-        (0.4999, [0.8, 1.8], False),
-        (0.5, [0.7999, 1.8], False),
-        (0.5, [0.8, 1.8001], False),
-    ],
-)
-def test_the_border_of_the_damped_table(e, chi, tabulated, monkeypatch):
-    """Rings answer for the impacts beyond it alone."""
-    from contactlab_laws.rings import courses
-
-    asked = []
-    monkeypatch.setattr(courses, "by_rings", lambda psi1, *_: asked.append(psi1.size) or psi1)
-    damped.rebound(np.array([1.0, 2.0]), np.array(chi), e)
-    assert asked == ([] if tabulated else [2 if e < 0.5 else 1])
-
-
 def test_a_file_tells_its_version_and_day(tmp_path):
     stored = Stored.today(b=[1.0, 2.0], a=np.array([3], dtype=np.int16))
     assert stored.version == metadata.version("contactlab")

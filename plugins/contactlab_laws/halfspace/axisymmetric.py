@@ -5,17 +5,22 @@ This is the paper's axisymmetric problem with Coulomb's law at every point. Scal
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from contactlab.contracts import NormalMotion
 from contactlab_laws.halfspace.basis import basis
-from contactlab_laws.halfspace.course import Course
+from contactlab_laws.halfspace.course import Course, course
 from contactlab_laws.halfspace.hemispheres import Array
 from contactlab_laws.halfspace.rest import begun, moved, rest
-from contactlab_laws.rings.rings import Rings, rings, settle
+from contactlab_laws.halfspace.rings import Rings, rings, settle
 
+#: Steps from one ring to the next.
+STEPS = 4
 #: Solutions of a step: the share of Coulomb's limit at its end is taken from the one before.
 PASSES = 2
 
@@ -97,12 +102,12 @@ def follow_all(
             load = float(outer * cubes[number] + inner * cubes[number - 1])
             scale = (course.pressure[k] + np.zeros(impacts))[chosen, None]
             resting = rest(slips, duration[:, None], vectors=False)[part] / scale
-            guess, begins = (stuck[part], sense[part]), live & ~touched
+            guess, begins, ahead = (stuck[part], sense[part]), live & ~touched, after
             for _ in range(PASSES):
                 share = np.where(begins, after, shares[k - 1])
                 total = (fixed - swept * (share / 3.0 + after / 6.0))[chosen, None]
                 solution = settle(ours, total / scale - resting, limit, *guess)
-                after = shares[k - 1].copy()
+                after = ahead.copy()  # of impacts out of contact, as if they were alone
                 after[chosen] = solution @ ours.weights / load
             stuck[part], sense[part] = guess
             new[part], limits[part] = solution * scale, limit * scale
@@ -117,3 +122,31 @@ def follow_all(
         if fields:
             kept.append((new, slip, limits))
     return Axisymmetric(change, shares, 6.0 * chi * stiffness * work, kept)
+
+
+def rebound(
+    motions: Sequence[NormalMotion], which: NDArray[np.intp], psi1: Array, chi: Array, count: int
+) -> Array:
+    """Return psi2, extrapolated from ``count`` rings and half as many, shape (impacts,).
+
+    Parameters
+    ----------
+    motions : sequence of NormalMotion
+        Motions of one impact, which in units of their own are those of many.
+    which : array of int, shape (impacts,)
+        The motion of each impact.
+    psi1, chi : array, shape (impacts,)
+    count : int
+        Rings, an even number.
+    """
+    changes = []
+    for number in (count, count // 2):
+        paths = [course(motion, number, STEPS) for motion in motions]
+        path = paths[0]
+        if len(paths) > 1:
+            names = ("time", "impulse", "pressure", "phase")
+            columns = (np.hstack([getattr(each, name) for each in paths]) for name in names)
+            chosen = {name: column[:, which] for name, column in zip(names, columns, strict=True)}
+            path = path._replace(**chosen)
+        changes.append(follow_all(number, path, psi1, chi, np.ones(psi1.shape)).change[-1])
+    return np.asarray(psi1 + changes[0] + (changes[0] - changes[1]) / 3.0)

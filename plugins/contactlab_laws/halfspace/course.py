@@ -7,6 +7,7 @@ the pressure is the two hemispheres of both edges that carry the same b².
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -116,6 +117,8 @@ def _phases(normal: NormalMotion, places: Array, top: int) -> Array:
         phases = np.asarray(normal.phase_at_rate(rate), float)[:, None]
         phases[[0, top, -1], 0] = 0.0, 0.5 * math.pi, math.pi
         return phases
+    if isinstance(normal, ClosedFormMotion):
+        return _halved(lambda phase: _scaled_radius(normal, phase), places, top, 0.5 * math.pi)
     single = not normal.scene.shape
 
     def radius(phase: Array) -> Array:
@@ -132,7 +135,19 @@ def _phases(normal: NormalMotion, places: Array, top: int) -> Array:
         inner, outer = radius(np.stack((low + third, high - third)))
         rises = inner < outer
         low, high = np.where(rises, low + third, low), np.where(rises, high, high - third)
-    peak = 0.5 * (low + high)
+    return _halved(radius, places, top, 0.5 * (low + high))
+
+
+def _scaled_radius(normal: ClosedFormMotion, phase: Array) -> Array:
+    """Return the radius over its largest of the scaled motion, which all impacts share."""
+    return np.asarray(normal.scaled(phase[:, 0]).radius)[:, None]
+
+
+def _halved(
+    radius: Callable[[Array], Array], places: Array, top: int, greatest: Array | float
+) -> Array:
+    """Return the phases with radii ``places``, where the ``greatest`` is known, by halving."""
+    peak = np.atleast_1d(np.asarray(greatest))
     wanted = places[:, None] * np.asarray(radius(peak[None]))
     rising = np.arange(len(places))[:, None] <= top
     low = np.where(rising, 0.0, peak) + np.zeros(wanted.shape)
@@ -142,7 +157,7 @@ def _phases(normal: NormalMotion, places: Array, top: int) -> Array:
         before = (radius(middle) < wanted) == rising
         low, high = np.where(before, middle, low), np.where(before, high, middle)
     phases = np.where(rising, high, low)
-    ends = radius(np.array([[0.0], [math.pi]]) + np.zeros((2, impacts)))
+    ends = radius(np.array([[0.0], [math.pi]]) + np.zeros((2, peak.size)))
     phases = np.where(rising & (wanted <= ends[0]), 0.0, phases)
     phases = np.where(~rising & (wanted <= ends[1]), math.pi, phases)
     phases[0], phases[top], phases[-1] = 0.0, peak, math.pi

@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import NormalMotion
 from contactlab.impact.coupling import coupling_number
-from contactlab_laws.halfspace.axisymmetric import follow_all
+from contactlab_laws.halfspace.axisymmetric import STEPS, follow_all
 from contactlab_laws.halfspace.course import Course, course, units
 from contactlab_laws.halfspace.hemispheres import Array
 from contactlab_laws.halfspace.march import follow
 from contactlab_laws.halfspace.modes import modes
 from contactlab_laws.halfspace.pressure import Answering, Prescribed
 
-#: Steps from one ring to the next: of tractions along one direction, of vectors, and of pressure
-#: that answers to traction. With more the error of the rings is larger than that of the steps.
-ALONG, VECTORS, ANSWERING = 4, 1, 2
+#: Steps from one ring to the next of vectors, and of pressure that answers to traction. With more
+#: the error of the rings is larger than that of the steps.
+VECTORS, ANSWERING = 1, 2
 #: Least steps of an impact over sqrt(chi), over half the rings too: with fewer the swing of the
 #: stuck contact is not followed, and the error does not fall as 1/rings².
 SWING = 22.0
@@ -131,7 +131,7 @@ def kinds(options: Options, matter: Matter) -> Kinds:
     dragged = (matter.drag > 0.0) & (options.coupling != "none")
     plain = ~dragged & ((np.abs(matter.poisson) < ROUNDING) | (options.angles == 1))
     answering = dragged & (options.coupling == "two_way")
-    least = np.where(plain, ALONG, np.where(answering, ANSWERING, VECTORS))
+    least = np.where(plain, STEPS, np.where(answering, ANSWERING, VECTORS))
     fewest = options.rings // 2 if options.extrapolate else options.rings
     parts = [parts_of(*each, fewest) for each in zip(matter.chi, least, strict=True)]
     return Kinds(plain, dragged, np.array(parts))

@@ -20,6 +20,7 @@ from numpy.polynomial.chebyshev import chebval, chebvander
 from numpy.typing import NDArray
 
 from contactlab.compose.rebound import DAMPED_CHI, DAMPED_RESTITUTION
+from contactlab.contracts import NormalMotion, Scene
 from contactlab.numeric.checks import Real
 from contactlab_laws.tables.file import Stored, read
 from contactlab_laws.tables.patches import (
@@ -41,6 +42,9 @@ BORDERS = (0.0, 0.1 ** (1.0 / 3.0), 0.5 ** (1.0 / 3.0))
 STICKS, RINGS, TURNS, SLIPS = range(4)
 #: Impacts computed together: fewer cost more calls, more leave the processor's cache.
 CHUNK = 8192
+#: Rings of impacts beyond the table, impacts followed together, and psi1 beyond which the change of
+#: psi is its limit to 1e-4.
+BEYOND, TOGETHER, LARGEST = 48, 1024, 1e4
 #: Fewer impacts than this are computed one by one.
 FEW = 12
 #: The last terms along psi1 are left out that together are no more than this: less than the
@@ -144,16 +148,35 @@ def rebound(psi1: Array, chi: Array, restitution: Real) -> Array:
     if known.all():
         psi2 = tabulated(speed, chi, restitution)
     else:
-        from contactlab_laws.rings.courses import by_rings  # a table needs no normal motion
-
         psi2, each = np.empty(psi1.shape), np.broadcast_to(restitution, psi1.shape)
         if known.any():
             e = restitution if isinstance(restitution, float) else restitution[known]
             psi2[known] = tabulated(speed[known], chi[known], e)
-        for value in np.unique(each[~known]).tolist():
-            part = ~known & (each == value)
-            psi2[part] = by_rings(speed[part], chi[part], value)
+        rows = np.flatnonzero(~known)
+        for first in range(0, rows.size, TOGETHER):
+            part = rows[first : first + TOGETHER]
+            psi2[part] = by_rings(speed[part], chi[part], each[part])
     return np.copysign(psi2, psi2 * np.where(psi1 < 0.0, -1.0, 1.0))
+
+
+def by_rings(psi1: Array, chi: Array, restitution: Array) -> Array:
+    """Return psi2 of psi1 >= 0 by the law of the half-space, shape (impacts,)."""
+    from contactlab_laws.halfspace.axisymmetric import rebound  # a table needs none of this
+
+    values, which = np.unique(restitution, return_inverse=True)
+    near = np.minimum(psi1, LARGEST)
+    change = rebound([tsuji(e) for e in values.tolist()], which, near, chi, BEYOND) - near
+    # no impact gains energy: not even by an error
+    return np.asarray(np.clip(psi1 + change, -psi1, psi1))
+
+
+def tsuji(e: float) -> NormalMotion:
+    """Return the normal motion under Tsuji's law, in scaled units that of every impact."""
+    from contactlab.compose.normal_motion import normal_motion
+    from contactlab.compose.registry import REGISTRY
+
+    law = REGISTRY.create("normal.tsuji", restitution=e)
+    return normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0))
 
 
 def tabulated(speed: Array, chi: Array, restitution: Real) -> Array:

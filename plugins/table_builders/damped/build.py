@@ -10,12 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import NormalMotion
-from contactlab_laws.halfspace.axisymmetric import follow_all
-from contactlab_laws.halfspace.course import course as halfspace_course
-from contactlab_laws.halfspace.impacts import ALONG
-from contactlab_laws.rings.courses import course, tsuji
-from contactlab_laws.rings.rings import Course, History, march
-from contactlab_laws.tables.damped import BORDERS, CHI, SLIPS
+from contactlab_laws.halfspace.axisymmetric import follow_all, rebound
+from contactlab_laws.halfspace.course import Course, course
+from contactlab_laws.tables.damped import BORDERS, CHI, SLIPS, tsuji
 from contactlab_laws.tables.file import Stored, write
 from table_builders.damped.coordinates import (
     NODES,
@@ -49,13 +46,7 @@ def solve(psi1: Array, chi: Array, e: float) -> Array:
 
 def by_half_space(motion: NormalMotion, psi1: Array, chi: Array, *, rings: int = FINE) -> Array:
     """Return psi2 of impacts, shape (impacts,), that have a normal motion in units of their own."""
-    fine, coarse = (
-        follow_all(
-            count, halfspace_course(motion, count, ALONG), psi1, chi, np.ones(psi1.shape)
-        ).change[-1]
-        for count in (rings, rings // 2)
-    )
-    return np.asarray(psi1 + fine + (fine - coarse) / 3.0)
+    return rebound([motion], np.zeros(len(psi1), int), psi1, chi, rings)
 
 
 def cuts_at(e: float, chi: Array, *, rings: int = RINGS) -> Array:
@@ -64,29 +55,32 @@ def cuts_at(e: float, chi: Array, *, rings: int = RINGS) -> Array:
     # At the second all of the contact slips, for an instant, before the end. From the third on the
     # centre slips for good: the slip displacement grows at least as fast as that of a hemisphere at
     # its limit all through unloading.
-    shape = (LOOKED, len(chi))
-    first = np.broadcast_to(np.linspace(*FIRST, LOOKED)[:, None], shape)
-    last = 2.0 * chi * (1.0 + e) - np.linspace(LAST[1], LAST[0], LOOKED)[:, None]
-    psi1 = np.stack([first, last])
-    ours = course(tsuji(e), rings)
-    impacts = march(psi1.ravel(), np.broadcast_to(chi, psi1.shape).ravel(), ours)
-    history = History(*(each.reshape(-1, *psi1.shape) for each in impacts))
-    top = int(ours.inside.argmax())
-    centre = _largest(np.abs(history.centre[1:-1, 0]), top)
-    whole = np.abs(history.share[1 : top + 2, 0]).max(axis=0)
-    margin = _margin(history, ours, top)
-    cuts = np.empty((3, len(chi)))
-    for k in range(len(chi)):
-        cuts[0, k] = _reaching(first[:, k], centre[:, k], CENTRE)
-        cuts[1, k] = _reaching(first[:, k], whole[:, k], WHOLE)
-        cuts[2, k] = np.interp(0.0, margin[:, k], last[:, k])
+    path, cuts = course(tsuji(e), rings, 1), np.empty((3, len(chi)))
+    top, end = int(path.radius.argmax()), int(np.flatnonzero(path.pressure[:, 0]).max())
+    first = np.linspace(*FIRST, LOOKED)
+    for k, ratio in enumerate(chi.tolist()):
+        last = 2.0 * ratio * (1.0 + e) - np.linspace(LAST[1], LAST[0], LOOKED)
+        psi1, ratios = np.concatenate((first, last)), np.full(2 * LOOKED, ratio)
+        motion = follow_all(rings, path, psi1, ratios, np.ones(len(psi1)), fields=True)
+        at_centre = [
+            np.abs(traction[:LOOKED, 0]) / limit[:LOOKED, 0]
+            for traction, _, limit in motion.fields[:end]
+        ]
+        centre = _largest(np.array(at_centre), top)
+        whole = np.abs(motion.share[1 : top + 2, :LOOKED]).max(axis=0)
+        gains = 2.0 * ratio * np.diff(path.impulse, axis=0)
+        passed = gains * (motion.share[:-1] / 3.0 + motion.share[1:] / 6.0)
+        rate = (psi1 + motion.change[:-1] - passed)[:, LOOKED:]
+        cuts[0, k] = _reaching(first, centre, CENTRE)
+        cuts[1, k] = _reaching(first, whole, WHOLE)
+        cuts[2, k] = np.interp(0.0, _margin(rate[:end], path, top), last)
     cuts[1:] = np.maximum(cuts[1:], cuts[:1] + NARROWEST)
     cuts[2] = np.maximum(cuts[2], cuts[1] + NARROWEST)
     return cuts
 
 
 def _largest(share: Array, top: int) -> Array:
-    """Return the largest share of the limit before the slip of the end, shape (psi1, chi)."""
+    """Return the largest share of the limit before the slip of the end, shape (psi1,)."""
     # At the end the limit vanishes: the largest is taken up to the least share in unloading.
     least = top + share[top:].argmin(axis=0)
     before = np.take_along_axis(np.maximum.accumulate(share), least[None], axis=0)
@@ -102,12 +96,12 @@ def _reaching(psi1: Array, share: Array, slipping: float) -> float:
     return float(np.clip(psi1[k - 1] + (1.0 - share[k - 1]) / rise, psi1[k - 1], psi1[k]))
 
 
-def _margin(history: History, ours: Course, top: int) -> Array:
-    """Return the least excess of the slip over the growth of the central limit in unloading."""
-    ends = ours.edges[ours.inside]
-    limit = ours.load / np.where(ends > 0.0, ends, 1.0)
-    excess = history.moved[:, 1] - np.diff(limit)[:, None, None]
-    return np.asarray((excess / np.diff(ours.time)[:, None, None])[top:].min(axis=0))
+def _margin(rate: Array, path: Course, top: int) -> Array:
+    """Return the least excess of the slip rate over the growth of the central limit, unloading."""
+    live = slice(len(rate) + 1)
+    limit = path.pressure[live, 0] * path.radius[live] ** 2
+    growth = np.diff(limit) / np.diff(path.time[live, 0])
+    return np.asarray((rate - growth[:, None])[top:].min(axis=0))
 
 
 def build(path: Path) -> None:

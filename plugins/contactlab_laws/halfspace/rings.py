@@ -1,13 +1,9 @@
-"""psi2 with Coulomb's law at every point, by rings of an axisymmetric contact.
+"""Tractions along one direction, functions of the radius: matrices of rings, stick and slip.
 
 The traction is q(r) = sum a_i sqrt(e_i² - r²) over the edges e_i of rings, theory §9 "Basis". The
 displacement that it makes is known in closed form inside and outside of e_i. On the inner edge of
 every ring Coulomb's law holds: abs(q) <= p. Where abs(q) < p the ring sticks, where abs(q) = p the
 ring slips along q.
-
-All quantities are dimensionless, with any unit of length r0. Slip displacements are in units of
-mu r0²/(kappa R), time in units of r0²/(R v1), the friction load in units of what Hertz's contact of
-radius r0 carries, (4/3) E* r0³/R, and the impulse of the friction load in units of M_n v1.
 """
 
 from __future__ import annotations
@@ -17,34 +13,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contactlab_laws.halfspace.hemispheres import Array
+
 Mask = NDArray[np.bool_]
 
 #: Tolerance of a traction above its limit, and of a slip against its traction, over the largest.
 ROUNDING = 1e-11
 #: Most divisions tried in a step; beyond ``GENTLE`` one ring at a time is changed.
 MOST_TRIES, GENTLE = 400, 20
-
-
-class Course(NamedTuple):
-    """A normal motion at instants at which the contact ends on an edge of a ring.
-
-    Attributes
-    ----------
-    edges : array, shape (rings + 1,)
-        Radii, from 0 to the largest contact.
-    inside : array of int, shape (K + 1,)
-        Rings within the contact at each instant, from first touch to separation. After first
-        touch the number changes by at most one.
-    time, load, impulse : array, shape (K + 1,)
-        Since first touch; the friction load and its integral.
-    """
-
-    edges: Array
-    inside: NDArray[np.int64]
-    time: Array
-    load: Array
-    impulse: Array
 
 
 class Rings(NamedTuple):
@@ -103,72 +79,6 @@ def _factors(matrix: Array) -> tuple[Array, Array]:
         lower[k + 1 :, k] = upper[k + 1 :, k] / upper[k, k]
         upper[k + 1 :] -= np.outer(lower[k + 1 :, k], upper[k])
     return lower, np.triu(upper)
-
-
-class History(NamedTuple):
-    """Velocities, slips and shares of Coulomb's limit at the instants of a course.
-
-    Attributes
-    ----------
-    psi : array, shape (K + 1, impacts)
-        Tangential velocity.
-    moved : array, shape (K, impacts)
-        Slip displacement of each step.
-    share, centre : array, shape (K + 1, impacts)
-        Share of Coulomb's limit that acts, from -1 to 1: in the force, and in the traction at
-        the centre.
-    """
-
-    psi: Array
-    moved: Array
-    share: Array
-    centre: Array
-
-
-def rebound(psi1: Array, chi: Array, course: Course) -> Array:
-    """Return psi2 of impacts that share a normal motion, shape (impacts,)."""
-    return np.asarray(march(psi1, chi, course).psi[-1])
-
-
-def march(psi1: Array, chi: Array, course: Course) -> History:
-    """Return the history of impacts that share a normal motion; RuntimeError without division."""
-    # In every step the share of Coulomb's limit that acts, F/(mu P), is linear in the impulse of
-    # the friction load, so that gross slip is exact. Each step is solved twice: first with the
-    # share at its start, then with the shares at both ends.
-    table, steps = rings(course.edges), np.diff(course.time)
-    psi = np.empty((len(steps) + 1, len(psi1)))
-    moved, shares, centre = (
-        np.empty((len(steps), len(psi1))),
-        np.zeros(psi.shape),
-        np.zeros(psi.shape),
-    )
-    psi[0] = psi1
-    displaced = np.zeros((len(psi1), len(table.points)))
-    stuck, sense = np.ones(displaced.shape, dtype=bool), np.zeros(displaced.shape)
-    share, begun = np.zeros(len(psi1)), False
-    for k, duration in enumerate(steps):
-        gain = 2.0 * chi * (course.impulse[k + 1] - course.impulse[k])
-        number, load = int(course.inside[k + 1]), float(course.load[k + 1])
-        after = share
-        moved[k] = duration * (psi[k] - 0.5 * gain * share)
-        if number and load > 0.0:
-            ours, edge = table.within(number), course.edges[number]
-            limit = load / edge**3 * np.sqrt(edge**2 - ours.points**2)
-            part = slice(None), slice(number)
-            for _ in range(2):
-                if not begun:
-                    share = after  # force and load begin in proportion
-                moved[k] = duration * (psi[k] - gain * (share / 3.0 + after / 6.0))
-                aim = displaced[part] + moved[k][:, None]
-                traction = settle(ours, aim, limit, stuck[part], sense[part])
-                after = traction @ ours.weights / load
-            displaced = traction @ table.compliance[:, :number].T
-            centre[k + 1] = traction[:, 0] / limit[0]
-            share = share if begun else after
-            begun = True
-        psi[k + 1] = psi[k] - 0.5 * gain * (share + after)
-        share = shares[k + 1] = after
-    return History(psi, moved, shares, centre)
 
 
 def settle(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) -> Array:
