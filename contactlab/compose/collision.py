@@ -35,9 +35,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 SEPARATING = ("refuse", "pass")
-#: Different restitutions beyond which a plan rounds them down to hundredths: its cautions of the
-#: normal law take a millisecond for each.
-MANY = 100
+#: Different restitutions beyond which a plan has one statement, and the cautions of the least, for
+#: all damped impacts.
+MANY = 20
 #: Vectors after a collision, name and unit.
 VECTORS = (
     ("velocity", "m/s"), ("spin", "rad/s"), ("target_velocity", "m/s"), ("target_spin", "rad/s"),
@@ -159,11 +159,14 @@ class Collision:
             plan = _planned(met.scene, self.restitution, self.restitution)
         else:
             each = self._restitutions
-            rounded = np.floor(100.0 * each) / 100.0
+            groups = _alike(each)
+            if len(groups) > MANY:
+                masks = [mask for mask in (each == 1.0, each < 1.0) if mask.any()]
+                groups = [(mask, float(each[mask].min())) for mask in masks]
             plan = _joined(
                 [
                     (mask, _planned(met.scene.take(mask), value, each[mask]))
-                    for mask, value in _alike(each if np.unique(each).size <= MANY else rounded)
+                    for mask, value in groups
                 ]
             )
         return collision_plan(plan, met, passed)
