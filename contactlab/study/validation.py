@@ -19,6 +19,7 @@ from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.hertz import hertz_scales, rigid_body_rebound
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
@@ -26,6 +27,7 @@ from contactlab.scene_file import SceneFile, read_scene
 from contactlab.study.comparison import Agreement, Comparison, LawRun
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.scores import DEFAULT_SCENE
+from contactlab.study.stability_eccentric import RIGID_DISTANCE, STIFF, distance, rod
 
 #: psi2 of the continuum limit for seven psi1 and three chi, to ten digits. Two independent methods
 #: agree on them: front tracking, and springs with Richardson extrapolation.
@@ -56,6 +58,13 @@ COMPOSITIONS: tuple[tuple[str, dict[str, Any], str, dict[str, Any], float], ...]
     ("annulus", {"annuli": 50}, "symplectic", {"steps": 200}, 0.03),
     ("annulus", {"annuli": 50}, "paper", {"steps": 500}, 0.03),
 )
+#: chi, lam and eta of eccentric impacts that begin in gross slip, with k > 1.
+SLIDING = ((1.3, 0.19, 1.71), (0.8, -0.2, -0.4), (3.0, 1.5, 2.0), (1.1, 0.0, 0.0))
+#: Rods by angle, friction and slip over approach; they tend to rigid bodies as the root of 1/kappa.
+STIFF_RODS = (
+    (15.0, 0.3, 0.0), (30.0, 0.3, 0.0), (-30.0, 0.3, 0.5), (30.0, 0.3, 0.5), (60.0, 0.2, 0.3),
+    (-75.0, 0.1, 0.2),
+)  # fmt: skip
 #: Form of ``mindlin_cap`` of each series of ``compiled_codes.toml``; implementations of one law
 #: agree to about 1e-3.
 CODE_FORMS = ("displacement", "increment", "increment_rescaled")
@@ -99,6 +108,8 @@ def _checks() -> Iterator[Callable[[], Finding]]:
         yield partial(_scalars, case, ("force",), FORCE_READING)
         if case.approach is not None:
             yield partial(_scalars, case, ("approach", "duration"), OTHER_READING)
+    if {"tangential.fronts", "tangential.coulomb", "integrator.events"} <= set(installed):
+        yield from (_no_friction, _slip_throughout, _first_slip, _stiff)
     if "tangential.mindlin_cap" in installed:
         for number, form in enumerate(CODE_FORMS):
             yield partial(_codes, number, form)
@@ -126,6 +137,70 @@ def _rigid() -> Finding:
     return Finding(
         what="coulomb: psi2", against="slip, then rolling", difference=worst, bound=1e-12
     )
+
+
+def _eccentric() -> Simulation:
+    return Simulation(tangential="fronts", integrator="events")
+
+
+def _eccentric_finding(what: str, against: str, difference: Any, bound: float) -> Finding:
+    worst = float(np.max(np.abs(difference)))
+    return Finding(
+        what=f"fronts, two bodies: {what}", against=against, difference=worst, bound=bound
+    )
+
+
+def _no_friction() -> Finding:
+    scene = EccentricScene.stack([rod(angle, 0.0, 0.5, kappa=0.8) for angle in (-50, 15, 30, 75)])
+    result = _eccentric().run(scene).check()
+    W = scene.inverse_mass
+    slip = scene.slip_velocity[:, 0] - 2.0 * W[:, 0, 1] / W[:, 0, 0]
+    off = np.hypot(result.normal_velocity + 1.0, result.slip_velocity[:, 0] - slip)
+    return _eccentric_finding("no friction", "V2 = -1, psi2 = psi1 - 2 eta", off, 1e-12)
+
+
+def _sliding() -> tuple[EccentricScene, Any, Any]:
+    """Return scenes that slip in gross slip at first, s psi1 and k of theory §14."""
+    chi, lam, eta = (np.array(each) for each in zip(*SLIDING, strict=True))
+    k = (2.0 * chi + eta) / (1.0 + lam)
+    slip = np.maximum(1.0, 2.0 * k - 1.0) * 1.2
+    return EccentricScene.nondimensional(psi1=slip, chi=chi, lam=lam, eta=eta), slip, k
+
+
+def _slip_throughout() -> Finding:
+    scene, slip, k = _sliding()
+    result = _eccentric().run(scene).check()
+    off = np.hypot(result.normal_velocity + 1.0, result.psi2 - (slip - 2.0 * k))
+    return _eccentric_finding("slip throughout", "V2 = -1, psi2 = psi1 - 2k", off, 1e-10)
+
+
+def _first_slip() -> Finding:
+    scene, _, k = _sliding()
+    off = []
+    for place, each in enumerate(k):
+        psi1 = 1.0 + 0.2 * (1 + place) * (each - 1.0)  # slips at first touch, stops before V = 0
+        start = attrs.evolve(
+            scene.take(place), slip_velocity=scene.slip_velocity[place] * psi1 / scene.psi1[place]
+        )
+        history: Any = _eccentric().run(start, history=True).check().history
+        limit = float(start.friction_coefficient) * history.normal_force
+        full = np.abs(history.tangential_force[:, 0]) >= limit * (1.0 - 1e-9)
+        stopped = int(np.argmin(full)) - 1
+        off.append(history.normal_velocity[stopped] - (each - psi1) / (each - 1.0))
+    return _eccentric_finding("end of first slip", "V = (k - psi1)/(k - 1)", off, 1e-9)
+
+
+def _stiff() -> Finding:
+    off = []
+    for angle, friction, slip in STIFF_RODS:
+        scene = rod(angle, friction, slip, kappa=STIFF)
+        soft, rigid = (
+            simulation.run(scene).check()
+            for simulation in (_eccentric(), Simulation(tangential="coulomb"))
+        )
+        off.append(distance(soft, rigid))
+    bound = RIGID_DISTANCE * STIFF**-0.5
+    return _eccentric_finding("rods, kappa = 1e4", "Routh's construction", off, bound)
 
 
 def _reference(

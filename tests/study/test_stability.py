@@ -13,7 +13,7 @@ from contactlab.contracts import NormalContact, NormalLaw, SteppedTangentialLaw,
 from contactlab.contracts.error_model import range_of
 from contactlab.study import stability_judge, stability_references
 from contactlab.study.bench_methods import Method, methods
-from contactlab.study.stability import Stability, stability
+from contactlab.study.stability import Stability, stability, work
 from contactlab.study.stability_cases import (
     LADDER,
     QUICK_LADDER,
@@ -25,6 +25,7 @@ from contactlab.study.stability_cases import (
     extreme_scenes,
     normal_scenes,
 )  # fmt: skip
+from contactlab.study.stability_eccentric import judged_eccentric, rod
 from contactlab.study.stability_judge import (
     ANSWERED,
     REFUSED,
@@ -324,6 +325,42 @@ def test_a_law_whose_model_makes_energy_may_do_so_as_far_as_friction_goes():
     assert broken(0.5, -1.5, passive=False) == []
     beyond = "|psi2 - psi1| beyond what mu times the load can do"
     assert broken(9.0, -4.1 * CHI, passive=False) == [beyond]
+
+
+def eccentric(method, *, quick):
+    """Return the outcomes of the eccentric cases of a method that are not too much work."""
+    listed = [case for case in cases(method, quick=quick) if case.family == "eccentric"]
+    return {case.label: judge(case) for case in listed if work(case) < 12_000.0}
+
+
+@pytest.mark.parametrize(
+    ("tangential", "integrator"),
+    [("fronts", "events"), ("coulomb", "symplectic"), ("springs", "symplectic")],
+)
+def test_extreme_eccentric_impacts_are_right_or_have_a_status(tangential, integrator):
+    found = eccentric(Method(tangential=tangential, integrator=integrator), quick=True)
+    assert len(found) == 12
+    assert {each.outcome for each in found.values()} <= {ANSWERED, REFUSED}
+    assert sum(each.outcome == ANSWERED for each in found.values()) >= 10
+    assert all(len(each.note.split()) > 5 for each in found.values() if each.outcome == REFUSED)
+
+
+def test_eccentric_cases_are_of_laws_that_answer_them():
+    for name, integrator in (("annulus", "symplectic"), ("walton", "symplectic")):
+        assert not eccentric(Method(tangential=name, integrator=integrator), quick=True)
+
+
+def test_an_eccentric_answer_that_is_wrong_is_found():
+    """Half the friction in a stiff contact: not as rigid bodies, and energy from nothing."""
+    scene, exact = rod(-30.0, 0.3, 0.5, kappa=1e4), Simulation()
+    sound = exact.run(scene).check()
+    error, wrong = judged_eccentric(exact, sound)
+    assert error < 6e-3
+    assert not wrong
+    for share, words in ((0.9, "from rigid bodies"), (1.5, "of the energy from nothing")):
+        change = share * sound.motion.velocity_change
+        spoiled = attrs.evolve(sound, motion=attrs.evolve(sound.motion, velocity_change=change))
+        assert any(words in each for each in judged_eccentric(exact, spoiled)[1])
 
 
 def test_bad_input_is_a_refusal():

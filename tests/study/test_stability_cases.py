@@ -129,6 +129,7 @@ def test_the_cases_of_a_stepped_law_are_counted():
         ("psi1", True): 5, ("psi1", False): 5, ("regimes", True): 12, ("regimes", False): 12,
         ("friction", True): 6, ("friction", False): 6, ("chi", True): 16, ("poisson", True): 3,
         ("speed", True): 2, ("radius", True): 6, ("mass", True): 2, ("types", True): 5,
+        ("eccentric", True): 12,  # three lam by three psi1, and three rods
         ("normal", True): 24,  # three scenes under eight other normal laws
         ("steps", True): 26,  # 7 numbers on 2 scenes, and 6 of them without refining
         ("parts", True): 8,  # 2 numbers on 2 scenes, at the default steps and above the limit

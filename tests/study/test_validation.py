@@ -11,6 +11,7 @@ from contactlab import Scene, Simulation
 from contactlab.scene_file import read_scene
 from contactlab.study import validation
 from contactlab.study.comparison import Agreement, Comparison
+from contactlab.study.stability_eccentric import rod
 from contactlab.study.validation import (
     REFERENCE_PSI1,
     REFERENCE_PSI2,
@@ -121,7 +122,8 @@ def test_the_list_of_checks_is_that_of_the_laws_installed(monkeypatch):
     def listed():
         return [getattr(check, "func", check).__name__ for check in validation._checks()]
 
-    full = ["_hertz", "_rigid", *["_reference"] * 5, *["_scalars"] * 6, *["_codes"] * 3]
+    full = ["_hertz", "_rigid", *["_reference"] * 5, *["_scalars"] * 6]
+    full += ["_no_friction", "_slip_throughout", "_first_slip", "_stiff", *["_codes"] * 3]
     assert listed() == full
     named = [check.args for check in validation._checks() if hasattr(check, "args")]
     of_scalars = [args for args in named if isinstance(args[0], validation.Scalars)]
@@ -164,6 +166,24 @@ def test_closed_forms_have_small_bounds_and_are_met():
         found = check()
         assert (found.what, found.bound, found.ok) == (words, bound, True)
         assert found.difference < bound
+
+
+@pytest.mark.parametrize(
+    ("check", "most"),
+    [("_no_friction", 1e-12), ("_slip_throughout", 1e-10), ("_first_slip", 1e-9),
+     ("_stiff", 0.006)],
+)  # fmt: skip
+def test_eccentric_impacts_have_closed_forms_and_a_rigid_limit(check, most):
+    found = getattr(validation, check)()
+    assert found.what.startswith("fronts, two bodies: ")
+    assert (found.bound, found.ok) == (pytest.approx(most), True)
+
+
+def test_a_rod_of_the_stiff_contacts_is_that_of_the_theory():
+    """Theory §14: 30 degrees, mu .3, slip .5, kappa .8235294."""
+    scene = rod(30.0, 0.3, 0.5, kappa=0.8235294)
+    numbers = (scene.psi1, scene.chi, scene.lam, scene.eta)
+    assert numbers == pytest.approx((1.372549, 0.764706, 0.222692, 2.037707), abs=1e-6)
 
 
 def hertz(case):

@@ -25,7 +25,7 @@ from contactlab_laws.fronts.series import (
 CAREFUL = 0.9
 #: Longest step: beyond it forces turn more than events are looked for.
 LONGEST = 1.0
-#: Error of a step over a velocity, below which it is rounding: jams may multiply velocities by 1e8.
+#: Error of a step over its velocity that is rounding: a jam may multiply velocities by 1e8.
 ROUNDING = 1e-14
 #: Steps of an impact before it is given up; a hard one takes 40, one of kappa = 1e6 some 10,000.
 MOST_STEPS = 20_000
