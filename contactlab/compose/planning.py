@@ -61,11 +61,10 @@ def columns_of(normal: NormalMotion, laws: Laws, known: Sequence[Answer]) -> Pla
         marched: Any = code == MARCHED and not known
         code = 0 if known else code
     else:
-        marched, code = separated(normal), np.full(shape, ENDLESS, dtype=np.int16)
-        code[marched] = MARCHED
+        code = np.where(separated(normal), MARCHED, ENDLESS)
         for place, answer in enumerate(known):
             code[answer.where] = place
-            marched &= ~answer.where
+        marched = code == MARCHED
     reasons = tuple(
         Reason(each.reason, each.balanced, each.fields is not None) for _, each in known
     )

@@ -161,23 +161,23 @@ def _with_unbalanced(motion: Motion, scene: Scene, bound: Any) -> Motion:
     before: Any = abs(scene.slip_velocity)
     after: Any = abs(scene.slip_velocity + motion.slip_velocity_change)
     imbalance: Any = abs(books.imbalance)
-    share: Any = np.divide(imbalance, books.start)
-    gained: Any = np.divide(books.end, books.start)
-    undeclared = bound == math.inf
-    for where, sentence, *numbers in (
+    for where, sentence, numbers in (
         (alone & (speed > LARGEST_RESTITUTION * scene.normal_speed),
-         "The bodies part {:.4g} times as fast as they met.", speed / scene.normal_speed),
+         "The bodies part {:.4g} times as fast as they met.",
+         lambda: (speed / scene.normal_speed,)),
         (imbalance > bound * books.start,
-         "Off by {:.2g} of the energy at the start; declared: {:.2g}.", share, bound),
+         "Off by {:.2g} of the energy at the start; declared: {:.2g}.",
+         lambda: (imbalance / books.start, bound)),
         (alone & (after > LARGEST_SLIP * before),
-         "The contact slips {:.4g} times as fast as it met.", np.divide(after, before)),
-        (coupled & (gained > LARGEST_RESTITUTION**2),
-         "The bodies gain {:.2g} of their energy.", gained - 1.0),
-        (undeclared & (share > LARGEST_UNDECLARED),
-         "Off by {:.3g} times the energy at the start.", share),
+         "The contact slips {:.4g} times as fast as it met.",
+         lambda: (np.divide(after, before),)),
+        (coupled & (books.end > LARGEST_RESTITUTION**2 * books.start),
+         "The bodies gain {:.2g} of their energy.", lambda: (books.end / books.start - 1.0,)),
+        ((bound == math.inf) & (imbalance > LARGEST_UNDECLARED * books.start),
+         "Off by {:.3g} times the energy at the start.", lambda: (imbalance / books.start,)),
     ):  # fmt: skip
         if some(where):
-            motion = motion.failing(where, Status.UNBALANCED, _sentences(sentence, *numbers))
+            motion = motion.failing(where, Status.UNBALANCED, _sentences(sentence, *numbers()))
     return motion
 
 
