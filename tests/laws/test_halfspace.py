@@ -256,3 +256,10 @@ def test_grazing_impacts_slip_throughout():
     result = simulation(coupling="one_way").run(finite_element_case(psi1))
     change = result.scene.psi(result.motion.slip_velocity_change)
     assert change == pytest.approx(-4.0 * CHI, rel=1e-9)
+
+
+def test_psi2_is_in_proportion_to_the_smallest_psi1():
+    """Down to numbers whose squares vanish."""
+    psi1 = np.array([1e-300, 1e-160, 1e-9])
+    result = simulation(rings=8, angles=1).run(Scene.nondimensional(psi1=psi1, chi=CHI))
+    assert result.check().psi2 / psi1 == pytest.approx(result.psi2[-1] / psi1[-1], rel=1e-9)

@@ -76,7 +76,7 @@ def rest(slips: Slips, duration: Any, *, vectors: bool) -> Array:
         speed = size / latest
         slowing = 2.0 * (along / earlier - speed) / (latest + earlier)
         final = np.maximum(speed - 0.5 * slowing * latest, 0.0)
-        until_rest = np.where(slowing > 0.0, 0.5 * final * final / (slowing * size), np.inf)
+        until_rest = np.where(slowing > 0.0, 0.5 * (final / size) * (final / slowing), np.inf)
         weight = np.minimum(weight, until_rest)
         known = (slips.inside > 1) & (np.asarray(earlier) > 0.0) & (size > 0.0)
     return np.asarray(slips.last + np.where(known, weight, 0.0) * increment)
