@@ -138,6 +138,7 @@ MODULES = {
     "contracts": "contracts",
     "figures": "figures",
     "fitting": "fitting",
+    "shapes": "impact.shapes",
     "study": "study",
     "testing": "testing",
 }

@@ -40,6 +40,7 @@ SCRIPTS = {
     "superball": ("at most 0.59 of its velocity", "superball.png"),
     "beyond_the_paper": ("one-way coupling: 0.021 from the finite elements (rms)", BEYOND),
     "hysteresis": ("Mindlin and Deresiewicz: 0.1310", "hysteresis.png"),
+    "any_two_bodies": ("30°: rebound 0.913, slip -0.723", "any_two_bodies.png"),
     "signs": ("spin -90 rad/s, slip 0.00 m/s", "signs.png"),
     "law_in_five_minutes": ("0.1 of the normal speed", "law_in_five_minutes.png"),
 }
@@ -47,7 +48,7 @@ SCRIPTS = {
 SLOW = (
     *("sweep_on_a_cluster", "reproduce_the_paper", "fit_your_experiment", "billiards"),
     *("beyond_the_paper", "superball", "law_swap", "stick_slip_map", "granular_gas"),
-    *("hysteresis", "signs"),
+    *("hysteresis", "signs", "any_two_bodies"),
 )
 #: Options that make a script short.
 OPTIONS = {

@@ -20,7 +20,7 @@ from contactlab.numeric.names import nearest
 TOPICS = (
     "getting-started", "units-and-signs", "choosing", "laws", "how-far-to-trust",
     "plans-and-statuses", "for-a-paper", "beyond-the-paper", "command-line", "fitting",
-    "any-two-bodies", "load-paths", "engines", "extending", "theory", "glossary",
+    "load-paths", "any-two-bodies", "engines", "extending", "theory", "glossary",
 )  # fmt: skip
 #: Heading of a numbered section, such as ``## 5. The slip front``.
 SECTION = re.compile(r"^## (\d+)\. ", re.MULTILINE)

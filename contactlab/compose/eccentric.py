@@ -159,7 +159,7 @@ def _cautions(laws: Laws, scene: EccentricScene) -> list[str]:
             "moves psi2 by up to 0.008 where measured (model)"
         )
     for body in scene.bodies:
-        cautions += getattr(body, "cautions", lambda _: ())(float(np.max(scales.duration)))
+        cautions += getattr(body, "cautions", lambda _: ())(float(np.min(scales.duration)))
     return cautions
 
 

@@ -19,6 +19,9 @@ Array = NDArray[np.float64]
 ROUNDING = 1e-9
 #: A flat surface has an infinite radius; ``real`` refuses infinity, so this one is put in for it.
 FLAT = 1e200
+#: Ratio of first bending period to duration of contact from which a body rings: a half-sine pulse
+#: leaves the first mode at most 4 r/(4 - r²) of its static bending, a fifth at this ratio r.
+RINGING = 0.2
 
 
 def _tensor(value: Any, field: attrs.Attribute[Any]) -> Array | None:
@@ -78,6 +81,9 @@ class RigidBody:
     curvature_ratio : float or array
         Larger over smaller principal radius of curvature at the contact, at least 1. The answer
         takes the contact for circular; the plan cautions above 1.
+    bending_period : float or array, optional
+        Period of the first bending vibration, in s; the plan cautions where the contact does not
+        last long beside it.
 
     Raises
     ------
@@ -99,6 +105,7 @@ class RigidBody:
     curvature_ratio: Real = quantity(
         "1", rule=Rule(lambda ratio: ratio >= 1.0, "must be at least 1"), default=1.0
     )
+    bending_period: Real | None = quantity("s", rule=POSITIVE, default=None)
     #: Batch shape of mass, inertia and curvature together.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
 
@@ -136,7 +143,33 @@ class RigidBody:
             name: taken(getattr(self, name), shape, part)
             for name in ("mass", "material", "curvature_radius", "curvature_ratio")
         }
+        if self.bending_period is not None:
+            entries["bending_period"] = taken(self.bending_period, shape, part)
         return RigidBody(inertia=inertia, **entries)
+
+    def cautions(self, duration: float) -> list[str]:
+        """Return a sentence for each doubt about a rigid body with a circular contact.
+
+        Parameters
+        ----------
+        duration : float
+            Of the shortest contact, in s.
+        """
+        cautions = []
+        ratio = float(np.max(self.curvature_ratio))
+        if ratio > 1.0 + ROUNDING:
+            cautions.append(
+                f"curvature_ratio = {ratio:.3g}: the contact is elliptic, and is taken for "
+                "circular with the mean curvature (model)"
+            )
+        if self.bending_period is not None:
+            ratio = float(np.max(self.bending_period)) / duration
+            if ratio > RINGING:
+                cautions.append(
+                    f"first bending period over duration of contact = {ratio:.3g}: above "
+                    f"{RINGING} the body rings, and bending waves carry off energy (model)"
+                )
+        return cautions
 
 
 def _check_inertia(inertia: Array) -> None:
