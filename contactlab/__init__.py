@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from contactlab.contracts.status import Status
     from contactlab.fitting import fit
     from contactlab.impact import material as materials
+    from contactlab.impact import shapes
     from contactlab.impact.bodies import HalfSpace, Sphere
     from contactlab.impact.eccentric import EccentricScene
     from contactlab.impact.encounter import Encounter
@@ -85,6 +86,7 @@ __all__ = [
     "materials",
     "read_scene",
     "rebound",
+    "shapes",
 ]
 
 
@@ -134,11 +136,11 @@ MODULES = {
     "materials": "impact.material",
     "read_scene": "scene_file",
     "rebound": "compose.rebound",
+    "shapes": "impact.shapes",
     # the public submodules
     "contracts": "contracts",
     "figures": "figures",
     "fitting": "fitting",
-    "shapes": "impact.shapes",
     "study": "study",
     "testing": "testing",
 }

@@ -3,7 +3,7 @@
 Rigid-body theory lets the end of a dropped steel rod rebound as fast as the end came, at every
 tilt. An elastic contact rebounds with less, because energy that the contact stores along the
 surface returns as slip. On the right a rod slides into the jam of Painlevé: friction presses the
-bodies together faster than pressure parts them, and rigid-body equations have no answer. The
+bodies together faster than pressure parts them, and rigid-body forces have no answer. The
 elastic contact stops the slip, then throws the rod off faster than the rod came.
 
 Writes ``any_two_bodies.png`` in the current folder.
