@@ -418,7 +418,9 @@ def _at_speeds(restitution: Callable[[Any], Any], encounter: Encounter) -> Any:
 
 def _run(simulation: Simulation, scene: Any) -> ImpactResult:
     """Return the result of a scene, by blocks if the scene has one axis."""
-    return simulation.sweep(scene) if len(scene.shape) == 1 else simulation.run(scene)
+    result: ImpactResult
+    result = simulation.sweep(scene) if len(scene.shape) == 1 else simulation.run(scene)
+    return result
 
 
 def _columns(encounter: Encounter, result: ImpactResult, met: Any = True) -> Array:

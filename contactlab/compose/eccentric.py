@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import Any
 
 import attrs
@@ -70,6 +71,24 @@ def run(laws: Laws, scene: EccentricScene, *, history: bool | str = False) -> Ec
         laws=composition.versions(*laws),
         history=NO_HISTORY if recorder is None else recorder.history(),
     )
+
+
+def are_eccentric(scenes: Any) -> bool:
+    """Return whether scenes are a batch, or a sequence, of eccentric ones."""
+    if isinstance(scenes, list | tuple) and scenes:
+        return isinstance(scenes[0], EccentricScene)
+    return isinstance(scenes, EccentricScene)
+
+
+def swept(
+    laws: Laws, scenes: Any, progress: Callable[[int, int], object] | None
+) -> EccentricResult:
+    """Return the result of many impacts: a batch, or a sequence of single ones."""
+    batch = scenes if isinstance(scenes, EccentricScene) else EccentricScene.stack(scenes)
+    result = run(laws, batch)
+    if progress is not None:
+        progress(len(result), len(result))
+    return result
 
 
 def preferred(scene: EccentricScene) -> dict[str, str]:

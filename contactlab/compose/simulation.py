@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import attrs
 import numpy as np
@@ -150,6 +150,7 @@ class Simulation:
             return result
         return attrs.evolve(result, psi2_error_estimate=estimated(self.laws, result))
 
+    @overload
     def sweep(
         self,
         scenes: Scene | Sequence[Scene],
@@ -158,7 +159,23 @@ class Simulation:
         chunk: int | None = None,
         executor: Executor | None = None,
         keep: str | Path | None = None,
-    ) -> ImpactResult:
+    ) -> ImpactResult: ...
+    @overload
+    def sweep(
+        self,
+        scenes: EccentricScene | Sequence[EccentricScene],
+        *,
+        progress: Callable[[int, int], object] | None = None,
+    ) -> EccentricResult: ...
+    def sweep(
+        self,
+        scenes: Any,
+        *,
+        progress: Callable[[int, int], object] | None = None,
+        chunk: int | None = None,
+        executor: Executor | None = None,
+        keep: str | Path | None = None,
+    ) -> ImpactResult | EccentricResult:
         """Run many impacts, vectorised, a block at a time.
 
         The laws choose the size of a block, counted from the first impact: 16384 if nothing is
@@ -169,7 +186,8 @@ class Simulation:
 
         Parameters
         ----------
-        scenes : sequence of Scene, or a batch scene
+        scenes : sequence of Scene or of EccentricScene, or a batch scene
+            Eccentric impacts are swept in this process, without ``executor`` and ``keep``.
         progress : callable, optional
             Called as ``progress(done, total)`` after each chunk.
         chunk : int, optional
@@ -199,6 +217,11 @@ class Simulation:
             scenes of psi1 and chi; if a law cannot be sent to ``executor``; if ``keep`` holds
             another sweep.
         """
+        if eccentric.are_eccentric(scenes):
+            if not (executor is None and keep is None):
+                rule = "eccentric impacts are swept in this process"
+                raise refuse("executor, keep", (executor, keep), rule, "leave both out")
+            return eccentric.swept(self.laws, scenes, progress)
         started = time.perf_counter()
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
         if len(batch.shape) != 1:

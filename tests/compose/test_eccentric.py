@@ -493,6 +493,15 @@ def test_books_that_do_not_balance_are_a_status():
     assert np.isnan(many.psi2).tolist() == [True, False]
 
 
+def test_a_sweep_takes_a_sequence_or_a_batch():
+    scene = random_planar(5, 14)
+    batch = EXACT.sweep(scene)
+    listed = EXACT.sweep([scene.take(k) for k in range(5)])
+    assert listed.psi2 == pytest.approx(batch.psi2, rel=1e-12)
+    with pytest.raises(ValueError, match="executor"):
+        EXACT.sweep(scene, keep="folder")
+
+
 def test_a_law_that_raises_has_a_status_and_no_number():
     class Faulty(type(create("tangential.mindlin_cap"))):
         api_version = 2
