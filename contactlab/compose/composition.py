@@ -39,6 +39,8 @@ FIXED_STEPS = "symplectic"
 #: Integrators of fixed steps under which laws are mapped, the usual one first.
 STEPPED = (FIXED_STEPS, "paper")
 ON_A_PATH = "springs"
+#: Rigid bodies, which stiff contacts tend to.
+RIGID = {"tangential": "coulomb"}
 #: Laws of an eccentric impact whose slip turns: in the plane the exact ones answer.
 IN_SPACE = {"tangential": ON_A_PATH, "integrator": FIXED_STEPS}
 RESTITUTION = {"normal": "tsuji", "tangential": "annulus"}

@@ -16,6 +16,8 @@ from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.checks import POSITIVE, real, refuse
 
+__all__ = ["box", "ellipsoid", "rod"]
+
 Array = NDArray[np.float64]
 
 #: Cosine of the normal with an edge or face below which the contact is a line or a face.

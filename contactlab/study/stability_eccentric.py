@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.compose import composition
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.eccentric import (
     EccentricIntegrator,
@@ -113,7 +114,7 @@ def judged_eccentric(simulation: Simulation, result: EccentricResult) -> tuple[f
             wrong.append("energy books do not close")
     if result.scene.kappa < STIFF or "partial_slip" not in law.offers:
         return math.nan, wrong
-    rigid = Simulation(tangential="coulomb").run(result.scene).check()
+    rigid = Simulation(**composition.RIGID).run(result.scene).check()
     error = float(distance(result, rigid))
     if error > RIGID_DISTANCE * float(result.scene.kappa) ** -0.5 + UNDECLARED:
         wrong.append(f"{error:.2g} of v1 from rigid bodies")

@@ -84,9 +84,7 @@ def test_each_encounter_may_have_its_restitution():
         place = (0, 1, 2, 4, 5)[index]
         one = collide(encounters(place), restitution=float(e))
         joined, alone = (set(map(str, plan.computed)) for plan in (together.plan[index], one.plan))
-        assert joined == {
-            line.replace(f"restitution={e:g}", "restitution=0.7..0.9") for line in alone
-        }
+        assert joined == alone
         assert together.result.psi2[index] == pytest.approx(one.result.psi2, abs=1e-9)
 
 

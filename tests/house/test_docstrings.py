@@ -8,12 +8,12 @@ import attrs
 import pytest
 
 import contactlab
-from contactlab import contracts
+from contactlab import contracts, shapes
 
 #: By name, without those that are no class or function: a module, a type alias, a number.
 PUBLIC = {
     name: value
-    for space in (contactlab, contracts)
+    for space in (contactlab, contracts, shapes)
     for name in space.__all__
     if inspect.isclass(value := getattr(space, name)) or inspect.isfunction(value)
 }
@@ -78,7 +78,7 @@ def test_all_of_the_public_names_are_looked_at():
     assert len(PUBLIC) > 40
     assert len(entries()) > 150
     others = {name for name in contactlab.__all__ if name not in PUBLIC}
-    assert others <= {"materials", "REGISTRY", "hookimpl"}
+    assert others <= {"materials", "shapes", "REGISTRY", "hookimpl"}
 
 
 def test_a_missing_entry_is_found():

@@ -8,7 +8,6 @@ import contactlab
 from contactlab import Scene, Simulation
 from contactlab.contracts.status import Status
 from contactlab_laws.halfspace import answer, splitting
-from table_builders.coupling.build import Lossy
 
 CHI = 49 / 34
 #: Angles of the exact law's comparison, and of that with like bodies.
@@ -127,7 +126,7 @@ def test_one_way_coupling_over_lam():
     """One row and one column of theory §9's table, at 24 rings."""
     for lam, psi1, column in ((1.0, 0.5, 0), (1.0, 1.0, 1), (0.5, 1.0, 1), (2.0, 2.0, 3)):
         scene = Scene.nondimensional(psi1=psi1, chi=CHI, poisson_ratio=0.3, coupling_number=lam)
-        law = Lossy(coupling="one_way", rings=24)
+        law = contactlab.create("tangential.halfspace", coupling="one_way", rings=24)
         shift = Simulation(tangential=law).run(scene).check().psi2
         shift -= contactlab.rebound(psi1, CHI)
         assert shift == pytest.approx(SHIFTS[lam][column], abs=5e-3)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation
-from contactlab_laws.halfspace import impacts, picture
+from contactlab_laws.halfspace import picture
 from contactlab_laws.halfspace.course import units
 from contactlab_laws.halfspace.picture import Picture
 from tests.laws.test_halfspace_parts import CHI, law, one
@@ -74,21 +74,6 @@ def test_fields_along_one_direction():
     assert shown["stuck"][middle].any()
     assert not shown["stuck"][middle].all()
     assert not shown["stuck"][shown["pressure"] == 0.0].any()
-
-
-def test_fields_of_vectors_without_coupling_come_to_those_along_one_direction(monkeypatch):
-    """nu = 0: all tractions are along the slip, whichever way they are found."""
-    scene = Scene.nondimensional(psi1=1.2, chi=CHI, poisson_ratio=0.0)
-    rings = {"rings": 6, "angles": 2, "extrapolate": False}
-    plain = law(**rings).run(scene, history="fields").check().history
-    monkeypatch.setattr(impacts, "ROUNDING", -1.0)
-    monkeypatch.setattr(impacts, "VECTORS", impacts.ALONG)
-    vectors = law(**rings).run(scene, history="fields").check().history
-    assert vectors.tangential_force == pytest.approx(plain.tangential_force, abs=2e-3)
-    for name in ("traction_x", "traction_y", "slip_x", "slip_y", "pressure"):
-        scale = max(np.abs(plain.fields[name]).max(), 1e-3)
-        assert vectors.fields[name] == pytest.approx(plain.fields[name], abs=0.02 * scale)
-    assert (vectors.fields["stuck"] == plain.fields["stuck"]).mean() > 0.97
 
 
 def test_gross_slip_has_the_limit_everywhere_and_moves_as_the_bodies_do():

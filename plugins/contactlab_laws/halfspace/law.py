@@ -8,12 +8,17 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import Law, NormalLaw, NormalMotion, WholeImpact, WholeImpactTangentialLaw
+from contactlab.impact.coupling import coupling_number
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, choice, count, flag, refuse
 from contactlab_laws.halfspace.answer import own_answers
 from contactlab_laws.halfspace.impacts import Options
 from contactlab_laws.jaeger.gross_slip import gross_slip
 from contactlab_laws.jaeger.pressure import hemisphere
+
+#: Energy that one-way coupling loses by nature, over that at the start and Lambda²; at most at the
+#: largest Lambda that was measured.
+ONE_WAY_LOSS, LARGEST_LOSS = 0.14, 4.0
 
 #: Most rings of tractions along one direction, and of vectors, whose matrices take 250 MB at 96.
 MOST_RINGS, MOST_OF_VECTORS = 256, 96
@@ -84,8 +89,12 @@ class HalfSpace(WholeImpactTangentialLaw):
             )
 
     def books_bound(self, scene: Scene) -> Real:
-        """Return the imbalance that the energy books may show."""
-        return 0.02
+        """Return the imbalance of the books: one-way coupling loses up to 0.14 Lambda²."""
+        if self.coupling != "one_way":
+            return 0.02
+        number = np.minimum(coupling_number(scene), LARGEST_LOSS)
+        bound: Real = 0.02 + ONE_WAY_LOSS * number * number
+        return bound
 
     def refuses(self, other: Law) -> str | None:
         """Return why two-way coupling does not run beside a law that is not Hertz's."""
