@@ -6,7 +6,6 @@ import pytest
 import contactlab
 from contactlab import Scene, Simulation, Status
 from contactlab.impact.hertz import rigid_body_rebound
-from contactlab_laws.annulus import many
 from tests.laws.ending_laws import Raising
 from tests.laws.outside_laws import Plastic, Tsuji, Walton
 
@@ -16,7 +15,7 @@ CHI = 49.0 / 34.0
 @pytest.mark.parametrize("integrator", ["symplectic", "paper", "adaptive"])
 @pytest.mark.parametrize("shape", [(1,), (1, 1)])
 @pytest.mark.parametrize("psi1", [0.5, 1.2, -3.0])
-def test_a_batch_of_one_is_the_impact_to_the_last_bit(integrator, shape, psi1, monkeypatch):
+def test_a_batch_of_one_is_the_impact_to_the_last_bit(integrator, shape, psi1):
     """It took the steps one by one, of the arrays of a batch: 50 times the time, other bits."""
     sim = Simulation(
         tangential=contactlab.create("tangential.annulus", annuli=10),
@@ -27,7 +26,6 @@ def test_a_batch_of_one_is_the_impact_to_the_last_bit(integrator, shape, psi1, m
             tangential=sim.tangential,
             integrator=contactlab.create("integrator.adaptive", tolerance=1e-2),
         )
-    monkeypatch.setattr(many, "advance", None)  # the path of batches
     alone = sim.run(Scene.nondimensional(psi1=psi1, chi=CHI)).check()
     batch = sim.run(Scene.nondimensional(psi1=np.full(shape, psi1), chi=CHI)).check()
     assert batch.psi2.shape == shape

@@ -19,7 +19,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, choice, count
-from contactlab_laws.annulus import blocks, many, one
+from contactlab_laws.annulus import all_steps, step
 from contactlab_laws.annulus.tables import Tables, hertz_pressure, tables
 from contactlab_laws.jaeger.all_steps import ScaledSteps
 from contactlab_laws.jaeger.partial_slip import PartialSlip, Scales
@@ -31,7 +31,7 @@ class State(NamedTuple):
 
     scales: Scales
     hertz: bool  # whether the normal law is Hertz's
-    memory: Any  # one.ContactState or many.ContactStates
+    memory: step.ContactStates
 
 
 @attrs.frozen(kw_only=True)
@@ -88,8 +88,7 @@ class Annulus(PartialSlip):
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return a contact without traction."""
-        shape = scene.shape
-        memory = many.start(self.annuli, shape) if shape else one.start(self.annuli)
+        memory = step.start(self.annuli, scene.shape)
         return State(Scales.of(scene, normal), "elastic_hertz" in normal.offers, memory)
 
     def advance(
@@ -103,17 +102,23 @@ class Annulus(PartialSlip):
         scales, hertz, memory = state
         radius: Any = after.radius / scales.radius
         pressure = self._pressure(scales, radius, after.friction_load, hertz=hertz)
-        solve = one.advance if isinstance(memory, one.ContactState) else many.advance
         slip: Any = increment.displacement * scales.displacement
-        force, work, settled, memory = solve(self._tables(), memory, slip, radius, pressure)
+        answers: Any
+        *answers, memory = step.advance(self._tables(), memory, slip, radius, pressure)
+        if not memory.lag.shape[:-1]:
+            answers = [each.item() for each in answers]
+        force, work, settled = answers
         response = TangentialResponse(force * scales.force, work * scales.work, settled)
         return response, State(scales, hertz, memory)
 
     def advance_all(
         self, scene: Scene, normal: NormalMotion, steps: Steps
     ) -> AllStepsResponse | None:
-        """Return the forces (22) of one impact, computed in blocks of steps; None for a batch."""
-        if scene.shape:
+        """Return the forces (22) of one impact, computed in blocks of steps.
+
+        None for a batch, and for more annuli than have tables of responses.
+        """
+        if scene.shape or not self._tables().responses:
             return None
         scales = Scales.of(scene, normal)
         radius, load = steps.contact.radius / scales.radius, steps.contact.friction_load
@@ -123,7 +128,7 @@ class Annulus(PartialSlip):
             drift=steps.drift * scales.displacement,
             kick=steps.kick * scales.force / scene.pair.tangential_mass,
         )
-        march = blocks.BlockMarch(self._tables(), scaled, float(scene.slip_velocity))
+        march = all_steps.BlockMarch(self._tables(), scaled, float(scene.slip_velocity))
         settled = march.march()
         work = march.friction_work() * float(scales.work)
         return AllStepsResponse(march.forces * scales.force, work, settled)

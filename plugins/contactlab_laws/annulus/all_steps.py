@@ -3,16 +3,16 @@
 Almost always the inner annuli stick and the outer annuli slip in one direction. Then a step is one
 small product, and two scalar tests at the edge give the number of annuli that stick: of the
 outermost annulus that sticks (36) and of the innermost that slips (37). After a block of such steps
-all annuli are tested together. The steps before the first failure are kept; ``one.advance``
-searches the division of the step that failed, and divisions of other kinds. The result is that of
-step by step, at a fraction of the calls.
+all annuli are tested together. The steps before the first failure are kept. The division of the
+step that failed is searched by flips of all its violators, as in ``step.advance``. The result is
+that of step by step, at a fraction of the calls.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from contactlab_laws.annulus import one
+from contactlab_laws.annulus.step import MOST_PASSES, TIE
 from contactlab_laws.annulus.tables import Array, Tables, hertz_pressure, response
 from contactlab_laws.jaeger.all_steps import ScaledSteps
 
@@ -20,7 +20,7 @@ from contactlab_laws.jaeger.all_steps import ScaledSteps
 SHORTEST, LONGEST = 4, 128
 #: Moves of the edge in one step; more are left to the search.
 MOST_MOVES = 12
-#: Divisions tried on one step before it is left to ``one.advance``.
+#: Divisions tried on a block before its first step is tried alone.
 MOST_TRIES = 2
 
 
@@ -39,7 +39,7 @@ class BlockMarch:
         self.drifts, self.kicks = steps.drift.tolist(), steps.kick.tolist()
         self.lags, self.tractions = np.zeros((count + 1, size)), np.zeros((count + 1, size))
         self.answers = np.zeros((count, size + 1))
-        self.signs, self.touching = np.zeros(size), 0  # the division, as in ``one.ContactState``
+        self.signs, self.touching = np.zeros(size), 0  # the division, as in ``step.ContactStates``
         self.at, self.total, self.change = 0, 0.0, 0.0
 
     @property
@@ -51,12 +51,11 @@ class BlockMarch:
         """Take all steps; return whether each has a division that passes the tests."""
         count, length, tries = len(self.answers), SHORTEST, 0
         while self.at < count:
-            if tries > MOST_TRIES or not self.table.responses:
-                if not self._step():
-                    return False
-                tries = 0
-                continue
+            if tries > MOST_PASSES:
+                return False
             edge, until = self._edge(), min(self.at + length, count)
+            if tries > MOST_TRIES:
+                edge, until = None, self.at + 1
             kept = self._by_division(until) if edge is None else self._by_edge(until, *edge)
             length = min(2 * length, LONGEST) if self.at == until else SHORTEST
             tries = 0 if kept else tries + 1
@@ -165,7 +164,7 @@ class BlockMarch:
         return self._tested(rows, np.tile(signs, (len(rows), 1)), totals, changes)
 
     def _tested(self, rows: Array, signs: Array, totals: list[float], changes: list[float]) -> int:
-        """Enter a block of steps, ``rows`` as in ``one.respond``; return how many pass."""
+        """Enter a block of steps, whose ``rows`` hold D and the drives; return how many pass."""
         at, until = self.at, self.at + len(rows)
         drive, answer, limits = rows[:, 1:], self.answers[at:until, 1:], self.limits[at:until]
         sticks, ends = signs == 0.0, slice(at + 1, until + 1)
@@ -173,7 +172,7 @@ class BlockMarch:
         self.tractions[ends] = np.where(sticks, answer, drive)
         good = signs * (self.lags[at:until] - self.lags[ends]) > 0.0
         good |= limits == 0.0
-        np.copyto(good, np.abs(answer) <= limits, where=sticks)
+        np.copyto(good, np.abs(answer) <= TIE * limits, where=sticks)
         first = int(good.argmin())
         kept = len(good) if good.flat[first] else first // good.shape[1]
         self.at, self.total, self.change = at + kept, totals[kept], changes[kept]
@@ -184,20 +183,3 @@ class BlockMarch:
             self.signs = np.where(good[kept], signs[kept], begins)
             self.touching = self.touching_at[self.at]
         return kept
-
-    def _step(self) -> bool:
-        """Take one step by the search of ``one.advance``."""
-        at, steps = self.at, self.steps
-        state = one.ContactState(
-            self.total, self.lags[at], self.tractions[at], self.signs, self.touching
-        )
-        move = (self.velocity + self.change) * self.drifts[at]
-        radius, pressure = float(steps.radius[at]), float(steps.pressure[at])
-        force, _, settled, state = one.advance(self.table, state, move, radius, pressure)
-        if settled:
-            self.total, self.lags[at + 1], self.tractions[at + 1], signs, self.touching = state
-            self.signs = signs.copy()
-            self.answers[at, 0] = force
-            self.change -= self.kicks[at] * force
-            self.at += 1
-        return settled

@@ -1,28 +1,44 @@
-"""The contact problem of many impacts at once."""
+"""One step of the contact problem, for any number of contacts at once."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.numeric.checks import Real
-from contactlab_laws.annulus.one import TIE
 from contactlab_laws.annulus.tables import Array, Tables, hertz_pressure
 
 #: Passes of the division into stick and slip; measured never above 14 (theory §6).
 MOST_PASSES = 200
+#: Traction over its limit up to which an annulus sticks. Back at a turning point the traction
+#: equals its limit to rounding, and would be above it and below it by turns, without end.
+TIE = 1.0 + 1e-12
 
 
 class ContactStates(NamedTuple):
-    """Contacts of a batch: entries as in ``one.ContactState``, with the batch's shape first."""
+    """The memory of contacts, with their last division into stick and slip.
 
-    total: Array  # (..., 1)
-    lag: Array  # (..., n)
-    traction: Array  # (..., n)
-    signs: Array  # (..., n): of slip, 0 where stuck or outside
-    contact: NDArray[np.bool_]  # (..., n)
+    Attributes
+    ----------
+    total : array, shape (..., 1)
+        D, slip displacement so far.
+    lag : array, shape (..., n)
+        g_j = xi_j - D: constant while an annulus sticks.
+    traction : array, shape (..., n)
+        q_j, zero outside the contact.
+    signs : array, shape (..., n)
+        Sign of the traction of annuli that slip, 0 for annuli that stick or are outside.
+    contact : array of bool, shape (..., n)
+        Whether an annulus is in contact.
+    """
+
+    total: Array
+    lag: Array
+    traction: Array
+    signs: Array
+    contact: NDArray[np.bool_]
 
     def division(self) -> tuple[NDArray[np.bool_], NDArray[np.int8]]:
         """Return which annuli are stuck, and the sign of slip of each annulus."""
@@ -39,12 +55,16 @@ def advance(
     table: Tables, states: ContactStates, displacement: Real, radius: Real, pressure: Real
 ) -> tuple[Array, Array, NDArray[np.bool_], ContactStates]:
     """Return forces, works, whether divisions pass the tests (batch shape), and new states."""
+    # Scaled: ``displacement`` is 2.9432 psi dtau of eq. (33), ``radius`` is beta at the end of the
+    # step, ``pressure`` the ratio to the pressure of a Hertz contact of this radius.
     shape, size = states.lag.shape[:-1], states.lag.shape[-1]
     lag, old = states.lag.reshape(-1, size), states.traction.reshape(-1, size)
-    moved = np.broadcast_to(displacement, shape)[..., None]
-    total = (states.total + moved).reshape(-1, 1)
+    moved: Any = displacement
+    total = (states.total + (moved[..., None] if shape else moved)).reshape(-1, 1)
     limit = np.asarray(pressure)[..., None] * hertz_pressure(table, radius)
-    limit = np.broadcast_to(limit, (*shape, size)).reshape(-1, size)
+    if limit.shape != states.lag.shape:
+        limit = np.broadcast_to(limit, states.lag.shape)
+    limit = limit.reshape(-1, size)
     contact, touched = limit > 0.0, states.contact.reshape(-1, size)
     # First guess of the division: annuli new in contact do as the outermost annulus did.
     signs = states.signs.reshape(-1, size)
@@ -52,21 +72,24 @@ def advance(
     signs = np.where(contact, np.where(touched, signs, outermost[:, None]), 0.0)
     traction, new_lag = np.full_like(lag, np.nan), np.full_like(lag, np.nan)
     # NaN would pass every test as "not wrong": items with NaN are left out and answer NaN.
-    left = np.flatnonzero(np.isfinite(limit.sum(axis=1) + total[:, 0]))
+    finite = np.isfinite(limit.sum(axis=1) + total[:, 0])
+    left: Any = slice(None) if finite.all() else np.flatnonzero(finite)
+    every, settled = np.arange(len(lag)), np.ones(len(lag), dtype=bool)
     for _ in range(MOST_PASSES):
         sign, most, before = signs[left], limit[left], lag[left]
         sticks = (sign == 0.0) & contact[left]
         pulls = _tractions(table, sticks, total[left] + before, sign * most)
         lags = np.where(sticks, before, pulls @ table.compliance.T - total[left])
         traction[left], new_lag[left] = pulls, lags
-        over = sticks & (np.abs(pulls) > TIE * most)
-        wrong = over | ((sign != 0.0) & (sign * (before - lags) <= 0.0))
-        signs[left] = np.where(wrong, np.where(over, np.sign(pulls), 0.0), sign)
-        left = left[wrong.any(axis=1)]
-        if not len(left):
+        over = sticks & (np.abs(pulls) > TIE * most)  # (36) fails
+        wrong = over | ((sign != 0.0) & (sign * (before - lags) <= 0.0))  # or (37)
+        fails = wrong.any(axis=1)
+        if not fails.any():
             break
-    settled = np.ones(len(lag), dtype=bool)
-    settled[left] = False
+        signs[left] = np.where(wrong, np.where(over, np.sign(pulls), 0.0), sign)
+        left = every[left][fails]
+    else:
+        settled[left] = False
     force = traction @ table.weight
     work = np.einsum("ij,ij->i", 0.5 * table.weight * (traction + old), lag - new_lag)
     whole = (*shape, size)
@@ -84,12 +107,16 @@ def _tractions(table: Tables, sticks: NDArray[np.bool_], moved: Array, limits: A
     """Return the tractions: from displacements ``moved`` where stuck, else ``limits``."""
     # Where the stuck annuli are the leading ones, masks pick the leading blocks of the triangular
     # factors, whatever their number; other items are solved one by one.
-    rest = sticks * (moved - limits @ table.compliance.T)
-    inner = sticks * (rest @ table.lower_inverse.T)
-    tractions = limits + sticks * (inner @ table.upper_inverse.T)
-    leading = (sticks[:, 1:] <= sticks[:, :-1]).all(axis=1)
-    for item in np.flatnonzero(~leading):
-        at = np.flatnonzero(sticks[item])
+    # No annulus beyond ``reach`` sticks: no larger blocks are needed.
+    reach = int(sticks.any(axis=0).nonzero()[0].max(initial=-1)) + 1
+    inner, held = slice(reach), sticks[:, :reach]
+    rest = held * (moved[:, inner] - limits @ table.compliance[inner].T)
+    halfway = held * (rest @ table.lower_inverse[inner, inner].T)
+    tractions = limits.copy()
+    tractions[:, inner] += held * (halfway @ table.upper_inverse[inner, inner].T)
+    leading = (held[:, 1:] <= held[:, :-1]).all(axis=1)
+    for item in (~leading).nonzero()[0].tolist():
+        at = held[item].nonzero()[0]
         block = table.compliance[np.ix_(at, at)]
         tractions[item, at] = np.linalg.solve(block, rest[item, at])
-    return np.asarray(tractions)
+    return tractions
