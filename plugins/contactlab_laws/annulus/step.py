@@ -108,14 +108,14 @@ def _tractions(table: Tables, sticks: NDArray[np.bool_], moved: Array, limits: A
     # Where the stuck annuli are the leading ones, masks pick the leading blocks of the triangular
     # factors, whatever their number; other items are solved one by one.
     # No annulus beyond ``reach`` sticks: no larger blocks are needed.
-    reach = int(sticks.any(axis=0).nonzero()[0].max(initial=-1)) + 1
+    reach = int(np.flatnonzero(sticks.any(axis=0)).max(initial=-1)) + 1
     inner, held = slice(reach), sticks[:, :reach]
     rest = held * (moved[:, inner] - limits @ table.compliance[inner].T)
     halfway = held * (rest @ table.lower_inverse[inner, inner].T)
     tractions = limits.copy()
     tractions[:, inner] += held * (halfway @ table.upper_inverse[inner, inner].T)
     leading = (held[:, 1:] <= held[:, :-1]).all(axis=1)
-    for item in (~leading).nonzero()[0].tolist():
+    for item in np.flatnonzero(~leading).tolist():
         at = held[item].nonzero()[0]
         block = table.compliance[np.ix_(at, at)]
         tractions[item, at] = np.linalg.solve(block, rest[item, at])

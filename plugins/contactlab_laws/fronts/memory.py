@@ -8,9 +8,6 @@ In the frame of the sign s in which the edge slips, or would,
 and while the front of slip is at the radius c, m and J are what they were when the edge was at c.
 Memory is the curve (m, J, c), on which dJ = -c dm. In the frame of the other sign it is
 (-m - 2c², (4/3) c³ - J, c).
-
-An impact of small psi1 is held as the departure from rest, for which m = -zeta and J = (2/3) P:
-with ``rest`` = 1 all m here stand for m + zeta, and all J for J - (2/3) P.
 """
 
 from __future__ import annotations
@@ -50,10 +47,9 @@ class Piece(ABC):
 
     frame: int
     locked: int
-    rest: float
     inner: float
     outer: float
-    #: m - ``rest`` zeta at both ends, which is the m of the module's head, and J at the outer one
+    #: m at both ends, and J at the outer one
     highest: float
     lowest: float
     lack: float
@@ -61,7 +57,7 @@ class Piece(ABC):
 
     @abstractmethod
     def curve(self, place: Array) -> tuple[Array, Array, Array, Array]:
-        """Return m, J, the slope of m less ``rest`` c², and c at each place."""
+        """Return m, J, the slope of m, and c at each place."""
 
     @abstractmethod
     def front(self, contact: ScaledContact, gone: Array, place: Array) -> Front:
@@ -77,23 +73,8 @@ class Piece(ABC):
         """Let the piece end at ``place``: all beyond it has slipped."""
         self.outer = place
         gone, lack, _, radius = self.curve(np.array([self.inner, place]))
-        square = self.rest * radius * radius
-        self.highest, self.lowest = (gone - square).tolist()
+        self.highest, self.lowest = gone.tolist()
         self.lack, self.radius = lack[1].item(), radius[1].item()
-
-    def carried(
-        self, known: tuple[Array, Array, Array], contact: ScaledContact, gone: Array
-    ) -> Array:
-        """Return J while the front is at c: the curve's, carried on to the present m.
-
-        It is stationary in c: a front that is off by little carries on to the same J.
-        """
-        old, lack, c = known
-        carried = lack - c * (gone - old)
-        if self.rest:
-            u = contact.radius
-            carried -= (1.0 / 3.0) * (u - c) ** 2 * (2.0 * u + c)
-        return np.asarray(carried)
 
 
 class Locked(Piece):
@@ -101,8 +82,6 @@ class Locked(Piece):
 
     Places are radii.
     """
-
-    rest = 0.0
 
     def __init__(self, sign: int, gone: float, lack: float, inner: float, outer: float) -> None:
         self.frame, self.locked = -sign, sign
@@ -121,13 +100,13 @@ class Locked(Piece):
         square = 0.5 * np.maximum(self.gone - level, 0.0)
         c = np.sqrt(square)
         old, lack, _, _ = self.curve(c)
-        return Front(self.carried((old, lack, c), contact, gone), c, contact.approach - square, c)
+        return Front(lack - c * (gone - old), c, contact.approach - square, c)
 
 
 class Drawn(Piece):
     """Drawn along a panel of sticking, by polynomials; places are phases x of the edge.
 
-    ``table`` holds m, J, the slope of m less ``rest`` c², and c at the nodes.
+    ``table`` holds m, J, the slope of m, and c at the nodes.
     """
 
     locked = 0
@@ -139,9 +118,8 @@ class Drawn(Piece):
         nodes: Nodes,
         table: tuple[Array, Array, Array, Array],
         limit_rate: Array,
-        rest: float,
     ) -> None:
-        self.frame, self.rest, self.nodes, self.limit_rate = frame, rest, nodes, limit_rate
+        self.frame, self.nodes, self.limit_rate = frame, nodes, limit_rate
         self.origin, self.length = span
         self.inner = self.origin
         slopes = (nodes.derivative @ np.array(table[2:]).T).T / self.length
@@ -150,11 +128,11 @@ class Drawn(Piece):
     def flipped(self) -> Drawn:
         """Return the piece in the frame of the other sign."""
         gone, lack, slope, c = self.table[:4]
-        free, square = 1.0 - self.rest, c * c
-        lack = (4.0 / 3.0 * free) * square * c - lack
-        table = (-gone - (2.0 * free) * square, lack, -slope - 2.0 * self.limit_rate, c)
+        square = c * c
+        lack = (4.0 / 3.0) * square * c - lack
+        table = (-gone - 2.0 * square, lack, -slope - 2.0 * self.limit_rate, c)
         span = (self.origin, self.length)
-        other = Drawn(-self.frame, span, self.nodes, table, self.limit_rate, self.rest)
+        other = Drawn(-self.frame, span, self.nodes, table, self.limit_rate)
         other.cut(self.outer)
         return other
 
@@ -171,9 +149,8 @@ class Drawn(Piece):
 
     def front(self, contact: ScaledContact, gone: Array, place: Array) -> Front:
         """Return the front by moves to the root of a parabola, which knows stationary ends."""
-        rest, inner, outer = self.rest, self.inner, self.outer
-        level = gone - rest * contact.approach if rest else gone
-        level = np.minimum(np.maximum(level, self.lowest), self.highest)
+        inner, outer = self.inner, self.outer
+        level = np.minimum(np.maximum(gone, self.lowest), self.highest)
         place = np.minimum(np.maximum(place, inner), outer)
         small = SMALL_MOVES * (outer - inner) ** 2
         least: Any = inner
@@ -181,8 +158,6 @@ class Drawn(Piece):
         for count in range(MOST_MOVES):
             old, lack, slope, c, bend, c_slope, _ = self._rows(place)
             excess = old - level
-            if rest:
-                excess -= c * c
             root = np.sqrt(np.maximum(slope * slope - 2.0 * bend * excess, 0.0))
             new = place - 2.0 * excess / (slope - root - TINY)
             if count < FREE_MOVES:
@@ -195,10 +170,10 @@ class Drawn(Piece):
             move, place = new - place, new
             if move.dot(move) <= small:
                 break
-        carried = self.carried((old, lack, c), contact, gone)
+        # J is carried on from the curve to the present m. J is stationary in c: a front that is off
+        # by little carries on to the same J.
+        carried = lack - c * (gone - old)
         carried += (0.5 * c_slope) * (move * excess)
         radius = c + c_slope * move
         depth = contact.approach - radius * radius
-        if rest:  # zeta - c² is what m has gone since
-            depth = gone - old - (slope + 2.0 * c * c_slope) * move
         return Front(carried, radius, depth, place)

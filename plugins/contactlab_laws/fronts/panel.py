@@ -31,7 +31,6 @@ class Panel(NamedTuple):
     weights : array, shape (nodes, nodes)
         Integration over T from the panel's start to each node.
     margin, lack, gone : array, shape (nodes,)
-        Less what they are at rest, if ``rest``.
     radius, depth, place : array, shape (nodes,)
         c, zeta - c², and the front's place on its piece.
     """

@@ -20,9 +20,6 @@ from contactlab.numeric.lobatto import Array, first_fall, row, value_at
 from contactlab_laws.fronts.memory import Drawn, Locked, Piece
 from contactlab_laws.fronts.panel import NODES, GrossStretch, Panel, PanelStretch
 
-#: Below this psi1 an impact is held as the departure from rest, which keeps relative accuracy; and
-#: below this psi1 sqrt(2 chi), where psi changes too slowly for any slip to stop before the end.
-NEAR_REST, NEVER_STOPS = 1e-3, 0.3
 #: Longest panels in x, and radians of the fastest oscillation in them: the normal motion's
 #: nearest singularity in x lies at 0.22 + 0.86 i (theory §3).
 LONGEST, SWING = 1.4, 8.0
@@ -40,7 +37,7 @@ LEAST_PART = 1e-3
 #: Moves of the front's time: at most, and when they are few enough.
 PICARD_CAP, SETTLED = 30, 3e-14
 NEWTON_CAP, LAST_UPDATE = 25, 1e-7
-SWEEPS, TRIES = 4, 60
+TRIES = 60
 #: A panel in time begins with this part of the time in which the piece would be spent.
 HINT_PART = 0.7
 LARGEST, ROUNDING, TINY = 1e100, 5e-16, 1e-300
@@ -67,17 +64,15 @@ class Impact:
     def __init__(
         self, velocity: float, inertia: float, motion: ClosedFormMotion, tolerance: float
     ) -> None:
-        self.motion, self.tail = motion, max(TAIL, TAIL_PART * tolerance)
+        self.velocity, self.motion = velocity, motion
+        self.tail = max(TAIL, TAIL_PART * tolerance)
         self.ratio = inertia * motion.scaled_mass  # 2 chi
         self.drive = (self.ratio - 1.0) / motion.scaled_mass  # 1.25 (2 chi - 1)
         self.spring = 1.5 * inertia  # 3.75 chi
         self.longest = min(LONGEST, SWING / math.sqrt(self.spring * FASTEST))
-        near = velocity < NEAR_REST and velocity * math.sqrt(self.ratio) < NEVER_STOPS
-        self.rest = 1.0 if near else 0.0
-        self.free = 1.0 - self.rest
         self.sign, self.x, self.change, self.work = 1, 0.0, 0.0, 0.0
-        # k, J and m; near rest k - V, J - (2/3) P and m + zeta
-        self.margin = -velocity if self.rest else 1.0 - velocity
+        # k, J and m
+        self.margin = 1.0 - velocity
         self.lack = self.gone = 0.0
         # k is zero here, but for rounding
         self.zero = self.margin == 0.0
@@ -89,7 +84,7 @@ class Impact:
 
     def follow(self) -> Iterator[Stretch]:
         """Yield the stretches to the end of contact."""
-        slips = not self.rest and (self.margin < 0.0 or (self.zero and self.drive <= 0.0))
+        slips = self.margin < 0.0 or (self.zero and self.drive <= 0.0)
         phase: Phase | None = self._slip if slips else self._stuck
         while phase is not None and self.x < math.pi:
             phase = phase()
@@ -116,15 +111,14 @@ class Impact:
         gathered = growth.dot(np.linalg.solve(matrix, known))
         k = known - self.spring * weights.dot(gathered)
         lack, gone = self.lack + gathered, self.gone - weights.dot(k)
-        margin = k + self.rest * contact.rate
-        margins = np.array([margin, 2.0 * contact.rate - margin])
+        margins = np.array([k, 2.0 * contact.rate - k])
         tau, event = first_fall(NODES, margins, LEVEL, fresh=self.zero)
         start = self.x
         self._arrive(Panel(x, contact, weights, k, lack, gone, u, 0.0 * u, x), min(tau, 1.0))
         if self.x > start:
-            table = gone, lack, -margin * rate, u
+            table = gone, lack, -k * rate, u
             span = start, length
-            piece = Drawn(self.sign, span, NODES, table, contact.rate * rate, self.rest)
+            piece = Drawn(self.sign, span, NODES, table, contact.rate * rate)
             piece.cut(self.x)
             self.memory.append(piece)
         if tau > 1.0:
@@ -152,12 +146,11 @@ class Impact:
             return self._spent()
         tau, integral = NODES.points, NODES.integral
         places = self.place + span * tau
-        gone, lack, slope, c = curve = piece.curve(places)
+        gone, lack, slope, c = piece.curve(places)
         dm = slope * span
         contact = first = self._now()
         k0 = self._margin(first)
-        full = lack + (2.0 / 3.0 * self.rest) * c**3 if self.rest else lack
-        known = 0.5 * k0 * k0 + self.spring * integral.dot(full * dm)
+        known = 0.5 * k0 * k0 + self.spring * integral.dot(lack * dm)
         energy = known - (self.drive * first.force) * integral.dot(dm)
         x = None
         for _ in range(PICARD_CAP):
@@ -186,16 +179,10 @@ class Impact:
             return None
         self._count()
         weights = integral * (contact.time_rate * pace)
-        k = -k - self.rest * contact.rate
+        k = -k
         if zero:
             k[0] = self.margin
         depth = contact.approach - c * c
-        if self.rest:  # k is lost in V: from the equations, with the front known
-            for _ in range(SWEEPS):
-                gone = self.gone - weights.dot(k)
-                lack = piece.carried((curve[0], curve[1], c), contact, gone)
-                k = self.margin - self.spring * weights.dot(lack)
-            depth = gone - curve[0]
         stop, _ = first_fall(NODES, depth[None], LEVEL, fresh=self.place == piece.outer)
         panel = Panel(x, contact, weights, k, lack, gone, c, depth, places)
         self._arrive(panel, min(stop, 1.0))
@@ -214,9 +201,8 @@ class Impact:
                 length *= 0.5
                 continue
             contact = panel.contact
-            margin = panel.margin + self.rest * contact.rate
-            margins = np.array([-margin, panel.depth])
-            spent = panel.gone - self.rest * contact.approach > piece.highest
+            margins = np.array([-panel.margin, panel.depth])
+            spent = panel.gone > piece.highest
             size = float(np.abs(panel.margin).max())
             terms = np.abs(NODES.tail.dot(contact.time_rate * panel.lack)).max()
             resolved = terms < max(self.tail * size / (self.spring * length), ROUNDING)
@@ -229,11 +215,10 @@ class Impact:
                 length *= float(cut)
                 continue
             tau, event = first_fall(NODES, margins, LEVEL, fresh=self.zero or fresh)
-            if tau <= 1.0:  # k may be zero just beyond the piece, between nodes
-                approach = self.rest * self.motion.scaled_at(self.x + tau * length).approach
-                if value_at(NODES, tau, panel.gone) - approach > piece.highest:
-                    length *= 0.8 * tau
-                    continue
+            # k may be zero just beyond the piece, between nodes
+            if tau <= 1.0 and value_at(NODES, tau, panel.gone) > piece.highest:
+                length *= 0.8 * tau
+                continue
             if resolved:
                 break
             length *= max(1.05 * tau, 0.1) if tau < 0.9 else 0.5
@@ -263,8 +248,7 @@ class Impact:
             if last:
                 if self.place == piece.outer:  # known here, where rounding moves the front most
                     front.place[0], front.radius[0] = piece.outer, radius
-                    if not self.rest:
-                        front.depth[0] = contact.approach[0] - radius * radius
+                    front.depth[0] = contact.approach[0] - radius * radius
                 gone = self.gone - weights.dot(new)
                 return Panel(x, contact, weights, new, front.lack, gone, *front[1:])
             matrix = (weights * front.radius).dot(weights)
@@ -313,9 +297,9 @@ class Impact:
         if isinstance(piece, Drawn) and piece.frame != self.sign:
             piece = memory[-1] = piece.flipped()
         self.place, self.radius = piece.outer, piece.radius
-        if not self.rest:  # what rounding has moved is put back on the curve
-            self.gone, self.lack = piece.lowest, piece.lack
-        if self.lack + self.rest * (2.0 / 3.0) * self._now().force < AT_LIMIT:
+        # what rounding has moved is put back on the curve
+        self.gone, self.lack = piece.lowest, piece.lack
+        if self.lack < AT_LIMIT:
             return self._gross_slip()
         return self._edge_slip()
 
@@ -323,15 +307,12 @@ class Impact:
         """At maximum compression V = 0, and the edge slips one way or the other."""
         now = self._now()
         k = self._margin(now)
-        full = self.lack + self.rest * (2.0 / 3.0) * now.force
-        if k > 0.0 or (k == 0.0 and self.drive * now.force > self.spring * full):
+        if k > 0.0 or (k == 0.0 and self.drive * now.force > self.spring * self.lack):
             self._turn()
         return self._slip()
 
     def _stopped(self, front: float) -> Phase:
         """K is 0: the slip zone locks; in unloading the edge slips the other way at once."""
-        if self.rest:
-            raise LostPathError("slip stops, though psi is too small for that")
         now = self._now()
         if self.memory:
             self.memory[-1].cut(self.place)
@@ -360,19 +341,19 @@ class Impact:
 
     def _margin(self, now: ScaledContact) -> float:
         """Return k."""
-        return 0.0 if self.zero else float(self.margin + self.rest * now.rate)
+        return 0.0 if self.zero else self.margin
 
     def _at_zero(self) -> None:
         """Let k be zero, which it is but for rounding."""
-        self.zero, self.margin = True, self.rest * self.margin
+        self.zero, self.margin = True, 0.0
 
     def _turn(self) -> None:
         """See all from the other sign."""
-        now, free = self._now(), self.free
+        now = self._now()
         self.sign, self.zero = -self.sign, False
-        self.margin = 2.0 * free * now.rate - self.margin
-        self.lack = 4.0 / 3.0 * free * now.force - self.lack
-        self.gone = -self.gone - 2.0 * free * now.approach
+        self.margin = 2.0 * now.rate - self.margin
+        self.lack = 4.0 / 3.0 * now.force - self.lack
+        self.gone = -self.gone - 2.0 * now.approach
 
     def _length(self, left: float) -> float:
         return left if left < 1.3 * self.longest else self.longest
@@ -397,17 +378,19 @@ class Impact:
 
     def _driven(self, contact: ScaledContact, weights: Array) -> Array:
         """Return what k would be without J."""
-        return np.asarray(self.margin + weights.dot((self.free * self.drive) * contact.force))
+        return np.asarray(self.margin + weights.dot(self.drive * contact.force))
 
     def _arrive(self, panel: Panel, tau: float) -> None:
         """Move to ``tau`` of a solved panel."""
-        s, free, start, contact = self.sign, self.free, self.x, panel.contact
-        change = s * (free * (contact.rate - contact.rate[0]) - (panel.margin - self.margin))
-        force = s * (free * contact.force - 1.5 * panel.lack)
+        s, start, contact = self.sign, self.x, panel.contact
+        moved = s * (contact.rate - contact.rate[0] - (panel.margin - self.margin))
+        # The energy of slip never exceeds that at first touch, rounding of a small psi1 apart.
+        change = np.clip(self.change + moved, -2.0 * self.velocity, 0.0)
+        force = s * (contact.force - 1.5 * panel.lack)
         gap = panel.depth / (contact.radius + panel.radius + TINY)
         zone = 0.5 * gap * gap * (2.0 * contact.radius + panel.radius)
-        work = panel.weights.dot((panel.margin + self.rest * contact.rate) * zone)
-        columns = np.array([panel.x, self.change + change, force, panel.radius])
+        work = panel.weights.dot(panel.margin * zone)
+        columns = np.array([panel.x, change, force, panel.radius])
         state = np.array([panel.margin, panel.lack, panel.gone, panel.place, panel.radius, work])
         weights = row(NODES, tau)
         x, self.change, *_ = columns.dot(weights).tolist()
