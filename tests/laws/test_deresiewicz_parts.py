@@ -1,10 +1,7 @@
 """Branches of loading, unloading and reloading, by hand (Mindlin & Deresiewicz's curves)."""
 
-import math
-
 import pytest
 
-from contactlab_laws.deresiewicz import branches
 from contactlab_laws.deresiewicz.branches import (
     LOADING,
     RELOADING,
@@ -18,10 +15,6 @@ from contactlab_laws.deresiewicz.branches import (
 def step(displacement, limit=1.0):
     """Return a step at stiffness 1.5 and limit 1, where q = (2/3) k M^(-1/3) = 1."""
     return Step(limit, 1.5, 1.0, displacement)
-
-
-#: At the limit 1 a contact was sheared by 0.3: epsilon = 0.3, T = 1 - 0.7^1.5.
-SHEARED = ContactState(1.0 - 0.7**1.5, 1.0, 0.3, 1, LOADING)
 
 
 @pytest.mark.parametrize(
@@ -84,73 +77,3 @@ def test_a_contact_that_only_grows_sticks(displacement):
     assert state.outrun == pytest.approx(abs(displacement) - 4.0 if displacement else -4.0)
     capped, _ = followed(ContactState(force=-7.0), step(0.0, limit=2.0))
     assert capped.force == -2.0
-
-
-def test_a_contact_without_load_or_slip_rate_does_no_work():
-    """It leaves with its limit 0: no force, nothing that slips."""
-    state, work = followed(ContactState(sense=1, slipped=0.4), Step(0.0, 0.0, 0.0, 0.2))
-    assert (state.force, state.slipped, state.limit, work) == (0.0, 0.0, 0.0, 0.0)
-    assert state.sense == 0
-
-
-def test_turning_points_move_with_the_load():
-    """The last turn, out of slip forward, grows by dM; the earlier one falls by as much."""
-    state = ContactState(0.2, 1.0, 0.1, -1, UNLOADING, 0.0, 0.6, 0.0)
-    after = branches._slipped(state, step(-0.1, limit=1.2))
-    assert after.turn == pytest.approx(0.6 + 0.2)
-    grown = 1.2 ** (2 / 3)
-    slipped = (0.1 + 0.5 * 0.1 + 0.5 * (grown - 1.0)) / grown
-    assert after.slipped == pytest.approx(slipped)
-    assert after.force == pytest.approx(0.8 - 2.4 * (1.0 - (1.0 - slipped) ** 1.5))
-    again = state._replace(sense=1, branch=RELOADING, turn=-0.3, earlier=0.6)
-    after = branches._slipped(again, step(0.1, limit=1.2))
-    assert (after.turn, after.earlier) == pytest.approx((-0.5, 0.8))
-
-
-@pytest.mark.parametrize(
-    ("slipped", "used"), [(0.0, 0.0), (0.19, 1.0 - 0.9**3), (0.75, 0.875), (1.0, 1.0)]
-)
-def test_edge_and_force_are_each_others_inverse(slipped, used):
-    assert branches._used(slipped) == pytest.approx(used, abs=1e-15)
-    assert branches._edge(used) == pytest.approx(slipped, abs=1e-15)
-    assert branches._used(1.1) == branches._edge(1.1) == 1.0
-    theta = math.sqrt(1.0 - slipped)
-    assert branches._annulus(slipped) == pytest.approx(1 - 1.5 * theta + 0.5 * theta**3, abs=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("outrun", "begun"), [(-0.1, 0.1 / 0.3), (0.0, 0.5), (0.1, 0.5), (-0.4, 0.4 / 0.6)]
-)
-def test_where_slip_begins_in_a_contact_that_stuck(outrun, begun):
-    """T = 0.3 at the limit 1; slip began before or after the middle as the gap stood still."""
-    state = ContactState(force=0.3, limit=1.0, outrun=outrun)
-    now = Step(1.331, 1.5, 1.0, 0.2 + 0.21)  # 1.331^(2/3) - 1 = 0.21: 0.2 ahead
-    found = branches._turned(state, now)
-    later = (begun - 0.5) * 0.331
-    held = (0.3 + later) / (1.0 + later)
-    assert (found.sense, found.branch) == (1, LOADING)
-    assert found.held == pytest.approx(held)
-    slipped = 1.0 - (1.0 - (0.3 - held) / (1.0 - held)) ** (2.0 / 3.0)
-    assert found.slipped == pytest.approx(slipped)
-
-
-def test_an_edge_that_may_slip_both_ways_goes_on_as_before():
-    """Under a falling load: both outrun the limit; under a growing one neither, and it sticks."""
-    falling = Step(0.9, 1.5, 1.0, 0.01)
-    assert branches._turned(SHEARED, falling) is SHEARED
-    back = branches._turned(SHEARED, Step(0.9, 1.5, 1.0, -0.2))
-    assert (back.sense, back.branch, back.turn, back.slipped) == (-1, UNLOADING, SHEARED.force, 0.0)
-    again = branches._turned(back._replace(force=0.1), step(0.2))
-    assert (again.sense, again.branch) == (1, RELOADING)
-    assert (again.turn, again.earlier) == (0.1, SHEARED.force)
-    third = branches._turned(again, step(-0.2))
-    assert (third.sense, third.branch) == (-1, UNLOADING)
-    stuck = branches._turned(SHEARED, step(0.2, limit=2.0))
-    assert stuck.sense == 0
-
-
-def test_what_stuck_begins_to_slip_along_its_force_where_nothing_moves():
-    state = ContactState(force=-0.3, limit=1.0)
-    found = branches._turned(state, Step(0.8, 1.5, 1.0, 0.0))
-    assert found.sense == -1
-    assert branches._turned(ContactState(limit=1.0), Step(0.8, 1.5, 1.0, 0.0)).sense == 0

@@ -1,7 +1,6 @@
 """Scaled impacts under the event-locating integrator: units, faults and what observers see."""
 
 import math
-from itertools import pairwise
 
 import attrs
 import numpy as np
@@ -9,8 +8,7 @@ import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status, create
 from contactlab.contracts import LostPathError, PathTangentialLaw, Stretch
-from contactlab_laws.events import scaled
-from contactlab_laws.events.scaled import books_miss, solve
+from contactlab_laws.events.scaled import solve
 
 STEEL = Material.named("steel")
 
@@ -58,20 +56,6 @@ class Given(PathTangentialLaw):
 
 def normal(scene=SCENE):
     return Simulation().normal_motion(scene)
-
-
-@pytest.mark.parametrize(
-    ("velocity", "inertia", "change", "work", "missing"),
-    [
-        (2.0, 3.0, -1.0, 0.5, 0.0),  # ½ (4 - 1) lost
-        (2.0, 3.0, -1.0, 0.6, 0.15),  # 0.3 of ½ psi1² = 2
-        (2.0, 3.0, -1.0, 0.4, 0.15),
-        (0.01, 1.0, 0.0, 0.0001, 0.02),  # of the energy of psi1 = 0.1
-        (1e200, 1.0, -2.0, 2e200, 0.0),
-    ],
-)
-def test_how_far_friction_work_is_not_the_loss_of_energy(velocity, inertia, change, work, missing):
-    assert books_miss(velocity, inertia, change, work) == pytest.approx(missing, abs=1e-12)
 
 
 def test_a_scaled_answer_in_si():
@@ -165,24 +149,6 @@ def test_a_path_that_fails_is_told_with_its_place(law, status, sentence):
     assert np.isnan([found.slip_velocity_change, found.friction_work]).all()
 
 
-@pytest.mark.parametrize(("work", "good"), [(0.99e-3, True), (1.01e-3, False)])
-def test_books_may_miss_a_thousandth(work, good):
-    velocity = 0.15 * SCENE.pair.stiffness_ratio / 0.21
-    part = work * 0.5 * velocity**2 / (2.5 * SCENE.chi)
-    law = Given(stretches=(Line(0.0, math.pi, 0.0, part),))
-    assert bool(solve(law, normal(), 1e-6).motion.status) is good
-
-
-@pytest.mark.parametrize(("count", "good"), [(5, True), (6, False)])
-def test_a_path_has_so_many_stretches_at_most(count, good, monkeypatch):
-    monkeypatch.setattr(scaled, "STRETCH_CAP", 5)
-    ends = np.linspace(0.0, math.pi, count + 1).tolist()
-    law = Given(stretches=tuple(Line(*pair) for pair in pairwise(ends)))
-    found = solve(law, normal(), 1e-6).motion
-    assert bool(found.status) is good
-    assert ("events follow one another without end" in found.detail) is not good
-
-
 @pytest.mark.parametrize("batch", [False, True])
 def test_what_an_observer_sees(batch):
     """Stretches meet at x = 1; a single impact shows that instant besides the even ones."""
@@ -213,33 +179,6 @@ def test_what_an_observer_sees(batch):
         place = np.array([stop, x[k]])
         assert fields["place"] == pytest.approx(np.array([place, place]) if batch else place)
         assert fields["factor"] == pytest.approx(sign)
-
-
-def test_a_batch_is_shown_as_far_as_all_of_it_came():
-    class Short(Given):
-        def path(self, velocity, inertia, motion, tolerance):
-            yield Line(0.0, 1.0 if velocity > 1.0 else math.pi)
-
-    scene = impact(np.array([0.15, 0.3]))
-    samples = []
-    found = create("integrator.events").integrate(normal(scene), Short(), scene, samples.append)
-    assert found.status.tolist() == [Status.SUCCESS, Status.UNRESOLVED]
-    assert len(samples) == math.floor(200 / math.pi) + 1
-
-
-@pytest.mark.parametrize(("tolerance", "few"), [(1e-9, False), (0.9e-9, True)])
-def test_few_impacts_at_a_time_where_none_is_tabulated(tolerance, few):
-    law = create("integrator.events", tolerance=tolerance)
-    assert (law.chunk(create("tangential.fronts")) == 20) is few
-    assert law.accuracy == tolerance
-
-
-@pytest.mark.parametrize("good", [1e-12, 1e-3])
-def test_tolerances_at_the_ends_are_taken(good):
-    assert create("integrator.events", tolerance=good).tolerance == good
-    for bad in (0.99e-12, 1.01e-3, np.array([1e-6])):
-        with pytest.raises(ValueError, match="must be one number between 1e-12 and 1e-3"):
-            create("integrator.events", tolerance=bad)
 
 
 def test_the_error_aimed_at_is_of_the_larger_of_one_and_psi1():

@@ -5,45 +5,21 @@ import math
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation
-from contactlab_laws.halfspace import picture
+import contactlab
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab_laws.halfspace.course import units
-from contactlab_laws.halfspace.picture import Picture
-from tests.laws.test_halfspace_parts import CHI, law, one
+
+CHI = 49 / 34
+STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 
 
-def small():
-    """Pressure 2 at both instants, 0 at touch; tractions 1 and 2 at two rings, then 1 and 0."""
-    values = np.zeros((5, 3, 1, 2))
-    values[4, 1:] = 2.0
-    values[0, 1, 0], values[1, 2, 0] = (1.0, 2.0), (2.0, 0.0)
-    values[4, 2, 0, 1] = 0.0
-    return Picture(np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.5]), values)
+def law(**options):
+    return Simulation(tangential=contactlab.create("tangential.halfspace", **options))
 
 
-@pytest.mark.parametrize(
-    ("impulse", "last", "share"),
-    [(-1.0, 1, 0.0), (0.0, 1, 0.0), (0.25, 1, 0.25), (1.0, 1, 1.0), (2.0, 2, 0.5), (9.0, 2, 1.0)],
-)
-def test_an_instant_between_two(impulse, last, share):
-    assert picture._around(small(), impulse) == (last, share)
-    found = picture._between(small(), impulse)
-    expected = (1.0 - share) * small().values[:, last - 1] + share * small().values[:, last]
-    assert found == pytest.approx(expected)
-
-
-def test_two_instants_of_one_impulse_are_the_later():
-    both = small()._replace(impulse=np.array([0.0, 0.0, 3.0]))
-    assert picture._around(both, 0.0) == (1, 1.0)
-
-
-def test_points_stick_below_the_limit_at_the_end_of_a_step():
-    """Where the contact has gone by then: at its beginning."""
-    assert picture._stuck(small(), 0.5).tolist() == [[True, False]]
-    assert picture._stuck(small(), 2.0).tolist() == [[False, False]]
-    made = small()
-    made.values[0, 1, 0] = 1.0
-    assert picture._stuck(made, 2.0).tolist() == [[False, True]]
+def one(slip=0.2):
+    """An impact in SI with friction 0.4."""
+    return Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.4, 0.5, slip)
 
 
 def test_fields_along_one_direction():

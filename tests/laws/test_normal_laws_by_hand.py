@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create
-from contactlab_laws.dashpot.motion import ScaledMotion, stretched, stretching
+from contactlab_laws.dashpot.motion import ScaledMotion
 from contactlab_laws.dashpot.oscillator import Oscillator, damping_of, half_duration, restitution
-from contactlab_laws.hertz.motion import HertzMotion
 from contactlab_laws.jkr import LEAST, root_of_size
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
@@ -158,15 +157,6 @@ def test_the_greatest_force_and_approach_are_those_of_the_motion(power, beta):
     assert motion.phase_at_rate(rates) == pytest.approx(phases[[4000, 8000, 15000]], abs=1e-6)
 
 
-def test_the_phase_of_a_damped_motion():
-    """Half of the time at half of the phase, and its slope by differences."""
-    share = np.array([0.0, 0.2, 0.5, 0.7, 1.0])
-    assert stretched(share[[0, 2, 4]]) == pytest.approx([0.0, 0.5, 1.0])
-    h = 1e-6
-    slope = (stretched(share + h) - stretched(share - h)) / (2.0 * h)
-    assert stretching(share) * share**4 == pytest.approx(slope, abs=1e-6)
-
-
 @pytest.mark.parametrize("gamma", [0.5, 20.0])
 def test_adhesion_around_the_contact(gamma):
     pull = 2.0 * math.pi * gamma * 0.01
@@ -236,16 +226,3 @@ def test_which_theory_of_adhesion_holds(name, tabor, sentence):
     law = create(f"normal.{name}", work_of_adhesion=gamma)
     told = law.cautions(SCENE, Simulation().normal_motion(SCENE))
     assert [text for text in told if "Tabor" in text] == ([] if sentence is None else [sentence])
-
-
-def test_motions_of_equal_numbers_share_what_they_keep():
-    law = create("normal.hertz")
-
-    def shared(speed=0.7, slip=0.15, radius=0.01):
-        scene = Scene(Sphere(radius, STEEL), HalfSpace(STEEL), 0.3, speed, slip)
-        return HertzMotion.of(law, scene).shared
-
-    assert shared() is shared(slip=0.3)
-    for other in (shared(speed=0.8), shared(radius=0.02), shared(slip=np.array([0.1, 0.2]))):
-        assert other is not shared()
-    assert shared(speed=np.array([0.7, 0.8])) is None

@@ -189,44 +189,6 @@ def test_what_a_law_needs_offers_and_is_refined_by(name):
     assert (set(law.needs), set(law.offers), law.resolution) == (needs, offers, resolution)
 
 
-CLASSES = {
-    "normal.dmt": "DerjaguinMullerToporov",
-    "normal.hertz": "Hertz",
-    "normal.hunt_crossley": "HuntCrossley",
-    "normal.jkr": "JohnsonKendallRoberts",
-    "normal.kuwabara_kono": "KuwabaraKono",
-    "normal.linear": "Linear",
-    "normal.thornton": "Thornton",
-    "normal.tsuji": "Tsuji",
-    "normal.walton_braun": "WaltonBraun",
-    "tangential.annulus": "Annulus",
-    "tangential.coulomb": "Coulomb",
-    "tangential.frictionless": "Frictionless",
-    "tangential.fronts": "Fronts",
-    "tangential.halfspace": "HalfSpace",
-    "tangential.linear_spring": "LinearSpring",
-    "tangential.mindlin_cap": "MindlinCap",
-    "tangential.mindlin_deresiewicz": "MindlinDeresiewicz",
-    "tangential.sharp_annulus": "SharpAnnulus",
-    "tangential.springs": "Springs",
-    "tangential.stronge": "Stronge",
-    "tangential.walton": "Walton",
-    "integrator.adaptive": "Adaptive",
-    "integrator.events": "Events",
-    "integrator.paper": "PaperSteps",
-    "integrator.symplectic": "Symplectic",
-}
-
-
-@pytest.mark.parametrize("name", CLASSES)
-def test_the_class_behind_each_name(name):
-    """Options are given by name: their order may change."""
-    law = create(name)
-    assert type(law).__name__ == CLASSES[name]
-    with pytest.raises(TypeError, match="positional argument"):
-        type(law)(1)
-
-
 DEFAULTS = {
     "tangential.annulus": {"annuli": 50, "displacement": "midpoint"},
     "tangential.fronts": {"table": True},
