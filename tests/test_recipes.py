@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from contactlab import rebound
+from contactlab.cli.main import main
 
 RECIPES = Path(__file__).parents[1] / "examples" / "recipes"
 PSI1 = np.array([-3.0, 0.2, 0.9, 1.2, 2.0, 4.0, 7.0])
@@ -37,6 +38,9 @@ def test_every_recipe_is_run_here():
     names = {path.name for path in RECIPES.iterdir() if path.is_file()}
     assert names == {
         "bouncing_ball.mjs",
+        "contact.c",
+        "contact.cpp",
+        "contact.rs",
         "event_driven_gas.py",
         "rebound_in_jax.py",
         "rebound_in_torch.py",
@@ -193,3 +197,32 @@ def test_the_ball_runs_as_printed():
         command, cwd=RECIPES.parents[1], capture_output=True, text=True, check=True
     )
     assert re.match(r"0\.45 s: -0\.\d+ m/s along, 4\.\d+ up, \d+ rad/s\n", done.stdout)
+
+
+#: A recipe, and the commands that build it: those of its head.
+COMPILED = {
+    "contact.cpp": (
+        "g++ -std=c++17 -O2 -Wall -Wextra -Werror -I. {recipes}/contact.cpp -o contact",
+    ),
+    "contact.rs": (
+        "gcc -O2 -c -I. -DCONTACTLAB_REAL=float {recipes}/contact.c -o contact.o",
+        "rustc -O -D warnings {recipes}/contact.rs -C link-arg=contact.o -o contact",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", COMPILED)
+def test_a_code_of_ones_own_in_single_precision(name, tmp_path):
+    """Eight springs are within 0.024 in double precision."""
+    commands = [command.format(recipes=RECIPES).split() for command in COMPILED[name]]
+    for command in commands:
+        if shutil.which(command[0]) is None:
+            pytest.skip(f"{command[0]} is not installed")
+    main(["kernel", "--out", str(tmp_path)])
+    for command in commands:
+        subprocess.run(command, cwd=tmp_path, check=True)
+    told = subprocess.run([tmp_path / "contact"], capture_output=True, text=True, check=True)
+    _, psi1, psi2 = np.array([line.split() for line in told.stdout.splitlines()], dtype=float).T
+    assert len(psi1) == 11
+    kappa = 2.0 * (1.0 - 0.3) / (2.0 - 0.3)
+    assert np.abs(psi2 - rebound(psi1, 1.75 * kappa)).max() < 0.016

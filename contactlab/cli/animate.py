@@ -1,9 +1,10 @@
-"""Draw one impact as a moving picture: the sphere, the forces, the contact from above.
+"""Draw one impact as a moving picture: the body, the forces, the contact from above.
 
 Examples
 --------
   contactlab animate examples/steel_ball.toml --out impact.gif
   contactlab animate examples/thrown_ball.toml --ghost coulomb --out thrown.gif
+  contactlab animate examples/foot.toml --ghost coulomb --out foot.gif
   contactlab animate --psi1 1.2 --chi 1.4412 --out contact.gif
 """
 
@@ -13,7 +14,12 @@ import argparse
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_scene, inputs
+from contactlab.compose.body_collision import BodyCollision
 from contactlab.compose.simulation import Simulation
+from contactlab.impact.body_contact import frame
+from contactlab.impact.eccentric import EccentricScene
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.rigid_body import RigidBody
 
 #: Words in the picture for laws with a name of their own.
 GHOST_NAMES = {"coulomb": "rigid", "mindlin_cap": "capped spring"}
@@ -27,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=shared.names,
         default=[],
         metavar="A,B,...",
-        help="tangential laws whose spheres part from this one after the contact, as outlines",
+        help="tangential laws whose bodies part from this one after the contact, as outlines",
     )
     parser.add_argument("--out", type=shared.file_of(".gif"), required=True, metavar="FILE.gif")
     shared.add_progress(parser)
@@ -35,9 +41,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the impact, draw it and print the path; raise ``ImpactError`` if the impact fails."""
-    _, scene, simulation = inputs(arguments)
+    file, scene, simulation = inputs(arguments)
     if scene.shape:
         raise ValueError("scene: must be a single impact, not a sweep; leave out [sweep]")
+    if isinstance(scene, EccentricScene):
+        return _bodies(arguments, None if file is None else file.encounter, simulation)
     with shared.working(arguments.progress, "frames") as progress:
         result = simulation.run(scene, history="fields").check()
         ghosts = {
@@ -49,5 +57,28 @@ def execute(arguments: argparse.Namespace) -> int:
         from contactlab.figures.animation import animate  # matplotlib only when drawing
 
         animate(arguments.out, result, ghosts=ghosts, progress=progress)
+    print(arguments.out)
+    return shared.OK
+
+
+def _bodies(
+    arguments: argparse.Namespace, encounter: Encounter | None, simulation: Simulation
+) -> int:
+    """Draw an impact of bodies that are no spheres."""
+    if encounter is None or not isinstance(encounter.body, RigidBody):
+        raise ValueError("scene: has no body to draw; give a file with [body]")
+    with shared.working(arguments.progress, "frames") as progress:
+        result = simulation.run(encounter.scene, history=True).check()
+        collisions = {
+            GHOST_NAMES.get(name, name): BodyCollision.of(
+                encounter, Simulation(tangential=name).run(encounter.scene).check()
+            )
+            for name in arguments.ghost
+        }
+        from contactlab.figures.body_animation import animate_bodies  # matplotlib only here
+
+        whole = BodyCollision.of(encounter, result)
+        axes = frame(encounter).axes
+        animate_bodies(arguments.out, whole, axes, ghosts=collisions, progress=progress)
     print(arguments.out)
     return shared.OK

@@ -26,10 +26,13 @@ from pathlib import Path
 import numpy as np
 
 from contactlab.cli import arguments as shared
+from contactlab.cli import bodies
 from contactlab.cli.scene import add_ranges, check_alone
+from contactlab.compose.eccentric import preferred
 from contactlab.compose.names import KINDS, full_name, kind_of, short_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
 from contactlab.outcome.columns import json_value, quantity_named
@@ -96,13 +99,21 @@ def execute(arguments: argparse.Namespace) -> int:
         quantity_named(quantity, where="--quantity")
     if arguments.measured and not arguments.scene:
         raise ValueError("--measured: needs a SCENE.toml with the bodies of the experiment")
-    file = shared.measured(arguments, _file(arguments))
+    file = _file(arguments)
+    eccentric = isinstance(file.scene, EccentricScene)
+    if not eccentric:
+        file = shared.measured(arguments, file)
     if arguments.all:
         compared = _all(arguments, file)
     else:
-        law = file.laws.resolved().tangential
-        arguments.tangential = arguments.tangential or list(dict.fromkeys([law, *DEFAULT_LAWS]))
+        law = file.laws.fit_for(file.scene).resolved().tangential
+        others = DEFAULT_LAWS[1:] if eccentric else DEFAULT_LAWS
+        arguments.tangential = arguments.tangential or list(dict.fromkeys([law, *others]))
         compared = simulations(arguments, file.laws)
+    if eccentric:
+        first = preferred(file.scene)["tangential"]
+        order = sorted(compared, key=lambda name: name != first)
+        return bodies.compare(arguments, file, {name: compared[name] for name in order})
     with shared.progress(arguments.progress, "runs") as progress:
         comparison = compare(
             file,
@@ -200,7 +211,7 @@ def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation
         if path.count(".") < 2 and kind_of(path) != "normal":
             example = "--set integrator.symplectic.steps=400"
             raise ValueError(f"--set {path}: with --all name one law, such as {example}")
-    if not file.scene.shape:
+    if not file.scene.shape and isinstance(file.scene, Scene):
         raise ValueError(
             f"{file.path}: --all compares over a sweep; a file needs [sweep], and "
             "--psi1 a range START:STOP:COUNT"

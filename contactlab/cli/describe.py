@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from contactlab.compose.body_collision import BodyCollision
 from contactlab.compose.collision import VECTORS, Collision
 from contactlab.compose.planning import ADVICE
 from contactlab.impact.scene import entry_unit
@@ -19,7 +20,7 @@ def describe(
     *,
     title: str,
     varied: Mapping[str, Any],
-    collision: Collision | None,
+    collision: Collision | BodyCollision | None,
 ) -> str:
     """Return the report of one impact or a sweep, with vectors if ``collision`` is given."""
     plan = result.plan
@@ -31,7 +32,7 @@ def describe(
         lines = "\n".join(f"{name:24} {words}" for name, words in answer(result))
         body = [lines, *(table(*section) for section in sections(result))]
         if collision is not None:
-            body.insert(1, table(["in space", "before", "after", "unit"], _space(collision)))
+            body.insert(1, in_space(collision))
             plan = collision.plan
     planned = str(plan)
     if result.psi2_error_estimate is not None:
@@ -41,16 +42,17 @@ def describe(
     return "\n\n".join(part for part in parts if part)
 
 
-def _space(collision: Collision) -> list[list[str]]:
-    """Return rows with the vectors of both bodies and the impulse."""
+def in_space(collision: Collision | BodyCollision) -> str:
+    """Return a table with the vectors of both bodies and the impulse."""
     rows = []
     for name, unit in VECTORS:
-        before = getattr(collision.encounter, name, None)
-        shown = "" if before is None else _vector(before)
-        rows.append([name.replace("_", " "), shown, _vector(getattr(collision, name)), unit])
-    return rows
+        if hasattr(collision, name):  # bodies that are no spheres have no contact velocities
+            before = getattr(collision.encounter, name, None)
+            shown = "" if before is None else _vector(before)
+            rows.append([name.replace("_", " "), shown, _vector(getattr(collision, name)), unit])
+    return table(["in space", "before", "after", "unit"], rows)
 
 
 def _vector(numbers: Any) -> str:
     """Return a vector as text."""
-    return f"({', '.join(f'{number:.6g}' for number in numbers.tolist())})"
+    return f"({', '.join(f'{number + 0.0:.6g}' for number in numbers.tolist())})"

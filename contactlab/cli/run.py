@@ -21,12 +21,17 @@ from typing import Any
 import numpy as np
 
 from contactlab.cli import arguments as shared
+from contactlab.cli import bodies
 from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, inputs
+from contactlab.compose.body_collision import BodyCollision
 from contactlab.compose.collision import Collision
 from contactlab.contracts.status import Status
+from contactlab.impact.eccentric import EccentricScene
+from contactlab.impact.scene import entry_unit
 from contactlab.outcome import export
 from contactlab.outcome.columns import json_value
+from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.export import WRITERS
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
@@ -67,6 +72,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Run and report; the status is 1 if an impact failed."""
     file, scene, simulation = inputs(arguments)
+    eccentric = isinstance(scene, EccentricScene)
+    if eccentric and arguments.stick_slip:
+        raise ValueError("--stick-slip: is for impacts of spheres; leave out --stick-slip")
     for name in ("history", "stick_slip"):
         if getattr(arguments, name) and scene.shape:
             option = name.replace("_", "-")
@@ -74,8 +82,11 @@ def execute(arguments: argparse.Namespace) -> int:
                 f"--{option}: needs a single impact, this scene is a sweep; leave out --{option}"
             )
     with shared.working(arguments.progress, "impacts" if scene.shape else "impact") as progress:
+        result: Any
         if scene.shape:
             result = simulation.sweep(scene, progress=progress)
+        elif eccentric:
+            result = simulation.run(scene, history=bool(arguments.history or arguments.figure))
         else:
             result = simulation.run(
                 scene,
@@ -84,29 +95,37 @@ def execute(arguments: argparse.Namespace) -> int:
                 else bool(arguments.history or arguments.figure),
                 estimate_error=arguments.estimate,
             )
+    varied: Mapping[str, Any] = file.varied if file else {}
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.history, lambda path: export.write_history_csv(result, path)),
-        (arguments.figure, lambda path: draw(path, result, **shared.look(arguments))),
+        (arguments.figure, lambda path: draw(path, result, varied, **shared.look(arguments))),
         (arguments.stick_slip, lambda path: draw_map(path, result, **shared.look(arguments))),
         progress_wanted=arguments.progress,
         interrupted=Status.INTERRUPTED in np.ravel(np.array(result.status, dtype=object)),
     )
-    varied: Mapping[str, Any] = file.varied if file else {}
     encounter = file.encounter if file else None
-    collision = None if encounter is None else Collision.of(encounter, result)
+    of_bodies = encounter is not None and not encounter.of_spheres
+    kind: Any = BodyCollision if of_bodies else Collision
+    collision = None if encounter is None else kind.of(encounter, result)
     if not arguments.json:
         title = file.title if file else ""
-        print(describe(result, title=title, varied=varied, collision=collision))
+        words = bodies.describe if eccentric else describe
+        print(words(result, title=title, varied=varied, collision=collision))
     status = report(result, as_json=arguments.json, varied=varied, collision=collision)
     return max(saved, status)
 
 
-def draw(path: Path, result: ImpactResult, **look: Any) -> None:
-    """Draw a result with ``ImpactResult.plot``; ``look`` as in ``arguments.look``."""
+def draw(path: Path, result: Any, varied: Mapping[str, Any], **look: Any) -> None:
+    """Draw a result with its ``plot``; ``look`` as in ``arguments.look``."""
     from contactlab.figures.files import save  # matplotlib only when drawing
+    from contactlab.figures.style import label
 
-    save(path, lambda axes: result.plot(axes=axes), **look)
+    over = {}
+    if varied and isinstance(result, EccentricResult):  # over the first entry that varies
+        name, values = next(iter(varied.items()))
+        over = {"x": (label(name, entry_unit(name)), values)}
+    save(path, lambda axes: result.plot(axes=axes, **over), **look)
 
 
 def draw_map(path: Path, result: ImpactResult, **look: Any) -> None:
@@ -118,11 +137,11 @@ def draw_map(path: Path, result: ImpactResult, **look: Any) -> None:
 
 
 def report(
-    result: ImpactResult,
+    result: Any,
     *,
     as_json: bool,
     varied: Mapping[str, Any],
-    collision: Collision | None = None,
+    collision: Collision | BodyCollision | None = None,
 ) -> int:
     """Print JSON if ``as_json``, report failures on stderr, and return the exit status."""
     if as_json:
@@ -130,7 +149,8 @@ def report(
         if collision is not None:
             content["collision"] = collision.to_dict()
         shared.print_json(content)
-    for sentence in error_cautions(result) if as_json else ():
+    numerical = as_json and isinstance(result, ImpactResult)
+    for sentence in error_cautions(result) if numerical else ():
         print(f"contactlab: caution: {sentence}", file=sys.stderr)
     failures = result.failures
     if not failures:

@@ -20,7 +20,7 @@ class Inputs(NamedTuple):
     """Scene and laws of a subcommand; ``file`` is None for psi1 and chi."""
 
     file: SceneFile | None
-    scene: Scene
+    scene: Any
     simulation: Simulation
 
 
@@ -75,18 +75,19 @@ def inputs(arguments: argparse.Namespace) -> Inputs:
     """Return the scene and the simulation of the arguments."""
     file = read_scene(arguments.scene) if arguments.scene else None
     scene = _scene(arguments, file)
-    return Inputs(file, scene, composed(arguments, file.laws if file else LawChoice()))
+    return Inputs(file, scene, composed(arguments, file.laws if file else LawChoice(), scene))
 
 
-def composed(arguments: argparse.Namespace, choice: LawChoice) -> Simulation:
+def composed(arguments: argparse.Namespace, choice: LawChoice, scene: Any) -> Simulation:
     """Return the laws of ``choice``, replaced by the laws and options of the arguments."""
     choice = choice.choose(
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )
+    choice = choice.fit_for(scene)
     return choice.set(dict(arguments.settings)).simulation()
 
 
-def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Scene:
+def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Any:
     """Return the scene of the file, or of psi1 and chi."""
     check_alone(arguments)
     if file is not None:

@@ -21,12 +21,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contactlab.cli import arguments as shared
+from contactlab.cli import bodies
 from contactlab.cli.run import draw, report
 from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import COLUMNS, csv_heading
+from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.export import WRITERS
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import evenly, sweep_section
@@ -68,7 +70,7 @@ def execute(arguments: argparse.Namespace) -> int:
     scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
     if not scene.shape:
         raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
-    simulation = composed(arguments, file.laws if file else LawChoice())
+    simulation = composed(arguments, file.laws if file else LawChoice(), scene)
     keep = _folder(arguments.out) if arguments.resume else None
     before = 0 if keep is None else _done(keep)
     with (
@@ -79,16 +81,21 @@ def execute(arguments: argparse.Namespace) -> int:
         result = simulation.sweep(scene, progress=progress, executor=executor, keep=keep)
     if before:
         print(f"contactlab sweep: {before} impacts were done before", file=sys.stderr)
+    varied = file.varied if file else {}
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
-        (arguments.figure, lambda path: draw(path, result, **shared.look(arguments))),
+        (arguments.figure, lambda path: draw(path, result, varied, **shared.look(arguments))),
         progress_wanted=arguments.progress,
         interrupted=Status.INTERRUPTED in result.status,
     )
     if keep is not None and saved == shared.OK:
         _clear(keep, result)
-    varied = file.varied if file else {}
-    if arguments.csv:
+    if isinstance(result, EccentricResult):
+        if arguments.csv:
+            raise ValueError("--csv: is for impacts of spheres; take --out FILE.csv")
+        if not arguments.json:
+            print(bodies.sweep_table(result, varied))
+    elif arguments.csv:
         units = {column.name: column.unit for column in COLUMNS}
         print(",".join(csv_heading(name, units[name], result.scene) for name in SHOWN))
         for psi1, chi, psi2, status in _rows(result):

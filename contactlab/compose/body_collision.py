@@ -59,6 +59,33 @@ class BodyCollision:
     result: EccentricResult | ImpactResult
     plan: Plan
 
+    @classmethod
+    def of(
+        cls, encounter: Encounter, result: EccentricResult | ImpactResult, restitution: float = 1.0
+    ) -> BodyCollision:
+        """Return the collision of ``encounter`` by a result of its scene.
+
+        Parameters
+        ----------
+        encounter : Encounter
+        result : EccentricResult or ImpactResult
+            The result of ``encounter.scene``, of those encounters that approach.
+        restitution : float
+            e that the laws stand for, which the plan tells.
+        """
+        met: Any = encounter.approaching
+        collided = encounter if np.all(met) else encounter.take(met)
+        impulse = np.zeros((*encounter.shape, 3))
+        impulse[met] = _impulse(collided, result)
+        return cls(
+            encounter=encounter,
+            **_pushed(encounter, impulse),
+            impulse=-impulse,
+            collided=met,
+            result=result,
+            plan=_plan(result, restitution),
+        )
+
     def __repr__(self) -> str:
         """Return velocity and spin of a single collision, or the count in a batch, and statuses."""
         statuses = sorted({each.name for each in np.ravel(np.array(self.status, dtype=object))})
@@ -139,17 +166,7 @@ def collide_bodies(
     e = restitution if isinstance(restitution, float) else float(restitution.flat[0])
     scene = collided.scene
     laws = simulation if simulation is not None else _simulation(scene, e)
-    result = laws.run(scene)
-    impulse = np.zeros((*encounter.shape, 3))
-    impulse[met] = _impulse(collided, result)
-    return BodyCollision(
-        encounter=encounter,
-        **_pushed(encounter, impulse),
-        impulse=-impulse,
-        collided=met,
-        result=result,
-        plan=_plan(result, e),
-    )
+    return BodyCollision.of(encounter, laws.run(scene), e)
 
 
 def _simulation(scene: Scene | EccentricScene, restitution: float) -> Simulation:

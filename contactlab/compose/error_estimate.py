@@ -24,9 +24,8 @@ ALONE, TOGETHER = 4, 2
 #: second order. Steps are doubled until a tolerance is kept: a lesser change might change no step.
 TOLERANCE = 4.0
 #: Least and greatest error of the finest run, over the last change. After a doubling a method of
-#: second order leaves a third of the change, one of first order all of it, one of order 0.74, as
-#: annuli under damping, one and a half.
-LEFT = 0.5, 3.0
+#: second order leaves a third of the change, one of first order all of it.
+LEFT = 0.5, 1.0
 
 
 def estimated(laws: Laws, result: ImpactResult) -> Real:
@@ -85,7 +84,8 @@ def _distance(laws: Laws, scene: Scene, resolution: float | None, change: Any) -
         answers.append(answer)
     fine, finest = answers
     last, before = np.abs(finest - fine), np.abs(fine - change)
-    falls = before > last  # by a ratio, if the answers converge
+    # by a ratio, if the answers converge; steps of a tolerance fall by none
+    falls = (before > last) & (len(options) == len(counts))
     ratio = last / np.where(falls, before - last, 1.0)
     left = np.where(falls, np.clip(ratio, *LEFT), LEFT[0])
     distance = scene.psi(np.abs(finest - change) + left * last)

@@ -68,13 +68,37 @@ def animate(
             "must have the history of a single impact",
             "run(scene, history='fields')",
         )
+
+    def frames(only: Collection[int]) -> Iterator[NDArray[np.uint8]]:
+        return _frames(result, None if only else progress, ghosts or {}, only=only)
+
+    write_gif(path, frames, len(_sequence(result)))
+
+
+def write_gif(
+    path: str | Path, frames: Callable[[Collection[int]], Iterator[NDArray[np.uint8]]], count: int
+) -> None:
+    """Write ``count`` frames as an animated GIF.
+
+    Parameters
+    ----------
+    path : str or Path
+    frames : callable
+        Returns the frames whose places it is given, or all for none.
+    count : int
+
+    Raises
+    ------
+    KeyboardInterrupt
+        On Ctrl-C, after the finished frames have been written.
+    """
     from PIL import Image  # a requirement of matplotlib
 
     pictures: list[Image.Image] = []
-    palette = _palette(result, ghosts or {})
+    palette = _palette(frames, count)
     interrupt: KeyboardInterrupt | None = None
     try:
-        for frame in _frames(result, progress, ghosts or {}):
+        for frame in frames(()):
             picture = Image.fromarray(frame)
             pictures.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
     except KeyboardInterrupt as error:
@@ -94,13 +118,11 @@ def animate(
         raise interrupt
 
 
-def _palette(result: ImpactResult, ghosts: Mapping[str, ImpactResult]) -> Any:
+def _palette(frames: Callable[[Collection[int]], Iterator[NDArray[np.uint8]]], count: int) -> Any:
     """Return one palette for all frames, from a few of them: colours do not flicker."""
     from PIL import Image
 
-    count = len(_sequence(result))
-    chosen = {round(share * (count - 1)) for share in SAMPLES}
-    rows = np.concatenate(list(_frames(result, None, ghosts, only=chosen)))
+    rows = np.concatenate(list(frames({round(share * (count - 1)) for share in SAMPLES})))
     numbers = rows.reshape(-1, 3) @ np.array([65536, 256, 1])  # a colour as one number
     distinct, counts = np.unique(numbers, return_counts=True)
     flat = distinct[np.argsort(counts)[-PLAIN:]]  # white and the other flat colours, exactly

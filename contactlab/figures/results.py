@@ -56,16 +56,16 @@ def draw_result(
             raise refuse(
                 "x, y", (x, y), "are for the result of many impacts", "leave them out for forces"
             )
-        with _on(axes, width) as drawn:
+        with on_axes(axes, width) as drawn:
             return _forces(drawn, result)
-    with _on(axes, width) as drawn:
+    with on_axes(axes, width) as drawn:
         return _quantities(drawn, result, x or "psi1", y or "psi2")
 
 
 def draw_history(axes: Axes | None, history: Any, *, width: Width | None = None) -> Axes:
     """Draw normal and tangential force over time, in the units of the history."""
     force, time = history.unit("normal_force"), history.unit("time")
-    with _on(axes, width) as drawn:
+    with on_axes(axes, width) as drawn:
         zero_line(drawn)
         for number, name in enumerate(("normal_force", "tangential_force")):
             curves = drawn.plot(history.time, getattr(history, name), color=LAW_COLOURS[number])
@@ -77,7 +77,7 @@ def draw_history(axes: Axes | None, history: Any, *, width: Width | None = None)
 
 
 @contextmanager
-def _on(axes: Axes | None, width: Width | None) -> Iterator[Axes]:
+def on_axes(axes: Axes | None, width: Width | None) -> Iterator[Axes]:
     """Yield the Axes, or Axes of a new figure inside the style of the package."""
     if axes is not None and width is not None:
         raise refuse("width", width, "is that of a new figure", "leave it out where axes are given")

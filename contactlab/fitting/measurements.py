@@ -249,7 +249,7 @@ def _constant(values: Array) -> bool:
 
 def _check_speed(file: SceneFile, table: Measurements) -> None:
     """Refuse a scene at another speed than the measurement."""
-    scene = file.scene
+    scene = file.of_spheres
     own = {
         "speed": np.hypot(scene.normal_speed, scene.tangential_velocity),
         "normal_speed": np.asarray(scene.normal_speed),

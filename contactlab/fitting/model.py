@@ -131,7 +131,7 @@ def scene_of(scene: object, given: Mapping[str, Array], count: int) -> Scene:
         scene = scene.path
     if not isinstance(scene, Scene):
         defaults = {"friction_coefficient": SOME_FRICTION}
-        batch = read_scene(scene, entries=given, defaults=defaults).scene  # type: ignore[arg-type]
+        batch = read_scene(scene, entries=given, defaults=defaults).of_spheres  # type: ignore[arg-type]
     else:
         batch = attrs.evolve(scene, **_velocities(given, scene)) if given else scene
     if not batch.shape:

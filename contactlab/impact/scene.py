@@ -473,6 +473,11 @@ UNITS: dict[str, str] = {
     "psi1": "1",
     "chi": "1",
     "coupling_number": "1",
+    "lam": "1",
+    "eta": "1",
+    "rho": "1",
+    "tilt_deg": "deg",
+    "curvature_radius": "m",
     "young_modulus": "Pa",
 }
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.grid import product
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
@@ -84,6 +85,27 @@ COLUMNS = (
     Column("status", "", "status"),
 )
 
+#: The columns of an eccentric impact; a vector or a matrix has one for each of its components.
+ECCENTRIC_COLUMNS = (
+    Column("psi1", "1", "psi1"),
+    Column("chi", "1", "scene.chi"),
+    Column("lam", "1", "scene.lam"),
+    Column("eta", "1", "scene.eta"),
+    Column("rho", "1", "scene.rho"),
+    Column("normal_velocity", "1", "normal_velocity"),
+    Column("psi2", "1", "psi2"),
+    Column("normal_speed", "m/s", "scene.normal_speed"),
+    Column("slip_velocity", "m/s", "scene.slip_velocity"),
+    Column("rebound_slip_velocity", "m/s", "slip_velocity"),
+    Column("impulse", "N s", "impulse"),
+    Column("compressions", "1", "compressions"),
+    Column("contact_time", "s", "motion.duration"),
+    Column("normal_loss", "J", "energy.normal_loss"),
+    Column("friction_work", "J", "energy.friction_work"),
+    Column("energy_imbalance", "J", "energy.imbalance"),
+    Column("status", "", "status"),
+)
+
 #: The columns of the table of a sweep, and of a comparison of single impacts. Tables leave out a
 #: column that no impact defines.
 SWEEP_TABLE = (
@@ -128,6 +150,12 @@ def quantity_named(name: str, *, where: str = "quantity") -> Column:
 
 def columns(result: Any) -> list[tuple[str, str, Any]]:
     """Return name, unit and values of every column; grid axes that are not columns come first."""
+    if isinstance(result.scene, EccentricScene):
+        return [
+            (name, column.unit, values)
+            for column in ECCENTRIC_COLUMNS
+            for name, values in components(column.name, column.read(result), result.scene.shape)
+        ]
     table = [(column.name, column.unit, column.read(result)) for column in COLUMNS]
     if not result.scene.axes:
         return table
@@ -137,12 +165,25 @@ def columns(result: Any) -> list[tuple[str, str, Any]]:
     return [(name, entry_unit(name), values) for name, values in varied.items()] + table
 
 
-def unit_in(unit: str, scene: Scene) -> str:
+def components(name: str, values: Any, shape: tuple[int, ...]) -> list[tuple[str, Any]]:
+    """Return the components of vectors and matrices, each under a name: ``"psi1_2"``."""
+    array = np.asarray(values)
+    ends = array.shape[len(shape) :] if array.shape[: len(shape)] == shape else ()
+    if not ends:
+        return [(name, values)]
+    return [
+        (f"{name}_{''.join(str(place + 1) for place in index)}", array[(..., *index)])
+        for index in np.ndindex(*ends)
+    ]
+
+
+def unit_in(unit: str, scene: Scene | EccentricScene) -> str:
     """Return the unit of a column in ``scene``; without bodies only angles have one."""
-    return "1" if scene.sphere is None and unit not in ("rad", "deg") else unit
+    bodies = scene.bodies if isinstance(scene, EccentricScene) else scene.sphere is not None
+    return unit if bodies or unit in ("rad", "deg") else "1"
 
 
-def csv_heading(name: str, unit: str, scene: Scene) -> str:
+def csv_heading(name: str, unit: str, scene: Scene | EccentricScene) -> str:
     """Return the heading of a CSV column: name and unit, or name alone for words."""
     return f"{name} ({unit_in(unit, scene)})" if unit else name
 
@@ -169,6 +210,8 @@ def json_value(value: Any) -> Any:
         value = value.tolist()
     if isinstance(value, list | tuple):
         return [json_value(item) for item in value]
-    if isinstance(value, float | np.floating):
-        return float(value) if np.isfinite(value) else None
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float):
+        return value if np.isfinite(value) else None
     return value

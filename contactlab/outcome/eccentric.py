@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 import numpy as np
@@ -15,12 +15,23 @@ from contactlab.contracts.status import Status
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Real
+from contactlab.outcome.columns import components
 from contactlab.outcome.energy import LARGEST_RESTITUTION, EnergyLedger
 from contactlab.outcome.history import NO_HISTORY, NoHistory
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactError
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 Array = NDArray[np.float64]
+
+
+#: Columns of a history.
+UNITS = {
+    "time": "s", "approach": "m", "normal_velocity": "m/s", "normal_force": "N",
+    "contact_radius": "m", "slip_velocity": "m/s", "tangential_force": "N",
+}  # fmt: skip
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False)
@@ -37,6 +48,21 @@ class EccentricHistory:
     contact_radius: Array
     slip_velocity: Array
     tangential_force: Array
+
+    #: An eccentric impact keeps no fields over the contact.
+    fields: ClassVar[dict[str, Array]] = {}
+
+    def columns(self) -> dict[str, Array]:
+        """Return the columns with one number for each instant, by name."""
+        found: dict[str, Array] = {}
+        for name in UNITS:
+            found |= components(name, getattr(self, name), self.time.shape)
+        return found
+
+    @staticmethod
+    def unit(name: str) -> str:
+        """Return the unit of a column."""
+        return next(unit for column, unit in UNITS.items() if name.startswith(column))
 
     def __repr__(self) -> str:
         """Return the number of instants and the last time."""
@@ -198,6 +224,29 @@ class EccentricResult:
     def energy(self) -> EnergyLedger:
         """Energy books in J, of the relative motion at the contact: ½ v·W⁻¹·v is its energy."""
         return ledger(self.scene, self.motion)
+
+    def to_dataframe(self) -> Any:
+        """Return a ``pandas.DataFrame``, one row for each impact, as ``ImpactResult`` does."""
+        from contactlab.outcome.frames import to_dataframe
+
+        return to_dataframe(self)
+
+    def to_xarray(self) -> Any:
+        """Return an ``xarray.Dataset`` with units."""
+        from contactlab.outcome.frames import to_xarray
+
+        return to_xarray(self)
+
+    def plot(self, *, axes: Axes | None = None, x: tuple[str, Any] | None = None) -> Axes:
+        """Draw the path of slip of one impact, or V2 and psi2 of a batch over psi1.
+
+        In the plane slip is drawn over the velocity of approach, in space slip along t2 over that
+        along t1. One impact needs ``run(scene, history=True)``. ``x`` is a label and a value for
+        each impact of a batch, in place of psi1.
+        """
+        from contactlab.figures.eccentric import draw_eccentric  # matplotlib only when drawing
+
+        return draw_eccentric(axes, self, x)
 
     def __len__(self) -> int:
         """Return the number of impacts of a batch."""

@@ -68,7 +68,7 @@ def to_xarray(result: Any) -> Any:
 def _labelled(result: Any) -> Labelled:
     """Return columns, axes and units of a result."""
     scene = result.scene
-    axes = dict(scene.axes)
+    axes = dict(getattr(scene, "axes", {}))  # an eccentric scene has none
     columns, units = {}, {}
     for name, unit, values in all_columns(result):
         if values is None:  # a scene without bodies

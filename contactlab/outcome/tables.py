@@ -12,6 +12,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.scene import Scene
 from contactlab.outcome.columns import QUANTITIES, SWEEP_TABLE
+from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.numerical_error import error_words
 from contactlab.outcome.result import ImpactResult
 
@@ -134,7 +135,7 @@ def evenly(count: int, most: int | None) -> list[int]:
     return [int(index) for index in np.round(np.linspace(0, count - 1, shown))]
 
 
-def largest_imbalance(result: ImpactResult) -> str:
+def largest_imbalance(result: ImpactResult | EccentricResult) -> str:
     """Return the largest relative imbalance of the energy books of a batch, as a line."""
     imbalance = np.abs(result.energy.relative_imbalance)
     checked = np.broadcast_to(result.energy.checked, np.shape(imbalance))
@@ -147,7 +148,7 @@ def largest_imbalance(result: ImpactResult) -> str:
     return f"largest energy imbalance / start: {largest}; {count}"
 
 
-def closing(result: ImpactResult) -> list[tuple[str, str]]:
+def closing(result: ImpactResult | EccentricResult) -> list[tuple[str, str]]:
     """Return laws, counters, run time and statuses, as (name, words)."""
     laws = [f"{name} [{kind}]" for kind, name in result.laws.items()]
     counters = ", ".join(f"{count} {key}" for key, count in result.counters.items()) or "none"

@@ -5,24 +5,32 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import refuse, unit_remedy
+from contactlab.numeric.checks import real, refuse, unit_remedy
+from contactlab.scene_file.bodies import nondimensional, rigid_body
 from contactlab.scene_file.entries import (
     BODY_SECTIONS,
+    ECCENTRIC_KEYS,
     GROUP_KEYS,
     IMPACT_KEYS,
     NONDIMENSIONAL_KEYS,
     SPHERE_KEYS,
+    SPHERE_VECTORS,
     UNITS,
     VECTOR_KEYS,
 )
 from contactlab.scene_file.table import MATERIAL_KEYS, Table
 
 
-def build_scene(document: Mapping[str, Any]) -> tuple[Scene, Encounter | None]:
+def build_scene(
+    document: Mapping[str, Any],
+) -> tuple[Scene | EccentricScene, Encounter | None]:
     """Return the scene of a file's tables, and the encounter in space if vectors are sections."""
     sections = [name for name in BODY_SECTIONS if name in document]
     if "nondimensional" in document:
@@ -31,18 +39,35 @@ def build_scene(document: Mapping[str, Any]) -> tuple[Scene, Encounter | None]:
                 f"nondimensional: cannot stand beside [{sections[0]}]; psi1 and chi define "
                 "the scene, leave out one or the other"
             )
-        known = (*NONDIMENSIONAL_KEYS, *GROUP_KEYS)
+        known = (*NONDIMENSIONAL_KEYS, *GROUP_KEYS, *ECCENTRIC_KEYS)
         table = Table(document["nondimensional"], "nondimensional", known=known)
+        if table.has(*ECCENTRIC_KEYS):
+            return nondimensional(table), None
         groups = _numbers(table, NONDIMENSIONAL_KEYS) | _present(table, GROUP_KEYS)
         return table.make(Scene.nondimensional, **groups), None
     root = Table({name: document[name] for name in sections}, "", known=BODY_SECTIONS)
+    if "body" in sections or _is_rigid(document.get("target")):
+        _refuse_speeds(document.get("impact"))
+        impact = root.table("impact", known=("friction_coefficient", *VECTOR_KEYS))
+        encounter = _of_bodies(root, impact)
+        return impact.make(lambda: encounter.scene), encounter
     sphere = _sphere(root.table("sphere", known=SPHERE_KEYS))
     target = _target(root)
-    impact = root.table("impact", known=dict.fromkeys((*IMPACT_KEYS, *VECTOR_KEYS)))
-    if impact.has(*(key for key in VECTOR_KEYS if key != "spin")):
+    impact = root.table("impact", known=dict.fromkeys((*IMPACT_KEYS, *SPHERE_VECTORS)))
+    if impact.has(*(key for key in SPHERE_VECTORS if key != "spin")):
         encounter = _encounter(impact, sphere, target)
         return impact.make(lambda: encounter.scene), encounter
     return _impact(impact, sphere, target), None
+
+
+def _refuse_speeds(impact: Any) -> None:
+    """Refuse speed and angle, which a file of spheres or a fit gives, in place of a vector."""
+    for key in IMPACT_KEYS[1:]:
+        if key not in VECTOR_KEYS and isinstance(impact, Mapping) and key in impact:
+            raise ValueError(
+                f"impact.{key}: is for spheres; a body takes velocity = [x, y, z] in m/s, "
+                "and fit takes no [body]"
+            )
 
 
 def _numbers(table: Table, keys: tuple[str, ...]) -> dict[str, Any]:
@@ -83,17 +108,46 @@ def _sphere(table: Table) -> Sphere:
 def _target(root: Table) -> Sphere | HalfSpace:
     """Return the target, a half-space or a sphere."""
     raw = root.require("target", 'add [target] with kind = "half-space" or "sphere"')
-    kinds = {"half-space": ("kind", "material"), "sphere": ("kind", *SPHERE_KEYS)}
+    kinds = {"half-space": ("kind", "material"), "sphere": ("kind", *SPHERE_KEYS), "body": ()}
     kind = raw.get("kind") if isinstance(raw, Mapping) else None
     if kind is None and isinstance(raw, Mapping):
         raise ValueError('target.kind: is missing; give "half-space" or "sphere"')
     if kind is not None and not (isinstance(kind, str) and kind in kinds):
-        raise refuse("target.kind", kind, 'must be "half-space" or "sphere"')
+        raise refuse("target.kind", kind, 'must be "half-space", "sphere" or "body"')
     table = Table(raw, "target", known=kinds.get(str(kind), ()))
     return HalfSpace(_material(table)) if kind == "half-space" else _sphere(table)
 
 
-def _encounter(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Encounter:
+def _is_rigid(target: object) -> bool:
+    """Return whether a target is a body that is no sphere."""
+    return isinstance(target, Mapping) and target.get("kind") == "body"
+
+
+def _of_bodies(root: Table, impact: Table) -> Encounter:
+    """Return the encounter of two bodies, at least one of which is no sphere."""
+    if root.has("body", "sphere") and root.has("body") == root.has("sphere"):
+        raise ValueError("sphere: cannot stand beside [body]; leave out one or the other")
+    normal = impact.require("normal", "an impact of bodies needs normal = [x, y, z]")
+    vectors: dict[str, Any] = {}
+    bodies: list[Any] = []
+    outward = np.asarray(real(impact.at("normal"), normal))
+    for name, key, sense in (("body", "contact", 1.0), ("target", "target_contact", -1.0)):
+        content = root.content.get(name)
+        if name == "body" and content is None:
+            bodies.append(_sphere(root.table("sphere", known=SPHERE_KEYS)))
+        elif name == "target" and not _is_rigid(content):
+            bodies.append(_target(root))
+        else:
+            body, contact = rigid_body(content, name, sense * outward, _material)
+            bodies.append(body)
+            if contact is not None:
+                if impact.has(key):
+                    raise ValueError(f"{impact.at(key)}: follows from the shape; leave it out")
+                vectors[key] = contact
+    return _encounter(impact, *bodies, **vectors)
+
+
+def _encounter(table: Table, sphere: Any, target: Any, **contacts: Any) -> Encounter:
     """Return the encounter of an impact with velocity and normal as vectors."""
     plane = [key for key in IMPACT_KEYS if key not in ("friction_coefficient", "spin")]
     rivals = [key for key in plane if table.has(key)]
@@ -110,7 +164,7 @@ def _encounter(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Enco
             remedy = "beside vectors write [x, y, z]"
             raise refuse(table.at(key), value, "must be a vector of three numbers", remedy)
     numbers = _numbers(table, ("friction_coefficient",))
-    return table.make(Encounter, body=sphere, target=target, **numbers, **vectors)
+    return table.make(Encounter, body=sphere, target=target, **numbers, **vectors, **contacts)
 
 
 def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:

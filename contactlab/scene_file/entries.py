@@ -15,11 +15,26 @@ IMPACT_KEYS = (
     "friction_coefficient", "speed", "angle_deg", "normal_speed", "tangential_velocity", "spin",
 )  # fmt: skip
 #: Keys of an encounter in space; ``spin`` is a vector if ``velocity`` is given.
-VECTOR_KEYS = ("velocity", "normal", "spin", "target_velocity", "target_spin")
+SPHERE_VECTORS = ("velocity", "normal", "spin", "target_velocity", "target_spin")
+VECTOR_KEYS = (*SPHERE_VECTORS, "contact", "target_contact")
 NONDIMENSIONAL_KEYS = ("psi1", "chi")
+#: Further parameters of an eccentric impact: eta in the plane, rho in space.
+ECCENTRIC_KEYS = ("lam", "eta", "rho")
+#: Keys of a body that is no sphere: those of ``RigidBody``, and those of each of its shapes.
+RIGID_KEYS = (
+    "mass", "inertia", "principal", "axes", "curvature_radius", "curvature_ratio",
+    "bending_period", "material",
+)  # fmt: skip
+SHAPE_KEYS = {
+    "rod": ("length", "radius", "end_radius", "axis", "mass", "material"),
+    "box": ("sides", "corner_radius", "axes", "mass", "material"),
+    "ellipsoid": ("semi_axes", "axes", "mass", "material"),
+}
+#: Angle by which a shape is turned about y, by the right-hand rule.
+TILT = "tilt_deg"
 #: Further groups of a scene without bodies, which may be left out.
 GROUP_KEYS = ("poisson_ratio", "coupling_number", "friction_coefficient")
-BODY_SECTIONS = ("sphere", "target", "impact")
+BODY_SECTIONS = ("sphere", "body", "target", "impact")
 
 #: Units for the remedies in messages; the classes of bodies and scenes check the values.
 UNITS = SCENE_UNITS | {
@@ -30,11 +45,13 @@ UNITS = SCENE_UNITS | {
 def _entries() -> dict[str, str]:
     """Return the dotted path of every entry that may vary, by short and by dotted name."""
     names = {key: f"impact.{key}" for key in IMPACT_KEYS}
-    names |= {key: f"nondimensional.{key}" for key in (*NONDIMENSIONAL_KEYS, "coupling_number")}
+    scaled = (*NONDIMENSIONAL_KEYS, "coupling_number", *ECCENTRIC_KEYS)
+    names |= {key: f"nondimensional.{key}" for key in scaled} | {TILT: f"body.{TILT}"}
     dotted = [*names.values(), *(f"nondimensional.{key}" for key in GROUP_KEYS)]
     for body in ("sphere", "target"):
         dotted += [f"{body}.{key}" for key in SPHERE_KEYS if key != "material"]
         dotted += [f"{body}.material.{key}" for key in MATERIAL_KEYS]
+    dotted += [f"body.{key}" for key in ("mass", "curvature_radius")]
     return names | {path: path for path in dotted}
 
 
@@ -69,7 +86,7 @@ def replaced(document: Mapping[str, Any], path: str, value: object) -> dict[str,
 def with_materials(tables: Mapping[str, Any]) -> dict[str, Any]:
     """Return the tables with the numbers of materials in place of their names."""
     completed = dict(tables)
-    for body in ("sphere", "target"):
+    for body in ("sphere", "body", "target"):
         table = completed.get(body)
         name = table.get("material") if isinstance(table, Mapping) else None
         if isinstance(name, str):

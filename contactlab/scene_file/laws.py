@@ -9,10 +9,11 @@ from typing import Any
 
 import attrs
 
-from contactlab.compose import composition
+from contactlab.compose import composition, eccentric
 from contactlab.compose.names import KINDS, full_name, kind_of, parted, seen_from, short_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.numeric.names import nearest
 from contactlab.scene_file.table import Table, flattened, nearest_of
 
@@ -91,6 +92,16 @@ class LawChoice:
                 choice = choice.choose(**{kind: name})
             made.append(choice.made(kind))
         return choice
+
+    def fit_for(self, scene: Any) -> LawChoice:
+        """Return the choice with the laws that answer an eccentric scene best where it has none."""
+        if not isinstance(scene, EccentricScene) or self.tangential is not None:
+            return self
+        elastic = self.normal in (None, composition.DEFAULT_NORMAL)
+        best = eccentric.preferred(scene) if elastic else composition.IN_SPACE
+        return self.choose(
+            **best if self.integrator is None else {"tangential": best["tangential"]}
+        )
 
     def suited(self) -> LawChoice:
         """Return the choice, without its integrator if that does not run the tangential law."""

@@ -11,6 +11,7 @@ from typing import Any
 
 import attrs
 
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, real, refuse
@@ -28,7 +29,8 @@ from contactlab.scene_file.sweep import Sweep, read_sweep
 from contactlab.scene_file.table import Table
 
 SECTIONS = (
-    "about", "sphere", "target", "impact", "nondimensional", "sweep", "simulation", "measured",
+    "about", "sphere", "body", "target", "impact", "nondimensional",
+    "sweep", "simulation", "measured",
 )  # fmt: skip
 #: Deepest nesting of tables and lists.
 DEEPEST = 20
@@ -44,8 +46,9 @@ class SceneFile:
     path : Path
     title, citation, notes : str
         From ``[about]``; empty by default.
-    scene : Scene
-        One impact, or the batch of a ``[sweep]``; a product of entries has ``axes``.
+    scene : Scene or EccentricScene
+        One impact, or the batch of a ``[sweep]``; a product of entries has ``axes``. Bodies for
+        which friction changes the approach, and lam, make an ``EccentricScene``.
     varied : mapping of str to array
         Values of each entry that the sweep varies, shape (n,); empty for one impact.
     laws : LawChoice
@@ -59,14 +62,30 @@ class SceneFile:
     title: str
     citation: str
     notes: str
-    scene: Scene
+    scene: Any
     varied: Mapping[str, Real]
     laws: LawChoice
     encounter: Encounter | None
     measured: tuple[Measured, ...]
     tables: Mapping[str, Any] = attrs.field(repr=False)
 
-    def scene_at(self, **entries: Any) -> Scene:
+    @property
+    def of_spheres(self) -> Scene:
+        """The scene, of spheres or of bodies that answer as spheres do.
+
+        Raises
+        ------
+        ValueError
+            If friction changes the approach.
+        """
+        if not isinstance(self.scene, Scene):
+            rule = "is an eccentric impact of any two bodies"
+            raise ValueError(
+                f"{self.path}: {rule}; contactlab run, sweep, compare and animate run it"
+            )
+        return self.scene
+
+    def scene_at(self, **entries: Any) -> Any:
         """Return the file's scene without its sweep, with some entries replaced.
 
         ``scene_at(angle_deg=[5, 10])`` is a batch of two; entries of equal length vary
@@ -107,7 +126,7 @@ def read_scene(
         root = Table(document, "", known=SECTIONS)
         about = Table(document.get("about", {}), "about", known=ABOUT_KEYS)
         sweep = read_sweep(document.get("sweep", {}))
-        tables = with_materials({key: root.content[key] for key in SECTIONS[1:5] if root.has(key)})
+        tables = with_materials({key: root.content[key] for key in SECTIONS[1:6] if root.has(key)})
         if defaults:
             tables = _with_defaults(tables, defaults)
         if entries:
@@ -117,7 +136,7 @@ def read_scene(
         return SceneFile(
             path=file,
             **{key: about.text(key, default="") for key in ABOUT_KEYS},
-            scene=scene.over(sweep.axes) if sweep.axes else scene,
+            scene=scene.over(sweep.axes) if sweep.axes and isinstance(scene, Scene) else scene,
             encounter=encounter,
             varied=sweep.varied,
             laws=read_laws(document.get("simulation", {}), file.parent),
@@ -130,7 +149,7 @@ def read_scene(
 
 def _scene_with(
     tables: Mapping[str, Any], entries: Mapping[str, Any]
-) -> tuple[Scene, Encounter | None]:
+) -> tuple[Scene | EccentricScene, Encounter | None]:
     """Return scene and encounter of the tables with some entries replaced."""
     for name, values in entries.items():
         path = entry_path(name)

@@ -209,7 +209,7 @@ def compare(
         If ``scene`` is neither a scene nor a scene file.
     """
     file = scene if isinstance(scene, SceneFile) else None
-    single = file.scene if file else scene
+    single = file.of_spheres if file else scene
     if not isinstance(single, Scene):
         raise refuse("scene", scene, "must be a Scene or a SceneFile")
     series = file.measured if file else ()

@@ -54,7 +54,7 @@ def test_a_step_of_each_form(form, before, after, force, held):
     [
         # the trial u = 0.5 is cut to 0.4/4; the mean of the forces 0.6 and 0.4 times 0.4
         ("displacement", 0.4, 0.5 * 1.0 * 0.4, 0.1),
-        ("increment", 0.4, 0.5 * 0.7 * (0.3 + 0.4 * MEAN - 0.4) / 4.0, 0.4),
+        ("increment", 0.4, 0.5 * 0.7 * (0.3 + 0.4 * MEAN - 0.4) / (2.0 * MEAN), 0.4),
     ],
 )
 def test_a_step_that_slips_at_the_cap(form, force, work, held):

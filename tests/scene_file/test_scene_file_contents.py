@@ -138,7 +138,7 @@ def test_a_velocity_in_one_form_replaces_the_other(names, kept):
 
 def test_entries_that_may_vary_by_short_and_by_dotted_name():
     short = ["friction_coefficient", "speed", "angle_deg", "normal_speed", "tangential_velocity",
-             "spin", "psi1", "chi", "coupling_number"]  # fmt: skip
+             "spin", "psi1", "chi", "coupling_number", "lam", "eta", "rho", "tilt_deg"]  # fmt: skip
     assert [name for name in ENTRIES if "." not in name] == short
     assert ENTRIES["spin"] == "impact.spin"
     assert ENTRIES["coupling_number"] == "nondimensional.coupling_number"
@@ -156,7 +156,7 @@ def test_entries_that_may_vary_by_short_and_by_dotted_name():
             assert ENTRIES[f"{body}.{key}"] == f"{body}.{key}"
         assert f"{body}.material" not in ENTRIES
     assert ENTRIES["nondimensional.poisson_ratio"] == "nondimensional.poisson_ratio"
-    assert len(ENTRIES) == 9 + 9 + 2 + 2 * 8  # short, their paths, two more groups, bodies
+    assert len(ENTRIES) == 13 + 13 + 2 + 2 * 8 + 2  # short, their paths, two more groups, bodies
 
 
 def test_a_choice_of_laws_keeps_options_of_kinds_that_stay():

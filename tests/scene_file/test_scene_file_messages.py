@@ -53,8 +53,9 @@ def test_what_is_missing(tmp_path, missing, words):
     [
         ("sphere.radius", "[1.0, 2.0]",
          "sphere.radius = [1.0, 2.0]: must be one number; put lists in [sweep]"),
-        ("target.kind", "3", 'target.kind = 3: must be "half-space" or "sphere"'),
-        ("target.kind", '"plane"', "target.kind = 'plane': must be \"half-space\" or \"sphere\""),
+        ("target.kind", "3", 'target.kind = 3: must be "half-space", "sphere" or "body"'),
+        ("target.kind", '"plane"', "target.kind = 'plane': must be \"half-space\", "
+         '"sphere" or "body"'),
         ("sphere.density", "7800", "sphere.density: is not a known key; a number of the material: "
          "write it under [sphere.material]"),
         ("sphere.raduis", "1",

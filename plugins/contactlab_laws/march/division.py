@@ -7,13 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.contracts import NormalContact, NormalMotion, Steps
+from contactlab.contracts import NormalContact, NormalMotion, NormalSample, Steps
 
 #: Largest stretch of the steps, over their number squared: it keeps the second order. All steps are
 #: stretched alike so that the samples of the load add up to its exact impulse: gross slip
 #: throughout is then exact, and the energy books of the scheme close as before. Smooth loads need
 #: less than the largest stretch, a load that begins as the root of time would need ever more.
 MOST_STRETCH = 1.0
+#: Friction load at separation over the greatest from which a contact breaks: others end at 1e-12.
+BREAKS = 1e-6
+#: Radius of the contact after the break, over that before.
+VANISHES = 1e-6
 #: Steps converted to plain numbers at a time: two million would fill 700 MB.
 BLOCK = 4096
 #: More steps are made anew for each impact: these take half a megabyte.
@@ -41,7 +45,7 @@ def _midpoints(normal: NormalMotion, count: int) -> Steps:
     times = np.asarray(ends.time)
     kick = times[1:] - times[:-1]
     impulse = np.asarray(ends.load_impulse)
-    return sampled(normal, halves[1::2], kick, impulse[1:] - impulse[:-1])
+    return _parted(sampled(normal, halves[1::2], kick, impulse[1:] - impulse[:-1]), ends)
 
 
 def _endpoints(normal: NormalMotion, count: int) -> Steps:
@@ -50,11 +54,32 @@ def _endpoints(normal: NormalMotion, count: int) -> Steps:
     edges = np.concatenate(([0.0], fractions[1:-1] + 0.5 / count, [1.0]))  # count + 1 of them
     phases = np.array(normal.phase(np.concatenate((fractions[1:], edges))))
     phases[[count - 1, -1]] = np.pi
-    impulse = np.asarray(normal.at(_column(phases[count:], normal)).load_impulse)
+    ends = normal.at(_column(phases[count:], normal))
+    impulse = np.asarray(ends.load_impulse)
     loads = impulse[1:] - impulse[:-1]
     kick = np.asarray(normal.duration) / count
     shape = (count,) + (1,) * len(normal.scene.shape)
-    return sampled(normal, phases[:count], np.ones(shape) * kick, loads)
+    return _parted(sampled(normal, phases[:count], np.ones(shape) * kick, loads), ends)
+
+
+def _parted(steps: Steps, ends: NormalSample) -> Steps:
+    """Return the steps, and one of no duration if the contact breaks under a friction load.
+
+    A law then loses what its contact still stores, and its friction work contains that energy.
+    """
+    load = np.asarray(ends.contact.friction_load)
+    if not np.any(load[-1] > BREAKS * load.max(axis=0)):
+        return steps
+    factors = (VANISHES**3, VANISHES, VANISHES**2, VANISHES**3)  # as Hertz's contact vanishes
+    contact = [
+        np.concatenate((entry, factor * entry[-1:]))
+        for entry, factor in zip(steps.contact, factors, strict=True)
+    ]
+    last = [np.concatenate((column, column[-1:])) for column in steps[4:]]
+    still = [np.concatenate((column, 0.0 * column[-1:])) for column in steps[1:4]]
+    for column in (*contact, *still, *last):
+        column.flags.writeable = False
+    return Steps(NormalContact(*contact), *still, *last)
 
 
 def sampled(normal: NormalMotion, phases: Any, kick: Any, load_impulse: Any) -> Steps:

@@ -1,0 +1,102 @@
+"""Bodies that are no spheres: ``[body]`` of a scene file, by mass and inertia or by a shape."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.impact import shapes
+from contactlab.impact.eccentric import EccentricScene
+from contactlab.impact.material import Material
+from contactlab.impact.rigid_body import RigidBody
+from contactlab.numeric.checks import real, refuse
+from contactlab.scene_file.entries import (
+    ECCENTRIC_KEYS,
+    NONDIMENSIONAL_KEYS,
+    RIGID_KEYS,
+    SHAPE_KEYS,
+    TILT,
+)
+from contactlab.scene_file.table import Table
+
+#: Default axis of a rod: up, so that the rod hangs over what lies below.
+UPRIGHT = (0.0, 0.0, 1.0)
+
+
+def rigid_body(
+    content: Any, path: str, normal: Any, material: Callable[[Table], Material]
+) -> tuple[RigidBody, Any]:
+    """Return the body of a table, and its contact in m; None if the table has no shape.
+
+    Parameters
+    ----------
+    content : table of the file
+    path : str
+        Its dotted path.
+    normal : vector
+        Outward normal of the body at the contact.
+    material : callable
+        Reads the material of a table.
+    """
+    shape = content.get("shape") if isinstance(content, Mapping) else None
+    if shape is None:
+        table = Table(content, path, known=("kind", "shape", *RIGID_KEYS))
+        numbers = {key: table.content[key] for key in RIGID_KEYS if table.has(key)}
+        for key in ("mass", "curvature_radius"):
+            table.require(key, "or name a shape: " + ", ".join(SHAPE_KEYS))
+        return table.make(RigidBody, **numbers | {"material": material(table)}), None
+    if not (isinstance(shape, str) and shape in SHAPE_KEYS):
+        raise refuse(f"{path}.shape", shape, "is no shape", "known: " + ", ".join(SHAPE_KEYS))
+    table = Table(content, path, known=("kind", "shape", TILT, *SHAPE_KEYS[shape]))
+    options = {key: table.content[key] for key in SHAPE_KEYS[shape] if table.has(key)}
+    options |= {"material": material(table), "normal": normal}
+    tilt = real(table.at(TILT), table.content.get(TILT, 0.0), remedy="in degrees, about y")
+    oriented = "axis" if shape == "rod" else "axes"
+    upright = options.pop(oriented, UPRIGHT if shape == "rod" else np.eye(3))
+
+    def made(**numbers: Any) -> tuple[RigidBody, Any]:
+        maker: Callable[..., tuple[RigidBody, Any]] = getattr(shapes, shape)
+        try:
+            turned = [
+                _about_y(angle) @ np.asarray(upright, dtype=float) for angle in np.ravel(tilt)
+            ]
+        except ValueError:
+            raise refuse(oriented, upright, "must be vectors of three numbers") from None
+        every = [maker(**numbers, **{oriented: each}) for each in turned]
+        return every[0] if np.ndim(tilt) == 0 else _stacked(every)
+
+    needed = [key for key in SHAPE_KEYS[shape] if key in ("length", "radius", "sides", "semi_axes")]
+    for key in (*needed, *(("corner_radius",) if shape == "box" else ())):
+        table.require(key, f"a {shape} needs {', '.join(needed)} in m")
+    return table.make(made, **options)
+
+
+def nondimensional(table: Table) -> EccentricScene:
+    """Return the eccentric scene of psi1, chi, lam and eta, or in space of vectors and rho."""
+    given: dict[str, Any] = {key: table.content[key] for key in ECCENTRIC_KEYS if table.has(key)}
+    for key in NONDIMENSIONAL_KEYS:
+        given[key] = table.require(key, f"an eccentric impact needs {key} beside lam")
+    table.require("lam", "eta and rho belong to an eccentric impact, which has lam too")
+    if "rho" not in given:
+        given = {key: table.number(key, remedy="a number") for key in given}
+    return table.make(EccentricScene.nondimensional, **given)
+
+
+def _about_y(degrees: float) -> Any:
+    """Return the matrix of a turn about y."""
+    s, c = np.sin(np.radians(degrees)), np.cos(np.radians(degrees))
+    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+
+
+def _stacked(made: list[tuple[RigidBody, Any]]) -> tuple[RigidBody, Any]:
+    """Return bodies of one shape as a batch, with their contacts."""
+    bodies = [body for body, _ in made]
+    columns: dict[str, Any] = {
+        name: np.array([getattr(body, name) for body in bodies])
+        for name in ("inertia", "curvature_radius", "curvature_ratio")
+    }
+    body = attrs.evolve(bodies[0], principal=None, axes=None, **columns)
+    return body, np.array([contact for _, contact in made])
