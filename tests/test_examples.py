@@ -40,6 +40,8 @@ SCRIPTS = {
     "superball": ("at most 0.59 of its velocity", "superball.png"),
     "beyond_the_paper": ("one-way coupling: 0.021 from the finite elements (rms)", BEYOND),
     "hysteresis": ("Mindlin and Deresiewicz: 0.1310", "hysteresis.png"),
+    "egg": ("after 1, 5, 10 bounces: [0.889", "egg.png"),
+    "toe_shot": ("15 mm off the toe: starts 2.9° right", "toe_shot.png"),
     "any_two_bodies": ("30°: rebound 0.913, slip -0.723", "any_two_bodies.png"),
     "signs": ("spin -90 rad/s, slip 0.00 m/s", "signs.png"),
     "law_in_five_minutes": ("0.1 of the normal speed", "law_in_five_minutes.png"),
@@ -48,7 +50,7 @@ SCRIPTS = {
 SLOW = (
     *("sweep_on_a_cluster", "reproduce_the_paper", "fit_your_experiment", "billiards"),
     *("beyond_the_paper", "superball", "law_swap", "stick_slip_map", "granular_gas"),
-    *("hysteresis", "signs", "any_two_bodies"),
+    *("hysteresis", "signs", "any_two_bodies", "egg", "toe_shot"),
 )
 #: Options that make a script short.
 OPTIONS = {

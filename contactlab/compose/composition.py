@@ -186,14 +186,6 @@ def misfit(normal: Any, tangential: Any = None, integrator: Any = None) -> str |
             f"integrator = {_name(integrator)}: needs a {integrator.normal_contract.__name__}, "
             f"and normal = {_name(normal)} is not one"
         )
-    if isinstance(tangential, SteppedTangentialLaw):
-        for word in ("marks", "normal_motion"):
-            asked = getattr(type(tangential), word) is not getattr(SteppedTangentialLaw, word)
-            if asked and word not in integrator.offers:
-                return (
-                    f"integrator = {_name(integrator)}: does not offer {word!r}, which "
-                    f"tangential = {_name(tangential)} asks of it"
-                )
     return _refused(normal, integrator) or _refused(tangential, integrator)
 
 

@@ -210,9 +210,6 @@ def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any]:
     if not isinstance(second, SteppedTangentialLaw):
         rule = "must answer to steps, as a SteppedTangentialLaw does"
         raise refuse("tangential", second, rule, "take springs, or annulus")
-    if type(second).normal_motion is not SteppedTangentialLaw.normal_motion:
-        rule = "makes a normal motion of its own, and the approach of a path is prescribed"
-        raise refuse("tangential", second, rule, "run an impact")
     if (complaint := composition.misfit(first, second)) is not None:
         raise ValueError(complaint)
     for law in (first, second):

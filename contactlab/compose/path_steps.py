@@ -77,13 +77,6 @@ def followed(
     """
     contacts = _pressed(normal, scene, points)
     motion = _motion(normal, scene, points, contacts)
-    with faults.blaming(tangential):
-        marks = tangential.marks(scene, motion)
-    wanted: Any = None
-    if marks is not None:
-        points, wanted = _with_marks(points, motion, marks)
-        contacts = _pressed(normal, scene, points)
-        motion = _motion(normal, scene, points, contacts)
     with faults.blaming(tangential) as blamed:
         nothing = NormalContact(*(locked(0.0 * entry) for entry in contacts[0]))
         state = tangential.start(scene, motion)
@@ -105,11 +98,7 @@ def followed(
     full["friction_work"] = np.cumsum(full["friction_work"], axis=0)
     status, detail = _judged((normal, tangential), full, points)
     del full["settled"]
-    if wanted is None:
-        return Followed(full, states, status, detail)
-    at_points = {name: np.take_along_axis(rows, wanted, axis=0) for name, rows in full.items()}
-    last = wanted.reshape(len(wanted), -1).max(axis=1).tolist()
-    return Followed(at_points, tuple(states[index] for index in last), status, detail)
+    return Followed(full, states, status, detail)
 
 
 def _pressed(normal: NormalLaw, scene: Scene, points: Points) -> list[NormalContact]:
@@ -151,30 +140,6 @@ def _steps(
     for blamed.step, (by, speed, time, after) in enumerate(rows, 1):
         # The force acts on no body: the path is prescribed.
         yield Increment(locked(by), locked(speed), after.friction_load, 0.0 * time, time), after
-
-
-def _with_marks(points: Points, motion: SampledMotion, marks: Any) -> tuple[Points, Any]:
-    """Return points with the marks of a law among them, and the index of each former point."""
-    shape = motion.scene.shape
-    phases = np.asarray(marks, dtype=np.float64)
-    if phases.ndim == 1:
-        phases = phases.reshape(-1, *(1,) * len(shape))
-    count = len(points.time)
-    between = np.broadcast_to(motion.at(phases).time, (len(phases), *shape))
-    times = np.concatenate((points.time, between))
-    order = np.argsort(times, axis=0, kind="stable")
-    finer = np.take_along_axis(times, order, axis=0)
-    flat = [each.reshape(len(each), -1) for each in (*points, finer)]
-    lines = []
-    for column in flat[1:3]:
-        line = np.empty(flat[3].shape)
-        for item in range(line.shape[1]):
-            first = np.append(0.0, flat[0][:, item])
-            path = np.append(0.0 if column is flat[1] else column[0, item], column[:, item])
-            line[:, item] = np.interp(flat[3][:, item], first, path)
-        lines.append(line.reshape(finer.shape))
-    wanted = np.argsort(order, axis=0, kind="stable")[:count]
-    return Points(finer, *lines), wanted
 
 
 def _judged(laws: Any, columns: dict[str, Array], points: Points) -> tuple[Any, str]:

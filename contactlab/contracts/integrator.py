@@ -219,9 +219,6 @@ class Integrator(Law):
     8. ``resolution`` is the name of the option, steps or tolerance, that controls the error. If
        the integrator refines by itself, ``resolution_for`` returns the value used; errors are
        estimated by doubling that value, not the option.
-    9. An integrator that offers ``marks`` ends a step at every mark of a stepped law. One that
-       offers ``normal_motion`` asks ``law.normal_motion`` for the last state and returns the
-       answer as ``TangentialMotion.normal``.
 
     Parameters of methods
     ---------------------

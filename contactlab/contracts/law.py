@@ -35,8 +35,6 @@ class Law(ABC):
                                  velocity is zero or contact ends, and then roll without
                                  tangential force
        ``no_friction``           the tangential force is zero
-       ``marks``                 the integrator ends a step at every mark of a stepped law
-       ``normal_motion``         the integrator returns the normal motion of a stepped law
        ========================  ====================================================
 
     4. ``resolution`` names the parameter that makes answers finer, or is None: a count

@@ -243,11 +243,6 @@ class SteppedTangentialLaw(TangentialLaw):
        computes its largest stable step; 0 for a law whose force does not depend on
        displacement. A law that offers ``partial_slip`` damps the oscillation by microslip. For
        other laws integrators take more steps, as phase errors add up over all periods.
-    7. ``marks(scene, normal)`` returns phases at which steps must end: ``advance`` is then called
-       with ``after`` at each of them. Only integrators that offer ``marks`` run such a law.
-    8. ``normal_motion(state)`` returns the normal motion from first touch to the instant of
-       ``state``, if the friction changes it. The results are then those of this motion. Only
-       integrators that offer ``normal_motion`` run such a law.
 
     Parameters of methods
     ---------------------
@@ -276,24 +271,6 @@ class SteppedTangentialLaw(TangentialLaw):
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return an upper bound of the tangential stiffness, in N/m, of the batch shape."""
         return 0.0
-
-    def marks(self, scene: Scene, normal: NormalMotion) -> Array | None:
-        """Return the phases of ``normal`` at which steps must end; None, the default, for none.
-
-        Returns
-        -------
-        array, shape (M,), or (M, ...) of a batch; or None
-            Between 0 and pi, growing along the first axis.
-        """
-        return None
-
-    def normal_motion(self, state: Any) -> NormalMotion | None:
-        """Return the normal motion that came of the friction, up to the instant of ``state``.
-
-        None, the default, means that friction does not change the normal motion.
-        ``contactlab.contracts.SampledMotion`` makes a motion from samples.
-        """
-        return None
 
     def path_cautions(self) -> tuple[str, ...]:
         """Return one sentence for each doubt about the law along a prescribed path; none here."""

@@ -36,7 +36,7 @@ ORDER = (
     "every_law", "normal", "normal_contact", "normal_motions", "motion", "stepping", "friction",
     "stiffness", "energy", "memory", "point", "impacts", "whole_impacts", "coulomb", "unlike",
     "vectors", "rigid_bodies", "integrators", "integrator_faults", "accuracy", "declared_errors",
-    "coupled",
+    "declarations",
 )  # fmt: skip
 for _module in ORDER:
     importlib.import_module(f"contactlab.testing.{_module}")

@@ -436,6 +436,24 @@ def test_the_adaptive_integrator_keeps_its_tolerance():
     assert result.psi2 == pytest.approx(EXACT.run(scene).psi2, abs=1e-4)
 
 
+@pytest.mark.parametrize("integrator", ["symplectic", "adaptive"])
+def test_an_impact_that_needs_too_many_steps_costs_its_batch_nothing(integrator):
+    """The second is so stiff along the surface that 10^9 steps would be needed."""
+    scene = EccentricScene.nondimensional(
+        psi1=np.array([1.0, 1.0, 2.0]), chi=np.array([0.8, 1e14, 0.8]), lam=0.2, eta=2.0
+    )
+    simulation = Simulation(tangential="springs", integrator=integrator)
+    result = simulation.run(scene)
+    assert list(result.status) == [Status.SUCCESS, Status.TOO_FEW_STEPS, Status.SUCCESS]
+    assert "needs at least" in result.failures[1]
+    assert np.isnan(result.psi2[1])
+    for place in (0, 2):
+        alone = simulation.run(scene.take(place))
+        assert result.psi2[place] == pytest.approx(alone.psi2, abs=1e-9)
+        assert alone.counters["steps"] > 0
+    assert simulation.run(scene.take(1)).status is Status.TOO_FEW_STEPS
+
+
 def test_a_batch_answers_as_its_impacts():
     scene = random_planar(6, 13)
     for simulation in (EXACT, springs(12, 60)):

@@ -9,7 +9,6 @@ import pytest
 import contactlab
 from contactlab import ImpactError, Material, Scene, Sphere, Status, load_path
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
-from contactlab.testing.coupled_laws import Exchanging
 
 MU, DEEP = 0.3, 1e-6
 BALL = Sphere(0.01, Material.named("steel"))
@@ -167,61 +166,11 @@ def test_a_rate_counts_if_times_are_given():
 
 
 @attrs.frozen(kw_only=True)
-class Marked(SteppedTangentialLaw):
-    """A spring that notes where its steps end."""
-
-    api_version: ClassVar[int] = 2
-    ends: list = attrs.field(factory=list, eq=False, repr=False)
-
-    def marks(self, scene, normal):
-        return np.array([0.5, 1.5, 3.0])
-
-    def start(self, scene, normal):
-        self.ends.append(normal)
-        return 0.0 * np.asarray(scene.friction_coefficient)
-
-    def advance(self, state, increment, before, after):
-        self.ends.append(np.array(after.overlap))
-        force = state + 1e6 * increment.displacement
-        return TangentialResponse(force, 0.0 * force), force
-
-
-def test_steps_of_a_path_end_at_marks():
-    law = Marked()
-    depth = np.concatenate((np.linspace(0.0, DEEP, 11), np.linspace(DEEP, 0.0, 11)[1:]))
-    moved = np.linspace(0.0, FULL, 21)
-    path = load_path(SCENE, depth, moved, tangential=law)
-    motion, *ends = law.ends
-    assert len(ends) == 24
-    for phase in (0.5, 1.5, 3.0):
-        assert np.abs(np.array(ends) - motion.at(phase).approach).min() < 1e-12 * DEEP
-    assert path.friction_force == pytest.approx(1e6 * moved, rel=1e-9)
-    assert path.approach is not None
-    assert len(path.normal_force) == 21
-    batch = load_path(SCENE, np.stack((depth, 2.0 * depth), axis=1), moved[:, None], tangential=law)
-    assert batch.friction_force[:, 1] == pytest.approx(1e6 * moved, rel=1e-9)
-
-
-def test_a_path_with_marks_may_begin_in_contact():
-    """It is pressed from touch to its first point at the displacement of that point."""
-    law = Marked()
-    depth = np.concatenate((np.linspace(0.0, DEEP, 11), np.linspace(DEEP, 0.0, 11)[1:]))[3:]
-    moved = np.linspace(0.0, FULL, 21)[3:]
-    path = load_path(SCENE, depth, moved, tangential=law)
-    motion, *ends = law.ends
-    for phase in (0.5, 1.5, 3.0):
-        assert np.abs(np.array(ends) - motion.at(phase).approach).min() < 1e-12 * DEEP
-    assert path.friction_force == pytest.approx(1e6 * (moved - moved[0]), rel=1e-9, abs=1e-15)
-
-
-@attrs.frozen(kw_only=True)
-class Fails(Marked):
+class Fails(SteppedTangentialLaw):
     """NaN, an exception or no answer from a tenth of FULL on, where mu is 0.5 or more."""
 
+    api_version: ClassVar[int] = 2
     way: str = "nan"
-
-    def marks(self, scene, normal):
-        return None
 
     def start(self, scene, normal):
         return np.asarray(scene.friction_coefficient) + 0.0 * normal.duration, 0.0
@@ -273,7 +222,6 @@ PATH = np.full(4, DEEP)
         ((SCENE, PATH, PATH), {"time": [0.0, 1.0, 1.0, 2.0]}, "must grow"),
         ((SCENE, PATH, PATH), {"tangential": "coulomb"}, "must answer to steps"),
         ((SCENE, PATH, PATH), {"tangential": "springz"}, "springs"),
-        ((SCENE, PATH, PATH), {"tangential": Exchanging()}, "prescribed"),
         (("steel", PATH, PATH), {}, "must be a Scene"),
     ],
 )

@@ -26,10 +26,6 @@ class Spring(SteppedTangentialLaw):
     api_version: ClassVar[int] = 2
     fault: str = ""
     at: int = 3
-    asked: tuple = ()
-
-    def marks(self, scene, normal):
-        return np.array(self.asked) if self.asked else None
 
     def start(self, scene, normal):
         return 0, 0.0
@@ -150,17 +146,6 @@ def test_the_first_law_that_fails_is_blamed():
     assert made.status is Status.NON_FINITE
     assert made.detail == "At step 2: a contact that is not finite, from Torn."
     assert np.isfinite(made.friction_work).tolist() == [True, False, False, False]
-
-
-@pytest.mark.parametrize("asked", [(0.5, 1.5), ((0.5, 0.4), (1.5, 1.6))])
-def test_marks_of_a_batch_are_shared_or_of_each_path(asked):
-    made = path(BATCH, Spring(asked=asked)).check()
-    plain = path(BATCH)
-    assert made.friction_force == pytest.approx(plain.friction_force, abs=1e-12)
-    assert made.normal_force == pytest.approx(plain.normal_force)
-    assert made.time == pytest.approx(plain.time)
-    assert made.friction_work[-1] == pytest.approx([12.0, 12.0])  # 2 J at each of six ends
-    assert made.fields["moved"].shape == (4, 2)
 
 
 @attrs.frozen(kw_only=True)

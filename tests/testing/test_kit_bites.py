@@ -16,12 +16,12 @@ from contactlab.testing import (
 )
 from contactlab_laws.mindlin import MindlinCap
 from tests.testing import broken_clauses as clauses
-from tests.testing import broken_couplings as couplings
 from tests.testing import broken_declarations as declarations
 from tests.testing import broken_impacts as impacts
 from tests.testing import broken_integrators as integrators
 from tests.testing import broken_laws as laws
 from tests.testing import broken_normal as normal
+from tests.testing import broken_partners as partners
 from tests.testing import broken_rigid as rigid
 from tests.testing import broken_vectors as vectors
 from tests.testing import fresh_faults, sentences
@@ -38,7 +38,7 @@ BROKEN = [
     *normal.BROKEN,
     *integrators.BROKEN,
     *clauses.BROKEN,
-    *couplings.BROKEN,
+    *partners.BROKEN,
     *fresh_faults.FAULTS,
     *rigid.BROKEN,
     *vectors.BROKEN,

@@ -10,7 +10,6 @@ import contactlab
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import Increment, NormalContact
 from contactlab.testing import laws
-from contactlab.testing.coupled_laws import MARKS, SPREAD, Coupled, Exchanging, Marked
 from contactlab.testing.load_paths import scene
 
 CHI = 1.4411764706
@@ -162,47 +161,3 @@ def test_pulling_hertz_is_hertz_less_a_twentieth_of_the_maximum():
         assert contact == pytest.approx((hertz - pull, width, depth, hertz), rel=1e-9)
     for depth in (0.0, -1e-6):
         assert law.respond(law.start(SCENE), depth, 0.0)[0] == (0.0, 0.0, depth, 0.0)
-
-
-def test_a_coupling_moves_both_ways_by_the_forces_of_its_energy():
-    """The energy ½ c z² D² gives F = c z² D and a normal force of c z D² above Hertz's."""
-    law, pair = Exchanging(), SCENE.pair
-    depth, speed = NORMAL.maximum_approach, SCENE.normal_speed
-    constant = pair.tangential_mass * speed**2 / depth**4  # c C⁴R² (C²R/v1)² = M_t
-    assert law.stiffness(SCENE, NORMAL) == pytest.approx(constant * depth**2, rel=1e-14)
-    state = law.start(SCENE, NORMAL)
-    assert state[1:] == (0.0, 0.0, 0.0, speed, ())
-    response, after = law.advance(state, moved(0.3, duration=0.02, drift=0.01), LOADED, LOADED)
-    z, d = 0.01 * speed, 0.3
-    hertz = 4.0 / 3.0 * pair.effective_modulus * pair.radius**0.5 * z**1.5
-    pressure = hertz + constant * z * d**2
-    slowed = pressure * 0.02 / pair.normal_mass
-    assert response.force == pytest.approx(constant * z**2 * d, rel=1e-13)
-    assert response.friction_work == 0.0
-    assert (after.displacement, after.time) == (d, 0.01)
-    assert (after.approach, after.rate) == pytest.approx((z, speed - slowed))
-    contact = (pressure, (pair.radius * z) ** 0.5, z, pressure)
-    assert after.samples[0][:3] == pytest.approx((0.01, z, speed - 0.5 * slowed))
-    assert after.samples[0][3] == pytest.approx(contact)
-    _, last = law.advance(after, moved(0.0, duration=0.01, drift=0.01), LOADED, LOADED)
-    motion = law.normal_motion(last)
-    assert motion.duration == 0.02
-    assert motion.final_rate == last.rate
-    assert motion.at(0.5 * math.pi).rate == pytest.approx(speed - 0.5 * slowed)
-    away = Coupled(NORMAL, 0.1, 0.0, -1e-3, 0.0, ())
-    apart, after = law.advance(away, moved(drift=0.01), LOADED, LOADED)
-    assert apart.force == 0.0
-    assert after.samples[0][3] == (0.0, 0.0, -1e-3, 0.0)
-    assert law.start(BATCH, HERTZ.motion(BATCH)).approach.tolist() == [0.0, 0.0, 0.0]
-
-
-def test_marks_differ_from_impact_to_impact_and_steps_are_kept():
-    law = Marked()
-    assert law.marks(SCENE, NORMAL).tolist() == list(MARKS)
-    marks = law.marks(BATCH, HERTZ.motion(BATCH))
-    expected = [[mark + SPREAD * index for index in range(3)] for mark in MARKS]
-    assert marks == pytest.approx(np.array(expected))
-    law.advance(law.start(SCENE, NORMAL), moved(0.1), LOADED, LOADED)
-    [(increment, after)] = law.seen
-    assert (increment[:4], after) == (moved(0.1)[:4], LOADED)
-    assert law == Marked()

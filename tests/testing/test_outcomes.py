@@ -212,7 +212,7 @@ def test_words_that_a_law_may_offer_are_those_that_checks_test():
     contracts = contactlab.contracts
     assert claims(contracts.NormalLaw) == {"radius", "hertzian_pressure", "elastic_hertz"}
     assert claims(contracts.TangentialLaw) == {"partial_slip", "rigid", "no_friction"}
-    assert claims(contracts.Integrator) == {"marks", "normal_motion"}
+    assert claims(contracts.Integrator) == set()
 
 
 def test_what_a_parameter_must_refuse_depends_on_its_type():

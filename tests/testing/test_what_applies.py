@@ -8,13 +8,12 @@ import pytest
 
 from contactlab.contracts import TangentialMotion
 from contactlab.testing import CHECKS, Verdict, checks_for, normal_motions, outcome
-from contactlab.testing.coupled_laws import Marked
 from contactlab.testing.faulty_laws import SpoiledHertz
 from tests.laws.outside_laws import Adhesive
 from tests.testing.broken_clauses import RunsItsOwnLawsOnly
-from tests.testing.broken_couplings import STEPS, Seen
 from tests.testing.broken_laws import Sound
 from tests.testing.broken_normal import Stepwise
+from tests.testing.broken_partners import STEPS, Seen
 from tests.testing.fresh_sound import HardSphere, Press
 
 BOOKS = "It runs neither of the laws of the kit whose books close."
@@ -51,14 +50,6 @@ class AnswersNothing(Sound):
 
     def whole_impacts(self, scene, normal):
         return ()
-
-
-class MarksEach(Sound):
-    """Marks of two phases, other ones for each impact of a batch."""
-
-    def marks(self, scene, normal):
-        shift = 0.1 * np.arange(max(1, int(np.prod(scene.shape)))).reshape(scene.shape)
-        return np.stack((0.5 + shift, 2.0 + shift))
 
 
 class RefusesNan(Sound):
@@ -114,7 +105,6 @@ CASES = [
     (WithoutResolution(), "resolution_told", "It has no resolution."),
     (WithoutResolution(), "order", "It declares no order."),
     (SpoiledHertz(), "motion_accuracy", "Its motion declares no accuracy."),
-    (Sound(), "marks_grow", "It has no marks."),
     (Stepwise(), "dissipation", "It declares none."),
     (GLUED, "rebounds", "At no speed do the bodies part: adhesion holds them."),
     (GLUED, "normal_passive", "Adhesion holds the surfaces far behind first touch: no cycle is "
@@ -135,8 +125,6 @@ CASES = [
      "radius."),
 ]  # fmt: skip
 SOUND = [
-    (MarksEach(), "marks_grow"),
-    (Marked(), "marks_grow"),
     (RefusesNan(), "non_finite"),
     (NanAlone(), "non_finite"),
     (RefusesNanDepth(), "contacts_non_finite"),

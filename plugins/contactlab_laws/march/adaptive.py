@@ -33,9 +33,9 @@ from contactlab_laws.march.fixed import (
     in_groups,
     needed_steps,
     refined,
+    refusals,
 )
 from contactlab_laws.march.march import march
-from contactlab_laws.march.tied import march_tied
 
 TOLERANCE = Rule(
     lambda value: np.ndim(value) == 0 and 1e-12 <= value <= 1.0,
@@ -77,7 +77,6 @@ class Adaptive(EccentricIntegrator):
     """
 
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"marks", "normal_motion"})
     resolution: ClassVar[str | None] = "tolerance"
     tangential_contract: ClassVar[Any] = SteppedTangentialLaw
 
@@ -122,25 +121,53 @@ class Adaptive(EccentricIntegrator):
 
         The tolerance is that of the velocities over the greatest of them at first touch.
         """
-        scale = np.abs(scene.velocity).max(axis=-1)
-        count = np.maximum(
-            eccentric.needed_steps(scene, normal, tangential, LARGEST_PHASE_STEP), FIRST
-        )
-        before = eccentric.march_eccentric(scene, normal, tangential, count, None)
-        while True:
-            count = 2 * count
-            if np.max(count) > MOST_STEPS:
-                return EccentricMotion.nothing(
-                    scene.shape, Status.UNRESOLVED, f"After {count} steps."
-                )
-            last = eccentric.march_eccentric(scene, normal, tangential, count, None)
-            moved = np.abs(last.velocity_change - before.velocity_change).max(axis=-1)
-            if not np.any(moved > 3.0 * self.tolerance * scale):
-                break
-            before = last
+        needed = eccentric.needed_steps(scene, normal, tangential, LARGEST_PHASE_STEP)
+        count = np.where(needed <= MOST_STEPS, np.maximum(needed, FIRST), np.inf)
+        refused = Status.TOO_FEW_STEPS, refusals(FIRST, needed)
+        before = eccentric.march_eccentric(scene, normal, tangential, count, None, refused)
+        if not np.any(before.status == Status.SUCCESS):
+            return before
+        motion, count = self._doubled_eccentric(scene, normal, tangential, count, before)
+        if scene.shape:
+            failed = before.status != Status.SUCCESS
+            motion.status[failed], motion.detail[failed] = (
+                before.status[failed],
+                before.detail[failed],
+            )
         if observer is not None:
             eccentric.march_eccentric(scene, normal, tangential, count, observer)
-        return last
+        return motion
+
+    def _doubled_eccentric(
+        self,
+        scene: EccentricScene,
+        normal: NormalMotion,
+        law: IncrementalTangentialLaw,
+        count: Any,
+        before: EccentricMotion,
+    ) -> tuple[EccentricMotion, Any]:
+        """Return motion and steps of each impact, doubled from ``before``, in ``count`` steps."""
+        finer = np.where(2.0 * count <= MOST_STEPS, 2.0 * count, np.inf)
+        sentence = "A velocity still changes by more than the tolerance at the most steps."
+        refused = Status.UNRESOLVED, sentence
+        last = eccentric.march_eccentric(scene, normal, law, finer, None, refused)
+        moved = np.abs(last.velocity_change - before.velocity_change).max(axis=-1)
+        allowed = 3.0 * self.tolerance * np.abs(scene.velocity).max(axis=-1)
+        left = (moved > allowed) & (last.status == Status.SUCCESS)
+        if not np.any(left):
+            return last, finer
+        if not scene.shape:
+            return self._doubled_eccentric(scene, normal, law, finer, last)
+        columns = attrs.asdict(last, recurse=False)
+        del columns["counters"]
+        middle = attrs.evolve(last, **{name: column[left] for name, column in columns.items()})
+        more, most = self._doubled_eccentric(
+            scene.take(left), normal.take(left), law, finer[left], middle
+        )
+        for name, column in columns.items():
+            column[left] = getattr(more, name)
+        finer[left] = most
+        return attrs.evolve(last, **columns, counters=more.counters), finer
 
     def _doubled(
         self,
@@ -200,9 +227,7 @@ def _succeeded(motion: TangentialMotion) -> bool:
 def _march(
     normal: NormalMotion, law: SteppedTangentialLaw, count: int, observer: Observer | None = None
 ) -> TangentialMotion:
-    """Return the motion in ``count`` steps: even and sampled in their middles, or tied to marks."""
-    if (tied := march_tied(normal, law, count, observer, least=FIRST)) is not None:
-        return tied
+    """Return the motion in ``count`` steps that are even."""
     with faults.blaming(normal.law):
         steps = midpoints(normal, count)
     return march(normal, law, steps, observer)

@@ -67,9 +67,19 @@ def march_eccentric(
     law: IncrementalTangentialLaw,
     count: Any,
     observer: EccentricObserver | None,
+    refused: tuple[Status, Any] = (Status.TOO_FEW_STEPS, ""),
 ) -> EccentricMotion:
-    """Return the motion in ``count`` steps an approach without friction, one for each impact."""
-    return _March(scene, normal, law, count).run(observer)
+    """Return the motion in ``count`` steps an approach without friction, one for each impact.
+
+    An impact whose count is infinite is not followed; ``refused`` is its status, with detail.
+    """
+    possible = np.isfinite(count)
+    if not np.any(possible):
+        return EccentricMotion.nothing(scene.shape, *refused)
+    march = _March(scene, normal, law, count)
+    if not np.all(possible):
+        march.leave(~np.broadcast_to(possible, scene.shape), *refused)
+    return march.run(observer)
 
 
 class _March:
@@ -90,7 +100,7 @@ class _March:
             return float(value) if plain else np.array(np.broadcast_to(value, scene.shape))
 
         self.step = entry(np.asarray(normal.duration) / count)
-        self.most = int(LONGEST * np.max(count))
+        self.most = int(LONGEST * np.max(count, where=np.isfinite(count), initial=1.0))
         W, size = scene.inverse_mass, 1 + self.axes
         self.W = [[entry(W[..., i, j]) for j in range(size)] for i in range(size)]
         slip = scene.slip_velocity
@@ -105,6 +115,11 @@ class _March:
         self.steps = 0
         self.status: Any = filled(Status.SUCCESS, scene.shape)
         self.detail: Any = filled("", scene.shape)
+
+    def leave(self, where: Any, status: Status, detail: Any) -> None:
+        """Leave impacts of a batch out."""
+        self.status[where], self.detail[where] = status, np.broadcast_to(detail, where.shape)[where]
+        self.alive &= ~where
 
     def run(self, observer: EccentricObserver | None) -> EccentricMotion:
         """Return the motion to the end of contact of all impacts."""

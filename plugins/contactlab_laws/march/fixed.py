@@ -30,7 +30,6 @@ from contactlab.numeric.arrays import for_share
 from contactlab.numeric.checks import Real, count, flag
 from contactlab_laws.march import eccentric
 from contactlab_laws.march.march import march
-from contactlab_laws.march.tied import march_tied
 
 #: Largest omega dt of the fastest tangential oscillation. From 2 on the leapfrog is unstable
 #: (theory §4) and wrong by any amount. Below 2 it is stable, but at 1/2 the phase is off by 1 % a
@@ -93,6 +92,12 @@ def refusal(steps: int, needed: float) -> str:
     return f"steps = {steps}; this scene needs at least {needed:.6g}."
 
 
+def refusals(steps: int, needed: Any) -> Any:
+    """Return the detail of ``TOO_FEW_STEPS`` for each impact."""
+    details = np.vectorize(lambda each: refusal(steps, each), otypes=[object])(needed)
+    return details if np.ndim(needed) else details.item()
+
+
 def in_groups(
     normal: NormalMotion, steps: int, needed: Any, taken: Any, even: EvenMarch
 ) -> TangentialMotion:
@@ -123,9 +128,6 @@ def in_groups(
 class FixedSteps(EccentricIntegrator):
     """Even steps over the contact's duration, under any normal law; a subclass samples them.
 
-    Under a law with marks a step ends at each mark, steps are even between marks, and the contact
-    is sampled at their ends.
-
     Parameters
     ----------
     steps : int
@@ -135,7 +137,6 @@ class FixedSteps(EccentricIntegrator):
         or refuse with the status ``TOO_FEW_STEPS`` and the number needed.
     """
 
-    offers: ClassVar[frozenset[str]] = frozenset({"marks", "normal_motion"})
     resolution: ClassVar[str | None] = "steps"
     order: ClassVar[int | None] = 2
     tangential_contract: ClassVar[Any] = SteppedTangentialLaw
@@ -191,8 +192,6 @@ class FixedSteps(EccentricIntegrator):
         assert isinstance(law, SteppedTangentialLaw)
 
         def even(normal: NormalMotion, number: int) -> TangentialMotion:
-            if (tied := march_tied(normal, law, number, observer)) is not None:
-                return tied
             with faults.blaming(normal.law):
                 steps = self.divide(normal, number)
             return march(normal, law, steps, observer)
@@ -215,8 +214,7 @@ class FixedSteps(EccentricIntegrator):
     ) -> EccentricMotion:
         """Return the motion, ``steps`` counted on the approach without friction."""
         needed = eccentric.needed_steps(scene, normal, tangential, LARGEST_PHASE_STEP)
-        taken = np.maximum(self.steps, needed)
-        if (not self.refine and np.any(needed > self.steps)) or not np.all(taken <= MOST_STEPS):
-            detail = refusal(self.steps, float(np.max(needed)))
-            return EccentricMotion.nothing(scene.shape, Status.TOO_FEW_STEPS, detail)
-        return eccentric.march_eccentric(scene, normal, tangential, taken, observer)
+        most = MOST_STEPS if self.refine else self.steps
+        taken = np.where(needed <= most, np.maximum(self.steps, needed), np.inf)
+        refused = Status.TOO_FEW_STEPS, refusals(self.steps, needed)
+        return eccentric.march_eccentric(scene, normal, tangential, taken, observer, refused)

@@ -38,9 +38,7 @@ def march(
     if normal.scene.shape:
         keep_freed_memory()
     stepwise = observer is not None and getattr(observer, "stepwise", True)
-    # A law that changes the normal motion is asked for it at its last state.
-    together = not stepwise and not _moves(law)
-    if together and isinstance(law, AllStepsTangentialLaw):
+    if not stepwise and isinstance(law, AllStepsTangentialLaw):
         motion = _all_at_once(normal, law, steps, observer)
         if motion is not None:
             return motion
@@ -145,15 +143,12 @@ def _one_by_one(
             if observer is not None:
                 middle, fields = velocity - 0.5 * slowed, partial(law.fields, state)
                 moment = step.time, step.approach, step.rate, contact
-                if (own := law.normal_motion(state)) is not None:
-                    moment = own.at(math.pi)[:4]
                 observer(Sample(*moment, middle, force, fields))
             velocity = initial + change
             if response.settled is not True and not np.all(response.settled):
                 raise faults.LawFaultError(Status.UNSETTLED, "no division found")
             if not (math.isfinite(force) if single else np.isfinite(force).all()):
                 raise faults.LawFaultError(Status.NON_FINITE, f"force {_number(force)}")
-        own = law.normal_motion(state)
     except KeyboardInterrupt:
         raise
     except faults.LawFaultError as raised:
@@ -162,12 +157,7 @@ def _one_by_one(
     except BaseException as error:  # a plug-in may not end the process
         sentence = faults.sentence(law, faults.raised(error), count, time)
         fault = faults.LawFaultError(Status.LAW_RAISED, sentence)
-    return _ended(normal, law, change, work, count, fault, None if fault else own)
-
-
-def _moves(law: SteppedTangentialLaw) -> bool:
-    """Return whether the law may change the normal motion."""
-    return type(law).normal_motion is not SteppedTangentialLaw.normal_motion
+    return _ended(normal, law, change, work, count, fault)
 
 
 def _ended(
@@ -177,7 +167,6 @@ def _ended(
     work: Real,
     count: int,
     fault: faults.LawFaultError | None,
-    own: NormalMotion | None = None,
 ) -> TangentialMotion:
     """Return the motion up to ``fault``; friction work that is not finite is a failure too."""
     if fault is None and not _finite(work):
@@ -190,7 +179,6 @@ def _ended(
         status=filled(Status.SUCCESS if fault is None else fault.status, shape),
         detail="" if fault is None else fault.detail,
         counters={"steps": count},
-        normal=own,
     )
 
 

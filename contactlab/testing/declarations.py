@@ -1,0 +1,104 @@
+"""Checks of what a law tells beyond forces: drift, bounds, dissipation, partners."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.registry import REGISTRY
+from contactlab.contracts import (
+    Increment,
+    Integrator,
+    Law,
+    NormalContact,
+    NormalLaw,
+    SteppedTangentialLaw,
+    TangentialLaw,
+    TangentialResponse,
+)
+from contactlab.impact.scene import Scene
+from contactlab.testing.check import apply_if, check, hold
+from contactlab.testing.integrators import CHI
+from contactlab.testing.laws import Yield, Yielding
+from contactlab.testing.load_paths import scene
+
+#: Bound of displacement less velocity times drift, over the greatest displacement.
+AT = 1e-9
+#: Bound of the declared dissipation's error, over the energy of the normal motion.
+LOST = 1e-6
+#: Impacts of the batches of these checks.
+ANGLES = (0.4, 1.2, 2.5)
+
+
+@attrs.frozen(kw_only=True)
+class Noting(Yielding):
+    """``Yielding`` that keeps the increments of its steps."""
+
+    seen: list[Increment] = attrs.field(factory=list, eq=False, repr=False)
+
+    def advance(
+        self, state: Yield, increment: Increment, before: NormalContact, after: NormalContact
+    ) -> tuple[TangentialResponse, Yield]:
+        """Return the force of the spring, and keep the step."""
+        self.seen.append(increment)
+        return super().advance(state, increment, before, after)
+
+
+@check(Integrator)
+def drift(integrator: Any) -> None:
+    """The displacement of a step is velocity times drift, if the drift is told (Increment)."""
+    apply_if(issubclass(SteppedTangentialLaw, integrator.tangential_contract), "It has no steps.")
+    law, impact = Noting(), scene(ANGLES[1], CHI)
+    normal = normal_motion(REGISTRY.create("normal.hertz"), impact)
+    integrator.integrate(normal, law, impact, None)
+    apply_if(law.seen, "It did not ask the law.")
+    told = np.array([step[:2] + step[4:] for step in law.seen], dtype=np.float64)
+    moved, velocity, drifts = told.T
+    apply_if(not np.isnan(drifts).all(), "It does not tell the drift.")
+    gap = float(np.max(np.abs(moved - velocity * drifts)) / np.max(np.abs(moved)))
+    hold(gap <= AT, f"Displacements are {gap:.2g} off velocity times drift. Bound: {AT:.2g}.")
+
+
+@check(TangentialLaw)
+def books_bound_told(law: Any) -> None:
+    """The bound of the energy books is a number >= 0 for each impact (TangentialLaw, 7)."""
+    for impact in (scene(ANGLES[1], CHI), scene(np.array(ANGLES), CHI)):
+        bound = np.asarray(law.books_bound(impact), dtype=np.float64)
+        good = bound.shape in ((), impact.shape) and (bound >= 0.0).all()
+        hold(good, f"books_bound = {bound!r}: must be at least 0, of shape {impact.shape} or ().")
+
+
+@check(NormalLaw)
+def dissipation(law: Any) -> None:
+    """The declared dissipation is the loss of an impact without friction (NormalLaw, 7)."""
+    for impact in (scene(ANGLES[1], CHI), scene(np.array(ANGLES), CHI)):
+        motion = normal_motion(law, impact)
+        declared = np.asarray(law.dissipation(motion), dtype=np.float64)
+        apply_if(not np.isnan(declared).all(), "It declares none.")
+        energy = 0.5 * impact.pair.normal_mass * np.square(impact.normal_speed)
+        lost = energy - 0.5 * impact.pair.normal_mass * np.square(motion.final_rate)
+        gap = float(np.max(np.abs(lost - declared) / energy))
+        hold(
+            gap <= LOST,
+            f"An impact without friction loses another energy than is declared: off by {gap:.2g} "
+            f"of the energy of the normal motion. Bound: {LOST:.2g}.",
+        )
+
+
+@check(Law)
+def partners(law: Law) -> None:
+    """Partners and scenes are refused by a sentence, or not at all (Law, 8)."""
+    for name in ("normal.hertz", "tangential.springs", "integrator.symplectic"):
+        other = REGISTRY.create(name)
+        if other.kind != law.kind:
+            reason = law.refuses(other)
+            told = reason is None or (isinstance(reason, str) and bool(reason.strip()))
+            hold(told, f"refuses({name}) returned {reason!r}: must be None, or a reason.")
+    for impact in (scene(ANGLES[1], CHI), Scene.nondimensional(psi1=1.0, chi=CHI)):
+        try:
+            law.accept(impact)
+        except ValueError as error:
+            hold(str(error), "It refuses a scene without a word.")
