@@ -189,8 +189,9 @@ def _non_finite_in_a_batch(law: Any) -> None:
         "nothing were wrong.",
     )
     others = [0, 2]
-    hold(
-        np.array_equal(force[others], np.asarray(sound.force)[others]),
+    alike = np.asarray(sound.force)[others]
+    hold(  # a product of matrices rounds as the size of its batch has it
+        np.all(np.abs(force[others] - alike) <= ROUNDING * np.abs(alike)),
         "NaN as the slip of one contact of a batch changes the force of the others.",
     )
 
