@@ -158,16 +158,14 @@ class Adaptive(EccentricIntegrator):
             return last, finer
         if not scene.shape:
             return self._doubled_eccentric(scene, normal, law, finer, last)
-        columns = attrs.asdict(last, recurse=False)
-        del columns["counters"]
-        middle = attrs.evolve(last, **{name: column[left] for name, column in columns.items()})
+        middle = attrs.evolve(
+            last, velocity_change=last.velocity_change[left], status=last.status[left]
+        )
         more, most = self._doubled_eccentric(
             scene.take(left), normal.take(left), law, finer[left], middle
         )
-        for name, column in columns.items():
-            column[left] = getattr(more, name)
         finer[left] = most
-        return attrs.evolve(last, **columns, counters=more.counters), finer
+        return eccentric.filled_in(last, left, more), finer
 
     def _doubled(
         self,

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import attrs
 import numpy as np
 
 from contactlab.contracts import (
@@ -80,6 +81,16 @@ def march_eccentric(
     if not np.all(possible):
         march.leave(~np.broadcast_to(possible, scene.shape), *refused)
     return march.run(observer)
+
+
+def filled_in(motion: EccentricMotion, where: Any, part: EccentricMotion) -> EccentricMotion:
+    """Return the motion of a batch with that of the impacts ``where`` from ``part``."""
+    columns = attrs.asdict(motion, recurse=False)
+    del columns["counters"]
+    for name, column in columns.items():
+        column[where] = getattr(part, name)
+    steps = max(motion.counters.get("steps", 0), part.counters.get("steps", 0))
+    return attrs.evolve(motion, **columns, counters={"steps": steps})
 
 
 class _March:
