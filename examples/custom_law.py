@@ -2,7 +2,8 @@
 
 The spring of discrete-element codes: Mindlin's stiffness of a contact that sticks all over,
 cut off at Coulomb's limit. It is compared with the paper's contact, which slips from its
-edge inwards. Writes ``custom_law.png`` in the current folder.
+edge inwards: on the left the force of both as a pressed contact is moved and moved back, on the
+right the rebounds. Writes ``custom_law.png`` in the current folder.
 """
 
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab import Scene, Simulation
+from contactlab import Material, Scene, Simulation, Sphere, load_path
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from contactlab.figures import law_style, name_curves, save
 
@@ -69,9 +70,12 @@ class MindlinCap(SteppedTangentialLaw):
 
 if __name__ == "__main__":
     psi1 = np.array([0.5, 1.0, 1.2, 2.0, 3.0, 4.0])
+    laws = {
+        "mindlin cap, mine": Simulation(tangential=MindlinCap(), integrator="symplectic"),
+        "annulus": Simulation(tangential="annulus", integrator="symplectic"),
+    }
     scene = Scene.nondimensional(psi1=psi1, chi=1.4412)
-    mine = Simulation(tangential=MindlinCap(), integrator="symplectic").run(scene).check()
-    paper = Simulation(tangential="annulus", integrator="symplectic").run(scene).check()
+    mine, paper = (law.run(scene).check() for law in laws.values())
     print("psi1   mindlin cap   annulus")
     for row in zip(psi1, mine.psi2, paper.psi2, strict=True):
         print("{:4.1f}   {:11.4f}   {:7.4f}".format(*row))
@@ -82,15 +86,26 @@ if __name__ == "__main__":
         print(f"energy unaccounted for, {name}: {share:.2%}")
 
     def draw(axes):
-        """Draw the rebounds under both laws."""
-        both = {"mindlin cap": mine, "annulus": paper}
+        """Draw the law, force over displacement at a constant load, and the rebounds."""
+        ball = Sphere(0.01, Material.named("steel"))
+        pressed = Scene(ball, ball, 0.3, normal_speed=1.0)
+        rise = np.linspace(0.0, 3.0e-6, 200)
+        depth = np.concatenate((np.linspace(0.0, 1e-5, 100), np.full(400, 1e-5)))
+        moved = np.concatenate((np.zeros(100), rise, rise[::-1]))
+        over = np.linspace(0.0, 5.0, 200)
+        many = Scene.nondimensional(psi1=over, chi=1.4412)
         lines = []
-        for number, result in enumerate(both.values()):
-            lines += axes.plot(psi1, result.psi2, marker="o", **law_style(number))
-        axes.set(
+        for number, (name, law) in enumerate(laws.items()):
+            path = load_path(pressed, depth, moved, tangential=law.tangential)
+            force = path.friction_force / (0.3 * path.normal_force[-1])
+            axes[0, 0].plot(1e6 * moved[100:], force[100:], label=name, **law_style(number))
+            lines += axes[0, 1].plot(over, law.run(many).psi2, **law_style(number))
+        axes[0, 0].set(xlabel="displacement (µm)", ylabel=r"force over $\mu P$")
+        axes[0, 0].legend(loc="lower right")
+        axes[0, 1].set(
             xlabel=r"local angle of incidence $\psi_1$", ylabel=r"local angle of reflexion $\psi_2$"
         )
-        axes.axhline(0.0, color="grey", lw=0.8, zorder=0)
-        name_curves(axes, lines, list(both))
+        axes[0, 1].axhline(0.0, color="grey", lw=0.8, zorder=0)
+        name_curves(axes[0, 1], lines, list(laws))
 
-    save(Path("custom_law.png"), draw)
+    save(Path("custom_law.png"), draw, columns=2)

@@ -37,6 +37,8 @@ POINTS: dict[str, Any] = {
 
 #: A law within this share of the range from the first law is named beside the first, not drawn.
 AS_GOOD_AS = 0.01
+#: Quantities that are drawn less the abscissa: what the law changes, and no diagonal.
+LESS = {("rebound_angle_deg", "angle_deg"): "rebound angle less angle of incidence (°)"}
 FORM_DASHES: tuple[Any, ...] = ("-", (0, (6, 1.5)), (0, (2.5, 1.2)), (0, (1, 1)))
 MARKERS = "os^Dv"
 #: The names of points, above the curves.
@@ -185,25 +187,28 @@ def laws_over_sweep(
         Agreement with measured values, which are drawn too.
     """
     varied, x, ordered = _abscissa(comparison, agreement)
+    words = LESS.get((quantity, varied))
+
+    def drawn(values: Any, at: Any) -> Any:
+        return values if words is None else values - at
+
     for number, name in enumerate(comparison.names):
-        values = ordered(comparison.values(quantity, name))
+        values = drawn(ordered(comparison.values(quantity, name)), x)
         axes.plot(x, values, label=verbatim(name), **law_style(number))
-    for number, name in enumerate(comparison.names):
-        values = ordered(comparison.values(quantity, name))
         half = ordered(comparison.band(quantity, name))
         error_band(axes, x, values, half, law_style(number))
     if agreement is not None:
         measured = agreement.measured
         axes.errorbar(
             measured.x,
-            measured.values,
+            drawn(measured.values, measured.x),
             xerr=measured.x_error,
             yerr=measured.error,
             label=verbatim(measured.label),
             **POINTS,
         )
     axes.set_xlabel(label(varied, entry_unit(varied)))
-    axes.set_ylabel(label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
+    axes.set_ylabel(words or label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
     parted = [name for name in _axes(comparison) if name != varied]
     if parted and varied in _axes(comparison):
         axes.set_title(f"a curve for each {' and '.join(map(verbatim, parted))}")
