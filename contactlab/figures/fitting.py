@@ -17,6 +17,8 @@ from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import QUANTITIES
 
 MARKERS = "os^Dv<"
+#: Impacts at which the curve of a law is drawn, beside those that were measured.
+SMOOTH = 100
 
 
 def draw_fits(path: Path, fits: Mapping[str, Fit], **look: Any) -> None:
@@ -47,9 +49,9 @@ def measured_and_laws(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axe
     for number, (name, fit) in enumerate(fits.items()):
         look = law_style(number) | {"marker": MARKERS[number % len(MARKERS)], "markersize": 3.0}
         present = np.isfinite(measured)
-        law = fit.predicted[quantity][present]
-        axes.plot(*_means(x[present], law), label=_legend(name, fit), markevery=[], **look)
-        axes.plot(x[present], law, **(look | {"linestyle": "none"}))
+        between, law = _curve(fit, x[present], present, quantity)
+        axes.plot(between, law, label=_legend(name, fit), markevery=[], **look)
+        axes.plot(x[present], fit.predicted[quantity][present], **(look | {"linestyle": "none"}))
     errors = first.measurements.errors.get(quantity)
     axes.errorbar(x, measured, yerr=errors, label="measured", **POINTS)
     axes.set_xlabel(words)
@@ -58,10 +60,17 @@ def measured_and_laws(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axe
     return axes
 
 
-def _means(x: Any, values: Any) -> tuple[Any, Any]:
-    """Return the distinct abscissas and the mean value at each, so that a curve has no steps."""
+def _curve(fit: Fit, x: Any, present: Any, quantity: str) -> tuple[Any, Any]:
+    """Return the law between the measured impacts: abscissas, and the quantity there."""
+    if not fit.measurements.given:
+        return x, fit.predicted[quantity][present]
     distinct, place = np.unique(x, return_inverse=True)
-    return distinct, np.bincount(place, values) / np.bincount(place)
+    between = np.unique(np.append(np.linspace(distinct[0], distinct[-1], SMOOTH), distinct))
+    entries = {
+        name: np.interp(between, distinct, np.bincount(place, values[present]) / np.bincount(place))
+        for name, values in fit.measurements.given.items()
+    }
+    return between, QUANTITIES[quantity].of(fit.predict(**entries))
 
 
 def residuals(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axes:

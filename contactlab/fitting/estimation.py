@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -30,8 +31,9 @@ from contactlab.fitting.plausible import unlikely_parameters
 from contactlab.fitting.problem import Problem, solved, starting
 from contactlab.fitting.slips import assumed, slips
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import refuse, whole
-from contactlab.outcome.result import ImpactError
+from contactlab.numeric.arrays import common_shape
+from contactlab.numeric.checks import real, refuse, whole
+from contactlab.outcome.result import ImpactError, ImpactResult
 from contactlab.scene_file import SceneFile
 
 Array = NDArray[np.float64]
@@ -125,7 +127,8 @@ def fit(
     try:
         determined.check_scatter(problem)
         determined.check_determined(problem, values)
-        outcome, reaches = _outcome(problem, table, values, diagnosis)
+        at = partial(_impacts, scene, problem.model, values)
+        outcome, reaches = _outcome(problem, table, values, diagnosis, at)
         determined.check_precise(problem, values, reaches)
         determined.check_single(problem, [values, *others])
     except ValueError as error:
@@ -228,8 +231,23 @@ def _solutions(
     return sorted(minima, key=problem.criterion) if len(minima) > 1 else minima
 
 
+def _impacts(scene: Any, model: Model, values: Array, entries: Mapping[str, Any]) -> ImpactResult:
+    """Return the impacts of ``entries`` at values of the parameters."""
+    columns = {name: np.atleast_1d(real(name, column)) for name, column in entries.items()}
+    size = common_shape(
+        {name: column.shape for name, column in columns.items()},
+        what="lengths", remedy="give one number, or as many as the others have",
+    )  # fmt: skip
+    given = {name: np.broadcast_to(column, size) for name, column in columns.items()}
+    return model.at(scene_of(scene, given, *size)).impacts(values)
+
+
 def _outcome(
-    problem: Problem, table: Measurements, values: Array, diagnosis: Diagnosis
+    problem: Problem,
+    table: Measurements,
+    values: Array,
+    diagnosis: Diagnosis,
+    impacts: Callable[[Mapping[str, Any]], ImpactResult],
 ) -> tuple[Fit, Array]:
     """Return the fit with intervals from the covariance, and their half-widths."""
     from scipy.special import stdtrit  # only a fit needs scipy
@@ -278,6 +296,7 @@ def _outcome(
             *error_notes(problem, values),
             *end_notes(problem, values, freedom),
         ),
+        impacts=impacts,
     )
     return outcome, reaches
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import attrs
@@ -14,6 +14,7 @@ from contactlab.fitting.measurements import Measurements
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
 from contactlab.outcome.columns import json_value
+from contactlab.outcome.result import ImpactResult
 
 Array = NDArray[np.float64]
 Interval = tuple[float, float]
@@ -71,6 +72,8 @@ class Fit:
         Errors of the model that the intervals do not hold, with their size where it is known.
     samples : int
         Samples of the bootstrap; fewer than requested after Ctrl-C, 0 without a bootstrap.
+    impacts : callable
+        Returns the impacts of a mapping of entries: see ``predict``.
     """
 
     parameters: Mapping[str, Estimate]
@@ -83,6 +86,23 @@ class Fit:
     notes: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
     samples: int = 0
+    impacts: Callable[[Mapping[str, Any]], ImpactResult]
+
+    def predict(self, **entries: Any) -> ImpactResult:
+        """Return other impacts of the fitted bodies and laws.
+
+        Parameters
+        ----------
+        **entries : float or array, shape (n,)
+            What was given beside the measured quantities, under the same names and in the same
+            units: ``predict(angle_deg=[10, 20, 30], speed=3.9)``.
+
+        Raises
+        ------
+        ValueError
+            If an entry is not of the scene, or has another length.
+        """
+        return self.impacts(entries)
 
     def __getitem__(self, name: str) -> float:
         """Return the value of a parameter."""

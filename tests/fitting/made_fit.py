@@ -19,5 +19,6 @@ def made(**more):
         measurements=read_measurements(measured),
         predicted={"psi2": np.array([0.1, 7.0, -0.7]), "rebound_spin": np.array([1.0, 1.0, 3.0])},
         aic=-12.5,
+        impacts=dict,
         **more,
     )
