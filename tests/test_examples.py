@@ -19,7 +19,7 @@ FIGURES = tuple(f"figure-{number}.png" for number in range(1, 5))
 BEYOND = tuple(
     f"beyond-{name}"
     for name in (
-        *("axisymmetry.png", "experiment.png", "finite-elements.png", "map.png"),
+        *("experiment.png", "finite-elements.png", "map.png"),
         *("vectors.gif", "vectors.png"),
     )
 )

@@ -84,15 +84,15 @@ def _draw(
     result: Stability,
     why_not: str,
 ) -> None:
-    """Draw the maps and the model errors, or report on stderr why there are none."""
+    """Draw the steps that the laws need, or report on stderr why there is nothing to draw."""
     maps = error_maps(chosen, quick=arguments.quick) if result.complete else []
-    if not maps and not result.models:
+    if not maps:
         why = "there is nothing to map" if result.complete else f"{why_not} before the map was done"
         print(f"no map drawn: {why}", file=sys.stderr)
         return
     from contactlab.figures.stability import draw_stability  # matplotlib only when drawing
 
-    draw_stability(path, maps, result.models, **shared.look(arguments))
+    draw_stability(path, maps, **shared.look(arguments))
 
 
 def report(result: Stability, why_not: str = "the budget ran out") -> str:
