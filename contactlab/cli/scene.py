@@ -28,7 +28,7 @@ def add_scene(parser: argparse.ArgumentParser) -> None:
     """Add the scene file, ``--psi1``, ``--chi`` and the laws."""
     parser.add_argument("scene", nargs="?", metavar="SCENE.toml", help="a scene or a sweep")
     parser.add_argument(
-        "--psi1", type=shared.finite, help="non-dimensional angle of incidence (29), without a file"
+        "--psi1", type=shared.finite, help="non-dimensional angle of incidence psi1, without a file"
     )
     parser.add_argument(
         "--chi", type=shared.finite, help="inertia ratio (38): 1.4412 for a solid sphere, nu = 0.3"
@@ -38,7 +38,10 @@ def add_scene(parser: argparse.ArgumentParser) -> None:
 
 def add_ranges(parser: argparse.ArgumentParser) -> None:
     """Add ``--psi1`` and ``--chi``, each one number or a range."""
-    for name, words in (("psi1", "angle of incidence (29)"), ("chi", "inertia ratio (38)")):
+    for name, words in (
+        ("psi1", "angle of incidence, 0 for no slip"),
+        ("chi", "inertia ratio, 1.4412 for a solid sphere"),
+    ):
         parser.add_argument(
             f"--{name}", type=numbers, metavar="START:STOP:COUNT", help=f"{words}; or one number"
         )

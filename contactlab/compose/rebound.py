@@ -142,7 +142,7 @@ def rebound(
     incidence = real(
         "psi1",
         psi1,
-        remedy="give the non-dimensional angle of incidence (29)",
+        remedy="give the non-dimensional angle of incidence, eq. (29) of the paper",
         kept=False,
         empty=True,
     )

@@ -251,7 +251,11 @@ class Scene:
             If psi1 or the coupling number is not finite, chi or the friction coefficient is not
             positive and finite, or the Poisson ratio does not lie between -1 and 0.5.
         """
-        incidence = real("psi1", psi1, remedy="give the non-dimensional angle of incidence (29)")
+        incidence = real(
+            "psi1",
+            psi1,
+            remedy="give the non-dimensional angle of incidence, eq. (29) of the paper",
+        )
         inertia = real(
             "chi", chi, rule=POSITIVE, remedy="chi of eq. (38); 1.4412 for a solid sphere, nu = 0.3"
         )
