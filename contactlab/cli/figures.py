@@ -17,7 +17,7 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.scene import composed
 from contactlab.outcome.files import unwritable, write_table
 from contactlab.scene_file import LawChoice
-from contactlab.study.paper_figures import FigureData, paper_data
+from contactlab.study.paper_figures import CAPTIONS, FigureData, paper_data
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -65,7 +65,8 @@ def execute(arguments: argparse.Namespace) -> int:
             )
             _write_csv(numbers, data)
             save(picture, functools.partial(draw_paper, data=data), **shared.look(arguments))
-            print(picture, numbers, sep="\n")
+            caption = [f"  Figure {number}. {CAPTIONS[number]}"] if number in CAPTIONS else []
+            print(picture, numbers, *caption, sep="\n")
             if progress is not None:
                 progress(done, len(arguments.only))
     return 0

@@ -9,6 +9,8 @@ from typing import Any, Literal
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
 
 from contactlab.numeric.checks import refuse
 
@@ -77,12 +79,22 @@ SYMBOLS = {
 SLIDES: Any = {
     "font.family": "DejaVu Sans",
     "mathtext.fontset": "dejavusans",
-    "font.size": 13.0,
-    "axes.labelsize": 14.0,
-    "legend.fontsize": 12.0,
+    "font.size": 16.0,
+    "axes.labelsize": 17.0,
+    "legend.fontsize": 14.0,
     "axes.linewidth": 1.2,
-    "lines.linewidth": 2.6,
+    "lines.linewidth": 2.8,
 }
+#: Size of a slide in inches, and its width in dots: 1920 by 1080.
+SLIDE, SLIDE_DOTS = (9.6, 5.4), 1920
+#: The ground of a slide, and the share of white that its colours get.
+GROUND, LIGHTER = 0.08, 0.3
+#: Parts of artists that have colours, and most colours of a map that is a list of kinds.
+TEXT_AND_LINES = ("color", "markerfacecolor", "markeredgecolor")
+PATCHES = ("facecolor", "edgecolor")
+FEW_COLOURS = 8
+#: Greatest difference between red, green and blue of a grey.
+GREY = 0.08
 #: Text and lines at the size of print: no letter below 7 points.
 PRINTED: dict[Width, Any] = {
     "one": {
@@ -132,13 +144,47 @@ def styled(look: Look = "print", width: Width | None = None) -> Iterator[None]:
     Parameters
     ----------
     look : {"print", "slides"}
-        Look of a page, or of a screen seen from the last row.
+        Look of a page, or of a slide seen from the last row: ``save_figure`` then makes the ground
+        dark.
     width : {"one", "two"}, optional
         Columns of a page that the figure fills, with text at the size of print.
     """
     sizes = {} if width is None else PRINTED[width]
     with mpl.rc_context(LOOKS[look] | sizes):
         yield
+
+
+def darken(figure: Figure) -> None:
+    """Put a figure on the dark ground of slides: greys are turned round, colours lightened."""
+    changes: list[
+        tuple[Any, Any]
+    ] = []  # every colour is read before any is changed: some follow others
+    for artist in figure.findobj(lambda each: not isinstance(each, Figure | Axes)):
+        if getattr(artist, "get_array", lambda: None)() is not None:  # coloured by a map
+            kinds = artist.get_cmap()  # type: ignore[attr-defined]
+            if isinstance(kinds, ListedColormap) and kinds.N <= FEW_COLOURS:
+                listed = [_on_dark(each) for each in mpl.colors.to_rgba_array(kinds.colors)]
+                changes.append((artist.set_cmap, ListedColormap(listed)))  # type: ignore[attr-defined]
+            continue
+        parts = TEXT_AND_LINES if hasattr(artist, "get_color") else PATCHES
+        for part in parts:
+            given = getattr(artist, f"get_{part}", lambda: None)()
+            if given is not None:
+                colours = [_on_dark(each) for each in mpl.colors.to_rgba_array(given)]
+                many = np.ndim(given) > 1
+                changes.append(
+                    (getattr(artist, f"set_{part}"), colours if many else (*colours, "none")[0])
+                )
+    for put, colour in changes:
+        put(colour)
+
+
+def _on_dark(colour: Any) -> tuple[float, ...]:
+    """Return a colour for the dark ground; what is transparent stays so."""
+    red, green, blue, alpha = map(float, colour)
+    if max(red, green, blue) - min(red, green, blue) <= GREY:
+        return (*[GROUND + (1.0 - GROUND) * (1.0 - red)] * 3, alpha)
+    return (*(part + LIGHTER * (1.0 - part) for part in (red, green, blue)), alpha)
 
 
 def error_band(axes: Axes, x: Any, middle: Any, half: Any, look: Mapping[str, Any]) -> Axes:

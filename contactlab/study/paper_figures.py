@@ -49,6 +49,20 @@ FIGURE_4_CHI = np.unique(
 )
 
 
+#: What each figure shows, for a page or a lecture.
+CAPTIONS = {
+    1: "Tangential force over the contact of a solid sphere (chi = 1.4412) for six local angles of "
+    "incidence psi1, and the limits of friction. The force changes its sign before the end, as the "
+    "surfaces spring back.",
+    2: "Local angle of reflexion psi2 over that of incidence psi1 of a solid sphere. Below 0 the "
+    "contact point leaves backwards, which rigid bodies never do.",
+    3: "Tangential force over the contact at psi1 = 1.2 for four radii of gyration. The nearer the "
+    "mass is to the centre, the more often the force oscillates.",
+    4: "Local angle of reflexion psi2 at psi1 = 1.2 over the inertia ratio chi. The rebound goes "
+    "forwards or backwards with the number of oscillations in one contact.",
+}
+
+
 class Curve(NamedTuple):
     """A named curve; ``parameter`` distinguishes curves of one name, NaN if there is only one."""
 

@@ -39,7 +39,8 @@ def simulation():
 def test_every_figure_as_png_and_csv(run, tmp_path):
     ran = run("figures", "--out", tmp_path / "new" / "folder", *FEW)
     assert ran.status == 0
-    assert len(ran.out.splitlines()) == 8
+    assert len(ran.out.splitlines()) == 12
+    assert "Figure 2. Local angle of reflexion" in ran.out
     for number in paper_figures.paper_data():
         picture = tmp_path / "new" / "folder" / f"figure-{number}.png"
         assert picture.read_bytes().startswith(b"\x89PNG")

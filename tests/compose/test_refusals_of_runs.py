@@ -57,7 +57,8 @@ DEMANDING = Demanding(share=1.0)
 REFUSED = [
     (
         lambda: rebound("a", 1.0),
-        "psi1 = 'a': must be a real number; give the non-dimensional angle of incidence, eq. (29) of the paper",
+        "psi1 = 'a': must be a real number; give the non-dimensional angle of incidence, eq. (29) "
+        "of the paper",
     ),
     (
         lambda: rebound(1.0, 1.1e4),

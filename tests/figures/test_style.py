@@ -7,8 +7,9 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from PIL import Image
 
-from contactlab.figures import files, style
+from contactlab.figures import style
 from contactlab.figures.files import as_svg, save, save_figure
 
 GREY = "#8C8C8C"
@@ -42,16 +43,15 @@ def test_a_figure_keeps_its_shape_but_for_a_whole_page(width, size):
         ({"width": "two", "columns": 2, "heights": (1.0, 3.0)}, (7.0, 3.9 * 0.8 * 4.0 / 3.0)),
     ],
 )
-def test_a_picture_has_room_for_its_panels_and_its_legend(entries, size, tmp_path, monkeypatch):
-    kept = []
-    monkeypatch.setattr(files, "save_figure", lambda figure, path: kept.append((figure, path)))
+def test_a_picture_has_room_for_its_panels_and_its_legend(entries, size, tmp_path):
     rows = len(entries.get("heights", (1.0,)))
     panels = []
     picture = save(tmp_path / "a.png", panels.append, rows=rows, **entries)
-    ((figure, path),) = kept
+    figure = np.ravel(panels[0])[0].get_figure()
     assert tuple(figure.get_size_inches()) == pytest.approx(size, rel=1e-5)
-    assert figure.dpi == style.RESOLUTION == 200
-    assert picture.path == path == tmp_path / "a.png"
+    assert picture.path == tmp_path / "a.png"
+    with Image.open(picture.path) as written:
+        assert written.size == pytest.approx([200.0 * side for side in size], abs=1)
     columns = entries.get("columns", 1)
     assert np.shape(panels[0]) == (() if rows == columns == 1 else (rows, columns))
     if rows > 1 and columns == 1:
@@ -61,9 +61,8 @@ def test_a_picture_has_room_for_its_panels_and_its_legend(entries, size, tmp_pat
         assert tuple(ratios) == entries["heights"]
 
 
-def test_a_stack_labels_the_abscissa_of_its_lowest_axes(tmp_path, monkeypatch):
+def test_a_stack_labels_the_abscissa_of_its_lowest_axes(tmp_path):
     kept = []
-    monkeypatch.setattr(files, "save_figure", lambda *_: None)
     save(tmp_path / "a.png", kept.append, rows=2, columns=2, heights=(2.0, 1.0), width="one")
     ((first, second), (below, other)) = kept[0]
     for axes, labelled in ((first, False), (second, False), (below, True), (other, True)):
@@ -178,7 +177,7 @@ def test_axes_of_forces_run_from_touch_to_separation(axes):
     ("arguments", "size", "family", "width"),
     [
         ((), 11.0, "STIXGeneral", 1.7),
-        (("slides",), 13.0, "DejaVu Sans", 2.6),
+        (("slides",), 16.0, "DejaVu Sans", 2.8),
         (("print", "one"), 8.0, "STIXGeneral", 1.2),
         (("print", "two"), 9.5, "STIXGeneral", 1.7),
         (("slides", "one"), 8.0, "DejaVu Sans", 1.2),
@@ -202,3 +201,23 @@ def test_no_printed_letter_is_below_seven_points():
     """Ticks have the size of the font; "small" is 0.833 of it."""
     for sizes in style.PRINTED.values():
         assert min(value for name, value in sizes.items() if "size" in name) >= 7.0
+
+
+def test_a_slide_has_a_dark_ground_light_words_and_1920_by_1080_dots(tmp_path):
+    def draw(axes):
+        axes.plot([0.0, 1.0], color="#0072B2")
+        axes.plot([1.0, 0.0], "ko", markerfacecolor="white")
+        axes.set_title("words")
+        kept.append(axes)
+
+    kept = []
+    save(tmp_path / "a.png", draw, look="slides")
+    with Image.open(tmp_path / "a.png") as picture:
+        assert picture.size == (1920, 1080)
+        assert max(picture.convert("RGB").getpixel((2, 2))) < 40
+    (axes,) = kept
+    line, dots = axes.lines
+    assert mpl.colors.to_rgb(axes.title.get_color()) > (0.9, 0.9, 0.9)
+    assert mpl.colors.to_rgb(dots.get_markeredgecolor()) > (0.9, 0.9, 0.9)
+    assert mpl.colors.to_rgb(dots.get_markerfacecolor()) < (0.2, 0.2, 0.2)
+    assert mpl.colors.to_rgb(line.get_color()) == pytest.approx((0.3, 0.613, 0.789), abs=1e-3)

@@ -111,7 +111,8 @@ REFUSED = [
     ),
     (
         lambda: Scene.nondimensional(psi1="a", chi=1.0),
-        "psi1 = 'a': must be a real number; give the non-dimensional angle of incidence, eq. (29) of the paper",
+        "psi1 = 'a': must be a real number; give the non-dimensional angle of incidence, eq. (29) "
+        "of the paper",
     ),
     (
         lambda: Scene.nondimensional(psi1=1.0, chi=0.0),

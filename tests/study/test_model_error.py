@@ -1,37 +1,23 @@
-"""Numerical error and model error are two things, in the numbers and in the picture."""
+"""Numerical error and model error are two things."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgb
-from matplotlib.contour import QuadContourSet
-from matplotlib.figure import Figure
 
 import contactlab
 from contactlab import Scene, Simulation
 from contactlab.contracts.error_model import range_of
-from contactlab.figures.stability import (
-    CONTOURS,
-    REFUSED_COLOUR,
-    draw_stability,
-    error_colours,
-    error_over_steps,
-    model_errors,
-)
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.study.bench_methods import Method, methods
-from contactlab.study.error_map import ErrorMap, error_map, error_maps
-from contactlab.study.model_error import ModelError, model_error
+from contactlab.study.error_map import error_map, error_maps
+from contactlab.study.model_error import model_error
 from contactlab.study.stability_cases import Case, Extreme
 from contactlab.study.stability_judge import ANSWERED, UNDECLARED, WRONG, judge_run
 from contactlab.study.stability_map import region
 from contactlab.study.stability_references import continuum
 
 CHI = 49 / 34
-#: Decades of errors that have colours of their own.
-DECADES = (1e-3, 1e-2, 1e-1, 1.0)
 
 
 def no_change(*_):
@@ -94,69 +80,6 @@ def test_the_error_of_a_law_that_declares_none_is_judged_by_the_estimate(referen
     assert (outcome.error < outcome.bound) == (expected == ANSWERED)
 
 
-def area(converges):
-    """A map of two rows, an error of each decade in each; the last column is refused."""
-    error = np.tile([*(0.3 * decade for decade in DECADES), np.nan], (2, 1))
-    return ErrorMap(
-        law="law",
-        integrator="symplectic",
-        steps=(10, 100),
-        chis=tuple(np.geomspace(0.1, 10.0, error.shape[1])),
-        error=error,
-        converges=converges,
-    )
-
-
-def painted(converges):
-    """The colours seen in more than a few dots of a map's picture."""
-    figure = Figure(figsize=(6.0, 3.0))
-    canvas = FigureCanvasAgg(figure)
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    error_over_steps(axes, area(converges))
-    canvas.draw()
-    dots = np.asarray(canvas.buffer_rgba())[:, :, :3].reshape(-1, 3)
-    colours, counts = np.unique(dots, axis=0, return_counts=True)
-    # Words and lines have fewer dots of one colour.
-    return set(map(tuple, colours[counts > 2000].tolist())) - {(0, 0, 0), (255, 255, 255)}
-
-
-def test_no_cell_of_a_model_has_a_colour_of_accuracy():
-    accurate, model = painted(True), painted(False)
-    refused = tuple(round(255 * part) for part in to_rgb(REFUSED_COLOUR))
-    assert accurate & model == {refused}
-    assert len(accurate) == len(model) == len(DECADES) + 1
-    for colours, norm in (error_colours(True), error_colours(False)):
-        lightness = np.mean([colours(norm(0.3 * decade))[:3] for decade in DECADES], axis=1)
-        assert np.all(np.diff(lightness) < 0.0)  # darker is worse, in both
-
-
-def test_contours_stand_where_the_error_is_a_hundredth_and_a_thousandth():
-    axes = Figure().subplots()
-    assert error_over_steps(axes, area(True)) is axes
-    (contours,) = [each for each in axes.collections if isinstance(each, QuadContourSet)]
-    assert list(contours.levels) == list(CONTOURS)
-    error = area(True).error[0]
-    for path, level in zip(contours.get_paths(), CONTOURS, strict=True):
-        place = np.searchsorted(error[:-1], level)
-        low, high = np.array(area(True).chis)[[place - 1, place]]
-        assert np.all((path.vertices[:, 0] >= low) & (path.vertices[:, 0] <= high))
-
-
-def test_the_map_says_which_error_is_which(tmp_path, monkeypatch):
-    drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
-    models = (ModelError(law="coulomb", chis=(0.5, 3.0), error=np.array([0.5, np.nan])),)
-    maps = (area(True), area(False))
-    for shown, words in (
-        (maps[:1], {"from the exact": True, "own": False, "model error": True}),
-        (maps[1:], {"from the exact": False, "own": True, "model error": True}),
-        ((), {"from the exact": False, "own": False, "model error": True}),
-    ):
-        draw_stability(tmp_path / "m.png", shown, models)
-        labels = " ".join(axes.get_ylabel().replace("\n", " ") for axes in drawn[-1].axes)
-        assert {word: word in labels for word in words} == words
-
-
 def test_the_map_of_springs_refuses_few_steps_and_falls_with_more():
     """Theory §4: fewer steps than 2.85 sqrt(chi) are unstable, and the error is of second order."""
     found = error_map(Method(tangential="springs", integrator="symplectic"), quick=True)
@@ -176,10 +99,3 @@ def test_a_law_with_another_limit_is_mapped_against_its_own():
     found = error_map(Method(tangential="mindlin_cap", integrator="symplectic"), quick=True)
     assert not found.converges
     assert np.nanmin(found.error[-1]) < 1e-3  # its model error is up to 0.6
-
-
-def test_model_errors_are_drawn_over_chi():
-    axes = Figure().subplots()
-    item = ModelError(law="coulomb", chis=(0.5, 3.0), error=np.array([0.5, 0.2]))
-    assert model_errors(axes, [item]) is axes
-    np.testing.assert_array_equal(axes.lines[0].get_ydata(), item.error)
