@@ -9,7 +9,6 @@ import pickle
 import signal
 import sys
 import threading
-from collections import deque
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from multiprocessing.context import SpawnContext, SpawnProcess
@@ -30,6 +29,7 @@ from contactlab.numeric.checks import refuse, whole
 
 #: Most processes: more than any machine has processors.
 MOST = 1024
+MAIN_REMEDY = 'in a script, call sweep under if __name__ == "__main__":'
 MODULE_REMEDY = "define its class at the top of a module that can be imported"
 
 
@@ -37,43 +37,31 @@ def pieces_of(
     laws: Laws, scene: Scene, chunks: Sequence[Chunk], block: int, executor: Executor
 ) -> Generator[Piece, None, None]:
     """Yield the pieces of ``chunks`` as an executor finishes them; ``scene`` is the whole sweep."""
-    # A chunk that the executor loses gets the status WORKER_DIED. A ProcessPoolExecutor breaks
-    # when any of its processes dies. So each process has one chunk at a time, and after a break
-    # these chunks and the rest go to new pools of one process each: a chunk that ends its process
-    # a second time is lost.
+    # A chunk that the executor loses gets the status WORKER_DIED. A ProcessPoolExecutor loses all
+    # that are left when one of its processes dies; a sweep with ``keep`` resumes.
     if isinstance(executor, type) or not callable(getattr(executor, "submit", None)):
         remedy = "give ProcessPoolExecutor(4), or client.get_executor() of dask"
         raise refuse("executor", executor, "must have a method submit", remedy)
-    pool: Any = executor if isinstance(executor, ProcessPoolExecutor) else None
     sent, ours = _sent(laws), versions(*laws)
     finished: SimpleQueue[Future[Reply]] = SimpleQueue()
-    waiting: dict[Future[Reply], tuple[Any, Chunk]] = {}
-    left, retried = deque(chunks), set[Chunk]()
-    # Executors with room for a chunk; None stands for a new pool, made when it is needed.
-    free: list[Any] = [executor] * (pool._max_workers if pool else len(chunks))
+    waiting: dict[Future[Reply], Chunk] = {}
+    answered = False
     try:
-        while left or waiting:
-            while left and free:
-                taker, chunk = free.pop() or _new_pool(pool), left.popleft()
-                part = pickle.dumps(scene.take(slice(*chunk)))
-                future = _submitted(taker, sent, part, chunk, block)
-                waiting[future] = taker, chunk
-                future.add_done_callback(finished.put)
+        for chunk in chunks:
+            part = pickle.dumps(scene.take(slice(*chunk)))
+            future = _submitted(executor, sent, part, chunk, block)
+            waiting[future] = chunk
+            future.add_done_callback(finished.put)
+        while waiting:
             future = finished.get()
-            taker, chunk = waiting.pop(future)
+            chunk = waiting.pop(future)
             try:
                 answer = future.result()
             except Exception as error:  # the executor failed: ``reply`` returns errors of the laws
-                free.append(taker)
-                if pool:
-                    free = [None if each is taker else each for each in free]
-                if pool and chunk not in retried:
-                    retried.add(chunk)
-                    left.append(chunk)
-                else:
-                    yield unsolved(chunk, Status.WORKER_DIED, short(error))
+                remedy = "" if answered else f"; {MAIN_REMEDY}"
+                yield unsolved(chunk, Status.WORKER_DIED, short(error) + remedy)
                 continue
-            free.append(taker)
+            answered = True
             if answer.raised is not None:
                 raise answer.raised
             if answer.versions != ours:
@@ -84,12 +72,6 @@ def pieces_of(
     finally:
         for future in waiting:
             future.cancel()
-        for taker, _ in waiting.values():
-            if taker is not executor:
-                stop(taker)
-        for taker in free:
-            if taker is not executor and taker is not None:
-                taker.shutdown()
 
 
 def _sent(laws: Laws) -> bytes:
@@ -114,22 +96,6 @@ def _submitted(executor: Any, *call: Any) -> Future[Reply]:
     except RuntimeError as error:
         raise refuse("executor", executor, f"takes no work: {error}", "open one") from error
     return future
-
-
-def _new_pool(broken: Any) -> ProcessPoolExecutor:
-    """Return a pool of one process with the settings of the broken pool."""
-    pool = ProcessPoolExecutor(
-        1,
-        mp_context=broken._mp_context,
-        initializer=broken._initializer,
-        initargs=broken._initargs,
-    )
-    try:
-        pool.submit(abs, 0).result()
-    except BrokenExecutor as error:
-        remedy = 'in a script, call sweep under if __name__ == "__main__":'
-        raise refuse("executor", broken, "its processes end as they start", remedy) from error
-    return pool
 
 
 class Reply(NamedTuple):

@@ -9,7 +9,6 @@ from contactlab import Scene, Simulation
 from contactlab.compose import kept
 from contactlab.compose import sweep as sweeping
 from tests.compose.test_sweep import CHI, RIGID, assert_same, blocks_of, scene
-from tests.laws.ending_laws import Ending
 
 
 @pytest.fixture(autouse=True)
@@ -158,16 +157,6 @@ def test_impacts_that_were_kept_twice_count_once(tmp_path):
     (piece,) = other.glob("*.npz")
     piece.rename(folder / piece.name)
     assert_same(simulation.sweep(scene(), keep=folder), simulation.sweep(scene()))
-
-
-def test_impacts_whose_worker_died_are_tried_again(tmp_path):
-    (ends := tmp_path / "ends").mkdir()
-    law = Ending(folder=str(ends), above=7.4, times=2)
-    simulation = Simulation(tangential=law, integrator="symplectic")
-    with contactlab.compose.workers.processes(1) as one:
-        first = simulation.sweep(scene(), executor=one, keep=tmp_path / "kept")
-        assert "WORKER_DIED" in {status.name for status in first.status}
-        assert simulation.sweep(scene(), executor=one, keep=tmp_path / "kept").check()
 
 
 def test_a_fingerprint_knows_every_number_and_class():

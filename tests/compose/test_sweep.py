@@ -9,7 +9,7 @@ import sys
 import time
 import types
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
-from multiprocessing import get_context, get_start_method
+from multiprocessing import get_context
 from pathlib import Path
 
 import attrs
@@ -21,7 +21,7 @@ from contactlab import Scene, Simulation, Status
 from contactlab.compose import sweep as sweeping
 from contactlab.compose import workers as workers_module
 from contactlab.compose.registry import REGISTRY
-from contactlab.compose.workers import _new_pool, processes
+from contactlab.compose.workers import processes
 from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.contracts.whole_impact import no_force
 from tests.laws.ending_laws import Ending, Raising
@@ -226,66 +226,25 @@ def ending(folder, **options):
     return Simulation(tangential=Ending(folder=str(folder), **options), integrator="symplectic")
 
 
-@pytest.mark.parametrize("pool", [processes, ProcessPoolExecutor])
-def test_a_worker_that_dies_once_costs_a_retry(monkeypatch, tmp_path, pool):
-    blocks_of(monkeypatch, 50)
-    with pool(2) as two:
-        result = ending(tmp_path, times=1).sweep(scene(), executor=two)
-    assert result.check().psi2 == pytest.approx(scene().psi1)
-    assert len(list(tmp_path.iterdir())) == 1
-
-
-def test_a_chunk_that_ends_its_workers_has_a_status(monkeypatch, tmp_path):
-    blocks_of(monkeypatch, 50)
-    with processes(2) as two:
-        result = ending(tmp_path, above=6.2).sweep(scene(), executor=two)
-        assert [status.name for status in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
-        assert "BrokenProcessPool" in result.failures[100]
-        assert result.psi2[:100] == pytest.approx(scene().psi1[:100])
-        assert len(list(tmp_path.iterdir())) == 2
-        assert Simulation(**RIGID).sweep(scene(), executor=two).check()  # it stays broken
-
-
-@pytest.mark.parametrize("status", [0, 3])
-def test_a_law_that_leaves_its_process_is_told(monkeypatch, tmp_path, status):
+@pytest.mark.parametrize("status", [None, 0, 3])
+def test_a_worker_that_dies_has_a_status_and_the_kept_sweep_resumes(monkeypatch, tmp_path, status):
     """``os._exit(0)`` runs nobody's handlers, and looks like a process that ended well."""
     blocks_of(monkeypatch, 50)
-    with processes(2) as two:
-        result = ending(tmp_path, above=6.2, status=status).sweep(scene(), executor=two)
-    assert [one.name for one in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
-    assert np.isnan(result.psi2[100:]).all()
-    assert len(list(tmp_path.iterdir())) == 2  # tried once more
-    with pytest.raises(contactlab.ImpactError, match=r"impact 100: .*BrokenProcessPool"):
-        result.check()
-
-
-def test_a_poisoned_impact_of_ten_thousand_loses_its_chunk_only(monkeypatch, tmp_path):
-    """The pool breaks in the middle: the chunk beside it and the later ones are solved."""
-    blocks_of(monkeypatch, 100)
-    psi1 = np.linspace(0.3, 4.0, 10_000)
-    poisoned = [5_050, 5_150, 9_999]
-    psi1[poisoned] = 6.0
-    scenes = Scene.nondimensional(psi1=psi1, chi=CHI)
-    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
-        result = ending(tmp_path).sweep(scenes, executor=pool)
-    died = result.status == Status.WORKER_DIED
-    assert set(np.flatnonzero(died) // 100) == {impact // 100 for impact in poisoned}
-    assert died.sum() == 100 * len(poisoned)
-    assert result.psi2[~died] == pytest.approx(psi1[~died])
-
-
-def mark(word):
-    os.environ["MARK"] = word
-
-
-def marked():
-    return get_start_method(), os.environ.get("MARK")
-
-
-def test_a_fresh_pool_has_the_settings_of_the_broken_one():
-    settings = {"mp_context": get_context("spawn"), "initializer": mark, "initargs": ("told",)}
-    with ProcessPoolExecutor(1, **settings) as pool, _new_pool(pool) as fresh:
-        assert fresh.submit(marked).result() == ("spawn", "told")
+    options = {} if status is None else {"status": status}
+    simulation = ending(tmp_path / "ends", above=6.2, times=1, **options)
+    (tmp_path / "ends").mkdir()
+    with processes(1) as one:
+        result = simulation.sweep(scene(), executor=one, keep=tmp_path / "kept")
+        assert [each.name for each in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
+        assert result.psi2[:100] == pytest.approx(scene().psi1[:100])
+        assert np.isnan(result.psi2[100:]).all()
+        with pytest.raises(contactlab.ImpactError, match=r"impact 100: .*BrokenProcessPool"):
+            result.check()
+        broken = Simulation(**RIGID).sweep(scene(), executor=one)
+        assert set(broken.status) == {Status.WORKER_DIED}
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as another:
+        again = simulation.sweep(scene(), executor=another, keep=tmp_path / "kept")
+    assert again.check().psi2 == pytest.approx(scene().psi1)
 
 
 def test_an_executor_that_loses_a_chunk_loses_no_other(monkeypatch):
@@ -305,13 +264,13 @@ def test_an_executor_that_loses_a_chunk_loses_no_other(monkeypatch):
     assert "OSError: the machine went away" in result.failures[50]
 
 
-def test_processes_that_do_not_start_are_refused():
+def test_processes_that_do_not_start_say_what_a_script_needs():
     """As those of a script without ``if __name__ == "__main__"``: nothing is lost in silence."""
-    with (
-        ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=os.abort) as pool,
-        pytest.raises(ValueError, match=r"end as they start; .*__main__"),
-    ):
-        Simulation(**RIGID).sweep(scene(3), executor=pool)
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=os.abort) as pool:
+        result = Simulation(**RIGID).sweep(scene(3), executor=pool)
+    assert set(result.status) == {Status.WORKER_DIED}
+    with pytest.raises(contactlab.ImpactError, match="__main__"):
+        result.check()
 
 
 def test_what_is_no_executor_is_refused():
