@@ -26,7 +26,6 @@ from contactlab_laws.tables.file import Stored, read
 from contactlab_laws.tables.patches import (
     Patches,
     compiled_polynomial,
-    needed,
     polynomial,
     powers_of_chebyshev,
 )
@@ -47,9 +46,6 @@ CHUNK = 8192
 BEYOND, TOGETHER, LARGEST = 48, 1024, 1e4
 #: Fewer impacts than this are computed one by one.
 FEW = 12
-#: The last terms along psi1 are left out that together are no more than this: less than the
-#: rings are off that the table is made of.
-SMALL = 1e-5
 
 
 def depth(restitution: Any) -> Any:
@@ -112,9 +108,7 @@ class Section:
         along, across = (
             powers_of_chebyshev(count, stretch=1.0, shift=0.0) for count in (rows, columns)
         )
-        count = np.maximum(needed(np.abs(terms).sum(axis=2), SMALL), 2)
-        terms = np.where(np.arange(rows)[:, None] < count[:, None, None], terms, 0.0)
-        counts = [count.tolist(), [columns] * len(terms)]
+        counts = [[rows] * len(terms), [columns] * len(terms)]
         patches = Patches(np.zeros((2, len(terms))), along @ terms @ across.T, counts)
         return cls(cuts @ across.T, patches)
 
@@ -223,29 +217,18 @@ def _together(speed: Array, chi: Array, e: float, ours: Section) -> Array:
 def _each(speed: Array, chi: Array, e: Array) -> Array:
     """Return psi2 of impacts with a restitution each: of ``Section``, to rounding."""
     stored, t, psi2 = shipped().arrays, depth(e), np.empty_like(speed)
-    across = np.ascontiguousarray(chebvander(inner(chi, *CHI), stored["terms"].shape[3] - 1).T)
+    *_, columns, depths = stored["terms"].shape
+    across = chebvander(inner(chi, *CHI), columns - 1).T
     for piece, ends in enumerate(pairwise(BORDERS)):
         rows = np.flatnonzero((t > BORDERS[1]) == piece)
-        by_depth = chebvander(inner(t[rows], *ends), stored["terms"].shape[4] - 1).T
-        cuts = _sums(_at(stored["cuts"][piece], by_depth), across.take(rows, axis=1))
+        by_depth = chebvander(inner(t[rows], *ends), depths - 1).T
+        both = (across.take(rows, axis=1)[:, None] * by_depth).reshape(columns * depths, -1)
+        cuts = stored["cuts"][piece].reshape(-1, len(both)) @ both
         part = (speed[rows] > cuts).sum(axis=0)
         for number, table in enumerate(stored["terms"][piece]):
             mine = np.flatnonzero(part == number)
-            who = rows[mine]
-            terms, p = _at(table, by_depth.take(mine, axis=1)), speed[who]
-            values = _sums(terms, across.take(who, axis=1))
-            sizes = np.abs(terms, out=terms).sum(axis=1)
-            values[2:] *= (np.triu(np.ones((len(sizes), len(sizes)))) @ sizes)[2:] > SMALL
-            value = chebval(place(number, p, cuts.take(mine, axis=1)), values, tensor=False)
-            psi2[who] = rough(number, p, value, chi[who], e[who])
+            values, who = table.reshape(-1, len(both)) @ both.take(mine, axis=1), rows[mine]
+            at = place(number, speed[who], cuts.take(mine, axis=1))
+            value = chebval(at, values, tensor=False)
+            psi2[who] = rough(number, speed[who], value, chi[who], e[who])
     return psi2
-
-
-def _at(table: Array, by_depth: Array) -> Array:
-    """Return the terms, shape (rows, columns, impacts), at the restitution of each impact."""
-    return np.asarray(table.reshape(-1, len(by_depth)) @ by_depth).reshape(*table.shape[:2], -1)
-
-
-def _sums(terms: Array, by_chi: Array) -> Array:
-    """Return the sums over the polynomials of chi, shape (rows, impacts)."""
-    return np.asarray(np.einsum("ijn,jn->in", terms, by_chi))
