@@ -23,7 +23,9 @@ extensions = [
     "sphinx.ext.viewcode",
     "sphinx.ext.napoleon",
     "sphinx_gallery.gen_gallery",
+    "sphinx_copybutton",
 ]
+copybutton_exclude = ".linenos, .gp, .go"  # no prompts and no output
 myst_enable_extensions = ["colon_fence"]
 myst_heading_anchors = 3
 napoleon_numpy_docstring = True

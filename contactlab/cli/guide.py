@@ -16,12 +16,14 @@ import re
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 
-#: Topics in reading order; each is a file of ``contactlab/guide``.
-TOPICS = (
-    "getting-started", "units-and-signs", "choosing", "laws", "how-far-to-trust",
-    "plans-and-statuses", "for-a-paper", "beyond-the-paper", "command-line", "fitting",
-    "load-paths", "any-two-bodies", "engines", "extending", "theory", "glossary",
-)  # fmt: skip
+#: Topics in reading order by group; each is a file of ``contactlab/guide``.
+GROUPS = {
+    "Begin": ("getting-started", "units-and-signs", "choosing", "command-line"),
+    "Answers": ("how-far-to-trust", "plans-and-statuses", "for-a-paper", "glossary"),
+    "Questions": ("fitting", "any-two-bodies", "load-paths", "beyond-the-paper"),
+    "Laws and codes": ("laws", "extending", "engines", "theory"),
+}
+TOPICS = tuple(topic for group in GROUPS.values() for topic in group)
 #: Heading of a numbered section, such as ``## 5. The slip front``.
 SECTION = re.compile(r"^## (\d+)\. ", re.MULTILINE)
 
@@ -38,8 +40,10 @@ def execute(arguments: argparse.Namespace) -> int:
     """Print the list of topics, a topic, or one section of a topic."""
     if arguments.topic is None:
         width = max(map(len, TOPICS))
-        for topic in TOPICS:
-            print(f"{topic.ljust(width)}  {summary(topic)}")
+        for group, topics in GROUPS.items():
+            print(group)
+            for topic in topics:
+                print(f"  {topic.ljust(width)}  {summary(topic)}")
         print("\ncontactlab guide TOPIC prints a topic.")
         return 0
     shown = text(arguments.topic)

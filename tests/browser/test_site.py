@@ -40,6 +40,17 @@ def test_the_index_leads_to_the_guide(site, opened):
     assert page.find_element("tag name", "h1").text.startswith("Theory")
 
 
+def test_topics_stand_in_groups_and_code_can_be_copied(site, opened):
+    page = opened(site / "index.html")
+    captions = [each.text for each in page.find_elements("css selector", ".sidebar-tree .caption")]
+    assert len(captions) == 5
+    assert page.find_elements("css selector", "button.copybtn")
+    assert page.find_elements("link text", "Changelog")
+    told = page.find_element("css selector", "article").text
+    assert "Who are you?" in told
+    assert "pip install" in told
+
+
 def test_a_page_of_the_gallery_shows_picture_and_output(site, opened):
     page = opened(site / "gallery" / "stick_slip_map.html")
     pictures = page.find_elements("css selector", "article img.sphx-glr-single-img")
