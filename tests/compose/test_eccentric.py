@@ -454,6 +454,25 @@ def test_an_impact_that_needs_too_many_steps_costs_its_batch_nothing(integrator)
     assert simulation.run(scene.take(1)).status is Status.TOO_FEW_STEPS
 
 
+@pytest.mark.parametrize(
+    ("lam", "left", "told"),
+    [(0.9, 1e-5, None), (3.0, 0.2, None), (3.0, 0.05, 0.07), (-2.0, 0.004, 0.4), (8.0, 5e-4, 1.2)],
+)
+def test_steps_caution_where_friction_jams_and_the_mass_is_nearly_singular(lam, left, told):
+    """``left`` is 1 - W_nt²/(W_nn W_tt); the exact law has no such caution."""
+    chi, psi1 = np.geomspace(0.5, 10.0, 12), np.linspace(-5.0, 5.0, 12)
+    scene = planar(psi1=psi1, chi=chi, lam=lam, eta=(1.0 - left) * 2.0 * chi / lam)
+    law = springs(50, 200)
+    found = [str(each) for each in law.plan(scene).cautions if "singular" in str(each)]
+    assert [f"up to {told:g} " in each for each in found] == [True] * (told is not None)
+    exact, rough = EXACT.run(scene).check(), law.run(scene)
+    assert not any("singular" in str(each) for each in exact.plan.cautions)
+    off = np.abs(rough.normal_velocity - exact.normal_velocity) / np.maximum(
+        1.0, np.abs(exact.normal_velocity)
+    )
+    assert np.nanmax(off) < (told or 0.03)
+
+
 def test_a_batch_answers_as_its_impacts():
     scene = random_planar(6, 13)
     for simulation in (EXACT, springs(12, 60)):
