@@ -14,7 +14,7 @@ pytestmark = pytest.mark.browser
 
 #: Selenium's words, written out: without the extra these tests are still collected.
 ID, CSS = "id", "css selector"
-SPACE, RIGHT, LEFT, HOME, TAB = "\ue00d", "\ue014", "\ue012", "\ue011", "\ue004"
+SPACE, RIGHT, LEFT, UP, TAB = "\ue00d", "\ue014", "\ue012", "\ue013", "\ue004"
 LAWS = {"exact": "fronts", "spring": "mindlin_cap", "rigid": "coulomb"}
 THROWS = (
     {"angle": 20, "speed": 3, "spin": 0, "friction": 0.2, "material": "steel"},
@@ -51,6 +51,46 @@ def to(page, moment):
     )
 
 
+def thrown(page):
+    """Throw by the key that throws from anywhere, and skip the flight by it."""
+    body = page.find_element(CSS, "body")
+    body.send_keys(SPACE)
+    body.send_keys(SPACE)
+
+
+def place(angle, speed):
+    """Return where a ball of angle and speed waits, in pixels of the window from the contact."""
+    far = 42.0 * (2.2 + 2.0 * math.sqrt(speed / 10.0))
+    return -far * math.sin(math.radians(angle)), -far * math.cos(math.radians(angle))
+
+
+def at(page, x, y):
+    """Return the place in the window of a point of the stage, from the resting ball's centre."""
+    spot = page.execute_script(
+        "const m = document.getElementById('stage').getScreenCTM();"
+        "return [m.a * (250 + arguments[0]) + m.e, m.a * (220 + arguments[1]) + m.f]", x, y,
+    )  # fmt: skip
+    return [round(number) for number in spot]
+
+
+def dragged(page, start, end, *, touch=False, release=True):
+    """Drag from one point of the stage to another, by mouse or finger."""
+    kinds = ("touchStart", "touchMove", "touchEnd") if touch else (
+        "mousePressed", "mouseMoved", "mouseReleased")  # fmt: skip
+    middle = [(a + b) / 2.0 for a, b in zip(start, end, strict=True)]
+    steps = [(kinds[0], start), (kinds[1], middle), (kinds[1], end), (kinds[2], end)]
+    for kind, spot in steps if release else steps[:-1]:
+        x, y = at(page, *spot)
+        if touch:
+            points = [] if kind == "touchEnd" else [{"x": x, "y": y}]
+            page.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        else:
+            button = {"button": "left", "buttons": 1, "clickCount": 1}
+            page.execute_cdp_cmd(
+                "Input.dispatchMouseEvent", {"type": kind, "x": x, "y": y, **button}
+            )
+
+
 def scene(throw):
     body = Material.named(throw["material"])
     return Scene.at_angle(
@@ -84,6 +124,7 @@ def test_the_answers_are_those_of_the_laws(page, throw):
     assert met["psi1"] == pytest.approx(result.psi1, rel=1e-12)
     assert met["chi"] == pytest.approx(result.scene.chi, rel=1e-12)
     assert met["duration"] == pytest.approx(result.motion.duration, rel=1e-9)
+    thrown(page)
     rows = page.find_elements(CSS, "#answers tr")
     shown = [number(cell.text) for cell in rows[0].find_elements(CSS, "td")]
     angle, spin = math.degrees(result.rebound_angle), result.rebound_spin
@@ -147,11 +188,67 @@ def test_the_annulus_of_slip_grows_as_the_law_says(page):
         assert (stuck[0] / 104.0 if stuck else 0.0) == pytest.approx(expected, abs=0.04)
 
 
+@pytest.mark.parametrize("touch", [False, True])
+@pytest.mark.parametrize(("angle", "speed"), [(60, 6.0), (25, 3.0), (0, 4.0)])
+def test_a_ball_is_dragged_and_thrown(page, touch, angle, speed):
+    """Its place gives angle and speed, to a pixel; the answer is that of the law."""
+    dragged(page, place(35, 2.0), place(angle, speed), touch=touch)
+    assert page.find_element(ID, "throw").text == "Skip"
+    assert page.find_element(ID, "said").text == ""
+    assert not page.find_elements(CSS, "#rebound .curve")
+    thrown_so = page.execute_script("return state")
+    assert thrown_so["angle"] == pytest.approx(angle, abs=1)
+    assert thrown_so["speed"] == pytest.approx(speed, abs=0.3)
+    page.find_element(CSS, "body").send_keys(SPACE)
+    leaves = math.degrees(results(thrown_so)["exact"].rebound_angle)
+    cell = page.find_element(CSS, "#answers td").text
+    assert number(cell) == pytest.approx(leaves, abs=0.09)
+    assert page.find_elements(CSS, "#rebound .curve")
+
+
+def test_a_ball_without_spin_thrown_straight_down_comes_straight_up(page):
+    link(page, spin=0)
+    dragged(page, place(35, 2.0), place(0, 9.0))
+    page.find_element(CSS, "body").send_keys(SPACE)
+    assert page.execute_script("return [state.angle, found.exact.angle]") == [0, 0]
+    assert "straight up with no spin" in page.find_element(ID, "said").text
+
+
+def test_keys_aim_the_ball_and_space_throws_from_anywhere(page):
+    stage = page.find_element(ID, "stage")
+    stage.send_keys(LEFT * 3 + UP * 2)
+    assert page.execute_script("return [state.angle, state.speed]") == [38, 2.2]
+    for id_ in ("stage", "angle", "time", "throw"):
+        page.find_element(ID, "friction").send_keys(LEFT)  # a change: the answer goes
+        assert "Drag" in page.find_element(ID, "said").text
+        control = page.find_element(ID, id_)
+        control.send_keys(SPACE)
+        assert page.find_element(ID, "throw").text == "Skip"
+        control.send_keys(SPACE)
+        assert "It goes" in page.find_element(ID, "said").text
+    page.find_element(ID, "predict").send_keys(SPACE)  # a box that is ticked by the same key
+    assert page.find_element(ID, "throw").text == "Throw"
+
+
+def test_the_answer_is_shown_after_the_throw(page):
+    for moment in (0, 500, 900):
+        to(page, moment)
+        assert {cell.text for cell in page.find_elements(CSS, "#answers td")} == {"\u2013"}
+        assert not page.find_elements(CSS, "#rebound .curve, #force .spring")
+        assert "elastic" not in page.find_element(ID, "stage").text or moment > 740
+    to(page, 1000)
+    assert "It goes" in page.find_element(ID, "said").text
+
+
 def test_a_prediction_is_asked_for_before_the_answer_is_shown(page):
+    link(page, predict=1)
+    tip = (0.0, -4.4 * 42.0)
+    way = math.radians(-30.0)
+    dragged(page, tip, (tip[1] * -math.sin(way), tip[1] * math.cos(way)))
+    assert page.execute_script("return state.guess") == pytest.approx(-30, abs=1)
+    assert page.find_element(ID, "throw").text == "Throw"
     link(page, predict=1, guess=10)
-    assert not page.find_element(ID, "answers").is_displayed()
-    assert not page.find_element(ID, "rebound").is_displayed()
-    assert "prediction" in page.find_element(ID, "said").text
+    assert "Turn the dotted line" in page.find_element(ID, "said").text
     button = page.find_element(ID, "throw")
     button.send_keys(SPACE)
     assert button.text == "Skip"
@@ -159,7 +256,17 @@ def test_a_prediction_is_asked_for_before_the_answer_is_shown(page):
     angle = math.degrees(results(THROWS[1])["exact"].rebound_angle)
     told = page.find_element(ID, "said").text
     assert f"You said 10°: {abs(10 - angle):.1f}° off." in told
-    assert page.find_element(ID, "answers").is_displayed()
+
+
+def test_the_parts_stay_where_they_are_when_one_predicts(page):
+    boxes = """return ["stage", "contact", "force", "rebound", "answers"].map(id => {
+        const b = document.getElementById(id).getBoundingClientRect();
+        return [b.x, b.y, b.width, b.height]; })"""
+    before = page.execute_script(boxes)
+    link(page, predict=1)
+    assert page.execute_script(boxes) == before
+    thrown(page)
+    assert page.execute_script(boxes) == before
 
 
 def test_the_state_is_in_the_link_and_back(page):
@@ -182,13 +289,16 @@ def test_every_control_has_a_name_and_is_reached_by_keyboard(page):
         active = page.switch_to.active_element
         names.append((active.get_attribute("id"), active.accessible_name))
     ids = [name for name, _ in names]
-    order = ["angle", "speed", "spin", "friction", "material", "predict", "throw", "time"]
+    order = ["angle", "speed", "spin", "friction", "material", "predict", "stage", "throw", "time"]
     assert ids[: len(order)] == order
     assert all(name for _, name in names[: len(order)])
     spin = page.find_element(ID, "spin")
     assert spin.get_attribute("aria-valuetext") == "backspin 100 rad/s"
     assert page.find_element(ID, "said").get_attribute("aria-live") == "polite"
-    for name in ("stage", "contact", "force", "rebound"):
+    stage = page.find_element(ID, "stage")
+    assert (stage.get_attribute("tabindex"), stage.get_attribute("role")) == ("0", "application")
+    assert "Arrow keys aim" in stage.accessible_name
+    for name in ("contact", "force", "rebound"):
         picture = page.find_element(ID, name)
         assert picture.get_attribute("role") == "img"
         assert picture.accessible_name
