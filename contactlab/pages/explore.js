@@ -147,8 +147,7 @@ function drawContact() {
     svg += `<path d="M${cx} ${cy}H${tip}M${back} ${cy - 6}L${tip} ${cy}L${back} ${cy + 6}" stroke="var(--ink)" stroke-width="2.5" fill="none"/>`;
   }
   const words = !list.length ? "no contact" : list.length === 1 ? (list[0].state === 1 ? "sticks" : "slips all over") : "slips at the rim, sticks within";
-  svg += text(cx, 232, words);
-  $("contact").innerHTML = svg;
+  $("contact").innerHTML = svg; $("state").textContent = words;
   $("contact").setAttribute("aria-label", `the contact from above: ${words}`);
 }
 
@@ -167,7 +166,7 @@ function drawForce() {
   if (seen) svg += `<path class="curve spring" d="${path(capped.time.map(x), capped.force.map(y))}"/>`;
   const shown = seen ? contact.time.length : k + 1;
   svg += `<path class="curve exact" d="${path(contact.time.slice(0, shown).map(x), contact.force.slice(0, shown).map(y))}"/>`;
-  svg += `<circle cx="${x(contact.time[k]).toFixed(1)}" cy="${y(contact.force[k]).toFixed(1)}" r="6" fill="var(--blue)" stroke="white" stroke-width="2"/>`;
+  svg += `<circle cx="${x(contact.time[k]).toFixed(1)}" cy="${y(contact.force[k]).toFixed(1)}" r="6" fill="var(--blue)" stroke="var(--paper)" stroke-width="2"/>`;
   $("force").innerHTML = svg;
   $("force").setAttribute("aria-label", `tangential force over friction's largest: ${minus(contact.force[k], 2)}, friction's limit ${minus(contact.limit[k], 2)}`);
 }
@@ -177,7 +176,7 @@ function drawRebound() {
   const x = a => left + (right - left) * a / 86, y = a => bottom - (bottom - top) * (a - low) / (88 - low);
   let svg = frame(left, right, top, bottom, [0, 30, 60], [-30, 0, 30, 60].filter(a => a > low), x, y, "angle of incidence (\u00b0)");
   if (seen) LAWS.forEach(([law], k) => { svg += `<path class="curve ${law}" d="${path(curves.map(r => x(r[0])), curves.map(r => y(r[k + 1])))}"/>`; });
-  if (seen) svg += `<circle cx="${x(state.angle)}" cy="${y(found.exact.angle)}" r="6" fill="var(--blue)" stroke="white" stroke-width="2"/>`;
+  if (seen) svg += `<circle cx="${x(state.angle)}" cy="${y(found.exact.angle)}" r="6" fill="var(--blue)" stroke="var(--paper)" stroke-width="2"/>`;
   svg += text(left + 8, top + 14, "rebound angle (\u00b0)", "start") + text(left + 8, top + 34, "elastic", "start", "named-exact") + text(left + 8, top + 53, "capped spring", "start", "named-spring") + text(left + 8, top + 72, "rigid", "start", "named-rigid");
   $("rebound").innerHTML = svg;
   $("rebound").setAttribute("aria-label", `rebound angle over angle of incidence${seen ? `; at ${state.angle}\u00b0 the ball leaves at ${minus(found.exact.angle, 1)}\u00b0` : ", empty before the throw"}`);

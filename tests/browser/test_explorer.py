@@ -318,14 +318,24 @@ def test_cautions_are_those_of_the_plan(page):
 
 @pytest.mark.parametrize(
     ("width", "height", "mobile"),
-    [(1920, 1080, False), (1366, 768, False), (1024, 768, False), (375, 812, True)],
+    [
+        (1920, 1080, False),
+        (1366, 768, False),
+        (1024, 768, False),
+        (390, 844, True),
+        (375, 600, True),
+    ],
 )
-def test_it_fits_the_width_and_the_throw_is_seen_at_once(page, width, height, mobile):
+def test_scene_throw_and_answer_fit_one_screen(page, width, height, mobile):
     size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": mobile}
     page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     try:
-        bottom = page.execute_script(
-            "return document.getElementById('throw').getBoundingClientRect().bottom"
+        link(page, spin=-200)
+        thrown(page)
+        top, *bottoms = page.execute_script(
+            "window.scrollTo(0, 0); const box = id => document.getElementById(id)"
+            ".getBoundingClientRect();return [box('stage').top, ...['stage', 'throw', 'said']"
+            ".map(id => box(id).bottom)]"
         )
         across = page.execute_script("return document.documentElement.scrollWidth")
         letters = page.execute_script(
@@ -333,6 +343,34 @@ def test_it_fits_the_width_and_the_throw_is_seen_at_once(page, width, height, mo
         )
     finally:
         page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
-    assert bottom <= height
+    assert top >= 0
+    assert max(bottoms) <= height
     assert across <= width
     assert letters >= 11.0  # pixels
+
+
+def luminance(colour):
+    """Return the relative luminance of WCAG 2 of 'rgb(r, g, b)'."""
+    parts = [int(part) / 255.0 for part in re.findall(r"\d+", colour)[:3]]
+    linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
+    return sum(w * p for w, p in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_words_can_be_read_on_their_ground(page, scheme):
+    feature = {"name": "prefers-color-scheme", "value": scheme}
+    page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [feature]})
+    try:
+        link(page, material="rubber", speed=8)  # with a caution
+        thrown(page)
+        ground, *colours = page.execute_script(
+            "const of = (e, k) => getComputedStyle(e)[k];return [of(document.body,"
+            "'backgroundColor'), ...[...document.querySelectorAll('p, td, th, label, output, small,"
+            "figcaption, svg text')].map(e => of(e, e.closest('svg') ? 'fill' : 'color'))]"
+        )
+    finally:
+        page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+    assert (luminance(ground) < 0.05) == (scheme == "dark")
+    for colour in set(colours):
+        light, dark = sorted([luminance(ground), luminance(colour)], reverse=True)
+        assert (light + 0.05) / (dark + 0.05) >= 4.5, colour
