@@ -1,7 +1,7 @@
 /* The page: what one sets, the moving picture, and the words. */
 
 const $ = id => document.getElementById(id);
-const NUMBERS = ["angle", "speed", "spin", "friction", "guess"];
+const SLIDERS = {...RANGES, guess: [-60, 89]};
 const SHOW = 7000;             // length of the whole show in ms
 const ARRIVAL = .22, DEPARTURE = .74; // parts of the show at which contact begins and ends
 const NEAR = 2.2, FAR = 4.2;   // centre of the ball from its place of contact, in radii: at rest, at the largest speed
@@ -9,8 +9,15 @@ const SIZE = 42, MIDDLE = 250, FLOOR = 262; // a radius, and the point of contac
 const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 const minus = (value, digits) => (+value.toFixed(digits) + 0).toFixed(digits).replace("-", "\u2212");
+const LISTS = ["material", "block"];
 const LAWS = [["exact", "elastic"], ["spring", "capped spring"], ["rigid", "rigid"]];
-const spinWords = spin => (Math.abs(spin) < .5 ? "none" : `${spin > 0 ? "back" : "top"}spin ${Math.abs(spin).toFixed(0)} rad/s`);
+const turns = spin => spin / (2 * Math.PI);
+const spinWords = spin => (Math.abs(spin) < .5 ? "none" : `${spin > 0 ? "back" : "top"}spin ${Math.abs(spin).toFixed(0)} rad/s, ${Math.abs(turns(spin)).toFixed(1)} turns/s`);
+const WORDS = {
+  angle: value => `${value}\u00b0`, speed: value => `${value.toFixed(1)} m/s`, spin: spinWords, friction: value => value.toFixed(2),
+  guess: value => `${minus(value, 0)}\u00b0`, radius: value => `${(1000 * value).toFixed(0)} mm`, restitution: value => value.toFixed(2),
+  inertia: value => `${value.toFixed(2)}, ${value < .4 ? "dense core" : value > .4 ? value < .66 ? "hollow" : "thin shell" : "solid"}`,
+};
 
 let state = {...FIRST}, found, curves, moment = 0, playing = 0, seen = false;
 
@@ -21,14 +28,14 @@ function fromLink() {
     if (!given.has(key)) continue;
     const text = given.get(key);
     if (typeof first === "number") {
-      const box = $(key), number = Number(text);
-      if (text !== "" && Number.isFinite(number)) state[key] = box ? Math.min(Math.max(number, +box.min), +box.max) : state[key];
+      const [least, most] = SLIDERS[key], number = Number(text);
+      if (text !== "" && Number.isFinite(number)) state[key] = Math.min(Math.max(number, least), most);
     } else if (typeof first === "boolean") state[key] = text === "1";
     else if (text in MATERIALS) state[key] = text;
   }
 }
 function toLink() {
-  const parts = Object.entries(state).filter(([key, value]) => value !== FIRST[key] && key !== "radius");
+  const parts = Object.entries(state).filter(([key, value]) => value !== FIRST[key]);
   const hash = new URLSearchParams(parts.map(([key, value]) => [key, value === true ? "1" : value === false ? "0" : value]));
   try { history.replaceState(null, "", "#" + hash); } catch { /* a viewer without links */ }
 }
@@ -54,12 +61,12 @@ function aimed(point) {
 function balls() {
   const {met} = found, before = Math.min(moment / ARRIVAL, 1), after = Math.max((moment - DEPARTURE) / (1 - DEPARTURE), 0);
   const inside = Math.min(Math.max((moment - ARRIVAL) / (DEPARTURE - ARRIVAL), 0), 1);
-  const reach = distance() / state.speed, touching = met.duration / met.R;
+  const reach = distance() / state.speed, touching = found.duration / met.R;
   return Object.fromEntries(LAWS.map(([law]) => {
     const left = found[law], away = after * reach, come = (before - 1) * reach;
     return [law, {
       x: met.along * come + (met.along + left.along) / 2 * touching * inside + left.along * away,
-      y: 1 - met.normal * come + left.normal * away - met.C ** 2 * Math.sin(Math.PI * inside),
+      y: 1 - met.normal * come + left.normal * away - met.C ** 2 * state.restitution ** .4 * Math.sin(Math.PI * inside),
       turn: met.R * (state.spin * come + left.spin * away),
     }];
   }));
@@ -110,9 +117,10 @@ function drawStage() {
     }
   }
   const inside = (moment - ARRIVAL) / (DEPARTURE - ARRIVAL);
-  const clock = moment === 0 ? `${state.angle}\u00b0, ${state.speed.toFixed(1)} m/s` : inside < 0 ? "arrives" : inside > 1 ? "leaves" : `in contact: ${seconds(inside * met.duration)} of ${seconds(met.duration)}`;
+  const clock = moment === 0 ? `${state.angle}\u00b0, ${state.speed.toFixed(1)} m/s` : inside < 0 ? "arrives" : inside > 1 ? "leaves" : `in contact: ${seconds(inside * found.duration)} of ${seconds(found.duration)}`;
   svg += text(12, 24, clock, "start");
-  if (moment > DEPARTURE) svg += text(12, 48, "elastic", "start", "named-exact") + text(12, 70, "ghost: capped spring", "start", "named-spring") + text(12, 92, "ghost: rigid", "start", "named-rigid");
+  const side = exact.angle < 0 ? [488, "end"] : [12, "start"]; // where no ball is
+  if (moment > DEPARTURE) svg += text(side[0], 48, "elastic", side[1], "named-exact") + text(side[0], 70, "ghost: capped spring", side[1], "named-spring") + text(side[0], 92, "ghost: rigid", side[1], "named-rigid");
   $("stage").innerHTML = svg;
 }
 
@@ -137,7 +145,7 @@ function rings(states) {
 
 function drawContact() {
   const colours = ["", "var(--grey)", "var(--blue)", "var(--red)"], k = row();
-  const list = k ? rings(found.contact.states[k - 1]) : []; // the springs of each step, none at the start
+  const list = k && moment <= DEPARTURE ? rings(found.contact.states[k - 1]) : []; // the springs of each step
   const size = 104, cx = 125, cy = 112;
   let svg = `<circle class="rule" fill="none" cx="${cx}" cy="${cy}" r="${size}"/>`;
   for (const ring of list) svg += `<circle cx="${cx}" cy="${cy}" r="${(size * ring.outer).toFixed(2)}" fill="${colours[ring.state]}" data-state="${ring.state}"/>`;
@@ -146,7 +154,8 @@ function drawContact() {
     const tip = cx - 90 * share, back = tip + 10 * Math.sign(share);
     svg += `<path d="M${cx} ${cy}H${tip}M${back} ${cy - 6}L${tip} ${cy}L${back} ${cy + 6}" stroke="var(--ink)" stroke-width="2.5" fill="none"/>`;
   }
-  const words = !list.length ? "no contact" : list.length === 1 ? (list[0].state === 1 ? "sticks" : "slips all over") : "slips at the rim, sticks within";
+  const words = !list.length ? "no contact" : !list.some(ring => ring.state === 1) ? "slips all over" : list.length === 1 ? "sticks"
+    : list.at(-1).state === 1 ? "slips at the rim, sticks within" : "sticks in a ring";
   $("contact").innerHTML = svg; $("state").textContent = words;
   $("contact").setAttribute("aria-label", `the contact from above: ${words}`);
 }
@@ -177,7 +186,7 @@ function drawRebound() {
   let svg = frame(left, right, top, bottom, [0, 30, 60], [-30, 0, 30, 60].filter(a => a > low), x, y, "angle of incidence (\u00b0)");
   if (seen) LAWS.forEach(([law], k) => { svg += `<path class="curve ${law}" d="${path(curves.map(r => x(r[0])), curves.map(r => y(r[k + 1])))}"/>`; });
   if (seen) svg += `<circle cx="${x(state.angle)}" cy="${y(found.exact.angle)}" r="6" fill="var(--blue)" stroke="var(--paper)" stroke-width="2"/>`;
-  svg += text(left + 8, top + 14, "rebound angle (\u00b0)", "start") + text(left + 8, top + 34, "elastic", "start", "named-exact") + text(left + 8, top + 53, "capped spring", "start", "named-spring") + text(left + 8, top + 72, "rigid", "start", "named-rigid");
+  svg += text(left + 8, top + 14, "rebound angle (\u00b0)", "start") + text(left + 8, top + 36, "elastic", "start", "named-exact") + text(left + 8, top + 58, "capped spring", "start", "named-spring") + text(left + 8, top + 80, "rigid", "start", "named-rigid");
   $("rebound").innerHTML = svg;
   $("rebound").setAttribute("aria-label", `rebound angle over angle of incidence${seen ? `; at ${state.angle}\u00b0 the ball leaves at ${minus(found.exact.angle, 1)}\u00b0` : ", empty before the throw"}`);
 }
@@ -186,7 +195,7 @@ function drawRebound() {
 function answer() {
   const {exact, rigid, spring} = found, angle = `${minus(exact.angle, 1)}\u00b0`;
   const way = Math.abs(exact.angle) < .05 ? "straight up" : `${exact.angle < 0 ? "back the way it came, at" : "on at"} ${angle}`;
-  let words = `It goes ${way} with ${spinWords(exact.spin).replace("none", "no spin")}; a rigid ball at ${minus(rigid.angle, 1)}\u00b0, the capped spring at ${minus(spring.angle, 1)}\u00b0.`;
+  let words = `It goes ${way} with ${spinWords(exact.spin).replace("none", "no spin").replace(/, (.*)/, " ($1)")}; a rigid ball at ${minus(rigid.angle, 1)}\u00b0, the capped spring at ${minus(spring.angle, 1)}\u00b0.`;
   if (state.predict) {
     const off = Math.abs(exact.angle - state.guess);
     words = `You said ${minus(state.guess, 0)}\u00b0: ${off < 1.5 ? "right, " : `${off.toFixed(1)}\u00b0 off. `}` + words;
@@ -194,9 +203,14 @@ function answer() {
   return words;
 }
 function cautions() {
-  const {met} = found, list = [];
+  const {met, exact} = found, list = [];
   if (met.C > LARGE_CONTACT) list.push(`the contact is ${met.C.toFixed(2)} of the radius, not small: Hertz's theory is doubtful`);
-  if (met.pressure > met.yields) list.push(`the pressure reaches ${(met.pressure / 1e9).toPrecision(2)} GPa, above ${(met.yields / 1e9).toPrecision(2)} GPa this material yields`);
+  if (met.pressure > met.yields) list.push(`the pressure reaches ${(met.pressure / 1e9).toPrecision(2)} GPa, above ${(met.yields / 1e9).toPrecision(2)} GPa the softer body yields`);
+  if (met.coupling) list.push(`the pressure of unlike materials also shears the surfaces, which is left out (\u039b = ${met.coupling.toPrecision(2)})`);
+  if (state.restitution < 1) {
+    const off = SPRINGS_ERROR * (1 - state.restitution) * met.share / met.scale * exact.normal / exact.speed ** 2;
+    list.push(`with losses the elastic answer comes from springs, good to ${(off * 180 / Math.PI).toPrecision(2)}\u00b0`);
+  }
   return list.length ? `Caution: ${list.join("; ")}.` : "";
 }
 
@@ -213,7 +227,7 @@ function showAnswer() {
   const told = seen ? answer() : playing ? "" : hint, shown = (value, digits) => (seen ? minus(value, digits) : "\u2013");
   $("said").textContent = told;
   $("answers").innerHTML = LAWS.map(([law, name], k) => { const one = found[law];
-    return `<tr class="${k ? "" : "first"}"><th scope="row">${name}</th><td>${shown(one.angle, 1)}${seen ? "\u00b0" : ""}</td><td>${shown(one.spin, 0)}</td></tr>`; }).join("");
+    return `<tr class="${k ? "" : "first"}"><th scope="row">${name}</th><td>${shown(one.angle, 1)}${seen ? "\u00b0" : ""}</td><td>${shown(one.spin, 0)}</td><td>${shown(turns(one.spin), 1)}</td></tr>`; }).join("");
   $("stage").setAttribute("aria-label", `${seen ? told : "the ball before the throw"} Arrow keys aim it, Space throws.`);
   $("psi1").textContent = minus(found.met.psi1, 3); $("chi").textContent = found.met.chi.toFixed(3);
   for (const [id, law] of [["psi2", "exact"], ["psi2-spring", "spring"], ["psi2-rigid", "rigid"]]) $(id).textContent = shown(found[law].psi2, 3);
@@ -224,10 +238,11 @@ function changed() {
   cancelAnimationFrame(playing); playing = 0;
   found = thrown(state); curves = rebounds(state);
   seen = false; moment = 0;
-  for (const key of NUMBERS) $(key).value = state[key];
-  const shown = {angle: `${state.angle}\u00b0`, speed: `${state.speed.toFixed(1)} m/s`, spin: spinWords(state.spin), friction: state.friction.toFixed(2), guess: `${minus(state.guess, 0)}\u00b0`};
-  for (const [key, words] of Object.entries(shown)) { $(`${key}-shown`).textContent = words; $(key).setAttribute("aria-valuetext", words); }
-  $("material").value = state.material; $("predict").checked = state.predict;
+  for (const [key, words] of Object.entries(WORDS)) {
+    $(key).value = state[key]; $(`${key}-shown`).textContent = words(state[key]); $(key).setAttribute("aria-valuetext", words(state[key]));
+  }
+  for (const key of LISTS) $(key).value = state[key];
+  $("predict").checked = state.predict;
   for (const part of document.querySelectorAll(".guessing")) part.hidden = !state.predict;
   $("caution").textContent = cautions();
   showMoment(); showAnswer(); toLink();
@@ -275,9 +290,14 @@ addEventListener("keydown", event => { // what has a use of its own for the key 
   if (!event.repeat) play();
 });
 
-for (const name of Object.keys(MATERIALS)) $("material").append(new Option(name, name));
-for (const key of NUMBERS) $(key).addEventListener("input", () => { state[key] = Number($(key).value); changed(); });
-$("material").addEventListener("change", () => { state.material = $("material").value; changed(); });
+for (const key of LISTS) {
+  for (const name of Object.keys(MATERIALS)) $(key).append(new Option(name, name));
+  $(key).addEventListener("change", () => { state[key] = $(key).value; changed(); });
+}
+for (const [key, [least, most]] of Object.entries(SLIDERS)) {
+  [$(key).min, $(key).max] = [least, most];
+  $(key).addEventListener("input", () => { state[key] = Number($(key).value); changed(); });
+}
 $("predict").addEventListener("change", () => { state.predict = $("predict").checked; changed(); });
 $("throw").addEventListener("click", play);
 $("set").addEventListener("submit", event => event.preventDefault());
@@ -285,5 +305,9 @@ $("time").addEventListener("input", () => {
   cancelAnimationFrame(playing); playing = 0; moment = $("time").value / 1000;
   if (moment === 1) finish(); else { showMoment(); showAnswer(); }
 });
-addEventListener("hashchange", () => { state = {...FIRST}; fromLink(); changed(); });
-fromLink(); changed();
+function begin() {
+  fromLink(); changed();
+  if (state.block || ["radius", "inertia", "restitution"].some(key => state[key] !== FIRST[key])) $("more").open = true;
+}
+addEventListener("hashchange", () => { state = {...FIRST}; begin(); });
+begin();
