@@ -34,10 +34,12 @@ function fromLink() {
     else if (text in MATERIALS) state[key] = text;
   }
 }
+function linkTo(set) {
+  const parts = Object.entries(set).filter(([key, value]) => value !== FIRST[key]);
+  return "#" + new URLSearchParams(parts.map(([key, value]) => [key, value === true ? "1" : value === false ? "0" : value]));
+}
 function toLink() {
-  const parts = Object.entries(state).filter(([key, value]) => value !== FIRST[key]);
-  const hash = new URLSearchParams(parts.map(([key, value]) => [key, value === true ? "1" : value === false ? "0" : value]));
-  try { history.replaceState(null, "", "#" + hash); } catch { /* a viewer without links */ }
+  try { history.replaceState(null, "", linkTo(state)); } catch { /* a viewer without links */ }
 }
 
 /* ---- drawing ---- */
@@ -198,7 +200,7 @@ function answer() {
   let words = `It goes ${way} with ${spinWords(exact.spin).replace("none", "no spin").replace(/, (.*)/, " ($1)")}; a rigid ball at ${minus(rigid.angle, 1)}\u00b0, the capped spring at ${minus(spring.angle, 1)}\u00b0.`;
   if (state.predict) {
     const off = Math.abs(exact.angle - state.guess);
-    words = `You said ${minus(state.guess, 0)}\u00b0: ${off < 1.5 ? "right, " : `${off.toFixed(1)}\u00b0 off. `}` + words;
+    words = `You said ${minus(state.guess, 0)}\u00b0: ${off.toFixed(1)}\u00b0 off, ${points(off)} points. ` + words;
   }
   return words;
 }
@@ -231,7 +233,8 @@ function showAnswer() {
   $("stage").setAttribute("aria-label", `${seen ? told : "the ball before the throw"} Arrow keys aim it, Space throws.`);
   $("psi1").textContent = minus(found.met.psi1, 3); $("chi").textContent = found.met.chi.toFixed(3);
   for (const [id, law] of [["psi2", "exact"], ["psi2-spring", "spring"], ["psi2-rigid", "rigid"]]) $(id).textContent = shown(found[law].psi2, 3);
-  $("throw").textContent = playing ? "Skip" : seen ? "Throw again" : "Throw";
+  $("throw").textContent = playing ? "Skip" : !seen ? "Throw" : state.predict ? "Next ball" : "Throw again";
+  $("score").textContent = scoreWords();
   drawRebound();
 }
 function changed() {
@@ -247,8 +250,12 @@ function changed() {
   $("caution").textContent = cautions();
   showMoment(); showAnswer(); toLink();
 }
-function finish() { cancelAnimationFrame(playing); playing = 0; moment = 1; seen = true; showMoment(); showAnswer(); }
+function finish() {
+  if (!seen && state.predict) scored(state, Math.abs(found.exact.angle - state.guess));
+  cancelAnimationFrame(playing); playing = 0; moment = 1; seen = true; showMoment(); showAnswer();
+}
 function play() {
+  if (seen && state.predict && !playing) { state = byChance(state); changed(); return; }
   if (playing || calm) { finish(); return; }
   let started;
   const step = now => {
@@ -310,4 +317,6 @@ function begin() {
   if (state.block || ["radius", "inertia", "restitution"].some(key => state[key] !== FIRST[key])) $("more").open = true;
 }
 addEventListener("hashchange", () => { state = {...FIRST}; begin(); });
-begin();
+begin(); writeSheet();
+$("print").addEventListener("click", () => print());
+addEventListener("beforeprint", () => { $("answered").open ||= $("sheet").open; }); // the answers, on a page of their own

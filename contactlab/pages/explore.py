@@ -20,7 +20,8 @@ RANGES = {"angle": (0.0, 85.0), "speed": (0.1, 10.0), "spin": (-600.0, 600.0),
 #: Parts of the page and their files; the kernel is that for games, no module here.
 PARTS = {
     "STYLE": "pages/explore.css", "KERNEL": "kernels/contactlab_bounce.mjs",
-    "OTHERS": "pages/springs.js", "THROW": "pages/throw.js", "PAGE": "pages/explore.js",
+    "OTHERS": "pages/springs.js", "THROW": "pages/throw.js", "CLASS": "pages/class.js",
+    "PAGE": "pages/explore.js",
 }  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import math
 import re
 
@@ -324,7 +325,7 @@ def test_a_prediction_is_asked_for_before_the_answer_is_shown(page):
     button.send_keys(SPACE)
     angle = math.degrees(results(THROWS[1])["exact"].rebound_angle)
     told = page.find_element(ID, "said").text
-    assert f"You said 10°: {abs(10 - angle):.1f}° off." in told
+    assert f"You said 10°: {abs(10 - angle):.1f}° off, 9 points." in told
 
 
 def test_the_parts_stay_where_they_are_when_one_predicts(page):
@@ -461,3 +462,74 @@ def test_words_can_be_read_on_their_ground(page, scheme):
     for colour in set(colours):
         light, dark = sorted([luminance(ground), luminance(colour)], reverse=True)
         assert (light + 0.05) / (dark + 0.05) >= 4.5, colour
+
+
+def test_ten_predictions_make_a_score(page):
+    """Ten points each, one less for each two degrees off; a throw counts once, the 11th anew."""
+    errors = []
+    for count, angle in enumerate(range(10, 65, 5), 1):
+        throw = {"angle": angle, "speed": 2, "spin": 50, "friction": 0.3, "material": "steel"}
+        leaves = math.degrees(results(throw)["exact"].rebound_angle)
+        errors.append(abs(leaves - round(leaves / 10.0) * 10.0))
+        if count == 11:
+            errors = errors[-1:]
+        for guess in (round(leaves / 10.0) * 10, round(leaves)):  # the second try is not counted
+            link(page, predict=1, guess=guess, **throw)
+            thrown(page)
+        score = sum(max(0, 10 - int(error // 2)) for error in errors)
+        told = page.find_element(ID, "score").text
+        assert f"{score} of {10 * len(errors)} points" in told
+        assert (f"{sum(errors) / 10:.1f}° off in the mean" in told) == (count == 10)
+    before = page.execute_script("return state")
+    page.find_element(ID, "throw").click()  # the next ball
+    after = page.execute_script("return state")
+    assert {key for key in after if after[key] != before[key]} <= {
+        "angle", "speed", "spin", "friction", "guess",
+    }  # fmt: skip
+    assert {cell.text for cell in page.find_elements(CSS, "#answers td")} == {"\u2013"}
+
+
+#: What the sheet asks: the throw, the law asked for, and the angle's place in the answer.
+STEEL = {"angle": 45, "speed": 3, "spin": 0, "friction": 0.3, "material": "steel"}
+PMMA = STEEL | {"angle": 30, "speed": 2, "friction": 0.8, "material": "pmma"}
+BALL = {"angle": 45, "speed": 5, "spin": 200, "friction": 0.8, "material": "rubber",
+        "radius": 0.025}  # fmt: skip
+ASKED = (
+    (1, STEEL | {"angle": 60, "friction": 0.1}, "exact"),
+    (1, STEEL | {"angle": 60, "friction": 0.1}, "rigid"),
+    (2, PMMA | {"angle": 0, "spin": 200, "friction": 0.3}, "exact"),
+    (3, STEEL | {"angle": 30}, "exact"), (3, STEEL | {"angle": 30, "speed": 6}, "exact"),
+    (4, STEEL, "exact"), (4, STEEL | {"restitution": 0.7}, "exact"),
+    (5, PMMA, "exact"), (5, PMMA | {"inertia": 0.67}, "exact"),
+    (6, BALL, "exact"), (6, BALL, "rigid"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("question", "throw", "law"), ASKED)
+def test_the_sheet_has_the_answers_of_the_laws(page, question, throw, law):
+    page.execute_script("sheet.open = answered.open = true")
+    told = page.find_elements(CSS, "#solutions li")[question - 1].text.replace("\u2212", "-")
+    result = results(throw)[law]
+    angle = math.degrees(result.rebound_angle)
+    angles = [float(text) for text in re.findall(r"(-?[\d.]+)°", told)]
+    assert any(each == pytest.approx(angle, abs=0.6 if question == 4 else 0.06) for each in angles)
+    if law == "exact" and "rad/s" in told:
+        spins = [abs(float(text)) for text in re.findall(r"(-?[\d.]+)(?: to| rad/s)", told)]
+        assert any(each == pytest.approx(abs(result.rebound_spin), abs=0.6) for each in spins)
+
+
+def test_a_question_is_thrown_and_the_sheet_is_printed_alone(page):
+    page.find_element(CSS, "#sheet summary").click()
+    page.find_elements(CSS, "#questions a")[4].click()
+    state = page.execute_script("return state")
+    assert (state["angle"], state["inertia"], state["predict"]) == (30, 0.4, True)
+    assert not page.find_element(ID, "answered").get_attribute("open")
+    pdf = base64.b64decode(page.execute_cdp_cmd("Page.printToPDF", {})["data"])
+    assert len(re.findall(rb"/Type ?/Page\b", pdf)) == 2  # questions, and answers
+    assert page.find_element(ID, "answered").get_attribute("open")
+    page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    try:
+        shown = [page.find_element(CSS, name).is_displayed() for name in ("main", "h1", "ol")]
+    finally:
+        page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+    assert shown == [False, False, True]
