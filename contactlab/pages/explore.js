@@ -267,24 +267,29 @@ function play() {
 }
 
 /* ---- the ball, and the tip of the prediction, by mouse or finger ---- */
+/* Let what is marked as a grip in a picture be dragged: moving(grip, point) on the way, released(grip, moved) at the end. */
+function draggable(picture, moving, released) {
+  let held, start;
+  picture.addEventListener("pointerdown", event => {
+    const grip = event.target.closest("[data-grip]")?.dataset.grip;
+    if (!grip || !event.isPrimary) return;
+    [held, start] = [grip, event]; picture.setPointerCapture(event.pointerId); event.preventDefault(); picture.focus({preventScroll: true});
+  });
+  picture.addEventListener("pointermove", event => {
+    if (!held || start && Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY) < 4) return;
+    start = null; // it moves: no click
+    moving(held, new DOMPoint(event.clientX, event.clientY).matrixTransform(picture.getScreenCTM().inverse()));
+  });
+  picture.addEventListener("pointerup", () => { const grip = held; held = null; if (grip) released(grip, !start); });
+  picture.addEventListener("pointercancel", () => { held = null; });
+  picture.addEventListener("touchstart", event => { if (event.target.closest("[data-grip]")) event.preventDefault(); }, {passive: false});
+}
 const stage = $("stage");
-let held, start;
-stage.addEventListener("pointerdown", event => {
-  held = event.target.closest("[data-grip]")?.dataset.grip;
-  if (!held || !event.isPrimary) return;
-  start = event; stage.setPointerCapture(event.pointerId); event.preventDefault(); stage.focus({preventScroll: true});
-});
-stage.addEventListener("pointermove", event => {
-  if (!held || start && Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY) < 4) return;
-  start = null; // it moves: no click
-  const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(stage.getScreenCTM().inverse());
-  const turned = Math.round(Math.atan2(point.x - MIDDLE, FLOOR - SIZE - point.y) * 180 / Math.PI);
-  Object.assign(state, held === "ball" ? aimed(point) : {guess: Math.min(Math.max(turned, +$("guess").min), +$("guess").max)});
+draggable(stage, (grip, point) => {
+  const turned = Math.round(Math.atan2(point.x - MIDDLE, FLOOR - SIZE - point.y) * 180 / Math.PI), [least, most] = SLIDERS.guess;
+  Object.assign(state, grip === "ball" ? aimed(point) : {guess: Math.min(Math.max(turned, least), most)});
   changed();
-});
-stage.addEventListener("pointerup", () => { if (held === "ball" && !(state.predict && !start)) play(); held = null; });
-stage.addEventListener("touchstart", event => { if (event.target.closest("[data-grip]")) event.preventDefault(); }, {passive: false});
-stage.addEventListener("pointercancel", () => { held = null; });
+}, (grip, moved) => { if (grip === "ball" && !(state.predict && moved)) play(); });
 const KEYS = {ArrowLeft: ["angle", 1], ArrowRight: ["angle", -1], ArrowUp: ["speed", 1], ArrowDown: ["speed", -1]};
 stage.addEventListener("keydown", event => {
   if (!(event.key in KEYS)) return;

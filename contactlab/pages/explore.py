@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import json
 import re
+from functools import cache
 from importlib import resources
 from typing import Any
 
+import numpy as np
+
 import contactlab
-from contactlab.impact.material import entry, names
+from contactlab.compose.collision import collide
+from contactlab.compose.simulation import Simulation
+from contactlab.impact import shapes
+from contactlab.impact.bodies import HalfSpace
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.material import Material, entry, names
 from contactlab.numeric.checks import refuse
 
 #: Springs and steps of the contact that the page draws; how the ball leaves is from the table.
@@ -22,7 +30,28 @@ PARTS = {
     "STYLE": "pages/explore.css", "KERNEL": "kernels/contactlab_bounce.mjs",
     "OTHERS": "pages/springs.js", "THROW": "pages/throw.js", "CLASS": "pages/class.js",
     "PAGE": "pages/explore.js",
+    "ROD": "pages/rod.js",
 }  # fmt: skip
+#: Tilts of the rod from the vertical in degrees, and its friction coefficient.
+TILTS, ROD_FRICTION = range(76), 0.3
+
+
+@cache
+def rod_table() -> list[list[list[float]]]:
+    """Return how a rod that falls at 1 m/s leaves: [law][tilt][velocity x, z, spin], in SI."""
+    steel, down = Material.named("steel"), np.array([0.0, 0.0, -1.0])
+    rows: list[list[list[float]]] = [[], []]
+    for angle in np.radians(TILTS):
+        axis = [np.sin(angle), 0.0, np.cos(angle)]
+        body, contact = shapes.rod(length=1.0, radius=0.02, material=steel, normal=down, axis=axis)
+        met = Encounter(
+            body, HalfSpace(steel), ROD_FRICTION, normal=down, velocity=down, contact=contact
+        )
+        for law, simulation in zip(rows, (None, Simulation(tangential="coulomb")), strict=True):
+            after = collide(met, simulation).check()
+            left = after.velocity[0], after.velocity[2], after.spin[1]
+            law.append([round(float(number), 3) + 0.0 for number in left])
+    return rows
 
 
 def explore_page(
@@ -87,6 +116,7 @@ def explore_page(
     entries = {
         "/*MATERIALS*/null": json.dumps({name: entry(name).numbers() for name in names()}),
         "/*FIRST*/null": json.dumps(first),
+        "/*TABLE*/null": json.dumps(rod_table(), separators=(",", ":")),
         "/*SPRINGS*/0": str(SPRINGS),
         "/*STEPS*/0": str(STEPS),
         "/*RANGES*/null": json.dumps(RANGES),

@@ -6,6 +6,7 @@ import base64
 import math
 import re
 
+import numpy as np
 import pytest
 
 from contactlab import (
@@ -18,6 +19,7 @@ from contactlab import (
     collide,
     create,
     rebound,
+    shapes,
 )
 from contactlab.pages.explore import explore_page
 
@@ -104,23 +106,28 @@ def place(angle, speed):
     return -far * math.sin(math.radians(angle)), -far * math.cos(math.radians(angle))
 
 
-def at(page, x, y):
-    """Return the place in the window of a point of the stage, from the resting ball's centre."""
+#: The resting ball's centre and the end of the rod, in their pictures.
+ORIGINS = {"stage": (250, 220), "rod": (250, 262)}
+
+
+def at(page, x, y, picture):
+    """Return the place in the window of a point of a picture, from its origin."""
     spot = page.execute_script(
-        "const m = document.getElementById('stage').getScreenCTM();"
-        "return [m.a * (250 + arguments[0]) + m.e, m.a * (220 + arguments[1]) + m.f]", x, y,
+        "const m = document.getElementById(arguments[0]).getScreenCTM();"
+        "return [m.a * arguments[1] + m.e, m.a * arguments[2] + m.f]",
+        picture, x + ORIGINS[picture][0], y + ORIGINS[picture][1],
     )  # fmt: skip
     return [round(number) for number in spot]
 
 
-def dragged(page, start, end, *, touch=False, release=True):
-    """Drag from one point of the stage to another, by mouse or finger."""
+def dragged(page, start, end, *, touch=False, picture="stage"):
+    """Drag from one point of a picture to another, by mouse or finger."""
     kinds = ("touchStart", "touchMove", "touchEnd") if touch else (
         "mousePressed", "mouseMoved", "mouseReleased")  # fmt: skip
     middle = [(a + b) / 2.0 for a, b in zip(start, end, strict=True)]
     steps = [(kinds[0], start), (kinds[1], middle), (kinds[1], end), (kinds[2], end)]
-    for kind, spot in steps if release else steps[:-1]:
-        x, y = at(page, *spot)
+    for kind, spot in steps:
+        x, y = at(page, *spot, picture)
         if touch:
             points = [] if kind == "touchEnd" else [{"x": x, "y": y}]
             page.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
@@ -533,3 +540,38 @@ def test_a_question_is_thrown_and_the_sheet_is_printed_alone(page):
     finally:
         page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
     assert shown == [False, False, True]
+
+
+def dropped(degrees, simulation):
+    """Return rebound and slip of the end, and the spin, of the rod of the guide's table."""
+    steel, down, a = Material.named("steel"), np.array([0.0, 0.0, -1.0]), math.radians(degrees)
+    axis = [math.sin(a), 0.0, math.cos(a)]
+    body, contact = shapes.rod(length=1.0, radius=0.02, material=steel, normal=down, axis=axis)
+    met = Encounter(body, HalfSpace(steel), 0.3, normal=down, velocity=down, contact=contact)
+    after = collide(met, simulation)
+    end = after.velocity + np.cross(after.spin, contact)
+    return end[2], end[0], after.spin[1]
+
+
+@pytest.mark.parametrize("touch", [False, True])
+@pytest.mark.parametrize("degrees", [0, 15, 45, 75])
+def test_a_rod_is_dragged_and_leaves_as_the_laws_say(page, touch, degrees):
+    page.execute_script("rods.open = true; rods.scrollIntoView()")
+    start, end = (
+        (196.0 * math.sin(math.radians(a)), -196.0 * math.cos(math.radians(a)))
+        for a in (30, degrees)
+    )
+    dragged(page, start, end, touch=touch, picture="rod")
+    assert {cell.text for cell in page.find_elements(CSS, "#rod-answers td")} == {"\u2013"}
+    page.find_element(ID, "drop").send_keys(SPACE)  # skips the fall
+    tilt = page.execute_script("return tilt")
+    assert tilt == pytest.approx(degrees, abs=1)
+    rows = page.find_elements(CSS, "#rod-answers tr")
+    for row, law in zip(rows, (None, Simulation(tangential="coulomb")), strict=True):
+        shown = [number(cell.text) for cell in row.find_elements(CSS, "td")]
+        assert shown == pytest.approx(dropped(tilt, law), abs=0.008)
+    for name, law in (("exact", None), ("rigid", Simulation(tangential="coulomb"))):
+        drawn = page.find_element(CSS, f"#rod [data-rod={name}]").get_attribute("d")
+        x1, y1, x2, y2 = map(float, re.findall(r"-?[\d.]+", drawn))
+        turned = tilt + math.degrees(0.12 * dropped(tilt, law)[2])
+        assert math.degrees(math.atan2(x2 - x1, y1 - y2)) == pytest.approx(turned, abs=0.05)
