@@ -1,7 +1,7 @@
 /* The page: what one sets, the moving picture, and the words. */
 
 const $ = id => document.getElementById(id);
-const SLIDERS = {...RANGES, guess: [-60, 89]};
+const SLIDERS = {...RANGES, guess: [-85, 89]};
 const SHOW = 7000;             // length of the whole show in ms
 const ARRIVAL = .22, DEPARTURE = .74; // parts of the show at which contact begins and ends
 const NEAR = 2.2, FAR = 4.2;   // centre of the ball from its place of contact, in radii: at rest, at the largest speed
@@ -101,11 +101,6 @@ function drawStage() {
   let svg = `<rect class="ground" x="0" y="${y(0)}" width="500" height="40"/>`;
   svg += line(x(0), y(1), x(0), y(6), "rule");
   svg += line(x(-met.along * from), y(1 + met.normal * from), x(0), y(1), "rule");
-  if (state.predict) {
-    const a = state.guess * Math.PI / 180, [tipX, tipY] = [x(4.4 * Math.sin(a)), y(1 + 4.4 * Math.cos(a))];
-    svg += line(x(0), y(1), tipX, tipY, "guess") + `<g class="grip" data-grip="guess"><circle class="knob" cx="${tipX}" cy="${tipY}" r="8"/>`;
-    svg += `<circle class="touch" cx="${tipX}" cy="${tipY}" r="26"/></g>` + text(tipX + 13, tipY + 6, "you", "start");
-  }
   if (seen) svg += line(x(0), y(1), x(exact.along * from), y(1 + exact.normal * from), "rule");
   const marks = moment > DEPARTURE ? LAWS.slice().reverse() : LAWS.slice(0, 1);
   for (const [law] of marks) {
@@ -117,6 +112,11 @@ function drawStage() {
       if (moment === 0) svg += aim(c);
       svg += `<circle class="grip touch" data-grip="ball" cx="${c[0].toFixed(2)}" cy="${c[1].toFixed(2)}" r="${1.3 * SIZE}"/>`;
     }
+  }
+  if (state.predict) { // over the ball, so that both can be held
+    const a = state.guess * Math.PI / 180, [tipX, tipY] = [x(4.4 * Math.sin(a)), y(1 + 4.4 * Math.cos(a))];
+    svg += line(x(0), y(1), tipX, tipY, "guess") + `<g class="grip" data-grip="guess"><circle class="knob" cx="${tipX}" cy="${tipY}" r="8"/>`;
+    svg += `<circle class="touch" cx="${tipX}" cy="${tipY}" r="26"/></g>` + text(tipX + (a < 0 ? -13 : 13), tipY + 6, "you", a < 0 ? "end" : "start");
   }
   const inside = (moment - ARRIVAL) / (DEPARTURE - ARRIVAL);
   const clock = moment === 0 ? `${state.angle}\u00b0, ${state.speed.toFixed(1)} m/s` : inside < 0 ? "arrives" : inside > 1 ? "leaves" : `in contact: ${seconds(inside * found.duration)} of ${seconds(found.duration)}`;
@@ -321,7 +321,7 @@ function begin() {
   fromLink(); changed();
   if (state.block || ["radius", "inertia", "restitution"].some(key => state[key] !== FIRST[key])) $("more").open = true;
 }
-addEventListener("hashchange", () => { state = {...FIRST}; begin(); });
+addEventListener("hashchange", () => { state = {...FIRST}; begin(); scrollTo(0, 0); });
 begin(); writeSheet();
 $("print").addEventListener("click", () => print());
 addEventListener("beforeprint", () => { $("answered").open ||= $("sheet").open; }); // the answers, on a page of their own
