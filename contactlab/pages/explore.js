@@ -19,7 +19,7 @@ const WORDS = {
   inertia: value => `${value.toFixed(2)}, ${value < .4 ? "dense core" : value > .4 ? value < .66 ? "hollow" : "thin shell" : "solid"}`,
 };
 
-let state = {...FIRST}, found, curves, moment = 0, playing = 0, seen = false;
+let state = {...FIRST}, found, curves = [], moment = 0, playing = 0, seen = false;
 
 /* ---- state in the link ---- */
 function fromLink() {
@@ -183,6 +183,7 @@ function drawForce() {
 }
 
 function drawRebound() {
+  if (seen && !curves.length) curves = rebounds(state); // not while one drags: it takes a frame
   const left = 52, right = 392, top = 8, bottom = 212, low = Math.min(-20, ...curves.map(r => Math.min(r[1], r[2]))) - 2;
   const x = a => left + (right - left) * a / 86, y = a => bottom - (bottom - top) * (a - low) / (88 - low);
   let svg = frame(left, right, top, bottom, [0, 30, 60], [-30, 0, 30, 60].filter(a => a > low), x, y, "angle of incidence (\u00b0)");
@@ -239,7 +240,7 @@ function showAnswer() {
 }
 function changed() {
   cancelAnimationFrame(playing); playing = 0;
-  found = thrown(state); curves = rebounds(state);
+  found = thrown(state); curves = [];
   seen = false; moment = 0;
   for (const [key, words] of Object.entries(WORDS)) {
     $(key).value = state[key]; $(`${key}-shown`).textContent = words(state[key]); $(key).setAttribute("aria-valuetext", words(state[key]));
