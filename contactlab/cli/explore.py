@@ -16,7 +16,10 @@ from contactlab.cli import arguments as shared
 from contactlab.outcome.files import written
 from contactlab.pages.explore import RANGES, explore_page
 
-UNITS = {"angle": "in degrees from the normal", "speed": "in m/s", "spin": "in rad/s"}
+UNITS = {
+    "angle": "in degrees from the normal", "speed": "in m/s", "spin": "in rad/s",
+    "radius": "in m", "inertia": "over m R²: 0.4 solid, 0.667 thin shell",
+}  # fmt: skip
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,8 +32,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             f"--{name}", type=shared.finite, default=first, help=f"{words} (default: {first:g})"
         )
     parser.add_argument(
-        "--material", default="pmma", metavar="NAME", help="of ball and block (default: pmma)"
+        "--material", default="pmma", metavar="NAME", help="of the ball (default: pmma)"
     )
+    parser.add_argument("--block", metavar="NAME", help="of the block (default: the ball's)")
     parser.add_argument("--predict", action="store_true", help="ask for a prediction first")
     parser.add_argument(
         "--out", type=shared.file_of(".html"), default=Path("explore.html"), metavar="FILE.html",
@@ -41,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the page and print its path."""
-    values = {name: getattr(arguments, name) for name in (*RANGES, "material", "predict")}
+    values = {name: getattr(arguments, name) for name in (*RANGES, "material", "block", "predict")}
     page = explore_page(**values)
     with written(arguments.out) as stream:
         stream.write(page)

@@ -143,10 +143,10 @@ def test_sliders_begin_within_their_ranges(name, least, most):
 def test_a_page_begins_with_a_ball_of_pmma():
     text = explore.explore_page()
     assert (
-        '{"angle": 35.0, "speed": 2.0, "spin": 100.0, "friction": 0.8, "material": "pmma", '
-        '"predict": false, "guess": 0, "radius": 10.0}'
+        '{"angle": 35.0, "speed": 2.0, "spin": 100.0, "friction": 0.8, "radius": 0.01, '
+        '"inertia": 0.4, "restitution": 1.0, "material": "pmma", "block": "", "predict": false, '
+        '"guess": 0}'
     ) in text
-    assert "10 mm" in text
     assert "100 springs" in text
     assert "500 steps" in text
     assert '"predict": true' in explore.explore_page(predict=True)

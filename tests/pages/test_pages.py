@@ -22,7 +22,7 @@ from contactlab.pages.explore import explore_page
 
 
 def first_values(page):
-    return json.loads(re.search(r"FIRST = (.*);\n", page.read_text("utf-8"))[1])
+    return json.loads(re.search(r"FIRST = (.*), RANGES", page.read_text("utf-8"))[1])
 
 
 def test_the_page_knows_the_materials_of_the_collection(run, tmp_path):
@@ -38,16 +38,19 @@ def test_the_page_knows_the_materials_of_the_collection(run, tmp_path):
 
 def test_the_sliders_stand_where_they_are_asked_to(run, tmp_path):
     page = tmp_path / "explore.html"
-    words = ("--angle", 50, "--spin", -80, "--material", "Rubber", "--predict")
+    words = ("--angle", 50, "--spin", -80, "--material", "Rubber", "--predict",
+             "--block", "Granite", "--radius", 0.025, "--restitution", 0.8)  # fmt: skip
     assert run("explore", *words, "--out", page).status == 0
     first = first_values(page)
     assert (first["angle"], first["spin"], first["material"]) == (50.0, -80.0, "rubber")
     assert first["predict"] is True
+    assert (first["block"], first["radius"], first["restitution"]) == ("granite", 0.025, 0.8)
     refused = run("explore", "--speed", 30, "--out", page)
     assert refused.status == 2
     assert "speed = 30" in refused.err
     assert "[0.1, 10]" in refused.err
-    assert run("explore", "--material", "cheese", "--out", page).status == 2
+    for name in ("--material", "--block"):
+        assert run("explore", name, "cheese", "--out", page).status == 2
 
 
 def test_the_page_among_the_examples_is_what_the_command_writes():
