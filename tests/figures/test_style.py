@@ -6,6 +6,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -207,6 +208,7 @@ def test_a_slide_has_a_dark_ground_light_words_and_1920_by_1080_dots(tmp_path):
     def draw(axes):
         axes.plot([0.0, 1.0], color="#0072B2")
         axes.plot([1.0, 0.0], "ko", markerfacecolor="white")
+        axes.pcolormesh([[0, 1]], cmap=ListedColormap(["white", "#0072B2"]))
         axes.set_title("words")
         kept.append(axes)
 
@@ -217,6 +219,9 @@ def test_a_slide_has_a_dark_ground_light_words_and_1920_by_1080_dots(tmp_path):
         assert max(picture.convert("RGB").getpixel((2, 2))) < 40
     (axes,) = kept
     line, dots = axes.lines
+    empty, blue = axes.collections[0].get_cmap().colors
+    assert max(empty[:3]) < 0.2
+    assert blue[:3] == pytest.approx((0.3, 0.613, 0.789), abs=1e-3)
     assert mpl.colors.to_rgb(axes.title.get_color()) > (0.9, 0.9, 0.9)
     assert mpl.colors.to_rgb(dots.get_markeredgecolor()) > (0.9, 0.9, 0.9)
     assert mpl.colors.to_rgb(dots.get_markerfacecolor()) < (0.2, 0.2, 0.2)
