@@ -6,6 +6,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from docutils import nodes
+from latex2mathml.converter import convert
+
 import contactlab
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -26,7 +29,8 @@ extensions = [
     "sphinx_copybutton",
 ]
 copybutton_exclude = ".linenos, .gp, .go"  # no prompts and no output
-myst_enable_extensions = ["colon_fence"]
+myst_enable_extensions = ["colon_fence", "dollarmath"]
+html_math_renderer = "mathml"
 myst_heading_anchors = 3
 napoleon_numpy_docstring = True
 napoleon_google_docstring = False
@@ -93,8 +97,40 @@ def not_followed(_: Any, module: str, name: str) -> str | None:
     return module if (module, name) == ("contactlab", "fit") else None
 
 
+#: Spaces that LaTeX sets and latex2mathml does not: none around a slash, a bar and behind a sign, a
+#: thin one behind a function without brackets.
+SPACES = {
+    r"<mo>(&#x0002F;|&#x0007C;)</mo>": r'<mo stretchy="false" lspace="0" rspace="0">\1</mo>',
+    r"(<mo[^>]*>&#x0(?:003D|0028|005B|2264);</mo><mo)(?=>&#x02212;)": r'\1 lspace="0" rspace="0"',
+    r"<mo>([a-z]\w+)</mo>": r"<mi>\1</mi>",
+    r"(<mi>[a-z]\w+</mi>)(?!<mo stretchy=.false.>&#x00028;)": r'\1<mspace width=".2em"/>',
+    r"<mi>&#x02032;</mi>": "<mo>&#x02032;</mo>",
+}
+
+
+def mathml(latex: str, display: str) -> str:
+    """Return a formula as MathML, which browsers draw without a network."""
+    formula = convert(latex, display=display)
+    for before, after in SPACES.items():
+        formula = re.sub(before, after, formula)
+    return formula
+
+
+def formula(translator: Any, node: Any) -> None:
+    """Write a formula within a line."""
+    translator.body.append(mathml(node.astext(), "inline"))
+    raise nodes.SkipNode
+
+
+def displayed_formula(translator: Any, node: Any) -> None:
+    """Write a formula of its own lines."""
+    translator.body.append(f'<div class="formula">{mathml(node.astext(), "block")}</div>')
+    raise nodes.SkipNode
+
+
 def setup(app: Any) -> None:
-    """Have the attributes taken apart after napoleon has read the docstrings."""
+    """Have formulas made, and attributes taken apart after napoleon has read the docstrings."""
+    app.add_html_math_renderer("mathml", (formula, None), (displayed_formula, None))
     app.connect("viewcode-follow-imported", not_followed)
     app.connect("autodoc-skip-member", left_out)
     app.connect("autodoc-process-docstring", attributes_apart, priority=900)

@@ -12,7 +12,9 @@ from __future__ import annotations
 
 import argparse
 import re
+import shutil
 
+from contactlab.cli.formulas import readable
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 
@@ -24,6 +26,10 @@ GROUPS = {
     "Laws and codes": ("laws", "extending", "engines", "theory"),
 }
 TOPICS = tuple(topic for group in GROUPS.values() for topic in group)
+#: Longest line of prose, however wide the terminal is.
+WIDEST = 100
+#: Signs of LaTeX that no word has: a page that has ``\\psi_1`` is found by psi1.
+LATEX = str.maketrans("", "", "\\_{}$")
 #: Heading of a numbered section, such as ``## 5. The slip front``.
 SECTION = re.compile(r"^## (\d+)\. ", re.MULTILINE)
 
@@ -56,7 +62,8 @@ def execute(arguments: argparse.Namespace) -> int:
                 f"is not a section of {arguments.topic!r}",
                 "leave it out for the whole topic",
             )
-    print(shown.rstrip())
+    width = min(shutil.get_terminal_size().columns, WIDEST)
+    print(readable(shown.rstrip(), width))
     return 0
 
 
@@ -76,7 +83,8 @@ def about(word: str) -> list[str]:
     """Return at most three topics that have a word, those with most headings and lines first."""
     found = {}
     for topic in TOPICS:
-        lines = [line for line in text(topic).splitlines() if word.lower() in line.lower()]
+        known = text(topic).lower().translate(LATEX).splitlines()
+        lines = [line for line in known if word.lower().translate(LATEX) in line]
         if lines:
             found[topic] = (sum(line.startswith("#") for line in lines), len(lines))
     return sorted(found, key=lambda topic: found[topic], reverse=True)[:3]

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 from urllib.parse import unquote
+from xml.etree import ElementTree
 
 import pytest
 
@@ -63,10 +64,23 @@ def test_a_page_of_the_gallery_shows_picture_and_output(site, opened):
 
 def test_formulas_are_typeset_and_drawings_left(site, opened):
     page = opened(site / "theory.html")
-    fraction = page.find_element("css selector", "table.formulas math mfrac")
+    fraction = page.find_element("css selector", ".formula math mfrac")
     assert fraction.size["height"] > 1.4 * page.find_element("css selector", "p").size["height"] / 3
     assert len(page.find_elements("css selector", "math")) > 35
+    places = [each.rect["x"] for each in page.find_elements("css selector", ".formula mtd")]
+    assert len(set(places)) > 4  # columns in line
     assert any("edge slip" in each.text for each in page.find_elements("css selector", "pre"))
+
+
+def test_no_formula_is_left_as_latex(site):
+    for topic in TOPICS:
+        page = (site / f"{topic}.html").read_text("utf-8")
+        formulas = re.findall(r"<math.*?</math>", page, re.DOTALL)
+        for formula in formulas:
+            ElementTree.fromstring(formula)
+            assert not re.search(r"\\|&amp;|\$|&#x00026;", formula), topic
+        prose = re.sub(r"<(math|pre|code|script)\b.*?</\1>", "", page, flags=re.DOTALL)
+        assert not re.search(r"\$[^$<]*\$", prose), topic
 
 
 def test_every_page_of_the_guide_has_a_picture_that_is_there(site, opened):

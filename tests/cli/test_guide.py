@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import re
 import subprocess
 import sys
 
 import pytest
 
+import contactlab
 from contactlab.cli.guide import TOPICS
 
 
@@ -36,6 +38,39 @@ def test_a_section_is_printed_alone(run):
     assert run("guide", "theory", "§5").out == ran.out
 
 
+@pytest.mark.parametrize("columns", [60, 80, 1000])
+@pytest.mark.parametrize("topic", TOPICS)
+def test_formulas_are_printed_in_letters_and_prose_fits_the_terminal(
+    run, topic, columns, monkeypatch
+):
+    monkeypatch.setenv("COLUMNS", str(columns))
+    prose = re.sub(r"```.*?```|`[^`]*`", "", run("guide", topic).out, flags=re.DOTALL)
+    assert re.findall(r"\\\\|\$|\\[a-z]+|[_^]\{|&=", prose) == []
+    filled = [line for line in prose.splitlines() if not line.startswith(("|", "!", "#", "    "))]
+    assert max(map(len, filled)) <= min(columns, 100)
+
+
+def value(printed, **known):
+    """Compute a formula as it is printed, products and powers written for Python."""
+    text = printed.translate(str.maketrans("₀₁₂", "012")).replace("²", "**2").replace("³", "**3")
+    text = re.sub(r"(?<=[\w)\]]) (?=[\w(\[])", "*", text.replace("^", "**"))
+    return eval(text.replace("[", "(").replace("]", ")"), {"sqrt": math.sqrt, **known})
+
+
+def test_printed_formulas_have_the_values_that_the_code_has(run):
+    """What stands in the letters of a terminal is computed, and compared with the package."""
+    scaling, regimes = (run("guide", "theory", number).out for number in ("1", "2"))
+    found = re.search(r"T_c = (.*) = ([\d.]+)", scaling)
+    assert value(found[1], Γ=math.gamma, π=math.pi) == pytest.approx(float(found[2]), abs=1e-10)
+    found = re.search(r"κ = 2(\(.*?\)/\(.*?\)) ", scaling)
+    steel = contactlab.Material.named("steel")
+    bodies = contactlab.Sphere(0.01, steel), contactlab.HalfSpace(steel)
+    pair = contactlab.Scene.at_angle(*bodies, 0.2, speed=1.0, angle_deg=5.0).pair
+    assert 2 * value(found[1], ν=steel.poisson_ratio) == pytest.approx(pair.stiffness_ratio)
+    found = re.search(r"ψ₂ = (ψ₁ - 4 χ) sign", regimes)
+    assert value(found[1], χ=1.2, ψ1=6.0) == pytest.approx(float(contactlab.rebound(6.0, 1.2)))
+
+
 def test_an_unknown_topic_is_refused_with_the_nearest(run):
     ran = run("guide", "teory")
     assert (ran.status, ran.out) == (2, "")
@@ -48,6 +83,7 @@ def test_an_unknown_topic_is_refused_with_the_nearest(run):
     [
         ("restitution", ("theory", "choosing")), ("plugin", ("extending",)),
         ("trust", ("how-far-to-trust",)), ("Hysteresis", ("load-paths",)), ("zzzzzz", ()),
+        ("psi1", ("theory",)), ("v_x", ("theory", "units-and-signs")),
     ],
 )  # fmt: skip
 def test_a_word_is_refused_with_the_pages_that_have_it(run, word, pages):
