@@ -16,7 +16,7 @@ TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\s+|.", re.DOTALL)
 WIDE = "\N{EN QUAD}"  # of two columns
 UNBROKEN = "\N{NO-BREAK SPACE}"
 SIGNS = {
-    "\\le": "<=", "\\ge": ">=", "\\to": "->", "\\pm": "±", "\\cdot": "·", 
+    "\\le": "<=", "\\ge": ">=", "\\to": "->", "\\pm": "±", "\\cdot": "·",
     "\\times": "\N{MULTIPLICATION SIGN}",
     "\\int": "∫", "\\sum": "sum", "\\dots": "...", "\\lvert": "|", "\\rvert": "|", "\\,": " ",
     "\\quad": WIDE, "\\qquad": 2 * WIDE, "\\left": "", "\\right": "",

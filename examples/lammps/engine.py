@@ -45,6 +45,11 @@ class Engine(NamedTuple):
         """Name of the wall fix that has ``mindlin_springs``."""
         return "wall/gran/springs" if self.plugin else "wall/gran"
 
+    @property
+    def region(self) -> str:
+        """Name of the fix of a region's wall that has ``mindlin_springs``."""
+        return "wall/gran/region/springs" if self.plugin else "wall/gran/region"
+
     def run(self, script: str, folder: Path) -> str:
         """Run an input script in a folder and return what LAMMPS prints."""
         load = f"plugin load {self.plugin}\n" if self.plugin else ""
