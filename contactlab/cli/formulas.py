@@ -12,6 +12,8 @@ import unicodedata
 
 CODE = re.compile(r"(^```.*?^```$|`[^`]*`)", re.DOTALL | re.MULTILINE)
 FORMULA = re.compile(r"^\$\$\n(.*?)\n\$\$$|\$([^$]+)\$", re.DOTALL | re.MULTILINE)
+#: A link to a page of the guide, whose name stands in its words.
+LINK = re.compile(r"\[(`[a-z-]+`)\]\([a-z-]+\.md\)")
 TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\s+|.", re.DOTALL)
 WIDE = "\N{EN QUAD}"  # of two columns
 UNBROKEN = "\N{NO-BREAK SPACE}"
@@ -34,7 +36,8 @@ def readable(page: str, width: int) -> str:
     parts = CODE.split(page)
     parts[::2] = (FORMULA.sub(_shown, part) for part in parts[::2])
     parts[1::2] = (part if part[:3] == "```" else _unbroken(part) for part in parts[1::2])
-    parts = re.split(r"(^```.*?^```$)", "".join(parts), flags=re.DOTALL | re.MULTILINE)
+    told = LINK.sub(r"\1", "".join(parts))
+    parts = re.split(r"(^```.*?^```$)", told, flags=re.DOTALL | re.MULTILINE)
     for at in range(0, len(parts), 2):
         parts[at] = "\n\n".join(filled(each, width) for each in parts[at].split("\n\n"))
     return "".join(parts).replace(UNBROKEN, " ")

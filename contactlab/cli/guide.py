@@ -5,7 +5,7 @@ Examples
   contactlab guide
   contactlab guide choosing
   contactlab guide theory 5
-  contactlab guide theory | less
+  contactlab guide theory-springs | less
 """
 
 from __future__ import annotations
@@ -26,6 +26,17 @@ GROUPS = {
     "Laws and codes": ("laws", "extending", "engines", "theory"),
 }
 TOPICS = tuple(topic for group in GROUPS.values() for topic in group)
+#: Parts of the long topics, whose own pages begin with a table of them.
+PARTS = {
+    "extending": (
+        "extending-contact", "extending-impacts", "extending-integrator", "extending-kit",
+    ),
+    "theory": (
+        "theory-impact", "theory-springs", "theory-methods", "theory-coupling",
+        "theory-normal-laws", "theory-more-laws", "theory-references",
+    ),
+}  # fmt: skip
+PAGES = tuple(page for topic in TOPICS for page in (topic, *PARTS.get(topic, ())))
 #: Longest line of prose, however wide the terminal is.
 WIDEST = 100
 #: Signs of LaTeX that no word has: a page that has ``\\psi_1`` is found by psi1.
@@ -36,7 +47,9 @@ SECTION = re.compile(r"^## (\d+)\. ", re.MULTILINE)
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the topic and the section."""
-    parser.add_argument("topic", nargs="?", metavar="TOPIC", help="leave it out for the list")
+    parser.add_argument(
+        "topic", nargs="?", metavar="TOPIC", help="or a part of one; leave it out for the list"
+    )
     parser.add_argument(
         "section", nargs="?", metavar="SECTION", help="number of a section, for theory"
     )
@@ -54,7 +67,7 @@ def execute(arguments: argparse.Namespace) -> int:
         return 0
     shown = text(arguments.topic)
     if arguments.section is not None:
-        shown = sections(shown).get(arguments.section.lstrip("§"), "")
+        shown = sections(whole(arguments.topic)).get(arguments.section.lstrip("§"), "")
         if not shown:
             raise refuse(
                 "section",
@@ -67,22 +80,27 @@ def execute(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def whole(topic: str) -> str:
+    """Return the Markdown of a topic with all its parts."""
+    return "\n".join(map(text, (topic, *PARTS.get(topic.removesuffix(".md"), ()))))
+
+
 def text(topic: str) -> str:
-    """Return the Markdown of a topic."""
+    """Return the Markdown of a topic, or of a part of one."""
     from importlib import resources  # only when the guide is read
 
     name = topic.removesuffix(".md")
-    if name not in TOPICS:
+    if name not in PAGES:
         pages = ", ".join(map(repr, about(name)))
-        hint = nearest(name, TOPICS, alike=0.75) or f"read of {name} in {pages}; " * bool(pages)
+        hint = nearest(name, PAGES, alike=0.75) or f"read of {name} in {pages}; " * bool(pages)
         raise refuse("topic", topic, "is not in the guide", f"{hint}known: {', '.join(TOPICS)}")
     return resources.files("contactlab").joinpath("guide", f"{name}.md").read_text("utf-8")
 
 
 def about(word: str) -> list[str]:
-    """Return at most three topics that have a word, those with most headings and lines first."""
+    """Return at most three pages that have a word, those with most headings and lines first."""
     found = {}
-    for topic in TOPICS:
+    for topic in PAGES:
         known = text(topic).lower().translate(LATEX).splitlines()
         lines = [line for line in known if word.lower().translate(LATEX) in line]
         if lines:

@@ -13,7 +13,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Status, contracts
-from contactlab.cli.guide import SECTION, TOPICS, sections, summary, text
+from contactlab.cli.guide import PAGES, PARTS, SECTION, TOPICS, sections, summary, text, whole
 from contactlab.compose import normal_motion
 from contactlab.contracts import error_model
 from contactlab.impact import bodies, coupling, hertz
@@ -54,7 +54,7 @@ def run(topic):
     module = types.ModuleType(f"guide_{topic.replace('-', '_')}")
     sys.modules[module.__name__] = module  # a class must be found again to be copied
     printed = []
-    for code, _ in BLOCKS.findall(text(topic)):
+    for code, _ in BLOCKS.findall(whole(topic)):
         stream = io.StringIO()
         with contextlib.redirect_stdout(stream):
             exec(compile(code, f"{topic}.md", "exec"), vars(module))
@@ -68,16 +68,28 @@ def extending():
 
 
 def test_topics_are_the_files():
-    assert {path.stem for path in GUIDE.glob("*")} == set(TOPICS)
+    assert sorted(path.stem for path in GUIDE.glob("*")) == sorted(PAGES)
 
 
-@pytest.mark.parametrize("topic", TOPICS)
+@pytest.mark.parametrize("topic", PAGES)
 def test_a_topic_begins_with_a_title_and_a_line_about_it(topic):
     lines = text(topic).split("\n", 4)
     assert lines[0].startswith("# ")
     assert (lines[1], lines[3]) == ("", "")
     assert lines[2].endswith(".")
     assert summary(topic) == lines[2]
+
+
+@pytest.mark.parametrize("topic", PARTS)
+def test_the_table_of_a_long_topic_leads_to_its_parts_of_a_thousand_words(topic):
+    rows = re.findall(r"^\| \[`(.*?)`\]\((.*?)\.md\) \|(?: ([^|]*) \|)?", text(topic), re.MULTILINE)
+    assert [row[0] for row in rows] == [row[1] for row in rows] == list(PARTS[topic])
+    for part, _, numbered in rows:
+        bounds = [int(number) for number in re.findall(r"\d+", numbered)]
+        expected = list(range(bounds[0], bounds[-1] + 1)) if bounds else []
+        if topic == "theory":
+            assert [int(number) for number in SECTION.findall(text(part))] == expected
+        assert 400 < len(text(part).split()) < 1500
 
 
 @pytest.mark.parametrize("topic", TOPICS)
@@ -87,7 +99,7 @@ def test_every_page_has_a_picture_that_exists(topic):
     assert [picture for picture in pictures if not (ROOT / picture).is_file()] == []
 
 
-@pytest.mark.parametrize("topic", TOPICS)
+@pytest.mark.parametrize("topic", PAGES)
 def test_lines_fit_a_terminal_but_for_tables_and_code(topic):
     prose = re.sub(r"```.*?```", "", text(topic), flags=re.DOTALL).splitlines()
     assert not [line for line in prose if len(line) > 120 and not line.startswith(("|", "!["))]
@@ -95,7 +107,7 @@ def test_lines_fit_a_terminal_but_for_tables_and_code(topic):
 
 @pytest.mark.parametrize("topic", TOPICS)
 def test_code_prints_what_is_shown(topic):
-    expected = [shown for _, shown in BLOCKS.findall(text(topic))]
+    expected = [shown for _, shown in BLOCKS.findall(whole(topic))]
     assert run(topic)[1] == expected
 
 
@@ -112,7 +124,7 @@ def test_the_code_of_the_site_prints_numbers_and_draws(capsys):
 
 def test_there_is_code():
     assert len(BLOCKS.findall(text("getting-started"))) >= 5
-    assert len(BLOCKS.findall(text("extending"))) == len(LAWS) + 2
+    assert len(BLOCKS.findall(whole("extending"))) == len(LAWS) + 2
 
 
 @pytest.mark.parametrize(
@@ -127,11 +139,11 @@ def test_a_law_of_the_guide_passes_the_kit(extending, name):
 
 
 def test_the_theory_has_the_sections_that_are_numbered():
-    assert SECTION.findall(text("theory")) == [str(number) for number in range(1, 15)]
+    assert SECTION.findall(whole("theory")) == [str(number) for number in range(1, 15)]
 
 
 def test_every_citation_of_the_theory_resolves():
-    known, cited = set(SECTION.findall(text("theory"))), []
+    known, cited = set(SECTION.findall(whole("theory"))), []
     for path in sources():
         for found in CITATION.findall(path.read_text(encoding="utf-8")):
             numbers = re.findall(r"\d+", found)
@@ -141,14 +153,14 @@ def test_every_citation_of_the_theory_resolves():
 
 
 def test_sections_cited_within_the_theory_resolve():
-    known = set(SECTION.findall(text("theory")))
-    own = re.sub(r"§\d+\.\d+", "", text("theory"))  # sections of the paper
+    known = set(SECTION.findall(whole("theory")))
+    own = re.sub(r"§\d+\.\d+", "", whole("theory"))  # sections of the paper
     assert set(re.findall(r"§(\d+)", own)) <= known
 
 
 def rows(section):
     """The rows of numbers in the tables of a section of the theory."""
-    for line in sections(text("theory"))[section].splitlines():
+    for line in sections(whole("theory"))[section].splitlines():
         cells = line.strip("| ").split(" | ")
         with contextlib.suppress(ValueError):
             yield [49 / 34 if cell == "49/34" else float(cell) for cell in cells]
@@ -169,7 +181,7 @@ def test_tables_of_the_theory_are_those_of_the_code():
 
 
 def test_references_of_the_theory_are_numbered_and_all_cited():
-    body, _, listed = text("theory").partition("## References")
+    body, _, listed = whole("theory").partition("## References")
     numbers = re.findall(r"^(\d+)\. ", listed, re.MULTILINE)
     assert numbers == [str(number) for number in range(1, len(numbers) + 1)]
     assert set(re.findall(r"\[(\d+)\]", body)) == set(numbers)
@@ -186,10 +198,10 @@ def test_dois_are_well_formed():
     assert len(set(found)) > 10
 
 
-@pytest.mark.parametrize("topic", TOPICS)
+@pytest.mark.parametrize("topic", PAGES)
 def test_topics_named_in_the_guide_exist(topic):
     named = re.findall(r"`contactlab guide ([a-z0-9-]+)", text(topic))
-    assert set(named) <= set(TOPICS)
+    assert set(named) <= set(PAGES)
 
 
 def test_every_status_is_explained():

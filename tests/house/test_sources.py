@@ -147,7 +147,7 @@ def test_every_work_of_the_materials_has_an_entry():
 
 
 def test_every_work_in_the_list_of_the_theory_page_has_an_entry():
-    listed = TEXTS["contactlab/guide/theory.md"].partition("\n## References\n")[2]
+    listed = TEXTS["contactlab/guide/theory-references.md"].partition("\n## References\n")[2]
     works = re.split(r"\n(?=\d+\. )", listed.strip())
     assert len(works) >= 18
     for work in works:
