@@ -492,6 +492,19 @@ def test_a_batch_answers_as_its_impacts():
     assert EXACT.run(table).psi2.ravel() == pytest.approx(EXACT.run(scene).psi2, rel=1e-12)
 
 
+def test_exact_impacts_side_by_side_answer_as_alone():
+    """Alone and with a history gross slip is timed step by step, in a batch as Hertz's motion."""
+    scene = random_planar(150, 31)
+    together = EXACT.run(scene).check()
+    for place, one in enumerate(together):
+        alone = EXACT.run(scene.take(place), history=place % 2 == 0).check()
+        for name in ("psi2", "normal_velocity"):
+            assert getattr(one, name) == pytest.approx(getattr(alone, name), rel=1e-9)
+        for name in ("duration", "friction_work", "maximum_approach"):
+            value = getattr(one.motion, name)
+            assert value == pytest.approx(getattr(alone.motion, name), rel=1e-8, abs=1e-12)
+
+
 HARD = [
     # psi1, chi, lam, lam eta over 2 chi
     (1e6, 0.5, -1000.0, 0.99), (1e6, 3.0, -1000.0, 0.99), (1e6, 3.0, -30.0, 0.9999),
