@@ -6,13 +6,10 @@ import argparse
 import re
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import numbers
-from contactlab.cli.sweep import _ranges, _rows
-from contactlab.impact.scene import Scene
 
 RANGE = "a range is START:STOP:COUNT, {}, in contactlab sweep and compare"
 
@@ -109,13 +106,6 @@ def test_names_are_a_list_without_repetition():
         shared.names("a, a")
 
 
-def test_a_column_is_a_heading_and_a_name():
-    assert shared._column(" a = b [deg] = angle ") == ("a = b [deg]", "angle")
-    for text in ("angle", "=angle", "angle=", " = "):
-        with pytest.raises(argparse.ArgumentTypeError, match=r"write HEADING=NAME$"):
-            shared._column(text)
-
-
 def test_a_file_has_one_of_the_suffixes_and_a_folder(tmp_path):
     convert = shared.file_of(".png", ".pdf")
     assert convert(str(tmp_path / "a.PDF")) == tmp_path / "a.PDF"
@@ -138,15 +128,6 @@ def test_every_file_is_written_though_one_fails(tmp_path, capsys):
     assert capsys.readouterr().err == "contactlab: error: no space\n"
     assert shared.save((one, done.append), progress_wanted=False) == shared.OK
     assert shared.save((None, full), progress_wanted=False) == shared.OK
-
-
-def test_progress_of_files_counts_those_that_are_written(tmp_path, monkeypatch):
-    counted = []
-    monkeypatch.setattr(
-        "contactlab.cli.progress.Progress.__call__", lambda _, *count: counted.append(count)
-    )
-    shared.save((tmp_path, str), (None, str), (tmp_path, str), progress_wanted=True)
-    assert counted == [(1, 2), (2, 2)]
 
 
 BOTH = "--psi1, --chi: cannot be combined with a scene file; leave out one of them"
@@ -223,29 +204,6 @@ def test_a_refusal_is_one_line(run, short_sweep, ball, tmp_path, monkeypatch, wo
         )
     else:
         assert ran.err == f"{head}{told.format(ball=ball, file=file)}\n"
-
-
-def test_a_million_impacts_are_not_too_many():
-    psi1, chi = np.linspace(0.0, 1.0, 1000), np.linspace(1.0, 2.0, 1000)
-    assert _ranges(psi1, chi).shape == (1000 * 1000,)
-    assert _ranges(2.0, np.array([1.0, 3.0])).chi.tolist() == [1.0, 3.0]
-
-
-def test_rows_of_a_sweep_are_psi1_chi_psi2_and_status(run):
-    from contactlab import Simulation
-
-    scene = Scene.nondimensional(psi1=[6.0, 7.0], chi=1.0)
-    rows = _rows(Simulation(tangential="coulomb").sweep(scene))
-    assert [row[:2] + row[3:] for row in rows] == [(6.0, 1.0, "SUCCESS"), (7.0, 1.0, "SUCCESS")]
-    assert [row[2] for row in rows] == pytest.approx([2.0, 3.0])
-    ran = run("sweep", "--psi1", "6:7:2", "--chi", 1, "--tangential", "coulomb", "--csv")
-    assert ran.out.splitlines()[0] == "psi1 (1),chi (1),psi2 (1),status"
-    assert ran.out.splitlines()[1].startswith("6.0,1.0,2.0")
-    table = run("sweep", "--psi1", "6:7:2", "--chi", 1, "--tangential", "coulomb").out
-    assert table == (
-        "psi1  chi  psi2  status\n----  ---  ----  -------\n   6    1     2  SUCCESS\n"
-        "   7    1     3  SUCCESS\n"
-    )
 
 
 @pytest.mark.parametrize(("count", "shown"), [(25, 25), (26, 25), (3, 3)])

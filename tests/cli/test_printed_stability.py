@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import re
 
@@ -12,7 +11,6 @@ import numpy as np
 import pytest
 
 from contactlab.cli import stability
-from contactlab.cli.arguments import write_items
 from contactlab.study.model_error import ModelError
 from contactlab.study.stability import Stability
 from contactlab.study.stability_judge import RAISED, WRONG, Outcome
@@ -123,48 +121,10 @@ method  case"""
     assert [row[3:5] for row in listed] == [["map", "0"], ["map", "1"], ["map", "0"]]
 
 
-def test_at_most_forty_failures_are_listed_and_all_are_written(tmp_path):
-    found = Stability(outcomes=OUTCOMES, regions=(region(**{RAISED: 50}),), complete=True)
-    text = stability.report(found)
-    assert sum(line.endswith("odd") for line in text.splitlines()) == 38
-    write_items(tmp_path / "s.csv", Outcome, stability._listed(found))
-    lines = (tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()
-    assert len(lines) == 1 + 8 + 50
-    assert lines[0].split(",") == [field.name for field in attrs.fields(Outcome)]
-    content = stability._content(found)
-    assert [len(content[name]) for name in ("outcomes", "map", "model_errors")] == [8, 1, 0]
-    assert len(content["map"][0]["failures"]) == 50
-    assert content["map"][0]["failures"][0]["case"] == "map 0"
-    assert content["map"][0]["chis"] == [0.5, 3.0, 7.0]
-    assert (content["tried"], content["silently_wrong"], content["complete"]) == (30, 1, True)
-    assert content["outcomes"][3]["error"] is None
-    json.dumps(content, allow_nan=False)
-
-
 def arguments(**more):
     plain = {"budget": math.inf, "width": None, "law": None, "quick": True, "progress": False,
              "csv": None, "figure": None, "json": False, "style": "print"}  # fmt: skip
     return argparse.Namespace(**(plain | more))
-
-
-@pytest.mark.parametrize(
-    ("outcomes", "complete", "status"),
-    [(OUTCOMES[:3], True, 0), (OUTCOMES[:3], False, 0), (OUTCOMES, True, 1)],
-)
-def test_the_status_of_stability(outcomes, complete, status, monkeypatch, capsys):
-    asked = {}
-
-    def study(chosen, **options):
-        asked.update(options, chosen=chosen)
-        return Stability(outcomes=outcomes, regions=(), complete=complete)
-
-    monkeypatch.setattr(stability, "stability", study)
-    monkeypatch.setattr(stability, "methods", lambda law: [law])
-    assert stability.execute(arguments(law=["springs"], budget=7.0)) == status
-    assert (asked["chosen"], asked["quick"], asked["budget"]) == ([["springs"]], True, 7.0)
-    assert ("not complete: the budget ran out" in capsys.readouterr().out) == (not complete)
-    assert stability.execute(arguments(json=True)) == status
-    assert json.loads(capsys.readouterr().out)["complete"] is complete
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation, Status
-from contactlab.compose import kept, sweep
+from contactlab.compose import kept
 from contactlab.compose.pieces import Chunk, unsolved
-from contactlab.compose.workers import MODULE_REMEDY, _locked, reply
+from contactlab.compose.workers import MODULE_REMEDY, reply
 from tests.compose.test_sweep import blocks_of
 
 COULOMB = Simulation(tangential="coulomb", integrator="symplectic")
@@ -124,16 +124,6 @@ def test_a_piece_with_impacts_that_were_not_computed_is_not_kept(folder):
     assert np.isnan(piece.motion.slip_velocity_change).all()
 
 
-def test_gaps_between_pieces_are_cut_in_steps():
-    pieces = [unsolved(Chunk(*ends), Status.SUCCESS) for ends in ((6, 8), (2, 4), (8, 10))]
-    gaps = sweep._gaps(pieces, 15)
-    assert gaps == [(0, 2), (4, 6), (10, 15)]
-    assert list(sweep._cut(gaps, 2)) == [(0, 2), (4, 6), (10, 12), (12, 14), (14, 15)]
-    assert sweep._gaps([], 3) == [(0, 3)]
-    assert sweep._gaps([unsolved(Chunk(0, 3), Status.SUCCESS)], 3) == []
-    assert Chunk(4, 15).size == 11
-
-
 def test_a_worker_replies_with_a_piece_or_with_what_was_raised():
     """As in its process: from pickled laws and the pickled scene of the chunk."""
     sent, chunk = pickle.dumps(COULOMB.laws), Chunk(2, 6)
@@ -154,13 +144,3 @@ def test_a_worker_replies_with_a_piece_or_with_what_was_raised():
     broken = reply(pickle.dumps(COULOMB.laws._replace(integrator=None)), part, chunk, 3)
     assert broken.piece is None
     assert isinstance(broken.raised, AttributeError)
-
-
-def test_the_scene_of_a_worker_is_read_only():
-    """Pickling loses the flag."""
-    again = pickle.loads(pickle.dumps(SCENE))
-    assert again.tangential_velocity.flags.writeable
-    locked = _locked(again)
-    assert locked is again
-    for array in (again.tangential_velocity, again.friction_coefficient, again.index):
-        assert not getattr(getattr(array, "flags", None), "writeable", False)

@@ -9,10 +9,8 @@ from contactlab import Scene, Simulation, Sphere, collide, create, rebound
 from contactlab.compose.rebound import (
     BEYOND_ERROR,
     DAMPED_ERROR,
-    FEW,
     TABULATED_CHI,
     TOLERANCE,
-    _in_table,
     damped_error,
 )
 from contactlab.compose.rebound import CHI as CHI_RULE
@@ -21,35 +19,6 @@ from tests.compose.test_collision import STEEL, meeting
 CHI = 49.0 / 34.0
 E_09 = {"restitution": 0.9}
 BEYOND = math.nextafter(TABULATED_CHI, 3.0)
-
-
-@pytest.mark.parametrize("count", [1, FEW, FEW + 1, 2 * FEW])
-@pytest.mark.parametrize(
-    ("psi1", "chi", "inside"),
-    [
-        (0.0, TABULATED_CHI, True), (-1e300, 5e-324, True), (1.0, BEYOND, False),
-        (1.0, 0.0, False), (1.0, -1.0, False), (1.0, math.nan, False), (1.0, math.inf, False),
-        (math.nan, 1.0, False), (math.inf, 1.0, False), (-math.inf, 1.0, False),
-    ],
-)  # fmt: skip
-def test_a_quick_look_finds_what_the_table_answers(psi1, chi, inside, count):
-    """Of plain numbers, and of the last of few or of many."""
-    assert _in_table(psi1, chi) is inside
-    angles, ratios = np.full(count, 0.5), np.full(count, 1.0)
-    angles[-1], ratios[-1] = psi1, chi
-    assert _in_table(angles, ratios) is inside
-    assert _in_table(angles.reshape(1, -1), ratios.reshape(1, -1)) is inside
-
-
-def test_other_kinds_of_arguments_are_looked_at_closely():
-    one = np.array([1.0, 2.0])
-    assert _in_table(one, one)
-    for psi1, chi in (
-        (1, 1.0), (1.0, 1), (one, 1.0), (1.0, one), (one, one[:1]), (one.astype(int), one),
-        (one, one.astype(np.float32)), (np.array(1.0), np.array(1.0)), (one[:0], one[:0]),
-        ([1.0], [1.0]), (None, None),
-    ):  # fmt: skip
-        assert not _in_table(psi1, chi)
 
 
 def test_answers_in_the_table_and_beyond_are_those_of_the_exact_law():

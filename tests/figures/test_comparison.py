@@ -9,7 +9,6 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from contactlab import Scene, Simulation
-from contactlab.figures import comparison as figures
 from contactlab.figures.comparison import (
     FORM_DASHES,
     all_laws,
@@ -164,19 +163,6 @@ def test_without_others_the_reference_stands_alone():
     assert {text.get_text() for text in upper.texts} == {"exact", "other"}
     assert lower.texts[:] == []
     assert upper.get_legend() is None
-
-
-@pytest.mark.parametrize(("width", "beside"), [(4.6, True), (4.4, False)])
-def test_where_names_have_no_room_a_legend_names_all(width, beside, monkeypatch):
-    """Beside the axes; in a figure below 4.5 inches under the lower ones."""
-    monkeypatch.setattr(figures, "name_curves", lambda *_, **__: False)
-    upper, lower = panels(width)
-    agreements = (measured(),)
-    all_laws(upper, lower, Scripted(LAWS, agreements=agreements), "psi2")
-    assert upper.texts[:] == []
-    own, other = (upper, lower) if beside else (lower, upper)
-    assert other.get_legend() is None
-    assert len(own.get_legend().get_texts()) == 1 + 4 + 1
 
 
 def test_laws_and_measured_values_over_a_sweep():

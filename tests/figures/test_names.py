@@ -67,19 +67,6 @@ def test_names_keep_clear_of_rules_and_of_the_legend(axes):
     assert axes.get_xlim() == (0.0, 400.0)
 
 
-def test_where_one_name_has_no_room_none_is_written(axes, monkeypatch):
-    monkeypatch.setattr(names, "LED", (12.0, 54.0))
-    monkeypatch.setattr(names, "SHIFTS", (0.0,))
-    x = np.linspace(0.0, 400.0, 50)
-    crowd = [curve(axes, x, np.full(50, y)) for y in np.arange(4.0, 300.0, 9.0)]
-    before = len(axes.lines)
-    assert not names.name_curves(axes, crowd[:2], ["one", "other"])
-    assert not axes.texts
-    assert len(axes.lines) == before
-    free = Figure(figsize=(4.0, 3.0)).subplots()
-    assert names.name_curves(free, [], [])
-
-
 def test_curves_of_one_group_may_be_alike(axes):
     x = np.linspace(0.0, 400.0, 50)
     pair = [curve(axes, x, np.full(50, y)) for y in (150.0, 153.0)]

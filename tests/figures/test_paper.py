@@ -8,7 +8,6 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from contactlab.figures import paper
 from contactlab.figures.paper import draw_paper
 from contactlab.figures.style import LAW_COLOURS
 from contactlab.study.paper_figures import Curve, FigureData
@@ -68,16 +67,6 @@ def test_forces_are_drawn_in_order_and_named(axes, number, parameters, names, la
     assert axes.get_xlabel() == TIME
     assert (axes.get_xlim(), axes.get_ylim()) == ((0.0, 1.0), (-1.05, 1.05))
     assert axes.get_legend() is None
-
-
-def test_without_room_for_names_there_is_a_legend(axes, monkeypatch):
-    monkeypatch.setattr(paper, "name_curves", lambda *_, **__: False)
-    draw_paper(axes, forces(3, (1.0, 0.5)))
-    assert axes.get_legend().get_title().get_text() == r"$K$  ($\chi$)"
-    draw_paper(axes, forces(1, (1.0, 0.5)))
-    assert axes.get_legend().get_title().get_text() == r"$\psi_1$"
-    draw_paper(axes, reflexion(2, np.linspace(0.0, 7.0, 50)))
-    assert len(axes.get_legend().get_texts()) >= 3
 
 
 def test_regimes_are_named_between_their_limits(axes):

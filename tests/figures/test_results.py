@@ -7,7 +7,6 @@ import pytest
 from matplotlib.figure import Figure
 
 from contactlab import Scene, Simulation
-from contactlab.figures import results
 from contactlab.figures.results import draw_history, draw_result
 from contactlab.figures.stick_slip import draw_stick_slip, stick_slip_map
 from contactlab.figures.style import LAW_COLOURS
@@ -45,32 +44,6 @@ def test_a_history_has_both_forces_in_its_units(axes):
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (ms)", "force (N)")
     names = [text.get_text() for text in axes.get_legend().get_texts()]
     assert names == ["normal force", "tangential force"]
-
-
-def test_other_columns_have_no_band(axes, many):
-    """The declared error is of psi2; an error of a whole unit is seen."""
-    rough = SimpleNamespace(scene=many.scene, psi2_error_estimate=None,
-                            plan=SimpleNamespace(psi2_error=1.0))  # fmt: skip
-    results._band(axes, rough, np.array([0.0, 3.0, 6.0]), np.zeros(3), np.arange(3))
-    (band,) = axes.collections
-    vertices = band.get_paths()[0].vertices
-    assert (vertices[:, 1].min(), vertices[:, 1].max()) == (-1.0, 1.0)
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["numerical error"]
-    estimated = SimpleNamespace(scene=many.scene, psi2_error_estimate=0.0, plan=rough.plan)
-    plain = Figure().subplots()
-    plain.set_ylim(0.0, 1.0)
-    results._band(plain, estimated, np.arange(3.0), np.zeros(3), np.arange(3))
-    assert not plain.collections
-    assert plain.get_legend() is None
-
-
-def test_a_band_is_that_of_a_curve_of_psi2(many, monkeypatch):
-    asked = []
-    monkeypatch.setattr(results, "_band", lambda *words: asked.append(words))
-    draw_result(Figure().subplots(), many, None, None)
-    draw_result(Figure().subplots(), many, "psi2", "psi1")
-    draw_result(Figure().subplots(), many, "chi", None)
-    assert len(asked) == 1
 
 
 def test_points_of_one_abscissa_are_not_joined(axes, many):

@@ -8,8 +8,7 @@ import pytest
 
 from contactlab import Simulation, create
 from contactlab.fitting.model import Model, scene_of
-from contactlab.fitting.parameters import Setup, _range, parameter_named
-from contactlab.numeric.checks import FINITE, GYRATION, NON_NEGATIVE, POISSON, POSITIVE, Rule
+from contactlab.fitting.parameters import Setup, parameter_named
 from tests.fitting.impacts import ANGLES, BODIES, scene
 from tests.laws.outside_laws import Walton
 
@@ -18,27 +17,6 @@ TSUJI = Simulation(normal="tsuji")
 
 def named(name, simulation=None, bodies=BODIES):
     return parameter_named(name, Setup(bodies, simulation))
-
-
-@pytest.mark.parametrize(
-    ("rule", "value", "least", "most"),
-    [
-        (None, 1.0, -math.inf, math.inf),
-        (FINITE, 0.3, -math.inf, math.inf),
-        (POSITIVE, 0.3, 0.0, math.inf),
-        (POSITIVE, 5e13, 0.0, 5e13),
-        (NON_NEGATIVE, 0.0, 0.0, math.inf),
-        (POISSON, 0.3, -1.0, 0.5),
-        (POISSON, -1.0, -1.0, 0.5),
-        (POISSON, 0.5, -1.0, 0.5),
-        (GYRATION, 0.4, 0.0, 1.0),
-        (Rule(lambda value: value < -2.5, ""), -3.0, -math.inf, -2.5),
-        (Rule(lambda value: abs(value) <= 1e-3, ""), 0.0, -1e-3, 1e-3),
-    ],
-)
-def test_the_range_of_a_rule_about_a_value(rule, value, least, most):
-    found = _range(rule, value)
-    assert found == pytest.approx((least, most), rel=1e-12, abs=1e-15)
 
 
 def test_numbers_of_a_scene_have_ranges_and_starts():

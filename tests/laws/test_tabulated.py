@@ -2,7 +2,6 @@
 
 import math
 
-import attrs
 import numpy as np
 import pytest
 from numpy.polynomial.polynomial import polyder, polygrid2d, polyval, polyval2d
@@ -195,17 +194,6 @@ def test_scalar_gathered_and_sorted_agree(monkeypatch):
     seam[here.who] = (np.abs(cells - np.round(cells)) < 1e-9).any(axis=0)
     assert off[~seam].max() < 2e-12
     assert off[seam].max(initial=0.0) < 4e-11
-
-
-def test_a_patch_is_compiled_to_the_same_bits(monkeypatch):
-    """After some impacts; each patch at one place, before and after."""
-    monkeypatch.setattr(patches, "COMPILED", 2)
-    fresh = attrs.evolve(shipped().patches)
-    for patch, (a, b) in enumerate(fresh.origins.T.tolist()):
-        rows = fresh.single[patch]
-        value = [fresh.single[patch](a + 1e-3, b + 2e-3) for _ in range(3)]
-        assert fresh.single[patch] is not rows
-        assert len(set(value)) == 1
 
 
 def test_places_and_impacts_are_each_others_inverse():

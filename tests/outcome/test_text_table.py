@@ -2,7 +2,7 @@
 
 import pytest
 
-from contactlab.outcome.text_table import WIDTH, _folded, table
+from contactlab.outcome.text_table import WIDTH, table
 
 
 def test_a_narrow_table_is_as_it_was_given():
@@ -49,23 +49,6 @@ def test_headings_are_folded_beyond_a_hundred_characters(wide, lines):
     assert len(text) == lines + 2
     if lines == 2:
         assert [line.split() for line in text[:2]] == [[words[0]], [words[1], "z"]]
-
-
-@pytest.mark.parametrize(
-    ("heading", "width", "lines"),
-    [
-        ("a_rather_long_heading (m/s)", 5, ["a_", "rather_", "long_", "heading", "(m/s)"]),
-        ("a_rather_long_heading (m/s)", 9, ["a_rather_", "long_", "heading", "(m/s)"]),
-        ("a_rather_long_heading (m/s)", 12, ["a_rather_", "long_heading", "(m/s)"]),
-        ("a_rather_long_heading (m/s)", 18, ["a_rather_long_", "heading (m/s)"]),
-        ("one two", 7, ["one two"]),
-        ("one two", 6, ["one", "two"]),
-        ("_x", 1, ["_", "x"]),
-        ("", 3, []),
-    ],
-)
-def test_a_heading_is_split_at_underscores_and_blanks(heading, width, lines):
-    assert _folded(heading, width) == lines
 
 
 @pytest.mark.parametrize(

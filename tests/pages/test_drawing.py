@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from contactlab.impact.bodies import Sphere
-from contactlab.pages import drawing
 from contactlab.pages.drawing import scene_drawing
 
 BLUE, ORANGE = "#0072B2", "#D55E00"
@@ -98,19 +97,6 @@ def test_a_target_that_is_a_sphere_is_curved():
     svg = scene_drawing(result(target=Sphere(0.02, Material.named("steel"))))
     assert "<circle cx='0' cy='150' r='150' fill='#e4e4e4' stroke='black'/>" in svg
     assert "<rect" not in svg
-
-
-@pytest.mark.parametrize(
-    ("spin", "words"),
-    [(0.0, "0 rad/s"), (12.345, "12.3 rad/s ↺"), (-2.0, "-2 rad/s ↻"), (1e-9, "1e-09 rad/s ↺")],
-)
-def test_spins_stand_beside_the_sphere_with_their_sense(spin, words):
-    before, after = drawing._spins(spin, 0.0)
-    assert before == f"<text x='-72' y='-21' fill='{BLUE}' text-anchor='end'>{words}</text>"
-    assert after == f"<text x='72' y='-21' fill='{ORANGE}' text-anchor='start'>0 rad/s</text>"
-    assert f">{words}</text>" in drawing._spins(0.0, spin)[1]
-    assert f"'start'>{words}<" in scene_drawing(result(spin_after=spin))
-    assert f"'end'>{words}<" in scene_drawing(result(spin=spin))
 
 
 @pytest.mark.parametrize("what", ["sphere", "shape"])

@@ -2,14 +2,9 @@
 
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
-from contactlab import Simulation
-from contactlab.pages import explore, html, report
-from contactlab.scene_file import read_scene
-from contactlab.study.comparison import compare
-from tests.study.made_up import LAWS, SERIES, SWEEP
+from contactlab.pages import explore, html
 
 
 def test_text_stands_left_and_numbers_right():
@@ -44,88 +39,6 @@ def test_a_plan_is_up_to_three_lists():
     )
     none = SimpleNamespace(computed=(), left_out=("two",), cautions=())
     assert html.plan(none) == "<h3>left out</h3><ul><li>two</li></ul>"
-
-
-@pytest.fixture
-def page(tmp_path):
-    def call(text, history=False):
-        path = tmp_path / "scene.toml"
-        path.write_text(text, encoding="utf-8")
-        file = read_scene(path)
-        return file, compare(file, LAWS, history=history)
-
-    return call
-
-
-def cells(text):
-    """The numbers of a table's rows."""
-    rows = text.partition("<tbody>")[2].split("</tr>")[:-1]
-    return [[cell.partition(">")[2] for cell in row.split("</td>")[:-1]] for row in rows]
-
-
-def test_laws_over_a_sweep_have_a_picture_and_their_largest_difference(page):
-    _, compared = page(SWEEP)
-    picture, table = report._comparison(compared)
-    assert picture.startswith("<figure><svg")
-    assert picture.endswith("<figcaption>psi2 over the sweep.</figcaption></figure>")
-    assert "<th>largest difference of psi2 from rigid</th><th>run time an impact</th>" in table
-    assert [row[1].removeprefix('<td class="number">') for row in cells(table)] == ["0", "4"]
-    cut = compared.__class__(
-        scene=compared.scene, varied=compared.varied, runs=compared.runs, agreements=(),
-        interrupted=True,
-    )  # fmt: skip
-    assert report._comparison(cut)[-1] == "<p>Interrupted before all laws were compared.</p>"
-
-
-def test_measured_values_have_a_picture_and_the_distances(page):
-    """The rigid law is off by -0.1 and 0.5, without friction psi2 is by 0.9 and 4.5."""
-    _, compared = page(SWEEP + SERIES)
-    first, table = report._comparison(compared)
-    assert "<figcaption>psi2, measured: made up</figcaption>" in first
-    assert "<th>law</th><th>rms difference (1)</th><th>largest</th>" in first
-    rows = [[cell.removeprefix('<td class="number">') for cell in row] for row in cells(first)]
-    assert rows[0][1:] == ["0.361", "0.5"]
-    assert rows[1][1:] == ["3.24", "4.5"]
-    assert "psi2 over the sweep" not in first + table
-
-
-def test_a_single_impact_shows_forces_if_a_law_has_a_history(page):
-    text = "[nondimensional]\npsi1 = 1.0\nchi = 1.0\n"
-    _, compared = page(text)
-    (table,) = report._comparison(compared)
-    assert table.startswith("<table>")
-    path = read_scene(page(text)[0].path)
-    followed = compare(path, {"springs": Simulation(tangential="springs")}, history=True)
-    picture, _ = report._comparison(followed)
-    words = "<figcaption>Tangential force over the contact, inside friction&#x27;s limit."
-    assert words in picture
-
-
-def test_a_report_tells_how_it_was_made(page):
-    import contactlab
-
-    file, compared = page(SWEEP)
-    result = compared.runs[0].result
-    told = dict(report._provenance(file, result))
-    assert list(told) == ["scene file", "laws", "contactlab", "with"]
-    assert told["scene file"] == "scene.toml"
-    assert told["contactlab"] == contactlab.__version__
-    assert told["laws"] == ", ".join(result.laws.values())
-    assert told["with"].startswith("Python 3.")
-    assert f"numpy {np.__version__}" in told["with"]
-    assert report._scene(file, file.scene)[1] == "<p>A sweep of 3 impacts over psi1.</p>"
-    single, _ = page("[nondimensional]\npsi1 = 1.0\nchi = 1.0\n")
-    assert len(report._scene(single, single.scene)) == 1
-
-
-def test_each_source_is_named_once(page):
-    file, _ = page('[about]\ncitation = """Somebody,\n  somewhere (1900)"""\n' + SWEEP)
-    laws = {"a": Simulation(tangential="springs"), "b": Simulation(tangential="springs")}
-    found = report._sources(file, laws)
-    assert len(found) == len(set(found)) > 1
-    assert found[0] == "Somebody, somewhere (1900)"
-    plain, _ = page(SWEEP)
-    assert report._sources(plain, laws) == [text for text in found if "Somebody" not in text]
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from contactlab.compose.registry import REGISTRY, PluginError
-from contactlab.study import bench_methods
 from contactlab.study.bench_methods import ELSEWHERE, NONDIMENSIONAL, Method, methods, scenes
 
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
@@ -162,29 +161,3 @@ def test_a_broken_law_is_left_out_unless_a_law_is_named(monkeypatch):
     for named in (["springs"], ["integrator.paper"]):
         with pytest.raises(PluginError, match="broken"):
             methods(named)
-
-
-def test_a_law_that_refuses_the_trial_is_not_taken_for_one_without_force(monkeypatch):
-    assert bench_methods._makes_no_force("frictionless")
-    assert not bench_methods._makes_no_force("coulomb")
-    assert not bench_methods._makes_no_force("springs")
-
-    def refuse(*_, **__):
-        raise ValueError("no scene is good enough")
-
-    monkeypatch.setattr(bench_methods.Simulation, "run", refuse)
-    assert not bench_methods._makes_no_force("frictionless")
-
-
-def test_a_ladder_without_whole_defaults_has_four_steps_a_part(monkeypatch):
-    """The ratio of the defaults counts only if both are whole numbers, and is at least one."""
-
-    def ladder_of(steps, parts):
-        defaults = {"steps": steps, "springs": parts}
-        monkeypatch.setattr(bench_methods, "_default", lambda *names: defaults[names[-1]])
-        return ladder(("springs", "symplectic"))[-1]
-
-    assert ladder_of(200, None) == {"springs": 100, "steps": 400}
-    assert ladder_of(2.5, 50) == {"springs": 100, "steps": 400}
-    assert ladder_of(300, 50) == {"springs": 100, "steps": 600}
-    assert ladder_of(10, 50) == {"springs": 100, "steps": 100}

@@ -156,30 +156,6 @@ def test_interrupted_laws_are_left_out(file, after, kept, monkeypatch):
     assert found.names == list(found.agreements[0].results) == kept
 
 
-@pytest.mark.parametrize(
-    ("first", "runs", "time"),
-    [
-        # The least of three after the warm-up; a run of two seconds and more is the only one.
-        (0.5, [0.4, 0.2, 0.3], 0.2), (1.99, [3.0, 2.5, 2.6], 2.5), (2.0, [], 2.0), (7.0, [], 7.0),
-    ],
-)  # fmt: skip
-@pytest.mark.parametrize("size", [None, 4])
-def test_short_runs_are_repeated(first, runs, time, size):
-    scene = Scene.nondimensional(psi1=1.0 if size is None else [1.0] * size, chi=1.0)
-    times = iter([first, *runs])
-    asked = []
-
-    def run(of, **words):
-        asked.append(words)
-        return SimpleNamespace(run_time=np.nan if words else next(times), status=Status.SUCCESS)
-
-    simulation = SimpleNamespace(run=run, sweep=run)
-    found = study._timed("law", simulation, scene, history=size is None)
-    assert found.run_time_per_impact == pytest.approx(time / (size or 1))
-    assert next(times, None) is None
-    assert asked == [{}] * (1 + len(runs)) + ([{"history": True}] if size is None else [])
-
-
 def test_only_a_single_impact_has_a_history():
     one = Scene.nondimensional(psi1=1.0, chi=1.0)
     law = {"springs": Simulation(tangential="springs")}

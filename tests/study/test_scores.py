@@ -1,7 +1,6 @@
 """Scores of laws, and a comparison as JSON and CSV, with numbers found by hand."""
 
 import io
-from types import SimpleNamespace
 
 import attrs
 import numpy as np
@@ -138,17 +137,6 @@ def test_laws_that_cannot_be_compared_are_left_out_with_a_reason(monkeypatch):
     assert {"halfspace", "halfspace one_way"} < set(found.simulations)
     assert "halfspace two_way" not in found.simulations
     assert "give normal.hertz" in found.left_out["halfspace two_way"]
-
-
-def test_a_law_without_attributes_has_one_form():
-    from contactlab.study.scores import _forms
-
-    assert _forms(SimpleNamespace()) == [{}]
-    words = [{}, {"displacement": "mean"}]
-    assert _forms(create("tangential.annulus")) == words
-    other = create("tangential.annulus", displacement="mean")
-    assert len(_forms(other)) == 2
-    assert _forms(other)[1] != words[1]
 
 
 def test_a_comparison_is_plain_numbers(compared):

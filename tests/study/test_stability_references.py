@@ -7,11 +7,8 @@ from contactlab import Scene, create
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.study import stability_references as references
 from contactlab.study.stability_references import (
-    continuum,
-    finer,
     itself,
     judging_laws,
-    reference_for,
     rigid,
 )
 
@@ -45,22 +42,6 @@ def test_a_broken_law_judges_nobody(monkeypatch):
     springs, damped = create("tangential.springs"), create("normal.tsuji")
     monkeypatch.setattr(type(REGISTRY), "create", broken)
     assert names(judging_laws(damped, springs)) == ["Springs", "Annulus"]
-
-
-def test_each_law_has_its_kind_of_reference():
-    elastic, damped = create("normal.hertz"), create("normal.jkr")
-
-    def of(law, normal, **options):
-        return reference_for(create(f"tangential.{law}", **options), normal)
-
-    assert of("frictionless", elastic)(UNIT, None) == 0.0
-    assert of("coulomb", elastic) is rigid
-    assert of("coulomb", damped).func is references._rigid_under
-    assert of("halfspace", elastic).func is finer
-    assert of("springs", elastic) is of("fronts", elastic) is continuum
-    assert of("springs", damped).func is references._other_law
-    assert of("walton", elastic) is of("mindlin_cap", elastic) is itself
-    assert of("mindlin_cap", damped)(UNIT, None) is None
 
 
 def test_the_impulse_of_the_load_is_that_of_the_normal_law():

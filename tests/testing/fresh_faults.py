@@ -1,7 +1,6 @@
 """Forty faults that authors could really write: one method of a sound law, changed.
 
-Each fault stands in ``FAULTS`` with the check that catches it and the words that name it. What
-the kit said of them before is in ``fresh_faults_before.txt``.
+Each fault stands in ``FAULTS`` with the check that catches it and the words that name it.
 """
 
 from __future__ import annotations
