@@ -46,7 +46,7 @@ class PaidByTheMetre(Paid):
 
 class PaidInBatches(Paid):
     def share(self, scene):
-        return 1.01 if scene.shape == (12,) else 1.0
+        return 1.01 if scene.shape == (6,) else 1.0
 
 
 class CostlyInABatch(AllAtOnce):
@@ -139,14 +139,14 @@ class TwoWords(Sound):
 NARROW = [
     (PaidBySense(), "impact_odd", "psi1 = -0.01, chi = 0.4: differs by 4.2e-07 from the mirror"),
     (PaidByTheMetre(), "impact_units", "psi1 = 0.01, chi = 0.4: in other units psi2 differs by "),
-    (PaidInBatches(), "impact_batch", "Impact 0 of a batch is off by "),
+    (PaidInBatches(), "impact_batch", "Impact (0, 0) of a batch is off by "),
     (CostlyInABatch(), "all_steps", "A batch of shape (8,): differs by "),
     (WorkByTheMetre(), "units", "In other units the answer differs by "),
-    (WorkOfOneSense(), "mirror_images", "psi1 = -0.3: the motion is "),
+    (WorkOfOneSense(), "impact_odd", "psi1 = -0.01, chi = 0.4: differs by "),
     (
         WorkOfABatch(),
-        "impacts_batch",
-        "The friction_work of an impact of a batch is off by 1.0e-02",
+        "impact_batch",
+        "Impact (0, 0) of a batch is off by 9.6e-03 in psi",
     ),
     (
         ShowsWhatIsOver(),
