@@ -239,6 +239,22 @@ def test_processes_that_do_not_start_say_what_a_script_needs():
         result.check()
 
 
+def _absent():
+    raise ImportError("no such law here")
+
+
+class Absent(type(contactlab.create("tangential.frictionless"))):
+    """A law that cannot be loaded where it is sent."""
+
+    def __reduce__(self):
+        return _absent, ()
+
+
+def test_workers_that_cannot_load_a_law_say_so():
+    with ThreadPoolExecutor(1) as executor, pytest.raises(ValueError, match="cannot load the laws"):
+        Simulation(tangential=Absent()).sweep(scene(), executor=executor)
+
+
 def test_what_is_no_executor_is_refused():
     for bad in (4, "dask", ThreadPoolExecutor):
         with pytest.raises(ValueError, match=r"executor = .*get_executor"):

@@ -257,3 +257,16 @@ def test_a_picture_is_as_wide_as_its_column(tmp_path, width):
 def test_a_figure_of_ones_own_is_written_as_finely(tmp_path):
     save_figure(Figure(figsize=(2.0, 1.0)), tmp_path / "own.png")
     assert imread(tmp_path / "own.png").shape[:2] == (style.RESOLUTION, 2 * style.RESOLUTION)
+
+
+def test_in_a_narrow_column_panels_stand_below_each_other(tmp_path):
+    """Two columns of a curve and its residuals: four panels, the second column below the first."""
+    from contactlab.figures.files import save
+
+    kept = []
+    save(tmp_path / "p.png", kept.append, rows=2, columns=2, heights=(2.0, 1.0), width="one")
+    ((first, second), (below, other)) = kept[0]
+    assert first.get_shared_x_axes().joined(first, below)
+    assert second.get_shared_x_axes().joined(second, other)
+    tops = [axes.get_position().y1 for axes in (first, below, second, other)]
+    assert tops == sorted(tops, reverse=True)
