@@ -3,107 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import re
 from pathlib import Path
 
 import pytest
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import numbers
-
-RANGE = "a range is START:STOP:COUNT, {}, in contactlab sweep and compare"
-
-
-@pytest.mark.parametrize(
-    ("text", "hint"),
-    [
-        ("one", ""),
-        ("0-6", "; " + RANGE.format("0:6:71")),
-        (" 0 to 6.5 ", "; " + RANGE.format("0:6.5:71")),
-        ("-1..2", "; " + RANGE.format("-1.:.2:71")),
-        ("0,6", "; " + RANGE.format("0:6:71")),
-        ("1:5:9", "; " + RANGE.format("1:5:71")),
-        ("+1:-5", "; " + RANGE.format("+1:-5:71")),
-        ("1-2-3", ""),
-    ],
-)
-def test_a_word_that_is_no_number(text, hint):
-    with pytest.raises(argparse.ArgumentTypeError, match="is not a number") as caught:
-        shared.finite(text)
-    told = str(caught.value)
-    if text == "-1..2":  # its dots belong to either number
-        assert told.startswith(f"{text!r} is not a number; a range is START:STOP:COUNT, ")
-    else:
-        assert told == f"{text!r} is not a number{hint}"
-
-
-def test_numbers_are_finite():
-    assert shared.finite("-1e3") == -1000.0
-    for text in ("nan", "inf", "-inf"):
-        with pytest.raises(argparse.ArgumentTypeError, match=f"^'{text}': must be a finite number"):
-            shared.finite(text)
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("1:2:3:4", "'1:2:3:4': write START:STOP:COUNT, or one number"),
-        ("1:2:x", "'1:2:x': COUNT must be a whole number"),
-        ("1:2:1.5", "'1:2:1.5': COUNT must be a whole number"),
-        ("1:2:0", "'1:2:0': COUNT must lie in [1, 1000000]"),
-        ("1:2:1000001", "'1:2:1000001': COUNT must lie in [1, 1000000]"),
-        ("0:6", f"'0:6' is not a number; {RANGE.format('0:6:71')}"),
-        ("x:2:3", "'x' is not a number"),
-        ("1:y:3", "'y' is not a number"),
-    ],
-)
-def test_a_range_that_cannot_be(text, words):
-    with pytest.raises(argparse.ArgumentTypeError, match=f"^{re.escape(words)}$"):
-        numbers(text)
-
-
-def test_a_range_has_both_ends():
-    assert numbers("-1:2:4").tolist() == [-1.0, 0.0, 1.0, 2.0]
-    assert numbers("3:9:1").tolist() == [3.0]
-    assert len(numbers("0:1:1000000")) == 1_000_000
-    assert numbers("1.5") == 1.5
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("tangential.annuli=50", ("tangential.annuli", 50)),
-        (" a.b = 'c' ", ("a.b", "c")),
-        ("a.b=word", ("a.b", "word")),
-        ("a.b= two words ", ("a.b", "two words")),
-        ("a.b=1=2", ("a.b", "1=2")),
-        ("a.b=[1, 2]", ("a.b", [1, 2])),
-        ("a.b=true", ("a.b", True)),
-    ],
-)
-def test_a_setting_is_written_as_in_toml_or_as_a_word(text, expected):
-    assert shared.setting(text) == expected
-
-
-@pytest.mark.parametrize("text", ["a.b", "=3", "a.b=", " = ", "a.b= "])
-def test_a_setting_has_a_name_and_a_value(text):
-    words = f"{text!r}: write it as tangential.annuli=50"
-    with pytest.raises(argparse.ArgumentTypeError, match=f"^{re.escape(words)}$"):
-        shared.setting(text)
-
-
-@pytest.mark.parametrize("value", ["1" * 5000, "[" * 100_000])
-def test_a_value_too_long_or_too_deep_is_told(value):
-    with pytest.raises(argparse.ArgumentTypeError, match=r"^a\.b: "):
-        shared.setting(f" a.b={value}")
-
-
-def test_names_are_a_list_without_repetition():
-    assert shared.names(" a, b ,,c") == ["a", "b", "c"]
-    with pytest.raises(argparse.ArgumentTypeError, match=r"^needs at least one name$"):
-        shared.names(" , ")
-    with pytest.raises(argparse.ArgumentTypeError, match=r"^'a, a': a name is repeated$"):
-        shared.names("a, a")
 
 
 def test_a_file_has_one_of_the_suffixes_and_a_folder(tmp_path):
