@@ -57,8 +57,9 @@ if TYPE_CHECKING:
     from contactlab.impact.material import Material
     from contactlab.impact.rigid_body import RigidBody
     from contactlab.impact.scene import Scene
+    from contactlab.outcome.answer import ImpactError
     from contactlab.outcome.energy import EnergyLedger
-    from contactlab.outcome.result import ImpactError, ImpactResult
+    from contactlab.outcome.result import ImpactResult
     from contactlab.scene_file import read_scene
 
 __version__ = "0.1.0"
@@ -120,7 +121,7 @@ MODULES = {
     "Encounter": "impact.encounter",
     "EnergyLedger": "outcome.energy",
     "HalfSpace": "impact.bodies",
-    "ImpactError": "outcome.result",
+    "ImpactError": "outcome.answer",
     "ImpactResult": "outcome.result",
     "Material": "impact.material",
     "PluginError": "compose.registry",

@@ -16,7 +16,7 @@ from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import ECCENTRIC_COLUMNS, components, json_value, unit_in
 from contactlab.outcome.eccentric import EccentricResult
-from contactlab.outcome.tables import closing, heading, largest_imbalance
+from contactlab.outcome.tables import closing, evenly, heading, largest_imbalance
 from contactlab.outcome.tables import time as time_words
 from contactlab.outcome.text_table import table
 from contactlab.scene_file import SceneFile
@@ -92,8 +92,10 @@ def _parts(result: EccentricResult, name: str) -> list[tuple[str, Any]]:
     return found[:1] if result.scene.planar and "slip" in name else found
 
 
-def sweep_table(result: EccentricResult, varied: Mapping[str, Any]) -> str:
-    """Return one row for each impact."""
+def sweep_table(
+    result: EccentricResult, varied: Mapping[str, Any], *, most: int | None = None
+) -> str:
+    """Return one row for each impact, or for at most ``most``, evenly spread with both ends."""
     columns = {heading(name, entry_unit(name)): np.asarray(each) for name, each in varied.items()}
     for name in SWEEP[:-1]:
         column = next(each for each in ECCENTRIC_COLUMNS if each.name == name)
@@ -103,7 +105,7 @@ def sweep_table(result: EccentricResult, varied: Mapping[str, Any]) -> str:
     names = [status.name for status in np.ravel(np.array(result.status, dtype=object))]
     rows = [
         [*(float(np.broadcast_to(values, len(names))[row]) for values in columns.values()), name]
-        for row, name in enumerate(names)
+        for row, name in [(row, names[row]) for row in evenly(len(names), most)]
     ]
     return table([*columns, "status"], rows)
 

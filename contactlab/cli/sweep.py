@@ -25,6 +25,7 @@ from contactlab.cli import bodies
 from contactlab.cli.run import draw, report
 from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
 from contactlab.contracts.status import Status
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import COLUMNS, csv_heading
@@ -70,6 +71,8 @@ def execute(arguments: argparse.Namespace) -> int:
     scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
     if not scene.shape:
         raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
+    if arguments.csv and isinstance(scene, EccentricScene):
+        raise ValueError("--csv: is for impacts of spheres; take --out FILE.csv")
     simulation = composed(arguments, file.laws if file else LawChoice(), scene)
     keep = _folder(arguments.out) if arguments.resume else None
     before = 0 if keep is None else _done(keep)
@@ -90,12 +93,7 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     if keep is not None and saved == shared.OK:
         _clear(keep, result)
-    if isinstance(result, EccentricResult):
-        if arguments.csv:
-            raise ValueError("--csv: is for impacts of spheres; take --out FILE.csv")
-        if not arguments.json:
-            print(bodies.sweep_table(result, varied))
-    elif arguments.csv:
+    if arguments.csv and isinstance(result, ImpactResult):
         units = {column.name: column.unit for column in COLUMNS}
         print(",".join(csv_heading(name, units[name], result.scene) for name in SHOWN))
         for psi1, chi, psi2, status in _rows(result):
@@ -105,10 +103,14 @@ def execute(arguments: argparse.Namespace) -> int:
     return max(saved, report(result, as_json=arguments.json, varied=varied))
 
 
-def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | None) -> None:
+def _print_table(
+    result: ImpactResult | EccentricResult, varied: Mapping[str, Any], out: Path | None
+) -> None:
     """Print one row for each impact; evenly spread rows if a file ``out`` holds all."""
     most = None if out is None else MOST_ROWS
-    if varied:
+    if isinstance(result, EccentricResult):
+        print(bodies.sweep_table(result, varied, most=most))
+    elif varied:
         shown = {name: (entry_unit(name), values) for name, values in varied.items()}
         print(table(*sweep_section(result, shown, most=most)))
     else:

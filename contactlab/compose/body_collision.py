@@ -18,11 +18,12 @@ from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import refuse
+from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.energy import EnergyLedger
 from contactlab.outcome.plan import Clause, Plan
-from contactlab.outcome.result import ImpactError, ImpactResult
+from contactlab.outcome.result import ImpactResult
 
 Array = NDArray[np.float64]
 
@@ -30,7 +31,7 @@ VECTORS = ("velocity", "spin", "target_velocity", "target_spin", "impulse")
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False)
-class BodyCollision:
+class BodyCollision(Answer):
     """Two bodies after an encounter; vectors have the shape ``(..., 3)``.
 
     Attributes
@@ -95,9 +96,13 @@ class BodyCollision:
         count = int(np.sum(self.collided))
         return f"BodyCollision({count} of {np.size(self.collided)} collided; {outcome})"
 
-    def __str__(self) -> str:
-        """Return ``repr`` and every caution of the plan, one line each."""
-        return "\n".join([repr(self), *(f"caution: {text}" for text in self.plan.cautions)])
+    def _ends(self) -> tuple[Any, Any]:
+        return self.result.motion.status, self.result.motion.detail
+
+    @property
+    def cautions(self) -> list[str]:
+        """Cautions of the plan."""
+        return [*map(str, self.plan.cautions)]
 
     def to_dict(self) -> dict[str, Any]:
         """Return the vectors of both bodies after the collision as plain lists."""
@@ -116,24 +121,6 @@ class BodyCollision:
     def energy(self) -> EnergyLedger:
         """The energy books of the impacts, in J; their loss is the loss of both bodies."""
         return self.result.energy
-
-    def check(self, *, cautions: bool = False) -> BodyCollision:
-        """Return this collision if every impact succeeded; with ``cautions`` if there is none.
-
-        Parameters
-        ----------
-        cautions : bool
-            Raise the first caution too.
-
-        Raises
-        ------
-        ImpactError
-            With the sentence on the first impact that failed, or of the first caution.
-        """
-        self.result.check()
-        if cautions and self.plan.cautions:
-            raise ImpactError(f"caution: {self.plan.cautions[0]}", Status.SUCCESS)
-        return self
 
 
 def collide_bodies(

@@ -23,11 +23,12 @@ from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import Real, real, refuse
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.vectors import LEAST
+from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Plan
-from contactlab.outcome.result import ImpactError, ImpactResult
+from contactlab.outcome.result import ImpactResult
 
 if TYPE_CHECKING:
     from contactlab.compose.body_collision import BodyCollision
@@ -47,7 +48,7 @@ VECTORS = (
 
 @attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
-class Collision:
+class Collision(Answer):
     """Both bodies after an encounter; vectors have the shape ``(..., 3)``, numbers the batch's.
 
     Attributes
@@ -188,28 +189,15 @@ class Collision:
         status[self.collided] = self.known.status
         return status
 
-    def __str__(self) -> str:
-        """Return ``repr`` and every caution of the plan, one line each."""
-        return "\n".join([repr(self), *(f"caution: {text}" for text in self.plan.cautions)])
+    def _ends(self) -> tuple[Any, Any]:
+        if self.known is None:
+            return Status.SUCCESS, ""
+        return self.known.motion.status, self.known.motion.detail
 
-    def check(self, *, cautions: bool = False) -> Collision:
-        """Return this collision if every impact succeeded; with ``cautions`` if there is none.
-
-        Parameters
-        ----------
-        cautions : bool
-            Raise the first caution too.
-
-        Raises
-        ------
-        ImpactError
-            With the sentence on the first impact that failed, or of the first caution.
-        """
-        if self.known is not None:
-            self.known.check()
-        if cautions and self.plan.cautions:
-            raise ImpactError(f"caution: {self.plan.cautions[0]}", Status.SUCCESS)
-        return self
+    @property
+    def cautions(self) -> list[str]:
+        """Cautions of the plan."""
+        return [*map(str, self.plan.cautions)]
 
     @property
     def energy(self) -> EnergyLedger:

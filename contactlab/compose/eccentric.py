@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-import attrs
 import numpy as np
 
-from contactlab.compose import composition
+from contactlab.compose import composition, sweep
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.pieces import Chunk, Piece
 from contactlab.compose.solve import WORK_ACCURACY
 from contactlab.contracts import faults
 from contactlab.contracts.eccentric import (
@@ -25,12 +26,18 @@ from contactlab.contracts.eccentric import (
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.hertz import hertz_scales
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.eccentric import EccentricRecorder, EccentricResult, balanced
-from contactlab.outcome.history import NO_HISTORY
-from contactlab.outcome.plan import Clause, Plan
+from contactlab.outcome.eccentric import (
+    EccentricHistory,
+    EccentricRecorder,
+    EccentricResult,
+    balanced,
+)
+from contactlab.outcome.history import NO_HISTORY, NoHistory
+from contactlab.outcome.plan import Clause, Plan, PlanColumns
 
-#: Impacts that are marched at a time: their springs stay in the processor's cache.
-BLOCK = 1000
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
 #: Least bound of the imbalance of the energy books: where W is nearly singular the energy is the
 #: small difference of large products.
 CANCELS = 1e-4
@@ -55,16 +62,24 @@ def run(laws: Laws, scene: EccentricScene, *, history: bool | str = False) -> Ec
     if history and scene.shape:
         raise refuse("history", history, "is kept of a single impact", "run them one by one")
     recorder = EccentricRecorder() if history else None
-    flat = scene
-    if len(scene.shape) > 1:
-        flat = scene.take(np.ones(scene.shape, dtype=bool))
-    if not flat.shape or flat.shape[0] <= BLOCK:
-        motion = _motion(laws, flat, recorder)
+    if scene.shape:
+        flat = scene.take(np.ones(scene.shape, dtype=bool)) if len(scene.shape) > 1 else scene
+        piece = solved(laws, flat, Chunk(0, flat.shape[0]), sweep.ECCENTRIC_IMPACTS)
+        motion = EccentricMotion.joined([piece.motion], scene.shape)
     else:
-        places = [slice(at, at + BLOCK) for at in range(0, flat.shape[0], BLOCK)]
-        motion = _joined([_motion(laws, flat.take(place), None) for place in places])
-    if flat is not scene:
-        motion = _shaped(motion, scene.shape)
+        motion = _motion(laws, scene, recorder)
+    kept = NO_HISTORY if recorder is None else recorder.history()
+    return _result(laws, scene, motion, started, kept)
+
+
+def _result(
+    laws: Laws,
+    scene: EccentricScene,
+    motion: EccentricMotion,
+    started: float,
+    history: EccentricHistory | NoHistory = NO_HISTORY,
+) -> EccentricResult:
+    """Return the result of a motion whose books are checked."""
     declared: Any = laws.tangential.books_bound(scene.central)
     bound = np.maximum(declared, CANCELS) + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
     return EccentricResult(
@@ -73,8 +88,16 @@ def run(laws: Laws, scene: EccentricScene, *, history: bool | str = False) -> Ec
         motion=balanced(motion, scene, bound),
         run_time=time.perf_counter() - started,
         laws=composition.versions(*laws),
-        history=NO_HISTORY if recorder is None else recorder.history(),
+        history=history,
     )
+
+
+def solved(laws: Laws, scene: EccentricScene, chunk: Chunk, block: int) -> Piece:
+    """Return the piece of a sweep's chunk, a block at a time; ``scene`` is the chunk alone."""
+    places = [slice(first, first + block) for first in range(0, chunk.size, block)]
+    motions = [_motion(laws, scene.take(place), None) for place in places]
+    shape = (chunk.size,)
+    return Piece(chunk, PlanColumns.nothing(shape), EccentricMotion.joined(motions, shape))
 
 
 def are_eccentric(scenes: Any) -> bool:
@@ -85,14 +108,22 @@ def are_eccentric(scenes: Any) -> bool:
 
 
 def swept(
-    laws: Laws, scenes: Any, progress: Callable[[int, int], object] | None
+    laws: Laws,
+    scenes: Any,
+    *,
+    progress: Callable[[int, int], object] | None,
+    chunk: int | None,
+    executor: Executor | None,
+    keep: str | Path | None,
 ) -> EccentricResult:
     """Return the result of many impacts: a batch, or a sequence of single ones."""
-    batch = scenes if isinstance(scenes, EccentricScene) else EccentricScene.stack(scenes)
-    result = run(laws, batch)
-    if progress is not None:
-        progress(len(result), len(result))
-    return result
+    started = time.perf_counter()
+    scene = scenes if isinstance(scenes, EccentricScene) else EccentricScene.stack(scenes)
+    sweep.one_axis(scene.shape)
+    _accept(laws, scene)
+    options: dict[str, Any] = {"progress": progress, "chunk": chunk}
+    _, motion = sweep.swept(laws, scene, solved, executor=executor, keep=keep, **options)
+    return _result(laws, scene, motion, started)
 
 
 def preferred(scene: EccentricScene) -> dict[str, str]:
@@ -206,27 +237,3 @@ def _near_singular(scene: EccentricScene) -> list[str]:
         f"1 - W_nt²/(W_nn W_tt) = {least:.2g}: 50 springs in 200 steps were off {known} there "
         "(numerical error; in the plane fronts is exact)"
     ]
-
-
-def _joined(motions: list[EccentricMotion]) -> EccentricMotion:
-    """Return one motion of consecutive blocks."""
-    entries: dict[str, Any] = {}
-    for field in attrs.fields(EccentricMotion):
-        parts = [getattr(motion, field.name) for motion in motions]
-        if field.name == "counters":
-            steps = [part.get("steps", 0) for part in parts]
-            entries["counters"] = {"steps": max(steps)}
-        else:
-            entries[field.name] = np.concatenate(parts)
-    return EccentricMotion(**entries)
-
-
-def _shaped(motion: EccentricMotion, shape: tuple[int, ...]) -> EccentricMotion:
-    """Return the motion of a flat batch in its own shape."""
-    change = motion.velocity_change.reshape(*shape, 3)
-    entries = {
-        field.name: np.reshape(getattr(motion, field.name), shape)
-        for field in attrs.fields(EccentricMotion)
-        if field.name not in ("counters", "velocity_change")
-    }
-    return EccentricMotion(velocity_change=change, counters=motion.counters, **entries)

@@ -19,8 +19,8 @@ import numpy as np
 from contactlab.compose.composition import Laws
 from contactlab.compose.pieces import Chunk, Piece
 from contactlab.compose.registry import REGISTRY
+from contactlab.contracts.eccentric import EccentricMotion
 from contactlab.contracts.status import Status
-from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 from contactlab.outcome.motion import Motion
@@ -34,7 +34,7 @@ TRIED_AGAIN = (Status.INTERRUPTED, Status.WORKER_DIED)
 class Kept:
     """A folder with the finished pieces of one sweep, each written to a temporary file first."""
 
-    def __init__(self, folder: str | Path, laws: Laws, scene: Scene, block: int) -> None:
+    def __init__(self, folder: str | Path, laws: Laws, scene: Any, block: int) -> None:
         if not isinstance(folder, str | os.PathLike):
             raise refuse("keep", folder, "must be the path of a folder")
         if os.path.lexists(folder) and not os.path.isdir(folder):
@@ -194,14 +194,15 @@ def _name(chunk: Chunk) -> str:
 def _piece(content: Mapping[str, Any]) -> Piece:
     """Return the piece of the arrays that ``_arrays`` made."""
     first, stop = content["place"].tolist()
-    motion = Motion(
-        **{name: content[name] for name in Motion.numbers()},
+    kind: Any = EccentricMotion if "velocity_change" in content else Motion
+    motion = kind(
+        **{name: content[name] for name in kind.numbers()},
         status=np.array([Status[name] for name in content["status"]], dtype=object),
         detail=np.array(content["detail"].tolist(), dtype=object),
         counters=json.loads(str(content["counters"])),
     )
-    for name in (*Motion.numbers(), "status", "detail"):
-        if np.shape(getattr(motion, name)) != (stop - first,):
-            count = np.size(getattr(motion, name))
+    for name in (*kind.numbers(), "status", "detail"):
+        count = len(np.atleast_1d(getattr(motion, name)))
+        if count != stop - first:
             raise ValueError(f"{name} has {count} impacts where its place has {stop - first}")
     return Piece(Chunk(first, stop), PlanColumns.from_arrays(content), motion)

@@ -14,14 +14,13 @@ from contactlab.compose import composition
 from contactlab.compose.path_steps import Followed, Points, followed
 from contactlab.contracts import faults
 from contactlab.contracts.normal import NormalLaw
-from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.impact.yielding import path_cautions
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import Rule, real, refuse
-from contactlab.outcome.result import ImpactError
+from contactlab.outcome.answer import Answer
 
 Array = NDArray[np.float64]
 
@@ -37,7 +36,7 @@ GROWING = Rule(
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False)
-class LoadPath:
+class LoadPath(Answer):
     """Forces of a contact along a path, at its K points; arrays of shape (K, ...).
 
     The axes behind the first are those of a batch of paths. A force after a failure is NaN.
@@ -81,6 +80,9 @@ class LoadPath:
     detail: str
     _states: tuple[Any, ...] = attrs.field(repr=False)
 
+    def _ends(self) -> tuple[Any, Any]:
+        return self.status, self.detail
+
     @property
     def cautions(self) -> list[str]:
         """Doubts about the model: of the friction law on such paths, and of the bodies."""
@@ -89,10 +91,6 @@ class LoadPath:
             *self.tangential.path_cautions(),
             *path_cautions(self.scene, deepest, plastic=self.normal.plastic),
         ]
-
-    def __str__(self) -> str:
-        """Return ``repr`` and every caution, one line each."""
-        return "\n".join([repr(self), *(f"caution: {text}" for text in self.cautions)])
 
     def __repr__(self) -> str:
         """Return the number of points, the laws and the status."""
@@ -121,26 +119,6 @@ class LoadPath:
         each = [self.tangential.fields(state) for state in self._states]
         names = each[0] if each else ()
         return {name: np.array([fields[name] for fields in each]) for name in names}
-
-    def check(self, *, cautions: bool = False) -> LoadPath:
-        """Return this path if every contact was followed to its end.
-
-        Parameters
-        ----------
-        cautions : bool
-            Raise the first caution too.
-
-        Raises
-        ------
-        ImpactError
-            With the sentence of the failure, or of the first caution.
-        """
-        statuses = np.ravel(np.asarray(self.status, dtype=object))
-        for status in statuses[statuses != Status.SUCCESS]:
-            raise ImpactError(f"{status.value} {self.detail}", status)
-        if cautions and self.cautions:
-            raise ImpactError(f"caution: {self.cautions[0]}", Status.SUCCESS)
-        return self
 
 
 def load_path(

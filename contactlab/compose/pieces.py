@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeAlias
 
+from contactlab.contracts.eccentric import EccentricMotion
 from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
 
@@ -22,14 +25,26 @@ class Chunk(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """The columns of the plan and the motion of a chunk."""
+    """The columns of the plan and the motion of a chunk: a Motion, or an EccentricMotion.
+
+    The plan of eccentric impacts has no columns.
+    """
 
     chunk: Chunk
     columns: PlanColumns
-    motion: Motion
+    motion: Any
 
 
-def unsolved(chunk: Chunk, status: Status, detail: str = "") -> Piece:
+#: What returns a piece, from laws, the chunk's scene, the chunk, and the impacts of a block.
+Solve: TypeAlias = Callable[[Any, Any, Chunk, int], Piece]
+
+
+def kind_of_motion(scene: Any) -> Any:
+    """Return the class of the motions of a scene."""
+    return Motion if isinstance(scene, Scene) else EccentricMotion
+
+
+def unsolved(chunk: Chunk, status: Status, detail: str = "", kind: Any = Motion) -> Piece:
     """Return the piece of a chunk without answers: every impact has ``status``."""
     shape = (chunk.size,)
-    return Piece(chunk, PlanColumns.nothing(shape), Motion.nothing(shape, status, detail))
+    return Piece(chunk, PlanColumns.nothing(shape), kind.nothing(shape, status, detail))

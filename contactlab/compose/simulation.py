@@ -14,7 +14,7 @@ from contactlab.compose import composition, eccentric, solve
 from contactlab.compose.composition import Laws
 from contactlab.compose.error_estimate import estimated
 from contactlab.compose.planning import plan_of
-from contactlab.compose.sweep import swept
+from contactlab.compose.sweep import one_axis, swept
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
@@ -166,6 +166,9 @@ class Simulation:
         scenes: EccentricScene | Sequence[EccentricScene],
         *,
         progress: Callable[[int, int], object] | None = None,
+        chunk: int | None = None,
+        executor: Executor | None = None,
+        keep: str | Path | None = None,
     ) -> EccentricResult: ...
     def sweep(
         self,
@@ -180,14 +183,14 @@ class Simulation:
 
         The laws choose the size of a block, counted from the first impact: 16384 if nothing is
         marched, as in the exact solution up to chi = 2.5, 20 if impacts are followed one by one,
-        1000 for most other laws. Neither ``chunk`` nor ``executor`` changes the blocks, so neither
-        changes a bit of an answer, within one installation, one kind of processor and one number of
-        BLAS threads (with NumPy 2 that number matters only to laws that multiply large matrices).
+        1000 for most other laws and for eccentric impacts. Neither ``chunk`` nor ``executor``
+        changes the blocks, so neither changes a bit of an answer, within one installation, one kind
+        of processor and one number of BLAS threads (with NumPy 2 that number matters only to laws
+        that multiply large matrices).
 
         Parameters
         ----------
         scenes : sequence of Scene or of EccentricScene, or a batch scene
-            Eccentric impacts are swept in this process, without ``executor`` and ``keep``.
         progress : callable, optional
             Called as ``progress(done, total)`` after each chunk.
         chunk : int, optional
@@ -198,15 +201,14 @@ class Simulation:
             Solves the chunks; this process by default. Any object with a method ``submit`` that
             returns futures serves: ``ProcessPoolExecutor(4)``, dask's ``client.get_executor()``,
             an ``MPIPoolExecutor``. Workers import laws from the modules of their classes. A
-            ``ProcessPoolExecutor`` that breaks is replaced. A chunk has the status ``WORKER_DIED``
-            if it ends its process twice, or if another executor loses it.
+            chunk that the executor loses has the status ``WORKER_DIED``.
         keep : str or Path, optional
             A folder where each chunk is written as soon as it is finished. The same sweep with the
             same folder resumes where it stopped; another scene or law is refused.
 
         Returns
         -------
-        ImpactResult
+        ImpactResult or EccentricResult
             A batch. An interruption (Ctrl-C) keeps finished chunks; the other impacts have the
             status ``INTERRUPTED``, which ``.check()`` raises.
 
@@ -217,25 +219,16 @@ class Simulation:
             scenes of psi1 and chi; if a law cannot be sent to ``executor``; if ``keep`` holds
             another sweep.
         """
+        options: dict[str, Any] = {"progress": progress, "chunk": chunk}
+        options |= {"executor": executor, "keep": keep}
         if eccentric.are_eccentric(scenes):
-            if not (executor is None and keep is None):
-                rule = "eccentric impacts are swept in this process"
-                raise refuse("executor, keep", (executor, keep), rule, "leave both out")
-            return eccentric.swept(self.laws, scenes, progress)
+            return eccentric.swept(self.laws, scenes, **options)
         started = time.perf_counter()
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
-        if len(batch.shape) != 1:
-            raise refuse(
-                "scenes",
-                batch.shape,
-                "must be a sequence, or a one-dimensional batch",
-                "for one impact use run",
-            )
+        one_axis(batch.shape)
         laws = self.laws
         laws.accept(batch)
-        columns, motion = swept(
-            laws, batch, progress=progress, chunk=chunk, executor=executor, keep=keep
-        )
+        columns, motion = swept(laws, batch, solve.solved, **options)
         return ImpactResult(
             scene=batch,
             plan=plan_of(laws, batch, columns, motion),

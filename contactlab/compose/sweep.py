@@ -6,17 +6,15 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from contactlab.compose.composition import Laws
-from contactlab.compose.pieces import Chunk, Piece, unsolved
-from contactlab.compose.solve import solved
+from contactlab.compose.pieces import Chunk, Piece, Solve, kind_of_motion, unsolved
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import WholeImpactTangentialLaw
-from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import whole
-from contactlab.outcome.motion import Motion
+from contactlab.impact.eccentric import EccentricScene
+from contactlab.numeric.checks import refuse, whole
 from contactlab.outcome.plan import PlanColumns
 
 if TYPE_CHECKING:
@@ -24,6 +22,8 @@ if TYPE_CHECKING:
 
 #: Impacts of a block if nothing is marched: as many as fit into the cache.
 WHOLE_IMPACTS = 1 << 14
+#: Impacts of a block of eccentric ones: their springs stay in the cache.
+ECCENTRIC_IMPACTS = 1000
 
 
 def block_of(laws: Laws) -> int:
@@ -39,16 +39,22 @@ def block_of(laws: Laws) -> int:
 
 def swept(
     laws: Laws,
-    scene: Scene,
+    scene: Any,
+    solve: Solve,
     *,
     progress: Callable[[int, int], object] | None,
     chunk: int | None,
     executor: Executor | None,
     keep: str | Path | None,
-) -> tuple[PlanColumns, Motion]:
-    """Return columns of the plan and motion of a batch of one axis; see ``Simulation.sweep``."""
-    size, block = scene.shape[0], block_of(laws)
-    if laws.tangential.needs_no_march(scene, laws.integrator.accuracy):
+) -> tuple[PlanColumns, Any]:
+    """Return columns of the plan and motion of a batch of one axis; see ``Simulation.sweep``.
+
+    ``solve`` returns the piece of a chunk, here or in a worker.
+    """
+    size, block, kind = scene.shape[0], block_of(laws), kind_of_motion(scene)
+    if isinstance(scene, EccentricScene):
+        block = ECCENTRIC_IMPACTS
+    elif laws.tangential.needs_no_march(scene, laws.integrator.accuracy):
         block = WHOLE_IMPACTS
     step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
     kept = None
@@ -60,11 +66,11 @@ def swept(
     done = sum(piece.chunk.size for piece in finished)
     missing = _cut(_gaps(finished, size), step)
     if executor is None:
-        pieces = (solved(laws, scene.take(slice(*each)), each, block) for each in missing)
+        pieces = (solve(laws, scene.take(slice(*each)), each, block) for each in missing)
     else:
         from contactlab.compose.workers import pieces_of  # needed with an executor only
 
-        pieces = pieces_of(laws, scene, list(missing), block, executor)
+        pieces = pieces_of(laws, scene, solve, list(missing), block, executor)
     try:
         for piece in pieces:
             finished.append(piece)
@@ -76,12 +82,20 @@ def swept(
     except KeyboardInterrupt:
         if kept is not None and finished:
             kept.keep(finished[-1])  # which may have been on its way to the disk
-        finished += [unsolved(gap, Status.INTERRUPTED) for gap in _gaps(finished, size)]
+        gaps = _gaps(finished, size)
+        finished += [unsolved(gap, Status.INTERRUPTED, kind=kind) for gap in gaps]
     finally:
         pieces.close()
     finished.sort(key=lambda piece: piece.chunk)
     columns = PlanColumns.joined([piece.columns for piece in finished], (size,))
-    return columns, Motion.joined([piece.motion for piece in finished], (size,))
+    return columns, kind.joined([piece.motion for piece in finished], (size,))
+
+
+def one_axis(shape: tuple[int, ...]) -> None:
+    """Refuse scenes that are no batch of one axis."""
+    if len(shape) != 1:
+        rule = "must be a sequence, or a one-dimensional batch"
+        raise refuse("scenes", shape, rule, "for one impact use run")
 
 
 def _gaps(pieces: Iterable[Piece], size: int) -> list[Chunk]:

@@ -20,10 +20,9 @@ import numpy as np
 
 from contactlab.compose.composition import Laws, versions
 from contactlab.compose.loading import short
-from contactlab.compose.pieces import Chunk, Piece, unsolved
+from contactlab.compose.pieces import Chunk, Piece, Solve, kind_of_motion, unsolved
 from contactlab.compose.solve import solved
 from contactlab.contracts.status import Status
-from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import refuse, whole
 
@@ -34,7 +33,7 @@ MODULE_REMEDY = "define its class at the top of a module that can be imported"
 
 
 def pieces_of(
-    laws: Laws, scene: Scene, chunks: Sequence[Chunk], block: int, executor: Executor
+    laws: Laws, scene: Any, solve: Solve, chunks: Sequence[Chunk], block: int, executor: Executor
 ) -> Generator[Piece, None, None]:
     """Yield the pieces of ``chunks`` as an executor finishes them; ``scene`` is the whole sweep."""
     # A chunk that the executor loses gets the status WORKER_DIED. A ProcessPoolExecutor loses all
@@ -49,7 +48,7 @@ def pieces_of(
     try:
         for chunk in chunks:
             part = pickle.dumps(scene.take(slice(*chunk)))
-            future = _submitted(executor, sent, part, chunk, block)
+            future = _submitted(executor, sent, part, chunk, block, solve)
             waiting[future] = chunk
             future.add_done_callback(finished.put)
         while waiting:
@@ -59,7 +58,8 @@ def pieces_of(
                 answer = future.result()
             except Exception as error:  # the executor failed: ``reply`` returns errors of the laws
                 remedy = "" if answered else f"; {MAIN_REMEDY}"
-                yield unsolved(chunk, Status.WORKER_DIED, short(error) + remedy)
+                sentence, kind = short(error) + remedy, kind_of_motion(scene)
+                yield unsolved(chunk, Status.WORKER_DIED, sentence, kind)
                 continue
             answered = True
             if answer.raised is not None:
@@ -106,7 +106,7 @@ class Reply(NamedTuple):
     raised: Exception | None = None
 
 
-def reply(sent: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
+def reply(sent: bytes, part: bytes, chunk: Chunk, block: int, solve: Solve = solved) -> Reply:
     """Return the reply to a chunk, from pickled laws and the pickled scene of the chunk."""
     try:
         laws, scene = pickle.loads(sent), _locked(pickle.loads(part))
@@ -115,7 +115,7 @@ def reply(sent: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
         remedy = f"install them there too, and {MODULE_REMEDY}"
         return Reply(None, {}, ValueError(f"{rule}; {remedy}"))
     try:
-        return Reply(solved(laws, scene, chunk, block), versions(*laws))
+        return Reply(solve(laws, scene, chunk, block), versions(*laws))
     except Exception as error:
         return Reply(None, {}, error)
 

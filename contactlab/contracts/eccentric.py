@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 import attrs
@@ -58,7 +59,33 @@ class EccentricMotion:
     counters: Mapping[str, int] = attrs.field(factory=dict)
 
     @classmethod
-    def nothing(cls, shape: tuple[int, ...], status: Status, detail: str) -> EccentricMotion:
+    def numbers(cls) -> tuple[str, ...]:
+        """Return the names of the entries that are numbers."""
+        no_numbers = ("status", "detail", "counters")
+        return tuple(each.name for each in attrs.fields(cls) if each.name not in no_numbers)
+
+    @classmethod
+    def joined(cls, motions: Sequence[EccentricMotion], shape: tuple[int, ...]) -> EccentricMotion:
+        """Return one motion of ``shape`` from the motions of consecutive parts of the batch.
+
+        Parameters
+        ----------
+        motions : sequence of EccentricMotion
+            Motions of batches of one axis, in the order of the impacts.
+        shape : tuple of int
+            Shape of the whole batch.
+        """
+        counters: Counter[str] = Counter()
+        for motion in motions:
+            counters.update(motion.counters)
+        entries: dict[str, Any] = {}
+        for name in (*cls.numbers(), "status", "detail"):
+            whole = np.concatenate([getattr(motion, name) for motion in motions])
+            entries[name] = whole.reshape(*shape, *whole.shape[1:])
+        return cls(**entries, counters=dict(counters))
+
+    @classmethod
+    def nothing(cls, shape: tuple[int, ...], status: Status, detail: str = "") -> EccentricMotion:
         """Return the motion of impacts that have no answer.
 
         Parameters
@@ -69,18 +96,10 @@ class EccentricMotion:
         detail : str
         """
         none: Any = np.full(shape, math.nan) if shape else math.nan
-        numbers = [f.name for f in attrs.fields(cls) if f.name not in NO_NUMBERS]
-        return cls(
-            velocity_change=np.full((*shape, 3), math.nan),
-            **dict.fromkeys(numbers, none),
-            compressions=filled(0, shape),
-            status=filled(status, shape),
-            detail=filled(detail, shape),
-        )
-
-
-#: Entries of an eccentric motion that are no numbers of the batch shape.
-NO_NUMBERS = ("velocity_change", "compressions", "status", "detail", "counters")
+        entries: dict[str, Any] = dict.fromkeys(cls.numbers(), none)
+        entries["velocity_change"] = np.full((*shape, 3), math.nan)
+        entries["compressions"] = np.zeros(shape, dtype=int) if shape else 0
+        return cls(**entries, status=filled(status, shape), detail=filled(detail, shape))
 
 
 class EccentricSample(NamedTuple):

@@ -33,7 +33,8 @@ from contactlab.fitting.slips import assumed, slips
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import common_shape
 from contactlab.numeric.checks import real, refuse, whole
-from contactlab.outcome.result import ImpactError, ImpactResult
+from contactlab.outcome.answer import ImpactError
+from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import SceneFile
 
 Array = NDArray[np.float64]

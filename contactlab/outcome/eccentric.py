@@ -15,11 +15,11 @@ from contactlab.contracts.status import Status
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Real
+from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import components
 from contactlab.outcome.energy import LARGEST_RESTITUTION, EnergyLedger
 from contactlab.outcome.history import NO_HISTORY, NoHistory
 from contactlab.outcome.plan import Plan
-from contactlab.outcome.result import ImpactError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -91,7 +91,7 @@ class EccentricRecorder:
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False)
-class EccentricResult:
+class EccentricResult(Answer):
     """Result of one eccentric impact, or of a batch: every quantity has the scene's shape.
 
     Attributes
@@ -127,29 +127,13 @@ class EccentricResult:
         outcome = ", ".join(f"{n} {name}" if shape else name for name, n in statuses.items())
         return f"EccentricResult({told}; {outcome}; {laws})"
 
-    def __str__(self) -> str:
-        """Return ``repr``, the first failure and every caution, in lines."""
-        lines = [repr(self)]
-        for index, sentence in [*self.failures.items()][:1]:
-            where = f" (impact {index}; {len(self.failures)} in all)" if self.scene.shape else ""
-            lines.append(f"failed{where}: {sentence}")
-        return "\n".join([*lines, *(f"caution: {text}" for text in self.cautions)])
+    def _ends(self) -> tuple[Any, Any]:
+        return self.motion.status, self.motion.detail
 
     @property
     def status(self) -> Any:
         """Status of the impact, or an array of statuses of the scene's shape."""
         return self.motion.status
-
-    @property
-    def failures(self) -> dict[int, str]:
-        """A sentence for each impact that failed, by its index in C order."""
-        statuses = np.ravel(np.array(self.motion.status, dtype=object))
-        details = np.ravel(np.array(self.motion.detail, dtype=object))
-        return {
-            index: f"{status.value} {detail}".strip()
-            for index, (status, detail) in enumerate(zip(statuses, details, strict=True))
-            if status is not Status.SUCCESS
-        }
 
     @property
     def cautions(self) -> list[str]:
@@ -160,28 +144,6 @@ class EccentricResult:
     def counters(self) -> Mapping[str, int]:
         """Counts of steps, by name."""
         return self.motion.counters
-
-    def check(self, *, cautions: bool = False) -> EccentricResult:
-        """Return this result if every impact succeeded; with ``cautions`` only if there is none.
-
-        Parameters
-        ----------
-        cautions : bool
-            Raise the first caution too.
-
-        Raises
-        ------
-        ImpactError
-            With the sentence of the first impact that failed, or of the first caution.
-        """
-        for index, sentence in self.failures.items():
-            where = f"impact {index}: " if self.scene.shape else ""
-            status = np.ravel(np.array(self.status, dtype=object))[index]
-            raise ImpactError(where + sentence, status)
-        if cautions:
-            for sentence in self.cautions:
-                raise ImpactError(f"caution: {sentence}", Status.SUCCESS)
-        return self
 
     @property
     def psi1(self) -> Any:

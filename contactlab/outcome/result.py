@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from contactlab.contracts.status import Status
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Real
 from contactlab.numeric.names import attributes_told
+from contactlab.outcome.answer import Answer
 from contactlab.outcome.energy import EnergyLedger, ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory
 from contactlab.outcome.motion import Motion
@@ -28,24 +28,9 @@ if TYPE_CHECKING:
     from contactlab.figures.style import Width
 
 
-class ImpactError(RuntimeError):
-    """Raised by ``ImpactResult.check()`` if an impact failed.
-
-    ``status`` is the status of the impact in the message.
-    """
-
-    def __init__(self, sentence: str, status: Status) -> None:
-        super().__init__(sentence, status)
-        self.status = status
-
-    def __str__(self) -> str:
-        """Return the sentence without the status."""
-        return str(self.args[0])
-
-
 @attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False)
-class ImpactResult:
+class ImpactResult(Answer):
     """Result of one impact, or of a batch: every quantity has the scene's shape.
 
     A batch can be indexed, sliced and iterated; each item is the result of one impact. Items keep
@@ -92,14 +77,11 @@ class ImpactResult:
         )
         return f"ImpactResult({answer}; {outcome}; {laws})"
 
-    def __str__(self) -> str:
-        """Return ``repr``, the numerical error, the first failure and every caution, in lines."""
-        lines = [repr(self), f"numerical error of psi2: {error_words(self)}"]
-        failures = self.failures
-        for index in [*failures][:1]:
-            where = f" (impact {index}; {len(failures)} in all)" if self.scene.shape else ""
-            lines.append(f"failed{where}: {failures[index]}")
-        return "\n".join([*lines, *(f"caution: {text}" for text in self.cautions)])
+    def _first_lines(self) -> list[str]:
+        return [repr(self), f"numerical error of psi2: {error_words(self)}"]
+
+    def _ends(self) -> tuple[Any, Any]:
+        return self.motion.status, self.motion.detail
 
     def _repr_html_(self) -> str:
         """Return ``str(self)`` as HTML for a notebook."""
@@ -111,47 +93,9 @@ class ImpactResult:
         return self.motion.status
 
     @property
-    def failures(self) -> dict[int, str]:
-        """A sentence for each impact that failed, by its index in C order."""
-        statuses, details = (
-            np.ravel(np.asarray(entry, dtype=object))
-            for entry in (self.motion.status, self.motion.detail)
-        )
-        return {
-            index: f"{status.value} {detail}".strip()
-            for index, (status, detail) in enumerate(zip(statuses, details, strict=True))
-            if status is not Status.SUCCESS
-        }
-
-    @property
     def counters(self) -> Mapping[str, int]:
         """Counts of steps, evaluations, solves and rejected steps, by name."""
         return self.motion.counters
-
-    def check(self, *, cautions: bool = False) -> ImpactResult:
-        """Return this result if every impact succeeded; with ``cautions`` only if there is none.
-
-        Parameters
-        ----------
-        cautions : bool
-            Raise the first caution too.
-
-        Raises
-        ------
-        ImpactError
-            With the sentence of the first impact that failed, or of the first caution.
-        """
-        for index, sentence in self.failures.items():
-            where = f"impact {index}: " if self.scene.shape else ""
-            status = np.ravel(np.asarray(self.status, dtype=object))[index]
-            raise ImpactError(where + sentence, status)
-        return self._without_cautions() if cautions else self
-
-    def _without_cautions(self) -> ImpactResult:
-        """Return this result, or raise the first of its cautions."""
-        for sentence in self.cautions:
-            raise ImpactError(f"caution: {sentence}", Status.SUCCESS)
-        return self
 
     @property
     def cautions(self) -> list[str]:

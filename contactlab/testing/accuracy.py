@@ -10,10 +10,11 @@ import numpy as np
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import ClosedFormNormalLaw, Integrator
-from contactlab.testing.check import apply_if, check, hold
-from contactlab.testing.integrators import CHI, fitting, marched, marched_impact
+from contactlab.testing.check import apply_if, check, hold, within
+from contactlab.testing.integrators import CHI, marched, marched_impact
 from contactlab.testing.laws import DampedHertz, PressedSpring, Slider, SlidingForEver, Yielding
 from contactlab.testing.load_paths import scene
+from contactlab.testing.ways import fitting
 
 #: Numbers of steps over which the order is regressed.
 LADDER = (40, 80, 160, 320)
@@ -49,11 +50,7 @@ def finer_is_better(integrator: Any) -> None:
         exact = _exact(simulation, 7.0)
         unit = abs(scene(7.0, CHI).slip_velocity)
         error = abs(marched_impact(simulation, 7.0).slip_velocity_change - exact) / unit
-        hold(
-            error <= (integrator.accuracy or 0.05),
-            f"psi2 is {error:.1e} off the exact solution."
-            f" Bound: {integrator.accuracy or 0.05:.2g}.",
-        )
+        within(error, integrator.accuracy or 0.05, f"psi2 is {error:.1e} off the exact solution.")
         if integrator.resolution is None or integrator.accuracy is not None:
             continue
         value = getattr(integrator, integrator.resolution)
@@ -61,10 +58,10 @@ def finer_is_better(integrator: Any) -> None:
         finer = attrs.evolve(integrator, **{integrator.resolution: better})
         change = marched_impact(_with(simulation, finer), 7.0).slip_velocity_change
         finer_error = abs(change - exact) / unit
-        hold(
-            finer_error <= max(0.6 * error, 1e-12),
-            f"Made finer, the error goes from {error:.1e} to {finer_error:.1e}."
-            f" Bound: {max(0.6 * error, 1e-12):.2g}.",
+        within(
+            finer_error,
+            max(0.6 * error, 1e-12),
+            f"Made finer, the error goes from {error:.1e} to {finer_error:.1e}.",
         )
 
 
@@ -88,11 +85,11 @@ def sliding_impulse_by(integrator: Any) -> None:
                 error = abs(
                     impact.psi(marched_impact(simulation, psi1).slip_velocity_change) / exact - 1.0
                 )
-                hold(
-                    error <= room,
+                within(
+                    error,
+                    room,
                     f"The impulse of sliding is {error:.2g} off mu (1 + e) v1 M_n under "
-                    f"{type(simulation.normal).__name__}."
-                    f" Bound: {room:.2g}.",
+                    f"{type(simulation.normal).__name__}.",
                 )
     apply_if(tried, "It runs neither of the sliding laws of the kit.")
 
@@ -108,20 +105,19 @@ def books_by(integrator: Any) -> None:
     for simulation in simulations:
         for psi1 in (0.5, 1.2, 2.0, 8.0):
             imbalance = _imbalance(simulation, psi1)
-            hold(
-                imbalance <= BOOKS,
-                f"psi1 = {psi1}: {imbalance:.1%} of the energy is unaccounted. Bound: {BOOKS:.2g}.",
+            within(
+                imbalance, BOOKS, f"psi1 = {psi1}: {imbalance:.1%} of the energy is unaccounted."
             )
         if isinstance(getattr(integrator, integrator.resolution or "", None), int):
             worst = max(_imbalance(simulation, psi1) for psi1 in (0.5, 1.2, 2.0))
             finer_steps = {integrator.resolution: 8 * getattr(integrator, integrator.resolution)}
             finer = _with(simulation, attrs.evolve(integrator, **finer_steps))
             finer_worst = max(_imbalance(finer, psi1) for psi1 in (0.5, 1.2, 2.0))
-            hold(
-                finer_worst <= max(0.5 * worst, 1e-9),
+            within(
+                finer_worst,
+                max(0.5 * worst, 1e-9),
                 f"With 8 times the steps {finer_worst:.2g} of the energy is unaccounted, not "
-                f"less than half the {worst:.2g} before."
-                f" Bound: {max(0.5 * worst, 1e-9):.2g}.",
+                f"less than half the {worst:.2g} before.",
             )
 
 

@@ -44,8 +44,8 @@ class Check:
         Name of the check, used as key in ``Law.expected_failures``.
     function : callable
         Takes the law; raises ``CheckFailedError`` or another exception if the law fails.
-    contract : type
-        The check applies to laws of this class.
+    contracts : tuple of type
+        The check applies to laws of these classes.
     claim : str or None
         A word of ``Law.offers``. If not None, the check applies only to laws that offer the word,
         or that expect to fail the check.
@@ -55,7 +55,7 @@ class Check:
 
     name: str
     function: Function
-    contract: type[Law]
+    contracts: tuple[type[Law], ...]
     claim: str | None = None
     nature: str = ""
 
@@ -99,12 +99,12 @@ CHECKS: list[Check] = []
 
 
 def check(
-    contract: type[Law], *, claim: str | None = None, nature: str = ""
+    *contracts: type[Law], claim: str | None = None, nature: str = ""
 ) -> Callable[[Function], Function]:
     """Return a decorator that enters a function in ``CHECKS``, under the function's name."""
 
     def enter(function: Function) -> Function:
-        CHECKS.append(Check(function.__name__, function, contract, claim, nature))
+        CHECKS.append(Check(function.__name__, function, contracts, claim, nature))
         return function
 
     return enter
@@ -114,6 +114,11 @@ def hold(condition: object, sentence: str) -> None:
     """Raise ``CheckFailedError`` unless the condition is true."""
     if not condition:
         raise CheckFailedError(sentence)
+
+
+def within(value: Any, bound: Any, sentence: str) -> None:
+    """Raise ``CheckFailedError`` with ``sentence`` and the bound unless ``value`` is within it."""
+    hold(value <= bound, f"{sentence.rstrip()} Bound: {float(bound):.2g}.")
 
 
 def hold_success(motion: TangentialMotion, words: str = "{}") -> None:

@@ -10,7 +10,7 @@ from contactlab.compose.answers import answers
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import SteppedTangentialLaw, TangentialLaw
 from contactlab.numeric.arrays import spread
-from contactlab.testing.check import NotApplicableError, apply_if, check, hold
+from contactlab.testing.check import NotApplicableError, apply_if, check, within
 from contactlab.testing.impacts import CHI
 from contactlab.testing.laws import PullingHertz
 from contactlab.testing.load_paths import Bench, continue_from, drive, scene, slack, straight
@@ -39,12 +39,12 @@ def friction_coefficient(law: Any) -> None:
             impulses.append(abs(change) * float(np.asarray(impact.pair.tangential_mass)))
         apply_if(all(impulses), "It makes no force in slip throughout.")
         power = float(np.polyfit(np.log(FRICTION), np.log(impulses), 1)[0])
-        hold(
-            abs(power - 1.0) <= POWER,
+        within(
+            abs(power - 1.0),
+            POWER,
             f"The impulse of grazing impacts goes with mu to the power {power:.3g}, not 1: at mu = "
             f"{FRICTION[0]} and {FRICTION[-1]} it is {impulses[0]:.3g} and {impulses[-1]:.3g} N s "
-            f"({way})."
-            f" Bound: {POWER:.2g}.",
+            f"({way}).",
         )
 
 
@@ -61,12 +61,12 @@ def friction_load(law: Any) -> None:
             response, state = law.advance(state, increment, before, contact)
             before, force = contact, float(response.force) / bench.friction_force
         full = LEVEL**1.5
-        hold(
-            abs(force - share * full) <= slack(law, 1e-6),
+        within(
+            abs(force - share * full),
+            slack(law, 1e-6),
             f"In gross slip F = {force:.4g} mu P_max, where mu times the friction load is "
             f"{share * full:.4g} and mu times the normal force {full:.4g}: Coulomb's limit is that "
-            "of the friction load."
-            f" Bound: {slack(law, 1e-6):.2g}.",
+            "of the friction load.",
         )
 
 
@@ -93,12 +93,12 @@ def load_impulse(law: Any) -> None:
             apply_if(change != 0.0, "It makes no force in slip throughout.")
             tried += 1
             error = abs(abs(float(np.asarray(change))) * mass / expected - 1.0)
-            hold(
-                error <= slack(law, 0.0) + INTEGRATION,
+            within(
+                error,
+                slack(law, 0.0) + INTEGRATION,
                 f"Under a normal law that pulls, chi = {chi:.3g}: the impulse of a grazing impact "
                 f"is {error:.2g} off mu times the impulse of the friction load ({origin}), which is"
-                " not mu (1 + e) M_n v1 there."
-                f" Bound: {slack(law, 0.0) + INTEGRATION:.2g}.",
+                " not mu (1 + e) M_n v1 there.",
             )
     apply_if(tried, "There is no way to run it under a normal law that pulls.")
 
@@ -124,9 +124,9 @@ def at_rest_stiffness(law: Any) -> None:
     grows = mean > 0.0 and float(np.ptp(ratios)) <= 0.02 * mean
     apply_if(grows, "Its stiffness does not grow in proportion to the contact radius.")
     nearest = min(MINDLIN, key=lambda factor: abs(mean - factor))
-    hold(
-        abs(mean - nearest) <= NEAR,
+    within(
+        abs(mean - nearest),
+        NEAR,
         f"dF/dD of a contact at rest is {mean:.4g} times 2 G* b, at every normal load: Mindlin's "
-        "stiffness is 1 times it, and 2/3 in some codes. Is it 8 G* b with the G* of the pair?"
-        f" Bound: {NEAR:.2g}.",
+        "stiffness is 1 times it, and 2/3 in some codes. Is it 8 G* b with the G* of the pair?",
     )

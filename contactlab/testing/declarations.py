@@ -20,7 +20,7 @@ from contactlab.contracts import (
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
-from contactlab.testing.check import apply_if, check, hold
+from contactlab.testing.check import apply_if, check, hold, within
 from contactlab.testing.integrators import CHI
 from contactlab.testing.laws import Yield, Yielding
 from contactlab.testing.load_paths import scene
@@ -59,7 +59,7 @@ def drift(integrator: Any) -> None:
     moved, velocity, drifts = told.T
     apply_if(not np.isnan(drifts).all(), "It does not tell the drift.")
     gap = float(np.max(np.abs(moved - velocity * drifts)) / np.max(np.abs(moved)))
-    hold(gap <= AT, f"Displacements are {gap:.2g} off velocity times drift. Bound: {AT:.2g}.")
+    within(gap, AT, f"Displacements are {gap:.2g} off velocity times drift.")
 
 
 @check(TangentialLaw)
@@ -81,10 +81,11 @@ def dissipation(law: Any) -> None:
         energy = 0.5 * impact.pair.normal_mass * np.square(impact.normal_speed)
         lost = energy - 0.5 * impact.pair.normal_mass * np.square(motion.final_rate)
         gap = float(np.max(np.abs(lost - declared) / energy))
-        hold(
-            gap <= LOST,
+        within(
+            gap,
+            LOST,
             f"An impact without friction loses another energy than is declared: off by {gap:.2g} "
-            f"of the energy of the normal motion. Bound: {LOST:.2g}.",
+            f"of the energy of the normal motion.",
         )
 
 

@@ -15,12 +15,12 @@ from contactlab.compose.simulation import Simulation
 from contactlab.contracts import ClosedFormNormalLaw, Integrator, TangentialLaw
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
-from contactlab.testing.check import apply_if, check, hold
+from contactlab.testing.check import apply_if, check, hold, within
 from contactlab.testing.impacts import CHI
 from contactlab.testing.integrators import CHI as SOLID
-from contactlab.testing.integrators import marched_impact, sound
+from contactlab.testing.integrators import marched_impact
 from contactlab.testing.load_paths import scene
-from contactlab.testing.ways import Way, ways
+from contactlab.testing.ways import Way, sound, ways
 
 #: Impacts that stick, slip in part, and slip nearly throughout.
 ANGLES = (0.3, 0.9, 1.2, 2.0, 3.5)
@@ -146,10 +146,10 @@ def resolution_told(integrator: Any) -> None:
         as_stated = attrs.evolve(simulation, integrator=asked)
         asked_change = marched_impact(as_stated, 2.0).slip_velocity_change
         difference = abs(float(np.asarray(asked_change)) / float(np.asarray(change)) - 1.0)
-        hold(
-            difference <= ROUNDING,
+        within(
+            difference,
+            ROUNDING,
             f"resolution_for says {integrator.resolution} = {stated:g}, and with "
             f"{integrator.resolution} = {stated:g} an impact ends {difference:.2g} off: by default "
-            f"the integrator uses another value ({type(simulation.tangential).__name__})."
-            f" Bound: {ROUNDING:.2g}.",
+            f"the integrator uses another value ({type(simulation.tangential).__name__}).",
         )

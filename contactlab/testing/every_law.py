@@ -35,7 +35,9 @@ BAD_WORDS, BAD_FLAGS = ("no such word", 3.5), (float("nan"), "yes", 2)
 def claims(contract: type[Law]) -> frozenset[str]:
     """Return the words that laws of ``contract`` may offer: the claims that checks test."""
     return frozenset(
-        entry.claim for entry in CHECKS if entry.claim and issubclass(entry.contract, contract)
+        entry.claim
+        for entry in CHECKS
+        if entry.claim and any(issubclass(each, contract) for each in entry.contracts)
     )
 
 
@@ -115,7 +117,7 @@ def expected_failures(law: Law) -> None:
         hold(isinstance(reason, str) and len(reason.split()) > 2, f"{name!r} needs a reason.")
         claim = by_name[name].claim
         hold(claim not in law.offers, f"It offers {claim!r} and expects to fail {name!r}.")
-        hold(isinstance(law, by_name[name].contract), f"{name!r} is not a check of such a law.")
+        hold(isinstance(law, by_name[name].contracts), f"{name!r} is not a check of such a law.")
 
 
 @check(Law)

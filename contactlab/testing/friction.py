@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.contracts import NormalContact, SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
-from contactlab.testing.check import GROWS, check, hold
+from contactlab.testing.check import GROWS, check, hold, within
 from contactlab.testing.load_paths import (
     STEPS_TO_KNOT,
     Bench,
@@ -39,25 +39,17 @@ def odd_in_slip(law: Any) -> None:
         forward = drive(law, bench, path)
         reversed_answers = drive(law, bench, Path(-path.slip, path.level))
         gap = _worst(forward.force + reversed_answers.force)
-        hold(
-            gap <= ROUNDING,
-            f"Reversed slip gives a force that differs by {gap:.1e} mu P_max."
-            f" Bound: {ROUNDING:.2g}.",
-        )
+        within(gap, ROUNDING, f"Reversed slip gives a force that differs by {gap:.1e} mu P_max.")
         gap = _worst(forward.work - reversed_answers.work)
-        hold(
-            gap <= ROUNDING,
-            f"Reversed slip gives a friction work that differs by {gap:.1e}."
-            f" Bound: {ROUNDING:.2g}.",
-        )
+        within(gap, ROUNDING, f"Reversed slip gives a friction work that differs by {gap:.1e}.")
     far = straight((0.0, 0.5), (FAR, 0.9), (FAR - 1.0, 0.7))
     ahead = drive(law, bench, far).force
     gap = _worst(ahead + drive(law, bench, Path(-far.slip, far.level)).force)
-    hold(
-        gap <= ROUNDING,
+    within(
+        gap,
+        ROUNDING,
         f"Reversed slip, as far as {FAR:g} units, gives a force that differs by {gap:.1e} "
-        "mu P_max."
-        f" Bound: {ROUNDING:.2g}.",
+        "mu P_max.",
     )
 
 
@@ -77,10 +69,7 @@ def units(law: Any) -> None:
         in_si = drive(law, Bench.of(), path)
         in_odd_units = drive(converted, Bench.of(units=ODD_UNITS), path)
         gap = max(_worst(in_si.force - in_odd_units.force), _worst(in_si.work - in_odd_units.work))
-        hold(
-            gap <= ROUNDING,
-            f"In other units the answer differs by {gap:.1e} of mu P_max. Bound: {ROUNDING:.2g}.",
-        )
+        within(gap, ROUNDING, f"In other units the answer differs by {gap:.1e} of mu P_max.")
 
 
 @check(SteppedTangentialLaw)
@@ -118,10 +107,10 @@ def normal_load_alone(law: Any) -> None:
     held = drive(law, bench, path).force
     sheared = 2 * STEPS_TO_KNOT  # the third leg only presses
     rise = _worst(held[sheared:]) - abs(held[sheared - 1])
-    hold(
-        rise <= slack(law),
-        f"Pressing on a contact that is sheared adds {rise:.2g} mu P_max to its force."
-        f" Bound: {slack(law):.2g}.",
+    within(
+        rise,
+        slack(law),
+        f"Pressing on a contact that is sheared adds {rise:.2g} mu P_max to its force.",
     )
 
 
@@ -131,18 +120,14 @@ def gross_slip(law: Any) -> None:
     path = straight((0.0, 0.7), (4.0, 0.7), (8.0, 0.7))
     answers = drive(law, Bench.of(), path)
     gap = abs(float(answers.force[-1]) - 0.7**1.5)
-    hold(
-        gap <= slack(law),
-        f"F = {answers.force[-1]:.4g} mu P_max where mu P is {0.7**1.5:.4g}."
-        f" Bound: {slack(law):.2g}.",
-    )
+    within(gap, slack(law), f"F = {answers.force[-1]:.4g} mu P_max where mu P is {0.7**1.5:.4g}.")
     work = float(np.sum(answers.work[2 * STEPS_TO_KNOT :]))
     paid = 4.0 * float(answers.force[-1])
-    hold(
-        abs(work - paid) <= PAID * paid,
+    within(
+        abs(work - paid),
+        PAID * paid,
         f"Friction work of gross slip by 4.0 is {work / paid:.7g} times force times slip: "
-        f"{work:.4g} at a force of {answers.force[-1]:.4g}."
-        f" Bound: {PAID * paid:.2g}.",
+        f"{work:.4g} at a force of {answers.force[-1]:.4g}.",
     )
 
 
@@ -215,10 +200,10 @@ def last_step(law: Any) -> None:
             force = abs(float(response.force)) / bench.friction_force
             work = float(response.friction_work) / (bench.friction_force * bench.slip)
             largest = (1.0 + slack(law)) * level**1.5
-            hold(
-                force <= largest,
-                f"F = {force:.2g} mu P_max as the load falls to zeta = {remaining:.1g}."
-                f" Bound: {largest:.2g}.",
+            within(
+                force,
+                largest,
+                f"F = {force:.2g} mu P_max as the load falls to zeta = {remaining:.1g}.",
             )
             # At most the step slips, and the deflection that the load had held.
             hold(

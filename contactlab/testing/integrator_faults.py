@@ -15,9 +15,10 @@ from contactlab.testing.faulty_laws import (
     UnsettledSpring,
     Unyielding,
 )
-from contactlab.testing.integrators import CHI, fitting, marched_impact
+from contactlab.testing.integrators import CHI, marched_impact
 from contactlab.testing.laws import PressedSpring, Slider, SlidingForEver
 from contactlab.testing.load_paths import scene
+from contactlab.testing.ways import fitting
 
 NONE_FIT = "None of the faulty laws of the kit fits it."
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import ClosedFormNormalLaw
-from contactlab.testing.check import check, hold
+from contactlab.testing.check import check, hold, within
 from contactlab.testing.load_paths import scene
 from contactlab.testing.normal import STEPS, respond
 
@@ -32,14 +32,13 @@ def motion_agrees(law: Any) -> None:
         # At separation rounding decides between the limit of the radius and zero.
         difference = np.abs(value - expected)[: -1 if name == "radius" else None]
         gap = float(np.max(difference)) / scale
-        hold(
-            gap <= 1e-8, f"The {name} of the motion is {gap:.1e} off that of respond. Bound: 1e-8."
-        )
+        within(gap, 1e-8, f"The {name} of the motion is {gap:.1e} off that of respond.")
     start = motion.at(0.0)
     rate_at_touch = float(start.rate)
-    hold(
-        abs(rate_at_touch / speed - 1.0) <= 1e-12,
-        f"It starts at {rate_at_touch!r} m/s, not {speed!r}. Bound: 1e-12.",
+    within(
+        abs(rate_at_touch / speed - 1.0),
+        1e-12,
+        f"It starts at {rate_at_touch!r} m/s, not {speed!r}.",
     )
     touches = abs(float(start.approach)) <= 1e-12 * motion.maximum_approach
     hold(touches, "It does not start at touch.")
@@ -71,18 +70,16 @@ def motion_obeys_newton(law: Any) -> None:
         ("load impulse", impulse, contact.friction_load * time_rate, motion.total_load_impulse),
     ):
         gap = float(np.max(np.abs(change - gathered(slope)))) / scale
-        hold(
-            gap <= 1e-5, f"The {name} is {gap:.1e} off what its derivative adds up to. Bound: 1e-5."
-        )
+        within(gap, 1e-5, f"The {name} is {gap:.1e} off what its derivative adds up to.")
     for name, last, total in (
         ("duration", time[-1], motion.duration),
         ("final rate", rate[-1], motion.final_rate),
         ("total load impulse", impulse[-1], motion.total_load_impulse),
     ):
-        hold(abs(float(last) / total - 1.0) <= 1e-9, f"It does not end at its {name}. Bound: 1e-9.")
+        within(abs(float(last) / total - 1.0), 1e-9, f"It does not end at its {name}.")
     mass = motion.maximum_force * per_time / (impact.pair.normal_mass * impact.normal_speed)
     gap = abs(motion.scaled_mass * mass - 1.0)
-    hold(gap <= 1e-9, f"The scaled mass is {gap:.1e} off that of Newton's law. Bound: 1e-9.")
+    within(gap, 1e-9, f"The scaled mass is {gap:.1e} off that of Newton's law.")
 
 
 @check(ClosedFormNormalLaw)
@@ -102,12 +99,12 @@ def motion_scaled(law: Any) -> None:
         ("radius", scaled.radius, contact.radius / motion.maximum_radius),
     ):
         gap = float(np.max(np.abs(value - expected)))
-        hold(gap <= 1e-9, f"The scaled {name} is {gap:.1e} off. Bound: 1e-9.")
+        within(gap, 1e-9, f"The scaled {name} is {gap:.1e} off.")
     for place, phase in enumerate(phases.tolist()):
         single = np.array(motion.scaled_at(phase))
         gap = float(np.max(np.abs(single - np.array(scaled)[:, place])))
-        hold(gap <= 1e-12, f"scaled_at({phase:.3g}) is {gap:.1e} off scaled. Bound: 1e-12.")
+        within(gap, 1e-12, f"scaled_at({phase:.3g}) is {gap:.1e} off scaled.")
         gap = abs(motion.phase_at_rate(float(scaled.rate[place])) - phase)
-        hold(gap <= 1e-8, f"phase_at_rate is {gap:.1e} off. Bound: 1e-8.")
+        within(gap, 1e-8, f"phase_at_rate is {gap:.1e} off.")
     gap = float(np.max(np.abs(motion.phase(time / motion.duration) - phases)))
-    hold(gap <= 1e-6, f"phase is {gap:.1e} off the inverse of time. Bound: 1e-6.")
+    within(gap, 1e-6, f"phase is {gap:.1e} off the inverse of time.")

@@ -13,7 +13,7 @@ from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.testing import limits
-from contactlab.testing.check import check, hold
+from contactlab.testing.check import check, hold, within
 from contactlab.testing.compare import same, well_formed
 from contactlab.testing.load_paths import bodies, scene, varied
 from contactlab.testing.units import ODD_UNITS, Units, in_units
@@ -112,7 +112,7 @@ def _alike(law: Any, impacts: Scene, approach: Any, rate: Any, words: str) -> No
         scale = np.maximum(np.abs(alone).max(axis=1, keepdims=True), 1e-300)
         gap = float(np.max(np.abs(together[(slice(None), *at)] - alone) / scale))
         name = place[0] if len(place) == 1 else place
-        hold(gap <= ROUNDING, f"Contact {name} {words} is off by {gap:.1e}. Bound: {ROUNDING:.2g}.")
+        within(gap, ROUNDING, f"Contact {name} {words} is off by {gap:.1e}.")
 
 
 @check(NormalLaw)
@@ -157,10 +157,7 @@ def contacts_units(law: Any) -> None:
         gap = float(np.max(np.abs(value / unit - expected))) / max(
             float(np.max(np.abs(expected))), 1e-300
         )
-        hold(
-            gap <= ROUNDING,
-            f"In other units the {name} differs by {gap:.1e}. Bound: {ROUNDING:.2g}.",
-        )
+        within(gap, ROUNDING, f"In other units the {name} differs by {gap:.1e}.")
 
 
 @check(NormalLaw)

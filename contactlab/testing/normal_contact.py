@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalLaw
 from contactlab.impact.hertz import hertz_scales
-from contactlab.testing.check import check, hold
+from contactlab.testing.check import check, hold, within
 from contactlab.testing.normal import ROUNDING, STEPS, respond, strokes
 
 #: Contact radius squared over R times approach: 1 for an elastic sphere, 2 for a material that
@@ -61,10 +61,7 @@ def grows(law: Any) -> None:
     force, radius, _, load = respond(law, impact, depths, steady)
     for name, column in (("force", force), ("radius", radius), ("friction load", load)):
         fall = -float(np.min(np.diff(column))) / max(float(column.max()), 1e-300)
-        hold(
-            fall <= ROUNDING,
-            f"The {name} falls by {fall:.2g} of its maximum in compression. Bound: {ROUNDING:.2g}.",
-        )
+        within(fall, ROUNDING, f"The {name} falls by {fall:.2g} of its maximum in compression.")
 
 
 @check(NormalLaw, claim="radius")
@@ -111,11 +108,11 @@ def hertzian_pressure(law: Any) -> None:
             "sphere's (2).",
         )
         share = float(np.max(radius**2)) / (impact.pair.radius * float(approach.max()))
-        hold(
-            share <= GEOMETRIC + ROOM,
+        within(
+            share,
+            GEOMETRIC + ROOM,
             f"{name} b² comes to {share:.3g} R z_max: 2 is the most, the section of sphere and "
-            "plane."
-            f" Bound: {GEOMETRIC + ROOM:.2g}.",
+            "plane.",
         )
         if name == "At rest":
             forgets = float(np.max(np.abs(force - force[::-1]))) <= ROUNDING * float(force.max())

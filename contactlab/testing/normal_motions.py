@@ -12,7 +12,7 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.testing import limits
-from contactlab.testing.check import apply_if, check, hold
+from contactlab.testing.check import apply_if, check, hold, within
 from contactlab.testing.load_paths import bodies, scene
 from contactlab.testing.normal import respond, strokes
 
@@ -107,11 +107,11 @@ def normal_passive(law: Any) -> None:
         work = mean * np.diff(approach)
         put_in = float(np.sum(np.abs(work)))
         gained = -float(work.sum())
-        hold(
-            gained <= QUADRATURE * put_in,
+        within(
+            gained,
+            QUADRATURE * put_in,
             f"A closed cycle at rates {rates} of v1 gives {gained:.3g} J from nothing, with "
-            f"{put_in:.3g} J moved to and fro."
-            f" Bound: {QUADRATURE * put_in:.2g}.",
+            f"{put_in:.3g} J moved to and fro.",
         )
     apply_if(closed, "Adhesion holds the surfaces far behind first touch: no cycle is closed.")
 
@@ -128,16 +128,10 @@ def rebounds(law: Any) -> None:
         load = np.asarray(sample.contact.friction_load)
         impulse = trapezoid(np.asarray(sample.contact.force), np.asarray(sample.time))
         gap = abs(float(impulse) / momentum - 1.0)
-        hold(
-            gap <= QUADRATURE,
-            f"The force adds up to an impulse that is {gap:.2g} off. Bound: {QUADRATURE:.2g}.",
-        )
+        within(gap, QUADRATURE, f"The force adds up to an impulse that is {gap:.2g} off.")
         gathered = float(trapezoid(load, np.asarray(sample.time)))
         gap = abs(gathered - float(motion.total_load_impulse)) / max(gathered, momentum)
-        hold(
-            gap <= QUADRATURE,
-            f"The friction load's impulse is {gap:.2g} off its integral. Bound: {QUADRATURE:.2g}.",
-        )
+        within(gap, QUADRATURE, f"The friction load's impulse is {gap:.2g} off its integral.")
 
 
 @check(NormalLaw)
@@ -146,10 +140,8 @@ def ends_unloaded(law: Any) -> None:
     for motion in impacts(law):
         last = motion.at(np.asarray(np.pi)).contact
         left = float(last.force) / float(motion.maximum_force)
-        hold(
-            left <= END,
-            f"Contact ends under load: the force is still {left:.2g} of the greatest."
-            f" Bound: {END:.2g}.",
+        within(
+            left, END, f"Contact ends under load: the force is still {left:.2g} of the greatest."
         )
 
 
@@ -169,8 +161,4 @@ def motion_batch(law: Any) -> None:
             expected = float(getattr(alone, name))
             value = float(np.broadcast_to(getattr(together, name), impact.shape)[place])
             gap = abs(value - expected) / max(abs(expected), 1e-300)
-            hold(
-                gap <= SOLVED,
-                f"The {name} of impact {place} of a batch is off by {gap:.1e}."
-                f" Bound: {SOLVED:.2g}.",
-            )
+            within(gap, SOLVED, f"The {name} of impact {place} of a batch is off by {gap:.1e}.")

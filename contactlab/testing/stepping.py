@@ -11,7 +11,7 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
-from contactlab.testing.check import check, hold
+from contactlab.testing.check import check, hold, within
 from contactlab.testing.compare import same, well_formed
 from contactlab.testing.load_paths import (
     QUANTITIES,
@@ -77,10 +77,7 @@ def _alike(law: Any, whole: Bench, paths: list[Path], words: str) -> None:
         alone = drive(law, whole.alone(place), own_path)
         gap = _gap(alone.force, together.force[(slice(None), *place)])
         name = place[0] if len(place) == 1 else place
-        hold(
-            gap <= ROUNDING,
-            f"Contact {name} {words} is off by {gap:.1e} of mu P_max. Bound: {ROUNDING:.2g}.",
-        )
+        within(gap, ROUNDING, f"Contact {name} {words} is off by {gap:.1e} of mu P_max.")
 
 
 @check(SteppedTangentialLaw)

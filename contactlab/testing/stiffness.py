@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab.testing.check import check, hold
+from contactlab.testing.check import check, hold, within
 from contactlab.testing.laws import SoftHertz
 from contactlab.testing.load_paths import (
     HEAVY,
@@ -88,11 +88,11 @@ def tension(law: Any) -> None:
         forward, reversed_force = (_pulled(law, bench, pulled, sense) for sense in (1.0, -1.0))
         limit = load / bench.force
         over = float(np.nan_to_num(np.max(np.abs(forward)) - limit, nan=np.inf))
-        hold(
-            over <= slack(law) * max(limit, 0.1),
+        within(
+            over,
+            slack(law) * max(limit, 0.1),
             f"Under tension abs(F) exceeds mu times a friction load of {limit:.2g} P_max by "
-            f"{over:.2g} mu P_max."
-            f" Bound: {slack(law) * max(limit, 0.1):.2g}.",
+            f"{over:.2g} mu P_max.",
         )
         hold(
             np.array_equal(forward, -reversed_force),

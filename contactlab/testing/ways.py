@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from contactlab.compose import composition
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
@@ -24,6 +26,7 @@ from contactlab.impact.scene import Scene
 from contactlab.outcome.history import History, Recorder
 from contactlab.testing import limits
 from contactlab.testing.check import apply_if, hold, hold_success
+from contactlab.testing.laws import PressedSpring, Slider, SlidingForEver, Yielding
 from contactlab.testing.load_paths import scene, slack
 from contactlab.testing.units import Units
 
@@ -54,7 +57,8 @@ class Way(NamedTuple):
 
     def __str__(self) -> str:
         """Return the way in words."""
-        return f"by {type(self.integrator).__name__}" if self.integrator else "as whole impacts"
+        by = f"{type(self.law).__name__} by {type(self.integrator).__name__}"
+        return by if self.integrator else "as whole impacts"
 
     @property
     def exact(self) -> bool:
@@ -104,14 +108,34 @@ def _which(impact: Scene) -> str:
     return f"psi1 = {float(impact.psi1):.6g}, chi = {float(impact.chi):.4g}"
 
 
-def ways(law: TangentialLaw, normal: NormalLaw | None = None) -> list[Way]:
+def fitting(integrator: Any, tangential: tuple[Any, ...], normal: Any) -> Iterator[Simulation]:
+    """Iterate over simulations with the tangential laws that the integrator can run."""
+    normal_law = REGISTRY.create(normal) if isinstance(normal, str) else normal
+    for law in tangential:
+        if composition.misfit(normal_law, law, integrator) is None:
+            yield Simulation(normal=normal_law, tangential=law, integrator=integrator)
+
+
+def sound(integrator: Any) -> list[Simulation]:
+    """Return at least one simulation with laws of the kit that do not fail."""
+    laws = (PressedSpring(), Yielding(), Slider(), SlidingForEver())
+    simulations = list(fitting(integrator, laws, "normal.hertz"))
+    hold(simulations, "It fits none of the laws of the kit: see the contracts that it states.")
+    return simulations
+
+
+def ways(law: TangentialLaw | Integrator, normal: NormalLaw | None = None) -> list[Way]:
     """Return the ways in which a law can be run: by steps, by events, as whole impacts.
+
+    Those of an integrator are under the laws of the kit that it can run.
 
     Raises
     ------
     NotApplicableError
         If there is no way under ``normal``, by default Hertz's law.
     """
+    if isinstance(law, Integrator):
+        return [Way(each.tangential, each.normal, law) for each in sound(law)]
     normal_law = REGISTRY.create("normal.hertz") if normal is None else normal
     listed = []
     if isinstance(law, SteppedTangentialLaw):

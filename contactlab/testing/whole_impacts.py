@@ -15,7 +15,7 @@ from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalLaw, NormalMotion, TangentialLaw, WholeImpact
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import spread
-from contactlab.testing.check import NotApplicableError, apply_if, check, hold
+from contactlab.testing.check import NotApplicableError, apply_if, check, hold, within
 from contactlab.testing.compare import well_formed
 from contactlab.testing.impacts import CHI, PSI1
 from contactlab.testing.laws import DampedHertz
@@ -71,19 +71,17 @@ def whole_impacts(law: Any) -> None:
         change = way.run(impact).change
         room, unit = allowed(way), impact.pair.tangential_mass / impact.psi_scale**2
         error = abs(change - impact.psi(float(np.asarray(answer.slip_velocity_change))))
-        hold(
-            error <= room * 4.0 * chi,
-            f"{each}: psi2 is {error:.2g} off the law's own run ({way})."
-            f" Bound: {room * 4.0 * chi:.2g}.",
+        within(
+            error, room * 4.0 * chi, f"{each}: psi2 is {error:.2g} off the law's own run ({way})."
         )
         # The energy lost, and not the friction work of the march: energy books may not close.
         lost = -change * (psi1 + 0.5 * change)
         error = abs(lost - float(np.asarray(answer.friction_work)) / unit)
-        hold(
-            error <= room * 4.0 * chi * max(psi1, 1.0),
+        within(
+            error,
+            room * 4.0 * chi * max(psi1, 1.0),
             f"{each}: the friction work is {error:.2g} off the energy lost in the law's own run "
-            f"({way})."
-            f" Bound: {room * 4.0 * chi * max(psi1, 1.0):.2g}.",
+            f"({way}).",
         )
         if answer.course is not None:
             _courses_agree(way, each, room)
@@ -99,18 +97,18 @@ def _courses_agree(way: Way, each: AnsweredImpact, room: float) -> None:
     largest = float(each.scene.friction_coefficient) * float(each.normal.maximum_force)
     velocity = np.interp(marched.time, sample.time, each.scene.slip_velocity + change)
     gap = float(np.max(np.abs(each.scene.psi(marched.slip_velocity - velocity))))
-    hold(
-        gap <= 2.0 * room * 4.0 * each.chi,
-        f"{each}: along the course psi is {gap:.2g} off the law's own run ({way})."
-        f" Bound: {2.0 * room * 4.0 * each.chi:.2g}.",
+    within(
+        gap,
+        2.0 * room * 4.0 * each.chi,
+        f"{each}: along the course psi is {gap:.2g} off the law's own run ({way}).",
     )
     acting = np.interp(marched.time, sample.time, force)
     gap = float(np.max(np.abs(marched.tangential_force - acting))) / largest
-    hold(
-        gap <= 2.0 * room,
+    within(
+        gap,
+        2.0 * room,
         f"{each}: along the course the force is {gap:.2g} mu P_max off that of the law's own "
-        f"run ({way})."
-        f" Bound: {2.0 * room:.2g}.",
+        f"run ({way}).",
     )
 
 
@@ -144,26 +142,23 @@ def whole_impact_form(law: Any) -> None:
         )
         largest = float(impact.friction_coefficient) * float(each.normal.total_load_impulse)
         gap = abs(gained[-1] - change) * mass / largest
-        hold(
-            gap <= ROUNDING,
-            f"{each}: its course ends {gap:.2g} off its answer. Bound: {ROUNDING:.2g}.",
-        )
+        within(gap, ROUNDING, f"{each}: its course ends {gap:.2g} off its answer.")
         added = -float(trapezoid(force, sample.time))
-        hold(
-            abs(added - mass * change) <= QUADRATURE * largest,
+        within(
+            abs(added - mass * change),
+            QUADRATURE * largest,
             f"{each}: the force along its course gives an impulse of {added:.4g} N s, its "
-            f"answer one of {mass * change:.4g} N s."
-            f" Bound: {QUADRATURE * largest:.2g}.",
+            f"answer one of {mass * change:.4g} N s.",
         )
         lost = float(trapezoid(force * (slip + gained), sample.time))
         bound = float(np.max(law.books_bound(impact)))
         room = QUADRATURE * max(energy, largest * abs(slip))
         room += bound * energy if np.isfinite(bound) else 0.0
-        hold(
-            abs(lost - work) <= room,
+        within(
+            abs(lost - work),
+            room,
             f"{each}: the force along its course does {lost:.4g} J of work, and its answer says "
-            f"{work:.4g} J."
-            f" Bound: {room:.2g}.",
+            f"{work:.4g} J.",
         )
 
 
@@ -190,19 +185,19 @@ def sliding_impulse(law: Any) -> None:
                 error = abs(way.run(impact).change / expected - 1.0)
                 # The limit of a law with a grid differs by its discretisation.
                 room = slack(law, 0.0) + (1e-6 if way.exact else INTEGRATION)
-                hold(
-                    error <= room,
+                within(
+                    error,
+                    room,
                     f"A grazing impact under {type(normal_law).__name__}, chi = {chi:.3g}, is "
-                    f"{error:.2g} off mu (1 + e) v1 M_n/M_t ({way})."
-                    f" Bound: {room:.2g}.",
+                    f"{error:.2g} off mu (1 + e) v1 M_n/M_t ({way}).",
                 )
             for _, answer in answers(normal, law, history=False):
                 change = spread(answer.slip_velocity_change, ())
                 error = abs(float(impact.psi(change)) / expected - 1.0)
-                hold(
-                    error <= 1e-6,
+                within(
+                    error,
+                    1e-6,
                     f"A grazing impact under {type(normal_law).__name__}, chi = {chi:.3g}, is "
-                    f"{error:.2g} off mu (1 + e) v1 M_n/M_t ({answer.reason})."
-                    " Bound: 1e-6.",
+                    f"{error:.2g} off mu (1 + e) v1 M_n/M_t ({answer.reason}).",
                 )
     apply_if(tried, "There is no way to run it.")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
+from functools import partial
+from typing import Any, ClassVar
 
 import attrs
+import numpy as np
 
 from contactlab.contracts import (
     EccentricMotion,
@@ -18,7 +20,9 @@ from contactlab.contracts import (
     no_force,
     sliding,
 )
+from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import filled, spread
 from contactlab.numeric.checks import Real
 
 #: Bound of the imbalance of the energy books, over the energy at the start.
@@ -87,8 +91,11 @@ class Coulomb(WholeImpactTangentialLaw, EccentricTangentialLaw):
 
 
 @attrs.frozen(kw_only=True)
-class Frictionless(WholeImpactTangentialLaw):
-    """No tangential force; the reference for the cost of a run."""
+class Frictionless(WholeImpactTangentialLaw, EccentricTangentialLaw):
+    """No tangential force; the reference for the cost of a run.
+
+    Between any two bodies pressure alone drags the surfaces: psi2 = psi1 - 2 eta if e is 1.
+    """
 
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"no_friction"})
@@ -108,3 +115,33 @@ class Frictionless(WholeImpactTangentialLaw):
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return no caution: without traction there is no coupling."""
         return ()
+
+    def refuses_eccentric(self, scene: EccentricScene) -> str | None:
+        """Return None: every impact has an answer."""
+        return None
+
+    def eccentric_impacts(
+        self,
+        scene: EccentricScene,
+        normal: NormalMotion,
+        accuracy: float | None,
+        observer: EccentricObserver | None = None,
+    ) -> EccentricMotion:
+        """Return the velocities that the impulse of the frictionless approach gives."""
+        speed: Any = scene.normal_speed
+        rate = np.asarray(normal.final_rate)
+        impulse = (speed - rate) / scene.inverse_mass[..., 0, 0]
+        loss = 0.5 * impulse * (speed + rate)
+        of: Any = partial(spread, shape=scene.shape)
+        return EccentricMotion(
+            velocity_change=-scene.inverse_mass[..., 0] * impulse[..., None],
+            friction_work=of(0.0),
+            normal_loss=of(loss),
+            duration=of(normal.duration),
+            maximum_radius=of(normal.maximum_radius),
+            maximum_approach=of(normal.maximum_approach),
+            maximum_force=of(normal.maximum_force),
+            compressions=np.ones(scene.shape, dtype=int) if scene.shape else 1,
+            status=filled(Status.SUCCESS, scene.shape),
+            detail=filled("", scene.shape),
+        )

@@ -45,7 +45,7 @@ def rigid_impacts(scene: EccentricScene, normal: NormalMotion) -> EccentricMotio
         maximum_radius=unknown,
         maximum_approach=unknown,
         maximum_force=unknown,
-        compressions=filled(1, shape),
+        compressions=np.ones(shape, dtype=int) if shape else 1,
         status=filled(Status.SUCCESS, shape),
         detail=filled("", shape),
     )

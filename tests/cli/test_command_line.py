@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import os
-import sys
 import warnings
 
 import pytest
@@ -40,56 +37,6 @@ def test_other_warnings_are_shown_as_ever(run, monkeypatch, capsys):
         assert warnings.showwarning is before
     assert ran.err == "contactlab: warning: of a plug-in\n" * 2
     assert shown == [("another", Another)]
-
-
-@pytest.mark.parametrize(
-    ("words", "expected"),
-    [
-        (["run", "--psi1", "-1e-3"], ["run", "--psi1=-1e-3"]),
-        (["--psi1", "-1:2:3", "-4"], ["--psi1=-1:2:3", "-4"]),
-        (["--psi1", "-x"], ["--psi1", "-x"]),
-        (["--psi1", "1"], ["--psi1", "1"]),
-        (["-p", "-1"], ["-p", "-1"]),
-        (["-1"], ["-1"]),
-        (["--set", "-inf"], ["--set=-inf"]),
-    ],
-)
-def test_negative_numbers_are_joined_to_their_option(words, expected):
-    assert module._join_negative_numbers(words) == expected
-
-
-@pytest.mark.parametrize(
-    ("words", "needed"),
-    [
-        (["run", "--x"], ("run",)),
-        (["--traceback", "fit", "run"], ("fit",)),
-        (["--version"], ()),
-        (["--help"], module.COMMANDS),
-        (["rum"], module.COMMANDS),
-        ([], ()),
-    ],
-)
-def test_only_the_command_that_is_named_is_needed(words, needed):
-    assert module._needed(words) == needed
-
-
-def test_a_stream_that_cannot_be_flushed_is_left(monkeypatch, tmp_path):
-    """Its descriptor then leads to the null device."""
-    path = tmp_path / "out"
-    with path.open("w", encoding="utf-8") as stream:
-
-        class Full:
-            fileno = staticmethod(stream.fileno)
-
-            def flush(self):
-                raise OSError("no space")
-
-        monkeypatch.setattr(sys, "stdout", Full())
-        module._leave_stdout()
-        os.write(stream.fileno(), b"lost")
-    assert path.read_text(encoding="utf-8") == ""
-    monkeypatch.setattr(sys, "stdout", io.StringIO())
-    module._leave_stdout()  # what can be flushed is left alone
 
 
 @pytest.mark.parametrize(

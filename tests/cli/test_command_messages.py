@@ -3,117 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import re
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import numbers
-from contactlab.cli.sweep import _ranges, _rows
-from contactlab.impact.scene import Scene
-
-RANGE = "a range is START:STOP:COUNT, {}, in contactlab sweep and compare"
-
-
-@pytest.mark.parametrize(
-    ("text", "hint"),
-    [
-        ("one", ""),
-        ("0-6", "; " + RANGE.format("0:6:71")),
-        (" 0 to 6.5 ", "; " + RANGE.format("0:6.5:71")),
-        ("-1..2", "; " + RANGE.format("-1.:.2:71")),
-        ("0,6", "; " + RANGE.format("0:6:71")),
-        ("1:5:9", "; " + RANGE.format("1:5:71")),
-        ("+1:-5", "; " + RANGE.format("+1:-5:71")),
-        ("1-2-3", ""),
-    ],
-)
-def test_a_word_that_is_no_number(text, hint):
-    with pytest.raises(argparse.ArgumentTypeError, match="is not a number") as caught:
-        shared.finite(text)
-    told = str(caught.value)
-    if text == "-1..2":  # its dots belong to either number
-        assert told.startswith(f"{text!r} is not a number; a range is START:STOP:COUNT, ")
-    else:
-        assert told == f"{text!r} is not a number{hint}"
-
-
-def test_numbers_are_finite():
-    assert shared.finite("-1e3") == -1000.0
-    for text in ("nan", "inf", "-inf"):
-        with pytest.raises(argparse.ArgumentTypeError, match=f"^'{text}': must be a finite number"):
-            shared.finite(text)
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("1:2:3:4", "'1:2:3:4': write START:STOP:COUNT, or one number"),
-        ("1:2:x", "'1:2:x': COUNT must be a whole number"),
-        ("1:2:1.5", "'1:2:1.5': COUNT must be a whole number"),
-        ("1:2:0", "'1:2:0': COUNT must lie in [1, 1000000]"),
-        ("1:2:1000001", "'1:2:1000001': COUNT must lie in [1, 1000000]"),
-        ("0:6", f"'0:6' is not a number; {RANGE.format('0:6:71')}"),
-        ("x:2:3", "'x' is not a number"),
-        ("1:y:3", "'y' is not a number"),
-    ],
-)
-def test_a_range_that_cannot_be(text, words):
-    with pytest.raises(argparse.ArgumentTypeError, match=f"^{re.escape(words)}$"):
-        numbers(text)
-
-
-def test_a_range_has_both_ends():
-    assert numbers("-1:2:4").tolist() == [-1.0, 0.0, 1.0, 2.0]
-    assert numbers("3:9:1").tolist() == [3.0]
-    assert len(numbers("0:1:1000000")) == 1_000_000
-    assert numbers("1.5") == 1.5
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("tangential.annuli=50", ("tangential.annuli", 50)),
-        (" a.b = 'c' ", ("a.b", "c")),
-        ("a.b=word", ("a.b", "word")),
-        ("a.b= two words ", ("a.b", "two words")),
-        ("a.b=1=2", ("a.b", "1=2")),
-        ("a.b=[1, 2]", ("a.b", [1, 2])),
-        ("a.b=true", ("a.b", True)),
-    ],
-)
-def test_a_setting_is_written_as_in_toml_or_as_a_word(text, expected):
-    assert shared.setting(text) == expected
-
-
-@pytest.mark.parametrize("text", ["a.b", "=3", "a.b=", " = ", "a.b= "])
-def test_a_setting_has_a_name_and_a_value(text):
-    words = f"{text!r}: write it as tangential.annuli=50"
-    with pytest.raises(argparse.ArgumentTypeError, match=f"^{re.escape(words)}$"):
-        shared.setting(text)
-
-
-@pytest.mark.parametrize("value", ["1" * 5000, "[" * 100_000])
-def test_a_value_too_long_or_too_deep_is_told(value):
-    with pytest.raises(argparse.ArgumentTypeError, match=r"^a\.b: "):
-        shared.setting(f" a.b={value}")
-
-
-def test_names_are_a_list_without_repetition():
-    assert shared.names(" a, b ,,c") == ["a", "b", "c"]
-    with pytest.raises(argparse.ArgumentTypeError, match=r"^needs at least one name$"):
-        shared.names(" , ")
-    with pytest.raises(argparse.ArgumentTypeError, match=r"^'a, a': a name is repeated$"):
-        shared.names("a, a")
-
-
-def test_a_column_is_a_heading_and_a_name():
-    assert shared._column(" a = b [deg] = angle ") == ("a = b [deg]", "angle")
-    for text in ("angle", "=angle", "angle=", " = "):
-        with pytest.raises(argparse.ArgumentTypeError, match=r"write HEADING=NAME$"):
-            shared._column(text)
 
 
 def test_a_file_has_one_of_the_suffixes_and_a_folder(tmp_path):
@@ -138,15 +32,6 @@ def test_every_file_is_written_though_one_fails(tmp_path, capsys):
     assert capsys.readouterr().err == "contactlab: error: no space\n"
     assert shared.save((one, done.append), progress_wanted=False) == shared.OK
     assert shared.save((None, full), progress_wanted=False) == shared.OK
-
-
-def test_progress_of_files_counts_those_that_are_written(tmp_path, monkeypatch):
-    counted = []
-    monkeypatch.setattr(
-        "contactlab.cli.progress.Progress.__call__", lambda _, *count: counted.append(count)
-    )
-    shared.save((tmp_path, str), (None, str), (tmp_path, str), progress_wanted=True)
-    assert counted == [(1, 2), (2, 2)]
 
 
 BOTH = "--psi1, --chi: cannot be combined with a scene file; leave out one of them"
@@ -223,29 +108,6 @@ def test_a_refusal_is_one_line(run, short_sweep, ball, tmp_path, monkeypatch, wo
         )
     else:
         assert ran.err == f"{head}{told.format(ball=ball, file=file)}\n"
-
-
-def test_a_million_impacts_are_not_too_many():
-    psi1, chi = np.linspace(0.0, 1.0, 1000), np.linspace(1.0, 2.0, 1000)
-    assert _ranges(psi1, chi).shape == (1000 * 1000,)
-    assert _ranges(2.0, np.array([1.0, 3.0])).chi.tolist() == [1.0, 3.0]
-
-
-def test_rows_of_a_sweep_are_psi1_chi_psi2_and_status(run):
-    from contactlab import Simulation
-
-    scene = Scene.nondimensional(psi1=[6.0, 7.0], chi=1.0)
-    rows = _rows(Simulation(tangential="coulomb").sweep(scene))
-    assert [row[:2] + row[3:] for row in rows] == [(6.0, 1.0, "SUCCESS"), (7.0, 1.0, "SUCCESS")]
-    assert [row[2] for row in rows] == pytest.approx([2.0, 3.0])
-    ran = run("sweep", "--psi1", "6:7:2", "--chi", 1, "--tangential", "coulomb", "--csv")
-    assert ran.out.splitlines()[0] == "psi1 (1),chi (1),psi2 (1),status"
-    assert ran.out.splitlines()[1].startswith("6.0,1.0,2.0")
-    table = run("sweep", "--psi1", "6:7:2", "--chi", 1, "--tangential", "coulomb").out
-    assert table == (
-        "psi1  chi  psi2  status\n----  ---  ----  -------\n   6    1     2  SUCCESS\n"
-        "   7    1     3  SUCCESS\n"
-    )
 
 
 @pytest.mark.parametrize(("count", "shown"), [(25, 25), (26, 25), (3, 3)])

@@ -13,7 +13,6 @@ from matplotlib.figure import Figure
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scene
 from contactlab.cli import compare as command
-from contactlab.cli import progress
 from contactlab.cli.drawing import draw_all
 from contactlab.figures.comparison import differences, laws_over_sweep
 from contactlab.figures.files import save_figure
@@ -297,21 +296,6 @@ def test_no_difference_is_largest_where_a_law_gave_no_answer(measured):
     (agreement,) = compare(read_scene(measured), creator).agreements
     assert np.isnan(agreement.where_largest("creator"))
     assert np.isnan(agreement.largest("creator"))
-
-
-def test_progress_counts_every_run(run, measured, monkeypatch):
-    """Each law is run on the sweep and at the measured points."""
-    counted = []
-    monkeypatch.setattr(progress.Progress, "__call__", lambda _, *count: counted.append(count))
-    shown = run("compare", measured, *BOTH, "--json", "--progress")
-    assert counted == [(1, 4), (2, 4), (3, 4), (4, 4)]
-    json.loads(shown.out)
-    assert run("compare", measured, *BOTH, "--json").err == ""
-    seen = []
-    file = read_scene(measured)
-    laws = {"rigid": file.laws.simulation(), "again": file.laws.simulation()}
-    compare(file.scene, laws, progress=lambda *count: seen.append(count))
-    assert seen == [(1, 2), (2, 2)]
 
 
 def test_single_scene_object_can_be_compared(short_sweep):

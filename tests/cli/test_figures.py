@@ -10,8 +10,6 @@ import pytest
 from contactlab import Simulation, create
 from contactlab.study import paper_figures
 from contactlab.study.paper_figures import (
-    Curve,
-    FigureData,
     figure_1,
     figure_2,
     figure_3,
@@ -55,29 +53,6 @@ def test_every_drawing_has_its_numbers():
 
     drawn = {name for name in vars(paper) if name.startswith("figure_")}
     assert drawn == {f"figure_{number}" for number in paper_figures.paper_data()}
-
-
-def test_a_new_figure_is_one_function(run, monkeypatch, tmp_path):
-    """The command finds it by its name, draws its curves and writes its table."""
-
-    def figure_5(simulation):
-        x = np.linspace(0.0, 1.0, 5)
-        curves = (Curve("a line", np.nan, x, x), Curve("its half", 0.5, x, 0.5 * x))
-        return FigureData(number=5, x="chi", y="psi2", parameter="slope", curves=curves)
-
-    monkeypatch.setattr(paper_figures, "figure_5", figure_5, raising=False)
-    assert run("figures", "--out", tmp_path, "--only", "5", *FEW).status == 0
-    assert (tmp_path / "figure-5.png").read_bytes().startswith(b"\x89PNG")
-    rows = list(
-        csv.DictReader((tmp_path / "figure-5.csv").read_text(encoding="utf-8").splitlines())
-    )
-    assert [row["psi2"] for row in rows if row["slope"] == "0.5"] == [
-        "0.0",
-        "0.125",
-        "0.25",
-        "0.375",
-        "0.5",
-    ]
 
 
 def test_only_some(run, tmp_path):

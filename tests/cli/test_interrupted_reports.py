@@ -8,9 +8,7 @@ import json
 import pytest
 
 from contactlab.cli import bench, stability
-from contactlab.compose import solve
-from contactlab.compose.simulation import Simulation
-from contactlab.study import paper_figures, validation, work_precision
+from contactlab.study import paper_figures, work_precision
 from contactlab.study.bench_methods import Method
 from tests.cli.conftest import interrupting, partial
 
@@ -40,17 +38,6 @@ def test_bench(run, monkeypatch, tmp_path):
     content = json.loads(ran.out)
     assert (content["rows"], content["complete"]) == ([], False)
     assert not (tmp_path / "none.png").exists()
-
-
-def test_a_sweep_that_is_interrupted_within_a_study_ends_the_study(run, monkeypatch):
-    """A sweep returns what is done; its time, and its gaps, are not those of the law."""
-    monkeypatch.setattr(solve, "outcome", interrupting(solve.outcome, 0))
-    simulation = Simulation(tangential="coulomb", integrator="symplectic")
-    with pytest.raises(KeyboardInterrupt):
-        work_precision._sweep_time(simulation, alone=1e-4)
-    monkeypatch.setattr(validation, "_checks", lambda: iter([validation._rigid]))
-    ran = run("validate")
-    assert (ran.status, ran.out) == (130, "")
 
 
 @pytest.mark.parametrize("after", [0, 7])

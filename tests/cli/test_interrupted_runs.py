@@ -48,22 +48,6 @@ def test_compare_keeps_the_laws_that_are_done(run, monkeypatch, measured, tmp_pa
     assert (ran.status, ran.out) == (130, "")
 
 
-def test_all_laws_keep_those_that_are_done(run, monkeypatch, short_sweep):
-    monkeypatch.setattr(comparison, "_timed", interrupting(comparison._timed, 2))
-    ran = run("compare", short_sweep, "--all", "--json")
-    assert ran.status == 130
-    content = json.loads(ran.out)
-    assert len(content["laws"]) == len(content["scores"]) == 2
-
-
-def test_a_report_of_the_laws_that_are_done(run, monkeypatch, ball, tmp_path):
-    page = tmp_path / "r.html"
-    monkeypatch.setattr(comparison, "_timed", interrupting(comparison._timed, 1))
-    ran = run("report", ball, "--tangential", "coulomb,stronge", "--out", page)
-    assert (ran.status, ran.out) == (130, f"{partial(page)}\n")
-    assert "Interrupted before all laws were compared" in partial(page).read_text(encoding="utf-8")
-
-
 @pytest.mark.parametrize(
     ("done", "sources"), [(1, 0), (2, 0), pytest.param(2, 1, marks=pytest.mark.slow)]
 )

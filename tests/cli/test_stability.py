@@ -1,6 +1,5 @@
 """`contactlab stability`: its table, its files, and that a law that is wrong makes it fail."""
 
-import argparse
 import csv
 import json
 import re
@@ -55,14 +54,6 @@ def test_a_law_without_steps_has_a_model_error_and_no_picture(run, tmp_path):
     assert float(re.search(r"^coulomb +(0\.\d+) +\S+$", ran.out, re.MULTILINE)[1]) > 0.3
     assert not (tmp_path / "s.png").exists()
     assert "nothing to map" in ran.err
-
-
-@pytest.mark.parametrize(("complete", "why"), [(True, "there is nothing"), (False, "interrupted")])
-def test_no_picture_is_drawn_of_nothing(complete, why, tmp_path, capsys):
-    nothing = Stability(outcomes=(), regions=(), complete=complete)
-    stability._draw(tmp_path / "t.png", argparse.Namespace(quick=True), [], nothing, "interrupted")
-    assert f"no map drawn: {why}" in capsys.readouterr().err
-    assert not (tmp_path / "t.png").exists()
 
 
 def test_table_csv_and_figure_of_a_law(run, tmp_path):

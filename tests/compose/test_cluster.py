@@ -34,13 +34,6 @@ def test_a_cluster_answers_as_one_process(executor):
 
 
 @pytest.mark.slow
-def test_a_client_itself_has_a_method_submit(executor, monkeypatch):
-    blocks_of(monkeypatch, 50)
-    simulation = Simulation(tangential="coulomb")
-    assert_same(simulation.sweep(scene(), executor=executor._client), simulation.sweep(scene()))
-
-
-@pytest.mark.slow
 def test_failures_on_a_cluster(executor, monkeypatch, tmp_path):
     blocks_of(monkeypatch, 50)
     raising = Simulation(tangential=Raising(), integrator="symplectic")

@@ -250,19 +250,6 @@ def test_the_spin_of_a_body_whose_moment_of_inertia_is_no_float():
     assert collide(met).spin[2] == pytest.approx(1e298 * collide(large).spin[2], rel=1e-12)
 
 
-def test_parts_of_a_large_batch_are_the_whole(monkeypatch):
-    rng = np.random.default_rng(7)
-    met = meeting(
-        target=BALL, velocity=rng.normal((0, 0, -9), size=(6, 7, 3)), spin=np.ones((7, 3))
-    )
-    whole = collide(met)
-    monkeypatch.setattr("contactlab.impact.encounter.TOGETHER", 5)
-    parts = collide(met)
-    assert parts.velocity.shape == (6, 7, 3)
-    assert np.allclose(parts.velocity, whole.velocity, rtol=0.0, atol=1e-9)
-    assert np.array_equal(parts.collided, whole.collided)
-
-
 def test_no_friction_no_slip_and_vast_slip():
     calm = collide(meeting(friction_coefficient=0.0))
     assert calm.velocity.tolist() == [0.5, 0.0, 1.0]

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from contactlab import Encounter, HalfSpace, Simulation, Sphere, Status, collide
-from contactlab.impact.bodies import Pair
 from tests.outcome.made import BALL, SOFT
 
 SMALL = Sphere(0.25, SOFT, mass=2.0, gyration_ratio=0.5)
@@ -42,36 +41,6 @@ def test_directions_and_speeds_at_the_contact():
         BALL, HalfSpace(SOFT), 0.5, normal=(0, 0, 1), velocity=(1, 0, 1), spin=(0, 2, 0)
     )
     assert wall.meeting().slip == pytest.approx(2.0)
-
-
-def test_parts_of_encounters():
-    velocities = np.arange(18.0).reshape(2, 3, 3) + np.array([0.0, 0.0, 1.0])
-    many = met(velocity=velocities)
-    assert many.shape == (2, 3)
-    for part, shape in ((0, (3,)), ((1, 2), ()), (slice(1, 2), (1, 3)),
-                        (np.array([[True, False, False], [False, True, True]]), (3,))):  # fmt: skip
-        taken = many.take(part)
-        assert taken.shape == shape
-        assert np.array_equal(taken.velocity, velocities[part])
-        assert taken.normal is many.normal
-    some = met(velocity=[(0, 0, 3), (0, 0, 1), (0, 0, -3)], target_velocity=(0, 0, 1))
-    assert some.approaching.tolist() == [True, False, False]
-    assert met().approaching is True
-    assert met(velocity=(0, 0, 1 + 1e-15)).approaching is True
-    radii = met(velocity=velocities).take((0, 1))
-    assert radii.body == BALL
-
-
-def test_the_pair_of_the_last_bodies_is_kept():
-    first = met()
-    assert first.pair == Pair.of(BALL, SMALL)
-    assert met(spin=(1.0, 1.0, 1.0)).pair is first.pair
-    other = Encounter(SMALL, BALL, 0.5, normal=(0, 0, 1), velocity=(0, 0, 1))
-    assert other.pair == Pair.of(SMALL, BALL)
-    wide = Encounter(Sphere([0.5, 0.25], SOFT, mass=2.0), SMALL, 0.5, normal=(0, 0, 1),
-                     velocity=(0, 0, 1))  # fmt: skip
-    assert wide.pair.radius.tolist() == pytest.approx([1 / 6, 0.125])
-    assert met().pair == first.pair
 
 
 def sliding(**changes):

@@ -1,6 +1,7 @@
 """Eccentric impacts: theory §14's closed forms, reference values, invariants and rigid limits."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 
 import attrs
 import numpy as np
@@ -150,6 +151,21 @@ def test_no_friction_is_a_closed_form():
         W = result.scene.inverse_mass
         assert result.normal_velocity == pytest.approx(-1.0, abs=1e-4)
         assert result.slip_velocity[0] == pytest.approx(-2.0 * W[0, 1] / W[0, 0], rel=1e-4)
+
+
+@pytest.mark.parametrize("scene", [random_planar(20, 6).take(3), random_planar(20, 6)])
+def test_without_friction_pressure_alone_drags_the_surfaces(scene):
+    """V2 = -e and psi2 = psi1 - (1 + e) eta under any normal law; a stepped law agrees."""
+    for e in (1.0, 0.6):
+        normal = create("normal.tsuji", restitution=e) if e < 1.0 else "hertz"
+        result = Simulation(normal=normal, tangential="frictionless").run(scene).check()
+        assert result.normal_velocity == pytest.approx(-e, abs=1e-9)
+        assert result.psi2 == pytest.approx(scene.psi1 - (1.0 + e) * scene.eta, rel=1e-9)
+        assert np.all(result.energy.friction_work == 0.0)
+        smooth = attrs.evolve(scene, friction_coefficient=1e-9 * scene.friction_coefficient)
+        marched = Simulation(normal=normal, tangential="springs", integrator="symplectic")
+        slip = marched.run(smooth).check().slip_velocity
+        assert result.slip_velocity == pytest.approx(slip, rel=1e-3, abs=1e-6)
 
 
 def test_no_impact_gains_energy_and_the_books_close():
@@ -492,6 +508,19 @@ def test_a_batch_answers_as_its_impacts():
     assert EXACT.run(table).psi2.ravel() == pytest.approx(EXACT.run(scene).psi2, rel=1e-12)
 
 
+def test_exact_impacts_side_by_side_answer_as_alone():
+    """Alone and with a history gross slip is timed step by step, in a batch as Hertz's motion."""
+    scene = random_planar(150, 31)
+    together = EXACT.run(scene).check()
+    for place, one in enumerate(together):
+        alone = EXACT.run(scene.take(place), history=place % 2 == 0).check()
+        for name in ("psi2", "normal_velocity"):
+            assert getattr(one, name) == pytest.approx(getattr(alone, name), rel=1e-9)
+        for name in ("duration", "friction_work", "maximum_approach"):
+            value = getattr(one.motion, name)
+            assert value == pytest.approx(getattr(alone.motion, name), rel=1e-8, abs=1e-12)
+
+
 HARD = [
     # psi1, chi, lam, lam eta over 2 chi
     (1e6, 0.5, -1000.0, 0.99), (1e6, 3.0, -1000.0, 0.99), (1e6, 3.0, -30.0, 0.9999),
@@ -535,8 +564,32 @@ def test_a_sweep_takes_a_sequence_or_a_batch():
     batch = EXACT.sweep(scene)
     listed = EXACT.sweep([scene.take(k) for k in range(5)])
     assert listed.psi2 == pytest.approx(batch.psi2, rel=1e-12)
-    with pytest.raises(ValueError, match="executor"):
-        EXACT.sweep(scene, keep="folder")
+
+
+def test_a_stopped_sweep_keeps_what_is_done_and_resumes_on_other_workers(tmp_path):
+    scene, folder = random_planar(2500, 15), tmp_path / "kept"
+
+    def stop(done, total):
+        assert total == 2500
+        raise KeyboardInterrupt
+
+    stopped = RIGID.sweep(scene, progress=stop, keep=folder)
+    assert [each is Status.INTERRUPTED for each in stopped.status[[0, 999, 1000, -1]]] == [
+        False, False, True, True,
+    ]  # fmt: skip
+    whole = RIGID.run(scene).check()
+    assert stopped.psi2[:1000] == pytest.approx(whole.psi2[:1000], rel=1e-15)
+    assert np.isnan(stopped.psi2[1000:]).all()
+    counts = []
+    with ThreadPoolExecutor(2) as executor:
+        resumed = RIGID.sweep(
+            scene, keep=folder, executor=executor, progress=lambda done, _: counts.append(done)
+        )
+    assert len(counts) == 2
+    for name in ("psi2", "normal_velocity"):
+        assert (getattr(resumed.check(), name) == getattr(whole, name)).all()
+    with pytest.raises(ValueError, match="another sweep"):
+        RIGID.sweep(random_planar(2500, 16), keep=folder)
 
 
 def test_a_law_that_raises_has_a_status_and_no_number():

@@ -7,43 +7,19 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Encounter, Material, Scene, Simulation, Sphere, Status, collide
+from contactlab import Encounter, Material, Scene, Simulation, Sphere, collide
 from contactlab.compose.collision import VECTORS
 from contactlab.contracts import (
     SteppedTangentialLaw,
     TangentialResponse,
-    WholeImpactTangentialLaw,
 )
-from contactlab.contracts.whole_impact import from_change
-from contactlab.numeric.checks import count
 from contactlab.outcome.columns import COLUMNS, QUANTITIES
 from contactlab.outcome.export import write_csv
 from contactlab.outcome.plan import PSI2_ERROR
-from tests.compose.test_error_estimate import Tight, Wanders
 from tests.laws.normal_laws import LinearSpring
 from tests.laws.tangential_laws import Creator
 
 SYMPLECTIC = type(contactlab.create("integrator.symplectic"))
-
-
-@attrs.frozen(kw_only=True)
-class TightWhereFast(type(contactlab.create("integrator.adaptive"))):
-    """The adaptive integrator, for which no tolerance below 1e-3 can be kept from psi1 = 5.5 on."""
-
-    def integrate(self, normal, tangential, scene, observer=None):
-        motion = super().integrate(normal, tangential, scene, observer)
-        where = np.asarray(scene.psi1 > 5.5) & (self.tolerance < 1e-3)
-        return motion.failing(where, Status.UNRESOLVED, "The tolerance is not kept.")
-
-
-@pytest.mark.parametrize("integrator", [Tight, TightWhereFast])
-@pytest.mark.parametrize("psi1", [6.0, [5.0, 6.0]])
-def test_where_a_tolerance_cannot_be_tightened_the_law_alone_is_refined(psi1, integrator):
-    """As if the integrator had no tolerance: the distance, and half the last change."""
-    scene = Scene.nondimensional(psi1=psi1, chi=1.0)
-    simulation = Simulation(tangential=Wanders(), integrator=integrator(tolerance=1e-2))
-    found = simulation.run(scene, estimate_error=True).check().psi2_error_estimate
-    assert found == pytest.approx(np.full(scene.shape, 0.1 * (0.4 + 0.15) * 4.0), rel=1e-2)
 
 
 @attrs.frozen(kw_only=True)
@@ -130,71 +106,6 @@ def test_the_error_of_a_solved_motion_is_that_of_its_load_impulse():
         assert one.psi2_error == pytest.approx(expected, rel=1e-9)
         assert many.psi2_error == pytest.approx([expected] * 2, rel=1e-9)
         assert [clause.code for clause in one.computed if "error" in str(clause)] == [PSI2_ERROR]
-
-
-@attrs.frozen(kw_only=True)
-class Counting(WholeImpactTangentialLaw):
-    """A whole impact whose error falls as 1/terms; it notes the terms of each run."""
-
-    api_version: ClassVar[int] = 2
-    resolution: ClassVar[str] = "terms"
-    seen: ClassVar[list] = []
-
-    terms: int = count(default=5, most=80)
-
-    def whole_impacts(self, scene, normal):
-        self.seen.append(self.terms)
-        change = -(1.0 - 0.1 / self.terms) * scene.slip_velocity
-        return (from_change(scene, where=True, psi_change=change, psi2_error=0.0, reason="a test"),)
-
-
-@attrs.frozen(kw_only=True)
-class Firm(LinearSpring):
-    """A spring with a resolution that changes nothing."""
-
-    resolution: ClassVar[str] = "parts"
-    parts: int = count(default=3)
-
-
-@pytest.mark.parametrize(
-    ("terms", "normal", "runs"),
-    [
-        (5, "hertz", [5, 20, 80]),  # four times alone, and four times again
-        (6, "hertz", [6, 12, 24]),  # 96 are refused: twice, and twice again
-        (5, Firm(), [5, 10, 20]),  # twice beside another
-        (21, "hertz", [21]),  # 84 are refused too
-    ],
-)
-def test_how_much_finer_the_runs_of_an_estimate_are(terms, normal, runs):
-    Counting.seen.clear()
-    simulation = Simulation(normal=normal, tangential=Counting(terms=terms))
-    found = simulation.run(Scene.nondimensional(psi1=1.0, chi=1.5), estimate_error=True)
-    assert Counting.seen == runs
-    if len(runs) == 1:
-        assert found.psi2_error_estimate == found.plan.psi2_error
-        return
-    first, fine, finest = (0.1 / each for each in runs)
-    last, before = fine - finest, first - fine  # of first order
-    expected = first - finest + max(0.5, last / (before - last)) * last
-    assert found.psi2_error_estimate == pytest.approx(expected, rel=1e-9)
-
-
-@attrs.frozen(kw_only=True)
-class Timed(type(contactlab.create("integrator.adaptive"))):
-    """The adaptive integrator, which notes its tolerances."""
-
-    seen: ClassVar[list] = []
-
-    def integrate(self, normal, tangential, scene, observer=None):
-        self.seen.append(self.tolerance)
-        return super().integrate(normal, tangential, scene, observer)
-
-
-def test_a_tolerance_is_divided_by_four_times_the_square_of_the_factor():
-    Timed.seen.clear()
-    simulation = Simulation(tangential=Wanders(), integrator=Timed(tolerance=1e-2))
-    simulation.run(Scene.nondimensional(psi1=5.0, chi=1.0), estimate_error=True).check()
-    assert Timed.seen == pytest.approx([1e-2, 1e-2 / 16.0, 1e-2 / 64.0])
 
 
 @attrs.frozen(kw_only=True)

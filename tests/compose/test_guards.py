@@ -13,10 +13,8 @@ import contactlab
 from contactlab import ImpactError, Scene, Simulation, Status
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from contactlab.impact.hertz import hertz_scales
-from tests.compose.guards import cost, without
 from tests.compose.spoiled import SpoiledMotion
 from tests.laws.normal_laws import LinearSpring
-from tests.laws.tangential_laws import Creator
 
 HERTZ = contactlab.compose.registry.REGISTRY.law_class("normal.hertz")
 
@@ -175,16 +173,6 @@ def test_a_few_failures_in_a_large_batch_are_found(shape):
     assert list(result.failures) == [3, 70, 71]
     good = simulation.run(Scene.nondimensional(psi1=np.delete(psi1, [3, 70, 71]), chi=3.0)).check()
     assert np.delete(result.psi2.ravel(), [3, 70, 71]).tolist() == good.psi2.tolist()
-
-
-def test_the_cost_of_the_guards_is_measured_against_none():
-    """Energy from nothing passes without guards; ``python tests/compose/guards.py`` times both."""
-    scene = Scene.nondimensional(psi1=1.2, chi=1.44)
-    creator = Simulation(tangential=Creator(), integrator="symplectic")
-    with without():
-        assert creator.run(scene).status is Status.SUCCESS
-    assert creator.run(scene).status is Status.UNBALANCED
-    assert all(seconds > 0.0 for seconds in cost(lambda: creator.run(scene), repeats=1))
 
 
 @pytest.mark.parametrize("law", ["springs", "sharp_annulus", "annulus", "mindlin_cap"])

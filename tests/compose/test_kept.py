@@ -7,7 +7,6 @@ import pytest
 import contactlab
 from contactlab import Scene, Simulation
 from contactlab.compose import kept
-from contactlab.compose import sweep as sweeping
 from tests.compose.test_sweep import CHI, RIGID, assert_same, blocks_of, scene
 
 
@@ -66,13 +65,6 @@ def test_another_sweep_is_refused(tmp_path):
     ):
         with pytest.raises(ValueError, match=rf"keep = .*holds another sweep: {words}"):
             changed.sweep(scenes, keep=folder)
-
-
-def test_other_blocks_are_refused(tmp_path, monkeypatch):
-    interrupted(Simulation(**RIGID), tmp_path / "kept")
-    monkeypatch.setattr(sweeping, "block_of", lambda _: 41)
-    with pytest.raises(ValueError, match="block was 40, is 41"):
-        Simulation(**RIGID).sweep(scene(), keep=tmp_path / "kept")
 
 
 def test_what_holds_no_sweep_is_refused_and_left_alone(tmp_path):
@@ -157,24 +149,3 @@ def test_impacts_that_were_kept_twice_count_once(tmp_path):
     (piece,) = other.glob("*.npz")
     piece.rename(folder / piece.name)
     assert_same(simulation.sweep(scene(), keep=folder), simulation.sweep(scene()))
-
-
-def test_a_fingerprint_knows_every_number_and_class():
-    trees = [
-        scene(),
-        scene(149),
-        Scene.nondimensional(psi1=scene().psi1, chi=1.4),
-        *([1.0, 2.0], [2.0, 1.0], (1.0, 2.0), 1, 1.0, "1", None, True, {"a": 1}, {"b": 1}),
-        *(np.zeros(3), np.zeros((3, 1)), np.zeros(3, dtype=np.float32), frozenset()),
-        *(contactlab.create("tangential.springs", springs=n) for n in (50, 51)),
-    ]
-    assert len({kept.fingerprint(tree) for tree in trees}) == len(trees)
-    assert kept.fingerprint(scene()) == kept.fingerprint(scene())
-
-
-def test_files_of_others_are_not_counted(tmp_path):
-    """Only two numbers after the word are a piece."""
-    for part in ("0-40", "40-60", "60-last", "old", "1-2-3"):
-        (tmp_path / f"impacts-{part}.npz").touch()
-    assert kept.count(tmp_path) == 60
-    assert kept.count(tmp_path / "nowhere") == 0

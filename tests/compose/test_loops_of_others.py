@@ -137,8 +137,3 @@ def test_threads_get_the_answers_of_one():
     for thread in threads:
         thread.join()
     assert all(np.array_equal(each, expected) for answers in found.values() for each in answers)
-
-
-def test_other_types_become_float64():
-    for kind in (np.float32, np.int64):
-        assert rebound(np.array([1, 2], dtype=kind), CHI).dtype == np.float64

@@ -1,6 +1,6 @@
 """Normal motions of any law, solved before any friction: however long, short or stiff."""
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -10,10 +10,8 @@ import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalContact, NormalLaw
-from contactlab.contracts.motion import MOST_SHARED
-from contactlab_laws.march.division import LONGEST_KEPT, endpoints, midpoints
 from tests.laws.exact_laws import order
-from tests.laws.normal_laws import Damped, ForceFree, LinearSpring
+from tests.laws.normal_laws import Damped, ForceFree
 from tests.laws.outside_laws import Adhesive, LinearDashpot, Plastic, RescaledSpring, Tsuji
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
@@ -88,12 +86,6 @@ def test_restitution_is_the_closed_form(law, damping):
         assert e == pytest.approx(Tsuji.restitution(damping), rel=1e-7)
 
 
-def test_an_impact_of_many_is_solved_as_closely_as_one_of_few():
-    speeds = np.geomspace(0.01, 20.0, 200)
-    motion = normal_motion(Tsuji(damping=0.1), scene(speed=speeds))
-    assert -motion.final_rate / speeds == pytest.approx(Tsuji.restitution(0.1), rel=1e-9)
-
-
 @pytest.mark.parametrize("law", [Plastic, WidePlastic])
 @pytest.mark.parametrize("restitution", [0.3, 0.8, 1.0])
 def test_plastic_restitution_alone_and_in_a_batch(law, restitution):
@@ -163,32 +155,6 @@ def test_a_contact_that_never_ends_is_no_answer(law, integrator):
     assert result.status is Status.NOT_SEPARATED
     assert type(law).__name__ in result.motion.detail
     assert np.isnan(result.psi2)
-
-
-@attrs.frozen(kw_only=True)
-class Unlike(LinearSpring):
-    """A stiffness for each impact: no option of a law, for which such arrays are refused."""
-
-    stiffness: Any = attrs.field()
-
-
-@pytest.mark.parametrize("other", [0.0, 1e6])
-def test_a_soft_contact_costs_its_batch_little(other, monkeypatch):
-    """Beside one that is a million times as stiff, or bodies that go through one another."""
-    calls = []
-    respond = LinearSpring.respond
-
-    def counted(*given):
-        calls.append(given)
-        assert len(calls) < 5000
-        return respond(*given)
-
-    monkeypatch.setattr(LinearSpring, "respond", counted)
-    law = Unlike(stiffness=np.array([1e-6, other]))
-    found = normal_motion(law, scene(speed=np.array([1.0, 2.0])))
-    duration = np.pi * np.sqrt(found.scene.pair.normal_mass / 1e-6)
-    assert found.duration[0] == pytest.approx(duration, rel=1e-8)
-    assert bool(found.status[1]) is (other > 0.0)
 
 
 @pytest.mark.parametrize("damping", [0.0, 1.5])
@@ -319,39 +285,6 @@ def test_adaptive_keeps_its_tolerance_under_any_normal_law(normal, law, toleranc
                           for r, e in zip(found, exact, strict=True)))  # fmt: skip
         assert errors[-1] <= 2.0 * tolerance
     assert np.polyfit(np.log(tolerances), np.log(errors), 1)[0] >= 0.6
-
-
-def test_impacts_of_one_normal_motion_solve_it_once():
-    """The second is the first to the last bit, whatever its friction; another speed is another."""
-    law = Tsuji(damping=0.1)
-    first, second = (
-        normal_motion(law, scene(slip, mu=mu)) for slip, mu in ((2.0, 0.2), (0.1, 0.5))
-    )
-    assert first.table is second.table
-    assert normal_motion(Tsuji(damping=0.1), scene(np.array([1.0, 2.0]))).table is first.table
-    faster = normal_motion(law, scene(speed=1.5))
-    assert faster.table is not first.table
-    assert faster.final_rate == pytest.approx(1.5 * first.final_rate, rel=1e-9)
-
-
-def test_steps_are_divided_once_for_equal_motions():
-    law = contactlab.create("normal.hertz")
-    one, other = (normal_motion(law, scene(slip)) for slip in (1.0, 3.0))
-    assert midpoints(one, 40) is midpoints(other, 40)
-    shared = (*midpoints(one, 40).contact, *midpoints(one, 40)[1:])
-    assert not any(column.flags.writeable for column in shared)
-    assert endpoints(one, 40) is not midpoints(one, 40)
-    batch = normal_motion(law, scene(np.array([1.0, 3.0])))
-    assert midpoints(batch, 40).drift.shape == (40, 1)
-    assert (
-        midpoints(normal_motion(law, scene(speed=2.0)), 40).drift[0] < midpoints(one, 40).drift[0]
-    )
-    for count in range(10, 10 + 2 * MOST_SHARED):
-        midpoints(one, count)
-    assert len(one.shared) <= MOST_SHARED
-    kept = len(one.shared)
-    assert midpoints(one, LONGEST_KEPT + 1) is not midpoints(one, LONGEST_KEPT + 1)
-    assert len(one.shared) == kept
 
 
 @pytest.mark.parametrize("law", ["springs", "annulus", "sharp_annulus"])

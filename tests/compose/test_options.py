@@ -12,7 +12,7 @@ import contactlab
 from contactlab.compose.options import meanings, options
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalLaw
-from contactlab.numeric.checks import choice, count, flag, quantity
+from contactlab.numeric.checks import quantity
 
 LAWS = [info.name for info in REGISTRY.installed() if info.distribution == "contactlab"]
 
@@ -66,52 +66,3 @@ def test_an_array_for_an_option_of_a_strangers_law_is_refused_with_the_remedy():
         match=r"stiffness = \[1.0, 2.0\]: must be one number: .*; make a law for each value",
     ):
         Theirs(stiffness=[1.0, 2.0])
-
-
-@attrs.frozen(kw_only=True)
-class Made:
-    """A law.
-
-    Parameters
-    ----------
-    parts : int
-        How many,
-
-        in two paragraphs.
-    first, second : float
-        Both.
-
-    References
-    ----------
-    sure : nothing of this.
-    """
-
-    parts: int = count(least=2, most=9)
-    first: float = quantity("m", default=1.0)
-    second: float = quantity("m", default=2.0)
-    kind: str = choice("one", "other", default="one")
-    sure: bool = flag(default=True)
-
-
-class Plain:
-    """A stranger's class, without fields or sections."""
-
-    def __init__(self, size, shape=object):
-        self.size, self.shape = size, shape
-
-
-def test_options_of_any_class():
-    parts, first, second, kind, sure = options(Made)
-    assert (str(parts), parts.meaning) == ("parts, to be given", "How many, in two paragraphs.")
-    assert parts.rule == "must be a whole number from 2 to 9"
-    assert (first.unit, first.meaning, second.meaning) == ("m", "Both.", "Both.")
-    assert (kind.rule, kind.meaning) == ("must be one of 'one', 'other'", "")
-    assert (sure.rule, sure.meaning, str(sure)) == ("must be True or False", "", "sure = True")
-
-
-def test_options_of_a_class_without_fields():
-    size, shape = options(Plain)
-    assert (size.unit, size.rule, size.meaning) == ("", "", "")
-    assert size.to_dict()["needed"]
-    assert size.to_dict()["default"] is None
-    assert shape.to_dict()["default"] == "<class 'object'>"

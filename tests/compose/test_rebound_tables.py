@@ -9,47 +9,14 @@ from contactlab import Scene, Simulation, Sphere, collide, create, rebound
 from contactlab.compose.rebound import (
     BEYOND_ERROR,
     DAMPED_ERROR,
-    FEW,
     TABULATED_CHI,
-    TOLERANCE,
-    _in_table,
     damped_error,
 )
-from contactlab.compose.rebound import CHI as CHI_RULE
 from tests.compose.test_collision import STEEL, meeting
 
 CHI = 49.0 / 34.0
 E_09 = {"restitution": 0.9}
 BEYOND = math.nextafter(TABULATED_CHI, 3.0)
-
-
-@pytest.mark.parametrize("count", [1, FEW, FEW + 1, 2 * FEW])
-@pytest.mark.parametrize(
-    ("psi1", "chi", "inside"),
-    [
-        (0.0, TABULATED_CHI, True), (-1e300, 5e-324, True), (1.0, BEYOND, False),
-        (1.0, 0.0, False), (1.0, -1.0, False), (1.0, math.nan, False), (1.0, math.inf, False),
-        (math.nan, 1.0, False), (math.inf, 1.0, False), (-math.inf, 1.0, False),
-    ],
-)  # fmt: skip
-def test_a_quick_look_finds_what_the_table_answers(psi1, chi, inside, count):
-    """Of plain numbers, and of the last of few or of many."""
-    assert _in_table(psi1, chi) is inside
-    angles, ratios = np.full(count, 0.5), np.full(count, 1.0)
-    angles[-1], ratios[-1] = psi1, chi
-    assert _in_table(angles, ratios) is inside
-    assert _in_table(angles.reshape(1, -1), ratios.reshape(1, -1)) is inside
-
-
-def test_other_kinds_of_arguments_are_looked_at_closely():
-    one = np.array([1.0, 2.0])
-    assert _in_table(one, one)
-    for psi1, chi in (
-        (1, 1.0), (1.0, 1), (one, 1.0), (1.0, one), (one, one[:1]), (one.astype(int), one),
-        (one, one.astype(np.float32)), (np.array(1.0), np.array(1.0)), (one[:0], one[:0]),
-        ([1.0], [1.0]), (None, None),
-    ):  # fmt: skip
-        assert not _in_table(psi1, chi)
 
 
 def test_answers_in_the_table_and_beyond_are_those_of_the_exact_law():
@@ -65,14 +32,6 @@ def test_answers_in_the_table_and_beyond_are_those_of_the_exact_law():
     assert rebound(psi1[:2], chi[:2], tolerance=0.9) == pytest.approx(expected[:2], abs=2e-9)
     assert type(rebound(1, 1)) is float
     assert rebound(np.array(1.0), 1.0) == rebound(1.0, 1.0)
-
-
-def test_the_ranges_of_chi_and_of_the_tolerance():
-    chi = [5e-324, 1e4, math.nextafter(1e4, 2e4), 0.0, math.nan]
-    assert [bool(CHI_RULE.holds(one)) for one in chi] == [True, True, False, False, False]
-    tolerances = [1e-9, math.nextafter(1.0, 0.0), math.nextafter(1e-9, 0.0), 1.0, math.nan]
-    held = [bool(TOLERANCE.holds(one)) for one in tolerances]
-    assert held == [True, True, False, False, False]
 
 
 def test_derivatives_are_differences():

@@ -8,7 +8,6 @@ import pytest
 
 import contactlab
 from contactlab import PluginError
-from contactlab.compose.names import full_name, kind_of, short_name
 from contactlab.compose.registry import REGISTRY, PluginWarning
 
 MINE, KNOWN = "tangential.mine", "normal.hertz"
@@ -233,16 +232,6 @@ def test_a_blocked_distribution_that_is_not_installed_is_warned_of(registry, ins
         assert MINE not in registry.names()
 
 
-def test_names_are_taken_apart_and_put_together():
-    assert full_name("normal", "hertz") == "normal.hertz"
-    assert full_name("normal", "a.b:hertz") == full_name("normal", "a.b:normal.hertz")
-    assert full_name("normal", "a.b:hertz") == "a.b:normal.hertz"
-    for name in ("normal.hertz", "a.b:normal.hertz", "tangential.normal"):
-        assert full_name(kind_of(name), short_name(name)) == name
-    assert short_name("a.b:normal.hertz") == "a.b:hertz"
-    assert short_name("hertz") == "hertz"
-
-
 @pytest.mark.parametrize(
     ("source", "message"),
     [
@@ -334,14 +323,6 @@ def test_a_distribution_that_cannot_be_read_stops_nothing(
     assert {MINE, "tangential.coulomb"} <= set(registry.names())
 
 
-def test_a_distribution_without_its_papers(registry, install, law_source, tmp_path):
-    install("bare", "bare_law", law_source, MINE)
-    papers = tmp_path / "bare-1.5.dist-info" / "METADATA"
-    papers.write_bytes(b"Name: \xff\n")
-    with pytest.warns(PluginWarning, match=r"bare-1.5.dist-info cannot be read"):
-        assert MINE not in registry.names()
-
-
 def test_an_interruption_is_still_one(registry, install):
     install("slow", "slow_law", "raise KeyboardInterrupt", MINE)
     with pytest.raises(KeyboardInterrupt):
@@ -361,13 +342,6 @@ def test_a_malformed_name_stops_nothing(registry, install, law_source, name):
     if name in found:
         with pytest.raises(PluginError, match=r"odd 1\.5: the name must be"):
             registry.create(name)
-
-
-def test_the_traceback_of_a_broken_plugin_is_kept(registry, install):
-    install("broken", "broken_law", "1/0", MINE)
-    with pytest.raises(PluginError) as caught:
-        registry.create(MINE)
-    assert isinstance(caught.value.__cause__, ZeroDivisionError)
 
 
 def test_wrong_interface_version_wrong_kind_and_abstract_laws(registry, install, law_source):

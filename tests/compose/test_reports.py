@@ -9,7 +9,6 @@ import pytest
 
 import contactlab
 from contactlab.cli.main import main
-from contactlab.compose import composition
 from contactlab.compose.registry import REGISTRY
 from contactlab.study import work_precision
 from contactlab.study.bench_methods import Method, methods
@@ -165,10 +164,3 @@ def test_no_law_of_ours_is_named_in_the_core_or_the_studies():
                 if text in names and file not in TABLES:
                     found.append(f"{file}:{node.lineno}: {node.value!r}")
     assert found == []
-
-
-def test_the_table_names_laws_that_are_installed():
-    table = [composition.DEFAULT_NORMAL, composition.FIXED_STEPS]
-    table += [name for names in composition.PREFERRED.values() for name in names]
-    table += [*composition.EXACT.values(), *composition.RESTITUTION.values()]
-    assert set(table) <= {name.partition(".")[2] for name in REGISTRY.names()}

@@ -9,7 +9,6 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, ImpactError, Material, Scene, Simulation, Sphere, Status
-from contactlab.compose import sweep as sweeping
 from contactlab.contracts import (
     Integrator,
     SteppedTangentialLaw,
@@ -139,54 +138,6 @@ def test_sweep_equals_one_by_one_and_keeps_order():
     assert sweep[2].psi2 == sim.run(scene(0.5)).psi2
     with pytest.raises(IndexError):
         sweep[6]
-
-
-def test_sweep_reports_progress(monkeypatch):
-    monkeypatch.setattr(sweeping, "block_of", lambda _: 2)
-    seen = []
-    Simulation(**RIGID).sweep(
-        Scene.nondimensional(psi1=np.linspace(0, 9, 10), chi=CHI),
-        chunk=4,
-        progress=lambda *n: seen.append(n),
-    )
-    assert seen == [(4, 10), (8, 10), (10, 10)]
-
-
-@pytest.mark.parametrize(("tolerance", "first"), [(None, 1000), (1e-9, 1000), (1e-11, 20)])
-def test_a_sweep_hands_over_few_where_many_gain_nothing(tolerance, first):
-    """So that an interruption of slow laws loses little."""
-    laws = {"tangential": "springs", "integrator": "symplectic"}
-    if tolerance is not None:
-        laws = {
-            "tangential": contactlab.create("tangential.fronts", table=False),
-            "integrator": contactlab.create("integrator.events", tolerance=tolerance),
-        }
-    seen = []
-
-    def stop(done, total):
-        seen.append(done)
-        raise KeyboardInterrupt
-
-    psi1 = np.linspace(6, 9, 5000)  # all in gross slip
-    Simulation(**laws).sweep(Scene.nondimensional(psi1=psi1, chi=CHI), progress=stop)
-    assert seen == [first]
-
-
-def test_interrupting_a_sweep_keeps_what_is_done(monkeypatch):
-    monkeypatch.setattr(sweeping, "block_of", lambda _: 2)
-
-    def stop(done, total):
-        if done == 4:
-            raise KeyboardInterrupt
-
-    sweep = Simulation(**RIGID).sweep(
-        Scene.nondimensional(psi1=np.linspace(6, 9, 10), chi=CHI), chunk=2, progress=stop
-    )
-    assert [status.name for status in sweep.status] == ["SUCCESS"] * 4 + ["INTERRUPTED"] * 6
-    assert np.isfinite(sweep.psi2[:4]).all()
-    assert np.isnan(sweep.psi2[4:]).all()
-    with pytest.raises(ImpactError, match="impact 4"):
-        sweep.check()
 
 
 def test_bad_arguments_of_run_and_sweep():

@@ -12,7 +12,7 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import ClosedFormNormalLaw, NormalContact, NormalLaw
 from contactlab.contracts.faults import LawFaultError
 from tests.laws.normal_laws import ForceFree, LinearSpring
-from tests.laws.outside_laws import LinearDashpot, Tsuji
+from tests.laws.outside_laws import LinearDashpot
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
 MASS = 2.0
@@ -139,29 +139,6 @@ def test_a_closed_form_that_is_none_is_named():
         LawFaultError, match=r"TypeError: motion returned 3\.0, which is no NormalM"
     ):
         normal_motion(Empty(), scene())
-
-
-def test_a_law_that_cannot_be_hashed_has_no_table_in_common():
-    @attrs.frozen(kw_only=True)
-    class Listed(LinearSpring):
-        notes: list = attrs.field(factory=list)
-
-    law = Listed(stiffness=1e7)
-    one, other = (normal_motion(law, scene()) for _ in range(2))
-    assert one.table is not other.table
-    assert one.duration == other.duration == pytest.approx(np.pi * np.sqrt(MASS / 1e7), rel=1e-9)
-
-
-def test_bodies_that_differ_in_their_yield_stress_share_a_motion_but_no_table():
-    """No law but one that reads the stress makes a difference; it is solved for each impact."""
-    unlike = Material(
-        shear_modulus=80e9, poisson_ratio=0.3, density=7850.0, yield_stress=[1e9, 2e9]
-    )
-    motion = normal_motion(Tsuji(damping=0.1), scene(material=unlike))
-    assert motion.scene.shape == (2,)
-    assert motion.table.shape == (2,)
-    alone = normal_motion(Tsuji(damping=0.1), scene())
-    assert motion.final_rate == pytest.approx(np.full(2, alone.final_rate), rel=1e-9)
 
 
 def test_a_motion_that_failed_is_nan_and_can_be_taken_apart():

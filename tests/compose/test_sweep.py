@@ -72,14 +72,6 @@ def exact_answers(exact):
         return exact.sweep(scene())
 
 
-def test_blocks_do_matter(exact, exact_answers, monkeypatch):
-    """Else the next test could not fail."""
-    blocks_of(monkeypatch, SIZE)
-    together = exact.sweep(scene())
-    assert together.psi2 == pytest.approx(exact_answers.psi2, abs=1e-8)
-    assert (together.psi2 != exact_answers.psi2).any()
-
-
 @pytest.mark.parametrize("how", ["here", "workers", "threads", "processes"])
 def test_answers_are_the_same_to_the_last_bit(exact, exact_answers, workers, monkeypatch, how):
     blocks_of(monkeypatch, BLOCK)
@@ -105,32 +97,6 @@ def test_a_scene_in_si_and_one_of_plain_numbers_go_to_workers(workers):
     assert_same(simulation.sweep(batch, executor=workers), simulation.sweep(batch))
     alike = [Scene.nondimensional(psi1=1.2, chi=CHI)] * 3
     assert_same(simulation.sweep(alike, executor=workers), simulation.sweep(alike))
-
-
-@pytest.mark.parametrize("tangential", ["coulomb", "springs", "fronts"])
-def test_a_block_depends_on_the_laws_alone(tangential):
-    simulation = Simulation(tangential=tangential)
-    assert sweeping.block_of(simulation) >= 1000
-
-
-def test_impacts_that_the_table_answers_go_together():
-    batch = Scene.nondimensional(psi1=np.full(2 * sweeping.WHOLE_IMPACTS, 1.2), chi=1.44)
-    seen = []
-    result = Simulation().sweep(batch, progress=lambda done, _: seen.append(done))
-    assert seen == [sweeping.WHOLE_IMPACTS, 2 * sweeping.WHOLE_IMPACTS]
-    assert set(result.status) == {Status.SUCCESS}
-    assert not result.plan.marched.any()
-
-
-def test_a_law_says_where_it_needs_no_march():
-    table, solved = (contactlab.create("tangential.fronts", table=t) for t in (True, False))
-    inside, beyond = (Scene.nondimensional(psi1=[0.3, 1.2], chi=[1.0, chi]) for chi in (2.5, 2.6))
-    assert table.needs_no_march(inside, 1e-9)
-    assert table.needs_no_march(inside, None)
-    assert not table.needs_no_march(inside, 9e-10)
-    assert not table.needs_no_march(beyond, 1e-9)
-    assert not solved.needs_no_march(inside, 1e-9)
-    assert not contactlab.create("tangential.springs").needs_no_march(inside, None)
 
 
 def progress_of(simulation, **how):
@@ -271,6 +237,22 @@ def test_processes_that_do_not_start_say_what_a_script_needs():
     assert set(result.status) == {Status.WORKER_DIED}
     with pytest.raises(contactlab.ImpactError, match="__main__"):
         result.check()
+
+
+def _absent():
+    raise ImportError("no such law here")
+
+
+class Absent(type(contactlab.create("tangential.frictionless"))):
+    """A law that cannot be loaded where it is sent."""
+
+    def __reduce__(self):
+        return _absent, ()
+
+
+def test_workers_that_cannot_load_a_law_say_so():
+    with ThreadPoolExecutor(1) as executor, pytest.raises(ValueError, match="cannot load the laws"):
+        Simulation(tangential=Absent()).sweep(scene(), executor=executor)
 
 
 def test_what_is_no_executor_is_refused():

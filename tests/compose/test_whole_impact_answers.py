@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation, Status
-from contactlab.compose.answers import INSTANTS, show
-from contactlab.compose.solve import prepare
+from contactlab.compose.answers import INSTANTS
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse, WholeImpactTangentialLaw
 from contactlab.contracts.whole_impact import WholeImpact, no_force
 
@@ -202,18 +201,3 @@ def test_an_answer_goes_beside_a_march_of_the_others():
     assert "steps" not in alone[0].counters
     work = [one.motion.friction_work for one in alone]
     assert batch.motion.friction_work == pytest.approx(work, rel=1e-11, abs=1e-15)
-
-
-@pytest.mark.parametrize("psi1", [2.0, [2.0, 0.5]])
-def test_an_observer_is_shown_plain_numbers_or_arrays(psi1):
-    """As in a march: numbers of one impact, arrays of a batch."""
-    scene, seen = Scene.nondimensional(psi1=psi1, chi=CHI), []
-    simulation = Simulation(tangential=Halves(), integrator="symplectic")
-    normal, known, *_ = prepare(simulation.laws, scene, True)
-    show(normal, known, seen.append)
-    assert len(seen) == INSTANTS
-    kind = np.ndarray if scene.shape else float
-    for sample in (seen[0], seen[-1]):
-        numbers = (*sample[:3], *sample.contact, *sample[4:6])
-        assert {type(each) for each in numbers} == {kind}
-        assert {np.shape(each) for each in numbers} == {scene.shape}

@@ -2,32 +2,10 @@
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from PIL import Image
 
 from contactlab.figures import animation
-from contactlab.figures.animation_panels import Ball, Disc, Forces
-from tests.figures.animated import FIELDS, impact
-
-
-@pytest.mark.parametrize(
-    ("duration", "words"),
-    [
-        (12345.0, "2469 of 12345 s"), (2.5, "0.50 of 2.50 s"), (1.0, "0.20 of 1.00 s"),
-        (0.99, "198 of 990 ms"), (0.025, "5.0 of 25.0 ms"), (250e-6, "50 of 250 µs"),
-        (2e-9, "0.40 of 2.00 ns"), (2e-10, "4e-11 of 2e-10 s"),
-    ],
-)  # fmt: skip
-def test_the_clock_has_a_readable_unit(duration, words):
-    assert animation._clock(0.2, duration, impact()) == words
-    assert animation._clock(0.2, 2.94327, impact(sphere=False)) == "0.59 of T = 2.943"
-
-
-@pytest.mark.parametrize(
-    ("spin", "words"), [(-0.0, "0 rad/s"), (-12.345, "\N{MINUS SIGN}12.3 rad/s"), (7, "7 rad/s")]
-)
-def test_a_spin_has_three_digits_and_a_minus(spin, words):
-    assert animation._spin(spin) == words
+from tests.figures.animated import impact
 
 
 def test_frames_come_touch_and_leave():
@@ -50,30 +28,6 @@ def test_frames_come_touch_and_leave():
     late = animation._sequence(impact(duration=4.5))  # beyond the last row
     assert late[85].instant == 3
     assert len(animation._sequence(impact(sphere=False))) == 72
-
-
-@pytest.mark.parametrize(
-    ("sphere", "fields", "panels"),
-    [
-        (True, FIELDS, [Forces, Disc, Ball]),
-        (True, {}, [Forces, Ball]),
-        (False, FIELDS, [Forces, Disc]),
-        (False, {"radius": 1, "stuck": 1}, [Forces]),
-    ],
-)
-def test_there_are_panels_for_what_is_known(sphere, fields, panels):
-    figure = Figure()
-    found = animation._panels(figure, impact(sphere=sphere, fields=fields))
-    assert [type(panel) for panel in found] == panels
-    boxes = [axes.get_subplotspec().get_position(figure) for axes in figure.axes]
-    forces = boxes[0]
-    if sphere:
-        assert boxes[-1].x1 < forces.x0
-        assert boxes[-1].width == pytest.approx(1.15 * forces.width)
-    if Disc in panels:
-        assert boxes[1].y1 < forces.y0
-        assert boxes[1].x0 == forces.x0
-        assert boxes[1].height == pytest.approx(1.15 * forces.height)
 
 
 @pytest.fixture

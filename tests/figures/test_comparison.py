@@ -9,9 +9,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from contactlab import Scene, Simulation
-from contactlab.figures import comparison as figures
 from contactlab.figures.comparison import (
-    FORM_DASHES,
     all_laws,
     differences,
     forces_over_contact,
@@ -101,33 +99,6 @@ def named():
     return upper, lower
 
 
-def test_curves_are_drawn_from_the_farthest_law_on(drawn):
-    upper, lower = drawn
-    reference, zero, *curves = [line for line in upper.lines if line.get_marker() == "None"]
-    assert list(zero.get_ydata()) == [0.0, 0.0]
-    assert [line.get_label() for line in curves[:4]] == ["aside", "far", "far second", "just"]
-    for line, offset in zip(curves, (-2.0, 1.0, 0.5, 0.021), strict=False):
-        np.testing.assert_array_equal(line.get_xdata(), X)
-        np.testing.assert_allclose(line.get_ydata(), REFERENCE + offset)
-        assert line.get_zorder() < reference.get_zorder()
-    np.testing.assert_array_equal(reference.get_ydata(), REFERENCE)
-    assert (reference.get_color(), reference.get_linewidth()) == ("black", 3.2)
-    assert reference.get_label() == "\\$exact, the reference; on its line:\nnear, 2 forms"
-    offsets = [line.get_ydata()[0] for line in lower.lines[1:5]]
-    assert offsets == pytest.approx([-2.0, 1.0, 0.5, 0.021])
-
-
-def test_laws_have_colours_by_name_and_forms_dashes_by_distance(drawn):
-    for axes, skipped in zip(drawn, (2, 1), strict=True):
-        curves = axes.lines[skipped : skipped + 4]
-        assert [line.get_color() for line in curves] == [
-            LAW_COLOURS[0], LAW_COLOURS[1], LAW_COLOURS[1], LAW_COLOURS[2]
-        ]  # fmt: skip
-        dashes = [line._unscaled_dash_pattern for line in curves]
-        assert dashes[0] == dashes[1] == dashes[3] == (0, None)
-        assert dashes[2] == (0, (6, 1.5)) == FORM_DASHES[1]
-
-
 def test_bands_are_as_wide_as_the_error(drawn):
     for axes, shift in zip(drawn, (REFERENCE, 0.0 * X), strict=True):
         assert len(axes.collections) == 4
@@ -144,39 +115,6 @@ def test_other_codes_are_points_without_lines(drawn, named):
         assert (line.get_linestyle(), line.get_markerfacecolor()) == ("None", "white")
     legend = named[0].get_legend()
     assert [text.get_text() for text in legend.get_texts()] == ["code", "b"]
-
-
-def test_axes_are_labelled_and_curves_named(named):
-    upper, lower = named
-    assert upper.get_ylabel() == r"local angle of reflexion $\psi_2$"
-    assert lower.get_xlabel() == r"local angle of incidence $\psi_1$"
-    assert lower.get_ylabel() == "law $-$ \\$exact"
-    words = [text.get_text() for text in upper.texts]
-    assert words[0] == "on the line of \\$exact:\nnear, 2 forms"
-    assert set(words[1:]) == {"\\$exact", "aside", "far, 2 forms"}
-    assert [text.get_text() for text in lower.texts] == ["far", "second"]
-
-
-def test_without_others_the_reference_stands_alone():
-    upper, lower = panels()
-    all_laws(upper, lower, Scripted({"exact": REFERENCE, "other": REFERENCE + 1.0}), "psi2")
-    assert upper.lines[0].get_label() == "exact, the reference"
-    assert {text.get_text() for text in upper.texts} == {"exact", "other"}
-    assert lower.texts[:] == []
-    assert upper.get_legend() is None
-
-
-@pytest.mark.parametrize(("width", "beside"), [(4.6, True), (4.4, False)])
-def test_where_names_have_no_room_a_legend_names_all(width, beside, monkeypatch):
-    """Beside the axes; in a figure below 4.5 inches under the lower ones."""
-    monkeypatch.setattr(figures, "name_curves", lambda *_, **__: False)
-    upper, lower = panels(width)
-    agreements = (measured(),)
-    all_laws(upper, lower, Scripted(LAWS, agreements=agreements), "psi2")
-    assert upper.texts[:] == []
-    own, other = (upper, lower) if beside else (lower, upper)
-    assert other.get_legend() is None
-    assert len(own.get_legend().get_texts()) == 1 + 4 + 1
 
 
 def test_laws_and_measured_values_over_a_sweep():

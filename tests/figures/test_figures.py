@@ -21,7 +21,7 @@ import contactlab.figures
 from contactlab import Scene, Simulation, create
 from contactlab.figures import paper, results, style
 from contactlab.figures.comparison import all_laws, laws_over_sweep
-from contactlab.figures.files import as_svg, save, save_figure
+from contactlab.figures.files import save, save_figure
 from contactlab.scene_file import read_scene
 from contactlab.study import paper_figures
 from contactlab.study.comparison import compare
@@ -158,36 +158,6 @@ def test_the_label_of_the_band_stands_beside_its_band(data):
     assert box.x1 < left < box.x1 + 0.3 * box.width
 
 
-def test_between_points_the_curves_are_straight_to_within_a_line():
-    """The law's line is 3 points wide, of which a band as narrow is hidden."""
-    for number, (x, others, scale) in {
-        2: (paper_figures.FIGURE_2_PSI1, {"chi": paper_figures.SOLID_CHI}, np.asarray),
-        4: (paper_figures.FIGURE_4_CHI, {"psi1": paper_figures.FIXED_PSI1}, np.log),
-    }.items():
-        name = {2: "psi1", 4: "chi"}[number]
-        fine = np.exp(np.linspace(*np.log(x[[0, -1]]), 401)) if number == 4 else x[0] + (
-            np.linspace(0.0, x[-1] - x[0], 401)
-        )  # fmt: skip
-        known, exact = (contactlab.rebound(**{name: at, **others}) for at in (x, fine))
-        off = np.abs(np.interp(scale(fine), scale(x), known) - exact).max()
-        assert off < style.VISIBLE * np.ptp(exact), number
-
-
-@pytest.mark.parametrize("width", ["one", "two"])
-@pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
-def test_pictures_have_the_width_of_their_columns(tmp_path, width, suffix):
-    path = tmp_path / f"f{suffix}"
-    save(path, lambda axes: axes.plot([0.0, 1.0]), width=width)
-    inches = {"one": 3.4, "two": 7.0}[width]
-    content = path.read_bytes()
-    if suffix == ".png":
-        assert int.from_bytes(content[16:20], "big") == round(inches * style.RESOLUTION)
-    elif suffix == ".svg":
-        assert f'width="{inches * 72:g}pt"'.encode() in content
-    else:
-        assert f"/MediaBox [ 0 0 {inches * 72:g} ".encode() in content
-
-
 def test_a_width_that_there_is_not_is_refused(simulation):
     result = simulation.run(Scene.nondimensional(psi1=[0.5, 1.2], chi=1.4))
     with pytest.raises(ValueError, match=r"'one', 'two'"):
@@ -289,20 +259,14 @@ def test_a_figure_of_ones_own_is_written_as_finely(tmp_path):
     assert imread(tmp_path / "own.png").shape[:2] == (style.RESOLUTION, 2 * style.RESOLUTION)
 
 
-def test_a_picture_of_a_page_is_as_wide_as_one_on_its_own():
-    svg = as_svg(lambda axes: axes.plot([0.0, 1.0]))
-    assert f'width="{72.0 * style.figure_size(None)[0]:g}pt"' in svg
+def test_in_a_narrow_column_panels_stand_below_each_other(tmp_path):
+    """Two columns of a curve and its residuals: four panels, the second column below the first."""
+    from contactlab.figures.files import save
 
-
-def test_stacked_axes_share_the_abscissa_of_their_column(tmp_path, monkeypatch):
-    """In a narrow column the axes of the second column stand below those of the first."""
     kept = []
-    options = {"rows": 2, "columns": 2, "heights": (2.0, 1.0), "width": "one"}
-    drawn(lambda axes: kept.append(axes), tmp_path, monkeypatch, **options)
+    save(tmp_path / "p.png", kept.append, rows=2, columns=2, heights=(2.0, 1.0), width="one")
     ((first, second), (below, other)) = kept[0]
-    shared = first.get_shared_x_axes()
-    assert shared.joined(first, below)
-    assert not shared.joined(first, second)
+    assert first.get_shared_x_axes().joined(first, below)
     assert second.get_shared_x_axes().joined(second, other)
     tops = [axes.get_position().y1 for axes in (first, below, second, other)]
     assert tops == sorted(tops, reverse=True)

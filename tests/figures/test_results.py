@@ -7,13 +7,11 @@ import pytest
 from matplotlib.figure import Figure
 
 from contactlab import Scene, Simulation
-from contactlab.figures import results
 from contactlab.figures.results import draw_history, draw_result
-from contactlab.figures.stick_slip import draw_stick_slip, stick_slip_map
+from contactlab.figures.stick_slip import draw_stick_slip
 from contactlab.figures.style import LAW_COLOURS
 
 BLUE, GREY, RED, WHITE = "#0072B2", "#C4C4C4", "#D55E00", "#FFFFFF"
-TIME = r"time over duration of contact $t/t_{\mathrm{c}}$"
 
 
 @pytest.fixture
@@ -47,32 +45,6 @@ def test_a_history_has_both_forces_in_its_units(axes):
     assert names == ["normal force", "tangential force"]
 
 
-def test_other_columns_have_no_band(axes, many):
-    """The declared error is of psi2; an error of a whole unit is seen."""
-    rough = SimpleNamespace(scene=many.scene, psi2_error_estimate=None,
-                            plan=SimpleNamespace(psi2_error=1.0))  # fmt: skip
-    results._band(axes, rough, np.array([0.0, 3.0, 6.0]), np.zeros(3), np.arange(3))
-    (band,) = axes.collections
-    vertices = band.get_paths()[0].vertices
-    assert (vertices[:, 1].min(), vertices[:, 1].max()) == (-1.0, 1.0)
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["numerical error"]
-    estimated = SimpleNamespace(scene=many.scene, psi2_error_estimate=0.0, plan=rough.plan)
-    plain = Figure().subplots()
-    plain.set_ylim(0.0, 1.0)
-    results._band(plain, estimated, np.arange(3.0), np.zeros(3), np.arange(3))
-    assert not plain.collections
-    assert plain.get_legend() is None
-
-
-def test_a_band_is_that_of_a_curve_of_psi2(many, monkeypatch):
-    asked = []
-    monkeypatch.setattr(results, "_band", lambda *words: asked.append(words))
-    draw_result(Figure().subplots(), many, None, None)
-    draw_result(Figure().subplots(), many, "psi2", "psi1")
-    draw_result(Figure().subplots(), many, "chi", None)
-    assert len(asked) == 1
-
-
 def test_points_of_one_abscissa_are_not_joined(axes, many):
     draw_result(axes, many, "chi", None)
     (line,) = axes.lines
@@ -89,13 +61,6 @@ def test_an_unknown_column_is_named_with_its_place(axes, many, columns, where):
     assert not axes.lines
 
 
-@pytest.mark.parametrize("columns", [("psi1", None), (None, "psi2")])
-def test_forces_of_one_impact_have_no_columns(axes, columns):
-    one = Simulation(tangential="coulomb").run(Scene.nondimensional(psi1=1.0, chi=1.0))
-    with pytest.raises(ValueError, match="are for the result of many impacts"):
-        draw_result(axes, one, *columns)
-
-
 @pytest.mark.parametrize(("width", "size"), [(None, (6.4, 4.8)), ("two", (7.0, 3.9))])
 def test_without_axes_a_figure_is_made(width, size, many):
     from matplotlib import pyplot
@@ -104,35 +69,6 @@ def test_without_axes_a_figure_is_made(width, size, many):
     assert tuple(axes.figure.get_size_inches()) == pytest.approx(size)
     assert not axes.spines["top"].get_visible()
     pyplot.close(axes.figure)
-
-
-def test_a_state_has_its_colour_at_its_time_and_radius(axes):
-    """Stuck before all; else backward, forward, or no contact."""
-    time, radius = np.array([0.1, 0.5, 0.9]), np.array([0.25, 0.75])
-    stuck = np.array([[True, True], [False, False], [False, False]])
-    slipping = np.array([[1, 0], [-1, 1], [1, 0]])
-    assert stick_slip_map(axes, time, radius, stuck, slipping) is axes
-    mesh = axes.collections[0]
-    states = np.asarray(mesh.get_array()).reshape(2, 3)
-    assert states.tolist() == [[1, 0, 2], [1, 2, 3]]
-    colours = [mesh.cmap(mesh.norm(state))[:3] for state in range(4)]
-    expected = [[int(name[k : k + 2], 16) / 255 for k in (1, 3, 5)] for name in (
-        RED, GREY, BLUE, WHITE)]  # fmt: skip
-    assert [list(colour) for colour in colours] == [pytest.approx(each) for each in expected]
-    corners = mesh.get_coordinates()
-    assert list(corners[0, :, 0]) == pytest.approx([-0.1, 0.3, 0.7, 1.1])
-    assert list(corners[:, 0, 1]) == pytest.approx([0.0, 0.5, 1.0])
-    assert (axes.get_xlim(), axes.get_ylim()) == ((0.0, 1.0), (0.0, 1.0))
-    assert (axes.get_xlabel(), axes.get_ylabel()) == (
-        TIME, r"radius over largest contact radius $r/a$"
-    )  # fmt: skip
-    legend = axes.get_legend()
-    assert [text.get_text() for text in legend.get_texts()] == [
-        "slip, backward", "stick", "slip, forward"
-    ]  # fmt: skip
-    assert legend._ncols == 3
-    only = stick_slip_map(Figure().subplots(), time, radius, ~stuck | stuck, slipping)
-    assert [text.get_text() for text in only.get_legend().get_texts()] == ["stick"]
 
 
 def test_the_map_is_over_duration_and_largest_radius(axes):

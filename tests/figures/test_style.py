@@ -4,7 +4,6 @@ import re
 from pathlib import Path
 
 import matplotlib as mpl
-import numpy as np
 import pytest
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
@@ -12,8 +11,6 @@ from PIL import Image
 
 from contactlab.figures import style
 from contactlab.figures.files import as_svg, save, save_figure
-
-GREY = "#8C8C8C"
 
 
 @pytest.fixture
@@ -26,50 +23,6 @@ def axes():
 )
 def test_a_figure_keeps_its_shape_but_for_a_whole_page(width, size):
     assert style.figure_size(width) == pytest.approx(size)
-
-
-@pytest.mark.parametrize(
-    ("entries", "size"),
-    [
-        ({}, (5.6, 3.9)),
-        ({"heights": (2.0, 1.0)}, (5.6, 3.9 * 1.5)),
-        ({"wide": True}, (5.6 * 1.6, 3.9 * 1.25)),
-        ({"columns": 2}, (5.6 * 1.7, 3.9)),
-        ({"columns": 2, "wide": True}, (5.6 * 1.7, 3.9 * 1.25)),
-        ({"width": "one"}, (3.4, 2.367857)),
-        ({"width": "one", "wide": True}, (3.4, 2.367857 * 1.9)),
-        ({"width": "one", "columns": 2}, (3.4, 2.367857 * 2.0)),
-        ({"width": "two", "wide": True}, (7.0, 3.9 * 1.25)),
-        ({"width": "two", "columns": 3}, (7.0, 3.9 * 0.8)),
-        ({"width": "two", "columns": 2, "heights": (1.0, 3.0)}, (7.0, 3.9 * 0.8 * 4.0 / 3.0)),
-    ],
-)
-def test_a_picture_has_room_for_its_panels_and_its_legend(entries, size, tmp_path):
-    rows = len(entries.get("heights", (1.0,)))
-    panels = []
-    picture = save(tmp_path / "a.png", panels.append, rows=rows, **entries)
-    figure = np.ravel(panels[0])[0].get_figure()
-    assert tuple(figure.get_size_inches()) == pytest.approx(size, rel=1e-5)
-    assert picture.path == tmp_path / "a.png"
-    with Image.open(picture.path) as written:
-        assert written.size == pytest.approx([200.0 * side for side in size], abs=1)
-    columns = entries.get("columns", 1)
-    assert np.shape(panels[0]) == (() if rows == columns == 1 else (rows, columns))
-    if rows > 1 and columns == 1:
-        upper, lower = panels[0][:, 0]
-        assert upper.get_shared_x_axes().joined(upper, lower)
-        ratios = upper.get_gridspec().get_height_ratios()
-        assert tuple(ratios) == entries["heights"]
-
-
-def test_a_stack_labels_the_abscissa_of_its_lowest_axes(tmp_path):
-    kept = []
-    save(tmp_path / "a.png", kept.append, rows=2, columns=2, heights=(2.0, 1.0), width="one")
-    ((first, second), (below, other)) = kept[0]
-    for axes, labelled in ((first, False), (second, False), (below, True), (other, True)):
-        assert axes.xaxis.get_tick_params()["labelbottom"] is labelled
-    assert tuple(first.get_gridspec().get_height_ratios()) == (2.0, 1.0, 2.0, 1.0)
-    assert below.get_subplotspec().rowspan.start == 1
 
 
 @pytest.mark.parametrize(
@@ -122,56 +75,6 @@ def test_laws_have_colours_and_dashes_of_their_own_in_turn():
     assert looks[6] == looks[0]
     assert len(set(style.LAW_COLOURS)) == len(style.LAW_COLOURS) == len(style.LAW_DASHES) == 6
     assert len(set(map(str, style.LAW_DASHES[:4]))) == 4
-
-
-def test_ordered_colours_end_before_the_palest():
-    viridis = mpl.colormaps["viridis"]
-    assert style.ordered_colours(3) == [viridis(0.0), viridis(0.43), viridis(0.86)]
-    assert style.ordered_colours(1) == [viridis(0.0)]
-
-
-@pytest.mark.parametrize(("half", "shown"), [(0.0159, False), (0.016, True), (0.5, True)])
-@pytest.mark.parametrize("limits", [(-1.0, 3.0), (3.0, -1.0)])
-def test_a_band_is_shown_from_a_width_on(axes, half, shown, limits):
-    """0.004 of the height of 4; one point that wide is enough."""
-    axes.set_ylim(*limits)
-    wide = np.array([np.nan, half, 0.0])
-    assert style.error_band(axes, np.arange(3.0), np.zeros(3), wide, {"color": "red"}) is axes
-    assert bool(axes.collections) is shown
-    if shown:
-        (band,) = axes.collections
-        assert band.get_alpha() == pytest.approx(0.22)
-        assert band.get_label() == "_child0"
-
-
-def test_no_points_have_no_band(axes):
-    style.error_band(axes, np.array([]), np.array([]), np.array([]), {"color": "red"})
-    assert not axes.collections
-
-
-def test_the_friction_limit_is_drawn_on_both_sides(axes):
-    time, force = np.array([0.0, 0.5, 1.0]), np.array([0.0, 1.0, 0.2])
-    assert style.friction_limit(axes, time, force) is axes
-    upper, lower = axes.lines
-    np.testing.assert_array_equal(upper.get_data(), (time, force))
-    np.testing.assert_array_equal(lower.get_data(), (time, -force))
-    assert {line.get_color() for line in axes.lines} == {"black"}
-    (words,) = axes.texts
-    assert (words.get_text(), words.xy) == (r"limit $\pm\mu P$", (0.5, -0.9))
-    assert words.xycoords == ("axes fraction", "data")
-
-
-def test_zero_lies_behind_everything(axes):
-    assert style.zero_line(axes) is axes
-    (line,) = axes.lines
-    assert (list(line.get_ydata()), line.get_color(), line.get_zorder()) == ([0.0, 0.0], GREY, 0)
-
-
-def test_axes_of_forces_run_from_touch_to_separation(axes):
-    assert style.force_axes(axes) is axes
-    assert axes.get_xlim() == (0.0, 1.0)
-    assert axes.get_xlabel() == r"time over duration of contact $t/t_{\mathrm{c}}$"
-    assert axes.get_ylabel() == r"tangential force $F/(\mu P_{\max})$"
 
 
 @pytest.mark.parametrize(

@@ -1,14 +1,12 @@
 """Error over run time: which rows are drawn, where, in which colour and with which name."""
 
-import attrs
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from contactlab.figures import work_precision as figures
-from contactlab.figures.style import LAW_COLOURS, QUIET
-from contactlab.figures.work_precision import OTHERS, Name, _along, _curves, work_precision
+from contactlab.figures.style import QUIET
+from contactlab.figures.work_precision import OTHERS, work_precision
 from contactlab.study.benchmark import Benchmark, Row
 
 
@@ -28,28 +26,6 @@ def panels(width=9.0):
     figure = Figure(figsize=(width, 4.0), dpi=100)
     FigureCanvasAgg(figure)
     return figure.subplots(1, 2, squeeze=False)
-
-
-@pytest.mark.parametrize(
-    ("integrators", "usual"),
-    [
-        (["paper", "adaptive", "events", "symplectic"], "symplectic"),
-        (["paper", "adaptive", "events"], "events"), (["paper", "adaptive"], "adaptive"),
-        (["mine", "paper"], "paper"), (["mine", "other"], "mine"),
-    ],
-)  # fmt: skip
-def test_a_law_is_drawn_under_its_usual_integrator(integrators, usual):
-    rows = [row(f"law / {name}") for name in integrators]
-    (found,) = _curves(benchmark(*rows)).values()
-    assert [each.method for each in found] == [f"law / {usual}"]
-
-
-def test_rows_that_failed_are_not_drawn_and_of_another_model_one():
-    good = [row("a / paper", error) for error in (1e-1, 1e-2)]
-    rough = [row("b", error, converges=False) for error in (0.3, 0.2)]
-    failed = row("a / paper", failed=1), row("c", failed=1)
-    found = _curves(benchmark(*good, *rough, *failed))
-    assert found == {"a": good, "b": rough[:1]}
 
 
 ROWS = (
@@ -75,27 +51,6 @@ def curves(axes):
     return [(line.get_color(), *map(list, line.get_data())) for line in lines]
 
 
-def test_each_of_many_stands_left_and_one_alone_right(drawn):
-    """In microseconds; errors below 1e-8 stand there; what was not measured is not drawn."""
-    left, right = map(curves, drawn)
-    expected = [
-        (LAW_COLOURS[1], [100.0, 300.0], [1e-2, 1e-3]),
-        (LAW_COLOURS[0], [200.0], [1e-1]),
-        (LAW_COLOURS[3], [5e4], [1e-4]),
-        (LAW_COLOURS[5], [1e3], [1e-5]),
-        (LAW_COLOURS[2], [2e3], [1e-8]),
-        (QUIET, [10.0], [0.3]),
-    ]
-    assert right == [
-        (colour, pytest.approx(times), pytest.approx(errors)) for colour, times, errors in expected
-    ]
-    del expected[1]
-    assert left == [
-        (colour, pytest.approx(np.array(times) / 10.0), pytest.approx(errors))
-        for colour, times, errors in expected
-    ]
-
-
 def test_codes_that_are_not_run_are_hollow_squares(drawn):
     """Times that are cited: 50 steps of 57 and of 84 ns, and 11.9 ms."""
     for axes, points in zip(
@@ -109,116 +64,3 @@ def test_codes_that_are_not_run_are_hollow_squares(drawn):
         assert colours == [points[point] for point in sorted(points)]
         assert {line.get_markerfacecolor() for line in squares} == {"white"}
     assert [other.name for other in OTHERS] == ["LAMMPS mindlin", "8 in LAMMPS", "plain NumPy"]
-
-
-def test_springs_are_numbered_by_their_parts(drawn):
-    for axes in drawn:
-        numbers = {text.get_text(): text for text in axes.texts if text.get_text().isdigit()}
-        assert set(numbers) == {"4", "16"}
-        assert numbers["16"].xy[1] == 1e-3
-    assert numbers["4"].xy == pytest.approx((100.0, 1e-2))
-    assert numbers["4"].xyann == (-5.0, 0.0)  # on the left of its point
-
-
-def test_axes_titles_and_limits_are_alike(drawn):
-    left, right = drawn
-    assert left.get_title(loc="left") == "each of many (arrays, one core)"
-    assert right.get_title(loc="left") == "one alone, with its call"
-    assert left.get_ylabel() == r"error of $\psi_2$, rms over the scenes"
-    for axes in drawn:
-        assert axes.get_ylim() == pytest.approx((2e-9, 1e5))
-        assert axes.get_xlabel() == "run time per impact (µs)"
-        np.testing.assert_allclose(axes.get_yticks(), 10.0 ** np.arange(-8, 1, 2))
-        bands = [patch for patch in axes.patches if patch.get_facecolor()[:3] == (237 / 255,) * 3]
-        box = bands[0].get_extents().transformed(axes.transData.inverted())
-        assert (box.y0, box.y1) == pytest.approx((0.05, 1e5))
-    assert left.get_shared_y_axes().joined(left, right)
-    assert not right.yaxis.get_tick_params()["labelleft"]
-    words = [text.get_text() for text in left.texts]
-    assert "another model: no finer step helps" in words
-    assert figures.SOURCES[0] in words
-    assert figures.SOURCES[1] in [text.get_text() for text in right.texts]
-
-
-def test_the_time_axis_has_room_on_its_right():
-    axes = Figure().subplots()
-    axes.set_xlim(10.0, 1000.0)
-    assert figures._limits(axes) == pytest.approx((10.0, 1000.0 * 100.0**0.35))
-
-
-def test_names_of_other_models_are_slanted_and_apart(drawn):
-    """In their order of time, at least 0.055 of the width apart, with a line to each point."""
-    axes = Figure().subplots()
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlim(1.0, 1e4)
-    axes.set_ylim(1e-12, 1e6)
-    names = [
-        Name("c", 1000.0, 0.3, QUIET), Name("a", 10.0, 0.1, QUIET), Name("b", 11.0, 0.2, QUIET)
-    ]  # fmt: skip
-    figures._write_above(axes, names)
-    assert [text.get_text() for text in axes.texts] == ["a", "b", "c"]
-    shares = [np.log10(text.get_position()[0]) / 4.0 for text in axes.texts]
-    assert shares == pytest.approx([0.25, 0.305, 0.75])
-    assert {text.get_position()[1] for text in axes.texts} == {3.0}
-    assert {text.get_rotation() for text in axes.texts} == {35.0}
-    for line, text, (x, y) in zip(
-        axes.lines, axes.texts, ((10.0, 0.1), (11.0, 0.2), (1000.0, 0.3)), strict=True
-    ):
-        assert list(line.get_xdata()) == pytest.approx([x, text.get_position()[0]])
-        assert list(line.get_ydata()) == [y, 3.0]
-
-
-def test_a_name_stands_at_the_end_of_its_curve_on_the_right():
-    axes = panels()[0, 1]
-    axes.set_xlim(0.0, 1.0)
-    axes.set_ylim(0.0, 1.0)
-    axes.plot([0.1], [0.9])
-    names = [Name("upper", 0.4, 0.5, "red"), Name("lower", 0.4, 0.49, "blue"),
-             Name("third", 0.4, 0.48, "blue"),
-             Name("edge", 0.97, 0.3, "green")]  # fmt: skip
-    figures._write_beside(axes, names)
-    found = {text.get_text(): text for text in axes.texts}
-    gap, letter = 5.0 * 100 / 72 / axes.bbox.width, 4.4 * 100 / 72 / axes.bbox.width
-    apart = 12.0 * 100 / 72 / axes.bbox.height
-    assert found["upper"].get_position() == pytest.approx((0.4 + gap, 0.5))
-    assert found["upper"].get_color() == "red"
-    assert found["upper"].get_va() == "center"
-    # The second stands on the left, the third aside by the least hundredth that parts the names.
-    assert found["lower"].get_position() == pytest.approx((0.4 - gap - 5 * letter, 0.49))
-    x, y = found["third"].get_position()
-    assert x == pytest.approx(0.4 + gap)
-    assert apart <= 0.5 - y < apart + 0.01
-    # Where there is no room on the right, the name ends on the left.
-    assert found["edge"].get_position() == pytest.approx((0.97 - gap - 4 * letter, 0.3))
-
-
-def test_a_name_gives_way_to_curves():
-    axes = panels()[0, 1]
-    axes.set_xlim(0.0, 1.0)
-    axes.set_ylim(0.0, 1.0)
-    axes.plot([0.0, 1.0], [0.5, 0.5])
-    figures._write_beside(axes, [Name("name", 0.4, 0.5, "red")])
-    half = 0.6 * 12.0 * 100 / 72 / axes.bbox.height
-    ((_, y),) = [text.get_position() for text in axes.texts]
-    assert half <= abs(y - 0.5) < half + 0.011
-
-
-def test_points_along_a_line_are_close():
-    corners = np.array([[0.0, 0.0], [19.0, 38.0], [19.0, 0.0]])
-    points = _along(corners)
-    assert points.shape == (40, 2)
-    assert {tuple(point) for point in points} >= {
-        (0.0, 0.0),
-        (1.0, 2.0),
-        (19.0, 38.0),
-        (19.0, 36.0),
-    }
-    assert _along(corners[:1]).tolist() == [[0.0, 0.0]]
-
-
-def test_a_law_without_a_measured_time_has_no_name():
-    rows = [attrs.evolve(ROWS[0], sweep_time_s=np.nan)]
-    left, right = work_precision(panels(), benchmark(*rows))[0]
-    assert "springs" not in [text.get_text() for text in left.texts]
-    assert "springs" in [text.get_text() for text in right.texts]

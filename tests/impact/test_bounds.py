@@ -8,9 +8,7 @@ import pytest
 from contactlab import HalfSpace, Material, Scene, Sphere
 from contactlab.impact.adhesion import tabor_caution
 from contactlab.impact.bodies import Pair
-from contactlab.impact.coupling import coupling, coupling_shift
 from contactlab.impact.hertz import rigid_body_rebound, slips_throughout_elastic
-from contactlab.impact.unit_slips import unit_slips
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 LOST = "normal_speed = {}: the kinetic energy of the impact must be at least 1e-290 J and finite, "
@@ -40,35 +38,6 @@ def test_the_least_energy_of_an_impact():
     assert str(caught.value) == LOST.format(speed) + (
         "or digits are lost; give larger speeds and masses, or smaller ones, or other units"
     )
-
-
-@pytest.mark.parametrize(
-    ("held", "lost"),
-    [
-        # slip and its unit are both below the least velocity; the momentum is large
-        ((1e-290, 1e-291, 1e10), (below(1e-290), 1e-291, 1e10)),
-        ((1e-291, 1e-290, 1e10), (1e-291, below(1e-290), 1e10)),
-        ((1e-291, 0.0, 1e10), (1e-291, 5e-324, 1e10)),
-        # the momentum is small, and slip is less than 1e9 of its unit
-        ((1e-285, 1e-285, 1.0), (below(1e-285), 1e-285, 1.0)),
-        ((1e-286, 1e9 * 1e-286, 1.0), (1e-286, below(1e9 * 1e-286), 1.0)),
-        # the ratio of slip and unit
-        ((2.0**-600, 2.0**423, 1.0), (2.0**-602, 2.0**423, 1.0)),
-    ],
-)
-def test_what_a_float_holds_of_slip_and_friction(held, lost):
-    friction, slip, mass = held
-    assert bare(friction, slip, mass=mass).slip_velocity == slip
-    assert bare(0.0, slip, mass=mass).slip_velocity == slip
-    friction, slip, mass = lost
-    with pytest.raises(ValueError, match=" ") as caught:
-        bare(friction, slip, mass=mass)
-    assert str(caught.value) == (
-        f"friction_coefficient = {friction}: with these velocities psi1 of eq. (29) cannot be held "
-        "in floating point; give 0 for no friction, or larger velocities"
-    )
-    with pytest.raises(ValueError, match="cannot be held"):
-        bare(friction, -slip, mass=mass)
 
 
 def test_the_energy_of_slip_is_finite():
@@ -103,53 +72,6 @@ def ball(radius=0.5, *, normal=3.0, tangential=4.0, spin=0.0, **material):
     return Scene(Sphere(radius, made), HalfSpace(STEEL), 0.1, normal, tangential, spin)
 
 
-@pytest.mark.parametrize(
-    ("usual", "suspect", "words"),
-    [
-        ({"radius": below(1.0)}, {"radius": 1.0}, "sphere.radius = 1 m: is it in mm?"),
-        (
-            {"density": 25.0},
-            {"density": 24.9},
-            "sphere.material.density = 24.9 kg/m³: is it in g/cm³?",
-        ),
-        (
-            {"shear_modulus": 1e4},
-            {"shear_modulus": 9999.0},
-            # 2 (1 + 0.25) 9999 = 24997.5
-            "sphere.material.shear_modulus = 9999 Pa (Young's 2.5e+04 Pa): is it in GPa?",
-        ),
-        (
-            {"spin": 80.0},
-            {"spin": -82.0},
-            "spin = 82 rad/s: the surface moves 8.2 times as fast as the centre; is it in turns a "
-            "minute?",
-        ),
-        (
-            {"spin": below(50.0), "normal": 1e-3, "tangential": 0.0},
-            {"spin": 50.0, "normal": 1.0, "tangential": 0.0},
-            "spin = 50 rad/s: the surface moves 25 times as fast as the centre; is it in turns a "
-            "minute?",
-        ),
-    ],
-)
-def test_a_number_looks_wrong_from_a_bound_on(usual, suspect, words):
-    assert unit_slips(ball(**usual)) == []
-    assert unit_slips(ball(**suspect)) == [f"unit: {words}"]
-
-
-@pytest.mark.parametrize(
-    ("intended", "told"),
-    [(5.0, "5"), (45.0029, "45"), (44.9971, "45"), (89.998, "90"), (-30.0, "30"), (45.0031, None),
-     (44.9969, None), (7.0, None), (95.0, None), (0.001, None)],
-)  # fmt: skip
-def test_an_angle_in_radians_is_a_multiple_of_five_degrees(intended, told):
-    angle = math.radians(intended)
-    slope = math.tan(math.radians(angle))
-    found = unit_slips(ball(normal=1.0, tangential=slope))
-    words = f"unit: angle of incidence {abs(angle):.6g}°: {told}° are as many radians; "
-    assert found == ([] if told is None else [f"{words}angle_deg is in degrees"])
-
-
 def soft(radius):
     """Return a scene of E* = 1 GPa: two bodies of E = 2 GPa and nu = 0, of unlike sizes."""
     made = Material(young_modulus=2e9, poisson_ratio=0.0, density=1000.0)
@@ -178,27 +100,6 @@ def test_tabors_parameter_by_hand():
     value = float(np.cbrt(1e-3 * (0.1 / scene.pair.effective_modulus) ** 2) / 3e-10)
     assert said(scene, least=value, most=value) == ()
     assert said(scene, least=math.nextafter(value, 100.0)) != ()
-
-
-def coupled(strength, *, chi=1.44, psi1=1.0):
-    return Scene.nondimensional(psi1=psi1, chi=chi, poisson_ratio=0.3, coupling_number=strength)
-
-
-def test_the_least_shift_of_coupling_that_is_told():
-    """Up to the first node, Lambda = 0.25, the shift is proportional to Lambda."""
-    unit = float(coupling_shift(coupled(0.25))) / 0.25
-    assert coupling(coupled(0.99e-3 / unit)) == ()
-    (said,) = coupling(coupled(1.01e-3 / unit))
-    assert said == (
-        "unlike bodies: the elastic coupling of pressure and slip is left out, Lambda = kappa "
-        f"beta/mu = {1.01e-3 / unit:.2g}; it moves psi2 by about 0.001 (model, not numerical "
-        "error; by a table of half-space solutions, chi from 0.83 to 2.2)"
-    )
-    assert "by about " in coupling(coupled(3.999))[0]
-    assert "by at least " in coupling(coupled(4.001))[0]
-    for chi, rough in ((2.2, False), (2.21, True), (0.83, False), (0.82, True)):
-        (said,) = coupling(coupled(1.0, chi=chi))
-        assert (f"; a rough guide at chi = {chi})" in said) is rough
 
 
 @pytest.mark.parametrize(("chi", "least"), [(1.0, 3.0), (0.5, 1.0), (0.2, 1.0), (2.0, 7.0)])

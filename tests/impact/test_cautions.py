@@ -90,13 +90,6 @@ def cautions(scene):
     return [text for text in said if "unlike bodies" in text]
 
 
-def test_the_sentence_says_what_the_table_is_for():
-    (text,) = cautions(steel_on_rubber(1.0))
-    assert "by a table of half-space solutions, chi from 0.83 to 2.2)" in text
-    (text,) = cautions(steel_on_rubber(1.0, gyration=0.4))
-    assert "; a rough guide at chi = 2.99)" in text
-
-
 def test_where_the_whole_contact_slips_the_shift_is_of_second_order():
     """Coupling turns the direction of slip; the shift does not end at 4 chi - 1 = 4.76."""
     sizes = coupling_shift(steel_on_rubber([5.0, 12.0, 24.0, 48.0]))

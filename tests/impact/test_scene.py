@@ -167,18 +167,6 @@ def test_an_impact_of_a_grid_has_the_numbers_of_its_row_and_column():
     assert some.chi == pytest.approx([2.0, 3.0])
 
 
-def test_what_all_scenes_of_a_batch_share_stays_a_plain_number():
-    batch = Scene.stack([scene(tangential_velocity=slip) for slip in (0.5, 1.0)])
-    assert type(batch.normal_speed) is float
-    assert batch.tangential_velocity.tolist() == [0.5, 1.0]
-    alike = Scene.stack([scene(), scene()])
-    assert alike.shape == (2,)
-    assert alike.normal_speed.tolist() == [1.5, 1.5]
-    assert type(alike.tangential_velocity) is float
-    part = alike.take(np.array([True, False]))
-    assert (part.shape, part.normal_speed.tolist(), part.index.tolist()) == ((1,), [1.5], [0])
-
-
 def test_parts_of_a_batch_of_shared_numbers_keep_their_shape_and_places():
     """A spin for each of three impacts, of which none differs in a number that is taken."""
     batch = scene(tangential_velocity=np.array([[0.5], [1.0]]), spin=np.zeros((1, 3)))

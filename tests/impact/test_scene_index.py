@@ -138,14 +138,6 @@ def test_encounters_that_pass_through_leave_the_others_their_places():
     )
 
 
-def test_impacts_of_equal_speed_share_their_normal_motion_if_nothing_is_drawn():
-    """What was gained by solving one normal motion for a batch is kept for all other laws."""
-    shared = Simulation(normal="tsuji", tangential="coulomb").normal_motion(scene())
-    assert np.ndim(shared.maximum_force) == 0 or len(set(np.ravel(shared.maximum_force))) == 1
-    drawn = SIMULATIONS["normal"].normal_motion(scene())
-    assert len(set(np.ravel(drawn.maximum_force))) == SIZE
-
-
 def test_evolving_a_scene_makes_a_new_batch():
     part = scene(5).take(slice(2, 4))
     assert attrs.evolve(part, friction_coefficient=0.5).index.tolist() == [0, 1]

@@ -9,39 +9,9 @@ from contactlab import Scene, Simulation, Status
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import AllStepsResponse, AllStepsTangentialLaw, TangentialResponse
 from contactlab.testing.impacts import all_steps
-from contactlab_laws.jaeger import step
-from contactlab_laws.jaeger.all_steps import ScaledSteps, advance_all, advance_batch
 from contactlab_laws.march.division import midpoints
 from tests.laws.test_springs import BOTH
 from tests.testing.broken_impacts import AllAtOnce
-
-#: Contact radii that grow, shrink by several springs, stay, and grow again beyond.
-RADII = np.array([0.1, 0.45, 0.8, 0.3, 0.0, 0.2, 0.2, 0.65, 0.95, 1.0, 0.5, 0.7, 0.04])
-VELOCITY = np.array([-3.0, 0.2, 1.0, 1e-3, 40.0])
-
-
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_contacts_that_shrink_and_grow_again(law, name):
-    """A batch is its impacts, step by step too, whatever comes into contact and leaves it."""
-    bundle = contactlab.create(f"tangential.{law}", **{name: 9}).bundle()
-    count = len(RADII)
-    pressure, each = np.linspace(0.8, 1.2, count), np.ones((count, 1))
-    given = ScaledSteps(RADII, pressure, 0.4 * each, 0.5 * each)
-    forces, works = advance_batch(bundle, given, VELOCITY, len(VELOCITY))
-    alone = given._replace(drift=given.drift[:, 0], kick=given.kick[:, 0])
-    for item, velocity in enumerate(VELOCITY.tolist()):
-        force, work = advance_all(bundle, alone, velocity)
-        assert forces[:, item] == pytest.approx(force, abs=1e-14)
-        assert works[item] == pytest.approx(work, rel=1e-12)
-    memory, change, done = step.start(), 0.0, 0.0
-    for k, radius in enumerate(RADII.tolist()):
-        moved = (VELOCITY + change) * 0.4
-        force, work, memory = step.advance(
-            bundle, memory, moved, radius, pressure[k].item(), len(VELOCITY)
-        )
-        assert forces[k] == pytest.approx(force, abs=1e-14)
-        change, done = change - 0.5 * force, done + work
-    assert works == pytest.approx(done, rel=1e-12)
 
 
 @pytest.mark.parametrize(("law", "name"), BOTH)

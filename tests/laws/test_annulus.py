@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status, create
-from contactlab_laws.annulus import all_steps, step, tables
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create
+from contactlab_laws.annulus import step, tables
 from contactlab_laws.march.division import endpoints
 from tests.laws import plain
 from tests.laws.exact_laws import CHI, grid, marched_change, order, rms, simulation
@@ -146,14 +146,3 @@ def test_many_annuli_have_the_answers_of_one_solve_a_step(displacement, monkeypa
     tables.tables.cache_clear()
     assert kept.psi2 == pytest.approx(solved.psi2, abs=1e-12)
     assert kept.motion.friction_work == pytest.approx(solved.motion.friction_work, abs=1e-12)
-
-
-@pytest.mark.parametrize("history", [False, "fields"])
-def test_steps_without_a_division_are_told(history, monkeypatch):
-    for module in (step, all_steps):
-        monkeypatch.setattr(module, "MOST_PASSES", -1)
-    sim = simulation("annulus", "paper", steps=40, annuli=9)
-    found = sim.run(Scene.nondimensional(psi1=1.2, chi=1.4), history=history)
-    assert found.status is Status.UNSETTLED
-    assert "no division found" in found.motion.detail
-    assert np.isnan(found.psi2)

@@ -1,24 +1,19 @@
 """The builders of tables: by hand, against closed forms, and the commands."""
 
-import re
 import sys
 
 import numpy as np
 import pytest
 from numpy.polynomial.chebyshev import chebval2d
-from numpy.polynomial.polynomial import polygrid2d
 
-from contactlab.compose.rebound import DAMPED_ERROR
 from contactlab.impact.coupling import FILE
-from contactlab_laws.tables import damped, regions
+from contactlab_laws.tables import regions
 from contactlab_laws.tables.damped import RINGS, SLIPS, STICKS, TURNS
 from contactlab_laws.tables.damped import place as place_of
 from contactlab_laws.tables.damped import rough as rough_of
 from contactlab_laws.tables.elastic import NODES
-from contactlab_laws.tables.file import read
 from contactlab_laws.tables.patches import nodes
 from contactlab_laws.tables.regions import (
-    CUT_END,
     SLIP_BACK,
     SLIP_LATE,
     SLIP_LONG,
@@ -31,10 +26,10 @@ from contactlab_laws.tables.regions import (
 )
 from table_builders import __main__ as command
 from table_builders.coupling import build as unlike
-from table_builders.damped import build, checks
+from table_builders.damped import build
 from table_builders.damped.coordinates import coefficients, incidence, restitution, smooth
 from table_builders.damped.coordinates import nodes as damped_nodes
-from table_builders.elastic import exact, fit, start
+from table_builders.elastic import exact, start
 from table_builders.elastic.coordinates import impact, measure
 from table_builders.elastic.fit import Cell
 
@@ -64,33 +59,6 @@ def test_the_impact_of_a_place(region, a, b, psi1, chi):
         single = regions.SingleCuts(lambda at: 1.5 + 0.1 * at, lambda t: 2.0 + t**5)
         found = regions.place(psi1, chi, single)
         assert found == pytest.approx((region, a, b, expected), abs=1e-12)
-
-
-def fitted(cell, bounce, slope=None):
-    """Return the fit of a cell whose psi2/psi1 + 1 is that function of x and y in [0, 1]."""
-    psi1, chi = cell.nodes(CUTS)
-    x, y = np.meshgrid(nodes(NODES), nodes(NODES), indexing="ij")
-    scale = measure(cell.region, psi1, chi)
-    return fit.fit(cell, psi1, chi, psi1 * (bounce(x, y, scale) - 1.0), slope)
-
-
-def test_the_terms_of_a_fit_are_those_of_g():
-    """With x^5 given, and those of t^5 in a cell half as wide."""
-    cell = Cell(SLIP_ON, 1, 0, 0, 0)
-    slope = 2.0 + nodes(NODES) ** 2
-    width = 0.5 * CUT_END
-    found = fitted(
-        cell, lambda x, y, of: of * (1.0 + y**3 + (2.0 + y * y) * (width * x) ** 5 + x**7), slope
-    )
-    expected = np.zeros((NODES, NODES))
-    expected[0, 0] = expected[0, 3] = expected[7, 0] = 1.0
-    expected[5, [0, 2]] = np.array([2.0, 1.0]) * width**5
-    at = np.linspace(0.0, 1.0, 20)
-    assert polygrid2d(at, at, found.terms) == pytest.approx(polygrid2d(at, at, expected), abs=1e-9)
-    assert found.error_b < 1e-11
-    cell = Cell(SMALL_NEAR, 2, 0, 0, 0)
-    assert fit._local(cell, slope) == pytest.approx(slope * 0.25**5)
-    assert fit._local(cell, None) is None
 
 
 def test_the_slope_along_a_cut_that_climbs():
@@ -172,19 +140,6 @@ def test_the_shipped_sizes_of_coupling_are_of_the_nodes_of_the_builder():
         for nu in (0.0, 0.5)
         for psi1 in unlike.PSI1
     ]
-
-
-def test_verifying_draws_tells_and_judges(monkeypatch, capsys):
-    """By few rings, which are off by less than the table declares."""
-    monkeypatch.setattr(checks, "RINGS", 32)
-    assert checks.verify(24, 1) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert read(damped.SHIPPED).checksum()[:12] in lines[0]
-    numbers = [list(map(float, re.findall(r"(?<= )\d[\d.e-]*\d", line))) for line in lines[1:13]]
-    e, largest, psi1, chi, rms = np.transpose(numbers)
-    assert ((e >= 0.5) & (e < 1.0) & (psi1 <= 9.0) & (chi >= 0.8) & (chi <= 1.8)).all()
-    assert ((rms <= largest) & (largest <= 1.5 * rms)).all()
-    assert lines[13] == f"largest {largest.max():.1e}, declared {DAMPED_ERROR:.0e}"
 
 
 @pytest.mark.parametrize(

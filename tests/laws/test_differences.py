@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation, create
-from contactlab_laws.differences import table
 from contactlab_laws.differences.table import choice, springs
 
 SCENE = Scene.nondimensional(psi1=1.0, chi=1.2)
@@ -97,11 +96,3 @@ def test_the_caution_of_the_choice_of_normal_law(name, text):
     """Theory §11: at e = .8 Hunt and Crossley's law is .19, a linear spring .5 from Tsuji's."""
     told = cautions(2.0, 1.2, normal=create(f"normal.{name}", restitution=0.8))
     assert any(re.search(text, each) for each in told)
-
-
-@pytest.mark.parametrize(
-    ("size", "above"),
-    [(1.0, "2"), (0.9, "1"), (0.91, "2"), (0.018, "0.02"), (0.02, "0.03"), (8.5e-4, "0.001")],
-)
-def test_a_size_is_rounded_up_with_a_tenth_more(size, above):
-    assert table._above(size) == above

@@ -200,14 +200,6 @@ def test_a_step_that_is_not_solved_is_a_status(monkeypatch):
     assert batch.status.tolist() == [Status.SUCCESS, Status.UNSETTLED]
 
 
-def test_plain_splitting_takes_over_where_mixing_stalls(monkeypatch):
-    monkeypatch.setattr(splitting, "MIXED", 0)
-    plain = simulation(coupling="one_way", rings=8).run(finite_element_case(0.98))
-    monkeypatch.undo()
-    mixed = simulation(coupling="one_way", rings=8).run(finite_element_case(0.98))
-    assert plain.psi2 == pytest.approx(mixed.psi2, abs=1e-5)
-
-
 def test_an_error_that_is_not_declared_is_estimated():
     """Over 32 and 64 rings: the law refuses 16 times as many."""
     law = simulation(rings=16, extrapolate=False)

@@ -5,7 +5,6 @@ import pytest
 from scipy.integrate import quad
 
 import contactlab
-from contactlab_laws.halfspace import rings as division
 from contactlab_laws.halfspace.axisymmetric import rebound
 from contactlab_laws.halfspace.rings import rings, settle
 from tests.laws import other_march
@@ -116,13 +115,3 @@ def test_coulombs_law_at_every_point(seed):
     assert (slip[slips] * q[slips] > 0.0).all()
     assert slips.any()
     assert (~slips).any()
-
-
-def test_divisions_one_ring_at_a_time_or_none(monkeypatch):
-    psi1, chi, normal = np.array([0.3, 1.2, 2.0, 3.0]), np.full(4, 1.44), motion("hunt_crossley")
-    known = other_march.rebound(psi1, chi, normal, 20)
-    monkeypatch.setattr(division, "GENTLE", 0)
-    assert other_march.rebound(psi1, chi, normal, 20) == pytest.approx(known, abs=1e-10)
-    monkeypatch.setattr(division, "MOST_TRIES", 1)
-    with pytest.raises(RuntimeError, match=r"^\d impacts: no division into stick and slip was fou"):
-        other_march.rebound(psi1, chi, normal, 20)

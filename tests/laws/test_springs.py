@@ -143,22 +143,6 @@ def test_unequal_contacts_of_a_batch_away_from_hertz(law, name):
 
 
 @pytest.mark.parametrize(("law", "name"), BOTH)
-@pytest.mark.parametrize("psi1", [0.2, 1.2, 3.1, np.array([0.2, -1.2, 3.1])])
-@pytest.mark.parametrize("forced", ["observer", "size"])
-def test_all_steps_at_once_are_step_by_step(law, name, psi1, forced, monkeypatch):
-    """An observer forces step by step, and so does a table that would be too large."""
-    sim = simulation(law, steps=90, **{name: 40})
-    scene = Scene.nondimensional(psi1=psi1, chi=CHI)
-    at_once = sim.run(scene).check()
-    if forced == "size":
-        monkeypatch.setattr("contactlab_laws.jaeger.law.LARGEST_RUN", 10)
-    stepped = sim.run(scene, history=forced == "observer").check()
-    assert at_once.psi2 == pytest.approx(stepped.psi2, abs=1e-13)
-    works = at_once.motion.friction_work, stepped.motion.friction_work
-    assert works[0] == pytest.approx(works[1], rel=1e-11)
-
-
-@pytest.mark.parametrize(("law", "name"), BOTH)
 @pytest.mark.parametrize("places", [1, 2, 3, 200])
 def test_any_number_of_places(law, name, places):
     """One or two are coarse, but still friction: |F| <= mu P, and no energy from nothing."""

@@ -8,14 +8,9 @@ import pytest
 
 from contactlab import HalfSpace, Scene, Status
 from contactlab.outcome.columns import (
-    COLUMNS,
     QUANTITIES,
-    Column,
     columns,
     csv_heading,
-    json_value,
-    quantity_named,
-    scaled_forces,
 )
 from contactlab.outcome.export import to_dict, write_csv, write_history_csv, write_json, write_npz
 from contactlab.outcome.history import History
@@ -105,31 +100,6 @@ def test_what_a_scene_does_not_define_is_no_number():
     assert headings == ["spin (1)", "status"]
 
 
-def test_the_names_of_quantities():
-    angles = ["incidence_angle", "rebound_angle", "local_rebound_angle"]
-    numbers = {column.name for column in COLUMNS if column.unit}
-    assert set(QUANTITIES) == numbers | {f"{name}_deg" for name in angles} | {"rebound_speed"}
-    assert quantity_named("psi2") == Column("psi2", "1", "psi2")
-    assert QUANTITIES["rebound_speed"].unit == "m/s"
-    with pytest.raises(ValueError, match=" ") as caught:
-        quantity_named("psi3", where="y")
-    assert str(caught.value) == (
-        "y = 'psi3': is not a quantity of a result; did you mean 'psi2'? known: "
-        + ", ".join(QUANTITIES)
-    )
-    with pytest.raises(ValueError, match=r"^quantity = 'status': "):
-        quantity_named("status")
-
-
-def test_values_for_json():
-    values = [Status.SUCCESS, np.float64(0.5), math.nan, math.inf, 3, True, None, "x"]
-    assert [json_value(each) for each in values] == ["SUCCESS", 0.5, None, None, 3, True, None, "x"]
-    nested = np.array([[1.0, math.nan], [math.inf, 2.0]])
-    assert json_value(nested) == [[1.0, None], [None, 2.0]]
-    assert json_value(np.array(math.nan)) is None
-    assert json_value(np.array([Status.SUCCESS], dtype=object)) == ["SUCCESS"]
-
-
 HISTORY = {
     "time": [1e-4, 5e-4], "approach": [1e-4, 1e-3], "normal_velocity": [1.5, 0.0],
     "normal_force": [50.0, 100.0], "contact_radius": [0.01, 0.0125], "slip_velocity": [4.5, 4.0],
@@ -139,13 +109,6 @@ HISTORY = {
 
 def course(**fields):
     return History(**{name: np.array(values) for name, values in HISTORY.items()}, fields=fields)
-
-
-def test_forces_over_their_scales():
-    time, tangential, normal = scaled_forces(result(history=course()))
-    assert time == pytest.approx([0.0, 0.1, 0.5])
-    assert tangential == pytest.approx([0.0, 0.5, 0.8])
-    assert normal == pytest.approx([0.0, 0.5, 1.0])
 
 
 def test_a_result_as_json(tmp_path):

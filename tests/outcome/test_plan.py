@@ -146,24 +146,6 @@ def test_impacts_that_do_not_part_are_left_out_and_nothing_is_said_of_their_numb
     assert "error" not in str(none)
 
 
-def test_fields_are_not_left_out_where_only_some_impacts_part():
-    steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
-    batch = Scene(Sphere(0.01, steel), HalfSpace(steel), 0.1, [0.5, 2.0], [-0.05, -0.05])
-    simulation = Simulation(normal=Clutches(), tangential=KnowsTwice(), integrator="symplectic")
-    plan = simulation.plan(batch, history="fields")
-    assert plan.marched.tolist() == [True, False]
-    assert "no march to take them from" not in str(plan)
-
-
-def test_remarks_are_on_the_impacts_that_are_marched():
-    """Of two stiff impacts one is central: no steps are taken for it."""
-    few = contactlab.create("integrator.symplectic", steps=5)
-    plan = Simulation(tangential="springs", integrator=few).plan(
-        Scene.nondimensional(psi1=[0.0, 1.2], chi=30.0)
-    )
-    assert "steps raised from 5 to 75 for 1 of 1 impacts" in str(plan)
-
-
 def test_undeclared_errors_are_said_of_the_impacts_that_are_marched():
     """Of a damped contact the springs declare nothing; a central impact is known without them."""
     plan = Simulation(normal=Damped(), **SPRINGS).plan(scene([0.0, 1.2]))
@@ -219,34 +201,6 @@ def test_an_answer_that_is_no_number_is_named(psi1, change):
     result = Simulation(tangential=Partly(change=change)).run(scene(psi1))
     assert {*np.ravel(np.array(result.status, dtype=object))} == {Status.MALFORMED}
     assert "to a whole impact" in result.failures[0]
-
-
-@attrs.frozen(kw_only=True)
-class KnowsTwice(SteppedTangentialLaw):
-    """Two answers hold for an impact; the first counts."""
-
-    api_version: ClassVar[int] = 2
-
-    def whole_impacts(self, scene, normal):
-        first = no_force(scene, where=np.asarray(scene.slip_velocity) >= 0.0, reason="first")
-        second = no_force(scene, where=True, reason="second")
-        return first, attrs.evolve(second, slip_velocity_change=0.25)
-
-    def start(self, scene, normal):
-        return None
-
-    def advance(self, state, increment, before, after):
-        return TangentialResponse(0.0 * increment.velocity, 0.0 * increment.velocity), state
-
-
-def test_of_two_answers_the_first_is_taken():
-    simulation = Simulation(tangential=KnowsTwice(), integrator="symplectic")
-    psi1 = [1.0, -1.0]
-    result = simulation.run(scene(psi1)).check()
-    assert result.psi_change == pytest.approx([0.0, 0.25])
-    assert said(result.plan.left_out)["march of the tangential motion: second"] == [False, True]
-    alone = [simulation.run(scene(one)).check().psi_change for one in psi1]
-    assert alone == pytest.approx([0.0, 0.25])
 
 
 def test_the_error_of_a_sweep_in_parts_is_the_largest_of_its_parts():

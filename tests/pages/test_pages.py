@@ -156,20 +156,6 @@ def test_what_sticks_and_what_slips_either_way_has_its_colour(superball):
     assert ever == {-1, 0, 1}
 
 
-def test_the_legend_lies_within_the_picture(superball, monkeypatch):
-    drawn = []
-    panels = animation._panels
-
-    def watched(figure, result):
-        drawn.append(figure)
-        return panels(figure, result)
-
-    monkeypatch.setattr(animation, "_panels", watched)
-    next(animation._frames(superball, None))
-    legend = next(axes.get_legend() for axes in drawn[0].axes if axes.get_legend())
-    assert legend.get_window_extent().x1 <= drawn[0].bbox.x1
-
-
 def test_without_bodies_forces_and_contact_are_drawn(run, tmp_path, few_frames):
     out = tmp_path / "contact.gif"
     assert run("animate", "--psi1", 1.2, "--chi", 1.4, "--out", out).status == 0
@@ -224,22 +210,6 @@ def test_a_picture_of_unknown_form_is_refused(run, ball, tmp_path):
     ran = run("run", ball, "--figure", tmp_path / "a.bmp")
     assert ran.status == 2
     assert ".svg" in ran.err
-
-
-def test_the_clock_runs_and_all_frames_have_one_palette(superball, tmp_path, few_frames):
-    words = [frame.words for frame in animation._sequence(superball) if frame.words[:2] == "in"]
-    times = [float(word.split()[2]) for word in words]
-    unit = {"s": 1.0, "ms": 1e3}[words[0].split()[-1]]
-    assert times[0] == 0.0
-    assert times == sorted(set(times))
-    assert times[-1] == pytest.approx(superball.motion.duration * unit, rel=0.01)
-    animation.animate(tmp_path / "one.gif", superball)
-    with Image.open(tmp_path / "one.gif") as picture:
-        corners = set()
-        for number in range(picture.n_frames):
-            picture.seek(number)
-            corners.add(picture.convert("RGB").getpixel((2, 2)))
-    assert corners == {(255, 255, 255)}
 
 
 def test_a_ghost_parts_along_its_own_rebound(superball):

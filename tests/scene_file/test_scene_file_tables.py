@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab.scene_file.read import _deep, _place
+from contactlab.scene_file.read import _deep
 from contactlab.scene_file.table import Table, flattened, number_list
 from tests.scene_file.test_scene_file_messages import IMPACT
 from tests.scene_file.test_scene_file_refusals import refusal
@@ -82,14 +82,6 @@ def test_twenty_levels_are_not_too_deep(tmp_path):
     told = ": is nested more than 20 deep; a scene file needs less"
     assert refusal(tmp_path, "a = " + "[" * 20 + "]" * 20) == told
     assert refusal(tmp_path, "a = " + "[" * 100_000) == told
-
-
-def test_a_place_is_told_first():
-    assert (
-        _place("Bad thing (at line 3, column 14)", "") == "line 3, column 14: not TOML: Bad thing"
-    )
-    assert _place("Odd (at end of document)", "a\nb\n") == "line 2: not TOML: Odd"
-    assert _place("Odd (at end of document)", "") == "line 1: not TOML: Odd"
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".json", ".npz", ".png"])

@@ -3,44 +3,8 @@
 import numpy as np
 import pytest
 
-from contactlab.study import work_precision
 from contactlab.study.benchmark import Benchmark
 from tests.study.bench_rows import row
-
-
-def test_an_order_is_that_of_rows_that_count():
-    ladder = [row(error=100.0 * h**-1.5, options=f"steps={h}, annuli=7") for h in (10, 20, 40)]
-    order = work_precision._order
-    assert order(ladder) == pytest.approx(1.5)
-    assert np.isnan(order(ladder[:2]))
-    finest = [row(error=1e-11, options="steps=80"), row(error=0.5e-11, options="steps=160")]
-    assert order([*ladder, *finest]) == pytest.approx(1.5)  # rounding
-    failed = row(error=7.0, failed=1, options="steps=80")
-    assert order([*ladder, failed]) == pytest.approx(1.5)
-    ruled = [row(error=h**-2.0, options=f"tolerance={h}") for h in (1, 2, 4)]
-    assert np.isnan(order(ruled))
-    assert np.isnan(order([row(error=h**-2.0, options="") for h in (1, 2, 4)]))
-    # Half a unit of log error is enough.
-    for gain, known in ((0.49, False), (0.51, True)):
-        flat = [row(error=np.exp(-gain * k / 2.0), options=f"steps={10 * 2**k}") for k in range(3)]
-        assert np.isfinite(order(flat)) == known
-        if known:
-            assert order(flat) == pytest.approx(gain / 2.0 / np.log(2.0))
-
-
-def test_a_law_that_comes_nearer_by_a_factor_of_two_converges():
-    def marks(*errors):
-        listed = [row(error=each, converges=False) for each in errors]
-        return [each.converges for each in work_precision._with_nearer(listed)]
-
-    assert marks(0.4, 0.3, 0.19) == [True] * 3
-    assert marks(0.4, 0.1, 0.21) == [False] * 3
-    assert marks(0.4, 0.2) == [False] * 2
-    other = work_precision._with_nearer([
-        row(error=0.4, converges=False), row(error=0.1, failed=1, converges=False),
-        row(error=0.4, method="b"),
-    ])  # fmt: skip
-    assert [each.converges for each in other] == [False, False, True]
 
 
 def test_rows_without_words_converge_and_know_nothing_elsewhere():

@@ -89,14 +89,6 @@ def test_where_an_impact_failed_is_not_a_number(both):
     assert told[1].startswith("smooth, at the measured values of psi2 (1 of 3): The tan")
 
 
-def test_a_single_failure_has_no_share(both):
-    one = Simulation(tangential="frictionless").run(Scene.nondimensional(psi1=1.0, chi=1.0))
-    motion = attrs.evolve(one.motion, status=Status.UNSETTLED, detail="odd")
-    run = attrs.evolve(both.runs[0], result=attrs.evolve(one, motion=motion))
-    (sentence,) = attrs.evolve(both, runs=(run,)).failures()
-    assert sentence.startswith("rigid: The tangential law found no division")
-
-
 def test_the_numerical_error_is_estimated_or_else_declared(both):
     run = both.runs[1]
     plan = run.result.plan.changed(psi2_error=np.array([0.1, 0.2, 0.3]))
@@ -156,59 +148,12 @@ def test_interrupted_laws_are_left_out(file, after, kept, monkeypatch):
     assert found.names == list(found.agreements[0].results) == kept
 
 
-@pytest.mark.parametrize(
-    ("first", "runs", "time"),
-    [
-        # The least of three after the warm-up; a run of two seconds and more is the only one.
-        (0.5, [0.4, 0.2, 0.3], 0.2), (1.99, [3.0, 2.5, 2.6], 2.5), (2.0, [], 2.0), (7.0, [], 7.0),
-    ],
-)  # fmt: skip
-@pytest.mark.parametrize("size", [None, 4])
-def test_short_runs_are_repeated(first, runs, time, size):
-    scene = Scene.nondimensional(psi1=1.0 if size is None else [1.0] * size, chi=1.0)
-    times = iter([first, *runs])
-    asked = []
-
-    def run(of, **words):
-        asked.append(words)
-        return SimpleNamespace(run_time=np.nan if words else next(times), status=Status.SUCCESS)
-
-    simulation = SimpleNamespace(run=run, sweep=run)
-    found = study._timed("law", simulation, scene, history=size is None)
-    assert found.run_time_per_impact == pytest.approx(time / (size or 1))
-    assert next(times, None) is None
-    assert asked == [{}] * (1 + len(runs)) + ([{"history": True}] if size is None else [])
-
-
 def test_only_a_single_impact_has_a_history():
     one = Scene.nondimensional(psi1=1.0, chi=1.0)
     law = {"springs": Simulation(tangential="springs")}
     assert compare(one, law, history=True).runs[0].result.history
     assert not compare(one, law).runs[0].result.history
     assert not compare(SCENES, law, history=True).runs[0].result.history
-
-
-def ball(angle=30.0, speed=2.0, spin=0.0, friction=0.2):
-    steel = Material.named("steel")
-    tangent = speed * np.tan(np.radians(angle))
-    return Scene(Sphere(0.01, steel), HalfSpace(steel), friction, speed, tangent, spin)
-
-
-@pytest.mark.parametrize(
-    ("scene", "name", "values"),
-    [
-        (Scene.nondimensional(psi1=2.0, chi=[1.0, 1.5]), "chi", [1.0, 1.5]),
-        (Scene.nondimensional(psi1=[2.0, 2.0], chi=1.0), "psi1", [2.0, 2.0]),
-        (ball(angle=np.array([30.0, 45.0])), "angle_deg", [30.0, 45.0]),
-        (ball(speed=np.array([1.0, 2.0])), "normal_speed", [1.0, 2.0]),
-        (ball(spin=np.array([1.0, 2.0])), "spin", [1.0, 2.0]),
-        (ball(friction=np.array([0.1, 0.2])), "friction_coefficient", [0.1, 0.2]),
-    ],
-)
-def test_the_abscissa_of_a_batch_is_the_first_entry_that_varies(scene, name, values):
-    (found,) = compare(scene, LAWS).varied.items()
-    assert found[0] == name
-    np.testing.assert_allclose(found[1], values)
 
 
 def test_a_single_impact_varies_nothing_and_a_grid_its_axes():

@@ -1,7 +1,5 @@
 """Hysteresis loops of laws along the same paths."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -10,8 +8,6 @@ import contactlab
 from contactlab import Scene, Simulation
 from contactlab.figures.load_paths import draw_loops
 from contactlab.figures.style import LAW_COLOURS, QUIET
-from contactlab.impact.hertz import hertz_scales
-from contactlab.study import loops as study
 from contactlab.study.loops import CYCLES, QUARTER, REACH, loops
 
 SCENE = Scene.nondimensional(psi1=1.0, chi=1.4412)
@@ -69,56 +65,6 @@ def test_loops_need_friction():
     smooth = Scene(*[contactlab.Sphere(0.01, contactlab.Material.named("steel"))] * 2, 0.0, 1.0)
     with pytest.raises(ValueError, match="friction_coefficient"):
         loops(smooth, {"springs": Simulation(tangential="springs")})
-
-
-def test_the_path_is_the_same_for_every_law(monkeypatch):
-    """Five cycles of 240 points to 0.7; the load is halved as the displacement passes 0."""
-    asked = []
-
-    class Forces:
-        friction_load = np.array([0.5, 2.0, 1.0])
-        friction_force = np.arange(2000.0)
-
-    def path(scene, depth, moved, simulation):
-        asked.append((depth, moved))
-        return Forces
-
-    monkeypatch.setattr(study, "_path", path)
-    steel = contactlab.Material.named("steel")
-    ball = Scene(contactlab.Sphere(0.01, steel), contactlab.HalfSpace(steel), 0.2, 1.0, 0.3)
-    found = loops(ball, {"springs": Simulation(tangential="springs")})
-    (constant, moved), (swinging, other) = asked
-    depth = hertz_scales(ball).approach
-    full = 0.2 * depth / ball.pair.stiffness_ratio
-    np.testing.assert_array_equal(moved, other)
-    assert len(moved) == len(constant) == len(swinging) == 1201
-    np.testing.assert_allclose(constant, depth)
-    places = {0: 0.0, 60: 0.7, 120: 0.0, 180: -0.7, 240: 0.0, 1140: -0.7, 1200: 0.0}
-    for place, share in places.items():
-        assert moved[place] == pytest.approx(share * full, abs=1e-12 * full)
-        level = 1.0 if share else 0.5
-        assert swinging[place] == pytest.approx(level * depth, rel=1e-12)
-    assert swinging[30] == pytest.approx(0.75 * depth)
-    x, force = found.oscillating["springs"]
-    np.testing.assert_allclose(x * full, moved)
-    np.testing.assert_allclose(force, np.arange(799.0, 2000.0) / (0.2 * 2.0))
-
-
-def test_laws_are_pressed_before_they_are_moved(monkeypatch):
-    """In sixty steps, to the first depth."""
-    seen = {}
-
-    def path(scene, approach, displacement, **laws):
-        seen.update(laws, approach=approach, displacement=displacement)
-        return SimpleNamespace(check=lambda: "path")
-
-    monkeypatch.setattr(study, "load_path", path)
-    simulation = Simulation(tangential="springs", normal="tsuji")
-    depth, moved = np.array([6.0, 7.0]), np.array([0.0, 2.0])
-    assert study._path(SCENE, depth, moved, simulation) == "path"
-    np.testing.assert_allclose(seen["approach"], [*np.arange(1, 60) * 0.1, 6.0, 7.0])
-    np.testing.assert_allclose(seen["displacement"], [*np.zeros(59), 0.0, 2.0])
-    assert (seen["normal"], seen["tangential"]) == (simulation.normal, simulation.tangential)
 
 
 def test_loops_without_a_title_have_none():

@@ -14,7 +14,6 @@ from contactlab.study.error_map import error_map, error_maps
 from contactlab.study.model_error import model_error
 from contactlab.study.stability_cases import Case, Extreme
 from contactlab.study.stability_judge import ANSWERED, UNDECLARED, WRONG, judge_run
-from contactlab.study.stability_map import region
 from contactlab.study.stability_references import continuum
 
 CHI = 49 / 34
@@ -59,13 +58,6 @@ def test_laws_that_converge_to_the_continuum_have_none(law):
     assert model_error(law, (CHI,), (1.2,)) is None
 
 
-@pytest.mark.parametrize(("law", "converges"), [("springs", True), ("mindlin_cap", False)])
-def test_a_region_knows_whether_its_law_converges_to_the_exact_solution(law, converges):
-    found = region(Method(tangential=law, integrator="symplectic"), [(50, CHI)])
-    assert found.converges is converges
-    assert 0.0 < found.error[0, 0] < 0.05
-
-
 @pytest.mark.parametrize(("reference", "expected"), [(continuum, ANSWERED), (no_change, WRONG)])
 def test_the_error_of_a_law_that_declares_none_is_judged_by_the_estimate(reference, expected):
     """One spring is off by more than a hundredth of the range, as the estimate says."""
@@ -93,9 +85,3 @@ def test_the_map_of_springs_refuses_few_steps_and_falls_with_more():
     assert [each.law for each in error_maps(methods(["springs", "coulomb"]), quick=True)] == [
         "springs"
     ]
-
-
-def test_a_law_with_another_limit_is_mapped_against_its_own():
-    found = error_map(Method(tangential="mindlin_cap", integrator="symplectic"), quick=True)
-    assert not found.converges
-    assert np.nanmin(found.error[-1]) < 1e-3  # its model error is up to 0.6

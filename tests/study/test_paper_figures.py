@@ -8,8 +8,6 @@ from contactlab.study.paper_figures import (
     FIGURE_2_PSI1,
     FIGURE_4_CHI,
     SOLID_CHI,
-    Curve,
-    FigureData,
     chi_of_gyration,
     paper_data,
 )
@@ -90,20 +88,3 @@ def test_reflexions_stand_beside_rigid_and_exact_ones(data, number):
     np.testing.assert_allclose(rigid.y, np.maximum(psi1 - 4.0 * chi, 0.0), atol=1e-12)
     alone = [rebound(*pair) for pair in zip(psi1[::10], chi[::10], strict=True)]
     np.testing.assert_allclose(exact.y[::10], alone)
-
-
-def test_points_are_close_and_hold_the_corner():
-    assert (FIGURE_2_PSI1[0], FIGURE_2_PSI1[-1], len(FIGURE_2_PSI1)) == (0.0, 7.0, 141)
-    assert (FIGURE_4_CHI[0], FIGURE_4_CHI[-1]) == pytest.approx((0.25, 16.0))
-    assert (np.diff(FIGURE_4_CHI) > 0.0).all()
-    assert 0.3 in FIGURE_4_CHI  # where psi1 = 4 chi
-    assert len(FIGURE_4_CHI) == 141 + 3 * 9 + 1
-
-
-def test_rows_of_a_table_are_all_points():
-    curves = (
-        Curve("a", 2.0, np.array([0.0, 1.0]), np.array([3.0, 4.0])),
-        Curve("b", 5.0, np.array([7.0]), np.array([8.0])),
-    )
-    found = FigureData(number=9, x="x", y="y", parameter="", curves=curves).rows()
-    assert found == [("a", 2.0, 0.0, 3.0), ("a", 2.0, 1.0, 4.0), ("b", 5.0, 7.0, 8.0)]

@@ -11,7 +11,7 @@ from contactlab import Scene, Simulation
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalContact, NormalLaw, SteppedTangentialLaw, TangentialResponse
 from contactlab.contracts.error_model import range_of
-from contactlab.study import stability_judge, stability_references
+from contactlab.study import stability_judge
 from contactlab.study.bench_methods import Method, methods
 from contactlab.study.stability import Stability, stability, work
 from contactlab.study.stability_cases import (
@@ -92,20 +92,6 @@ class SpoiledSprings(Spoiled):
     @property
     def law(self):
         return contactlab.create("tangential.springs")
-
-
-@attrs.frozen(kw_only=True)
-class Restless(SteppedTangentialLaw):
-    """A force against the slip that depends on how fine the steps are."""
-
-    api_version: ClassVar[int] = 2
-
-    def start(self, scene, normal):
-        return normal.duration
-
-    def advance(self, state, increment, before, after):
-        share = 1.5 + np.cos(np.log(state / increment.duration))
-        return TangentialResponse(float(0.1 * share * increment.friction_load), 0.0), state
 
 
 class Boastful(RescaledSpring):
@@ -281,11 +267,6 @@ def test_a_law_that_is_judged_by_itself_is_judged_by_its_limit(psi1, chi):
     width, found = range_of(scene).width, itself(scene, law)
     assert found == pytest.approx(change("symplectic", steps=64_000), abs=5e-5 * width)
     assert found == pytest.approx(change("adaptive", tolerance=1e-2), abs=1e-3 * width)
-
-
-def test_an_answer_that_does_not_stand_still_is_no_reference(monkeypatch):
-    monkeypatch.setattr(stability_references, "MOST", 20_000)
-    assert itself(Scene.nondimensional(psi1=1.2, chi=CHI), Restless()) is None
 
 
 def test_a_law_of_whole_impacts_is_judged_under_the_same_normal_law():

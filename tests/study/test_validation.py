@@ -1,8 +1,5 @@
 """Checks of an installation: findings, bounds, sources; with small sources of their own."""
 
-import itertools
-from types import SimpleNamespace
-
 import attrs
 import numpy as np
 import pytest
@@ -13,17 +10,11 @@ from contactlab.study import validation
 from contactlab.study.comparison import Agreement, Comparison
 from contactlab.study.stability_eccentric import rod
 from contactlab.study.validation import (
-    REFERENCE_PSI1,
-    REFERENCE_PSI2,
     SOURCES,
     Evidence,
     Finding,
     Source,
-    gather,
-    hertz_scalars,
-    judged,
     simulations_over,
-    validate,
 )
 from tests.study.made_up import ERRORS, SERIES, SWEEP
 
@@ -57,31 +48,6 @@ def test_a_bound_is_met_up_to_itself(difference, ok):
     assert Finding(what="a", against="b", difference=difference, bound=0.1).ok is ok
 
 
-def test_evidence_ranks_laws_and_knows_scatter_and_bounds(source):
-    found = validation._evidence(source, curves=False)
-    assert found.laws == ["rigid", "smooth"]  # off by 0.36 and by 3.2
-    first, second = found.comparison.agreements
-    assert found.scatter(first) == pytest.approx(0.2)  # of the errors that are stated
-    assert np.isnan(found.scatter(second))
-    assert found.bound("psi2", "rigid") == 0.4
-    assert found.bound("psi2", "smooth") is None
-    assert found.bound("psi1", "rigid") is None
-    assert found.left_out == {"x": "y"}
-    assert found.comparison.runs == ()
-    drawn = validation._evidence(source, curves=True).comparison
-    assert drawn.names == ["smooth", "rigid"]
-    np.testing.assert_allclose(drawn.values("psi2", "rigid"), [0.0, 0.0, 2.0], atol=1e-12)
-    assert np.isnan(drawn.runs[0].run_time_per_impact)
-
-
-def test_only_laws_with_a_bound_are_judged(source):
-    first, second = judged(validation._evidence(source, curves=False))
-    assert (first.what, first.against) == ("rigid: psi2, rms", "experiment: small")
-    assert first.difference == pytest.approx(np.sqrt(0.13))
-    assert first.ok
-    assert (second.difference, second.bound) == (pytest.approx(0.0, abs=1e-12), 0.4)
-
-
 def test_failed_laws_come_last(source):
     file = source.read()
     results = {
@@ -94,78 +60,6 @@ def test_failed_laws_come_last(source):
     comparison = Comparison(scene=file.scene, varied={}, runs=(), agreements=(agreement,))
     evidence = Evidence(source=source, file=file, comparison=comparison, left_out={})
     assert evidence.laws == ["rigid", "smooth", "failed"]
-
-
-def test_sources_are_gathered_one_by_one(source, monkeypatch):
-    monkeypatch.setattr(validation, "SOURCES", (source, source))
-    seen = []
-    found = gather(progress=lambda *count: seen.append(count))
-    next(found)
-    assert seen == []
-    assert len(list(found)) == 1
-    assert seen == [(1, 2), (2, 2)]
-    assert all(not each.comparison.runs for each in gather())
-    assert all(each.comparison.runs for each in gather(curves=True))
-    assert len(list(gather())) == 2
-
-
-def test_checks_are_told_as_they_are_done(monkeypatch):
-    numbers = itertools.count()
-    monkeypatch.setattr(validation, "_checks", lambda: [lambda: next(numbers)] * 3)
-    seen = []
-    assert list(validate(progress=lambda *count: seen.append(count))) == [0, 1, 2]
-    assert seen == [(1, 3), (2, 3), (3, 3)]
-    assert list(validate()) == [3, 4, 5]
-
-
-def test_the_list_of_checks_is_that_of_the_laws_installed(monkeypatch):
-    def listed():
-        return [getattr(check, "func", check).__name__ for check in validation._checks()]
-
-    full = ["_hertz", "_rigid", *["_reference"] * 5, *["_scalars"] * 6]
-    full += ["_no_friction", "_slip_throughout", "_first_slip", "_stiff", *["_codes"] * 3]
-    assert listed() == full
-    named = [check.args for check in validation._checks() if hasattr(check, "args")]
-    of_scalars = [args for args in named if isinstance(args[0], validation.Scalars)]
-    assert [(case.name, names, bound) for case, names, bound in of_scalars] == [
-        ("test 1, glass", ("force",), 0.003),
-        ("test 1, glass", ("approach", "duration"), 0.01),
-        ("test 1, limestone", ("force",), 0.003),
-        ("test 2, aluminium", ("force",), 0.003),
-        ("test 2, aluminium", ("approach", "duration"), 0.01),
-        ("test 2, magnesium", ("force",), 0.003),
-    ]
-    laws = ["tangential.coulomb", "integrator.symplectic", "tangential.springs"]
-    monkeypatch.setattr(validation, "REGISTRY", SimpleNamespace(names=lambda: laws))
-    assert listed() == ["_hertz", "_rigid", "_reference", *["_scalars"] * 6]
-    laws.remove("integrator.symplectic")
-    assert "_reference" not in listed()
-
-
-def test_a_finding_tells_the_largest_difference_and_its_options(monkeypatch):
-    """Every reference is shifted: by 0.25 at one place of the first chi, by 0.5 at the last."""
-    shifts = {chi: np.zeros(7) for chi in REFERENCE_PSI2}
-    shifts[49 / 34][2], shifts[3.0][6] = 0.25, -0.5
-    monkeypatch.setattr(validation, "REFERENCE_PSI2", {
-        chi: tuple(np.array(values) + shifts[chi]) for chi, values in REFERENCE_PSI2.items()
-    })  # fmt: skip
-    found = validation._reference("fronts", {}, "events", {"tolerance": 1e-8}, 1e-9)
-    assert found.difference == pytest.approx(0.5, abs=1e-7)
-    assert not found.ok
-    assert (found.what, found.bound) == ("fronts / events, tolerance=1e-08", 1e-9)
-    assert found.against == "21 reference values of psi2"
-    assert validation._reference("fronts", {}, "events", {}, 1.0).what == "fronts / events"
-    assert len(REFERENCE_PSI1) == 7
-
-
-def test_closed_forms_have_small_bounds_and_are_met():
-    for check, words, bound in (
-        (validation._hertz, "hertz: duration and restitution", 1e-9),
-        (validation._rigid, "coulomb: psi2", 1e-12),
-    ):
-        found = check()
-        assert (found.what, found.bound, found.ok) == (words, bound, True)
-        assert found.difference < bound
 
 
 @pytest.mark.parametrize(
@@ -198,30 +92,6 @@ def hertz(case):
     stiffness = 4.0 / 3.0 * modulus * radius**0.5
     approach = (1.25 * reduced * speed**2 / stiffness) ** 0.4
     return stiffness * approach**1.5, approach, 2.9432751843247 * approach / speed
-
-
-def test_published_scalars_are_those_of_hertz():
-    """To the bounds of reading off a figure."""
-    for case in hertz_scalars():
-        force, approach, duration = hertz(case)
-        assert case.force == pytest.approx(force, rel=0.003)
-        if case.approach is not None:
-            assert case.approach == pytest.approx(approach, rel=0.01)
-            assert case.duration == pytest.approx(duration, rel=0.01)
-        found = validation._scalars(case, ("force",), 0.003)
-        assert found.difference == pytest.approx(abs(force / case.force - 1.0), rel=1e-6)
-        assert found.what == f"hertz: {case.name}, force"
-
-
-def test_two_scalars_are_judged_by_the_worse():
-    case = hertz_scalars()[0]._replace(approach=hertz(hertz_scalars()[0])[1])
-    found = validation._scalars(case, ("approach", "duration"), 0.01)
-    off = abs(hertz(case)[2] / case.duration - 1.0)
-    assert found.difference == pytest.approx(off, rel=1e-5)
-    assert found.what == "hertz: test 1, glass, approach and duration"
-    missing = validation._scalars(case._replace(duration=None), ("approach", "duration"), 0.01)
-    assert missing.what == "hertz: test 1, glass, approach"
-    assert missing.difference < 1e-9
 
 
 def test_laws_are_named_with_a_normal_law_that_is_not_the_default():

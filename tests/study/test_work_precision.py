@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 
 from contactlab import Simulation
 from contactlab.cli import bench as cli_bench
-from contactlab.cli import progress
 from contactlab.cli.bench import markdown
 from contactlab.cli.main import main
 from contactlab.compose import composition
@@ -74,24 +73,6 @@ def test_below_rounding_only_time_counts():
     assert Benchmark(rows=equal, orders={}, complete=True).front() == [equal[0]]
 
 
-def test_an_order_is_a_slope_and_a_flat_ladder_has_none():
-    falling = [row(error=h**-2.0, options=f"steps={h}") for h in (10, 20, 40)]
-    assert work_precision._order(falling) == pytest.approx(2.0)
-    flat = [row(error=0.3, options=f"steps={h}") for h in (10, 20, 40)]
-    assert np.isnan(work_precision._order(flat))
-
-
-def test_a_law_that_comes_nearer_is_no_other_model():
-    """It need not claim the continuum as its limit: rings of a half-space do not."""
-
-    def ladder(*errors):
-        rows = [attrs.evolve(row(error=each), converges=False) for each in errors]
-        return {each.converges for each in work_precision._with_nearer(rows)}
-
-    assert ladder(8e-4, 2e-4) == {True}
-    assert ladder(0.40, 0.38) == ladder(0.1) == {False}
-
-
 def test_failed_and_slow_resolutions_are_gaps_never_dropped(monkeypatch):
     monkeypatch.setattr(work_precision, "SLOW_QUICK", 0.0)
     found = bench([Method(tangential="springs", integrator="symplectic")], quick=True)
@@ -139,12 +120,6 @@ def test_two_forms_of_one_table_are_refused(capsys):
 def test_budget_ends_it_and_says_so(capsys):
     assert main(["bench", "--quick", "--law", "coulomb", "--budget", "1e-6"]) == 0
     assert "not complete" in capsys.readouterr().out
-
-
-def test_the_line_of_progress_says_what_is_counted(capsys, monkeypatch):
-    monkeypatch.setattr(progress, "QUIET", 0.0)
-    assert main(["bench", "--quick", "--law", "coulomb", "--progress"]) == 0
-    assert "bench: 100 %" in capsys.readouterr().err
 
 
 def test_command_writes_table_csv_and_picture(tmp_path, capsys):

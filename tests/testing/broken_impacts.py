@@ -317,7 +317,7 @@ class Wears(Paths):
 #: Each with the check meant for it, and words of what the check says of it.
 BROKEN = [
     (OtherwiseAtOnce, "all_steps", "differs by"),
-    (KnowsTooMuch, "whole_impacts", "off the law's own run (by Symplectic)"),
+    (KnowsTooMuch, "whole_impacts", "off the law's own run (KnowsTooMuch by Symplectic)"),
     (KnowsHalfTheWork, "whole_impacts", "off the energy lost in the law's own run"),
     (KnowsAnotherCourse, "whole_impacts", "along the course psi is"),
     (ShortImpulse, "whole_impacts", "'grazing': psi2 is 0.0"),
@@ -341,8 +341,8 @@ BROKEN = [
     (TooStrong, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.2"),
     (TooWeakInTheBooks, "impact_books", "UNRESOLVED At step 2: the energy books miss"),
     (PathOfNan, "impact_odd", "NON_FINITE At step 1: velocity, work or x is not finite"),
-    (PushesAlong, "impact_bounds", "energy from nothing (by Events)"),
-    (SlipsWhateverItClaims, "impact_reference", "off (by Events)"),
+    (PushesAlong, "impact_bounds", "energy from nothing (PushesAlong by Events)"),
+    (SlipsWhateverItClaims, "impact_reference", "off (SlipsWhateverItClaims by Events)"),
     (PathInMetres, "impact_units", "differs by"),
     (Wears, "impact_repeatable", "run twice, ends differently"),
 ]

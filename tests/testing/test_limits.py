@@ -70,7 +70,11 @@ def _looks_often(monkeypatch):
     ("law", "name", "words"),
     [
         (Hangs(), "odd_in_slip", "in a path of 192 steps at step 1, in Hangs.advance, line "),
-        (Hangs(), "impact_odd", "in an impact, psi1 = 0.01, chi = 0.4 (by Symplectic), in Hangs."),
+        (
+            Hangs(),
+            "impact_odd",
+            "in an impact, psi1 = 0.01, chi = 0.4 (Hangs by Symplectic), in Hangs.",
+        ),
         (Sleeps(), "impact_odd", "in an impact, psi1 = 0.01, chi = 0.4 (as whole impacts), in Sle"),
         (Press(), "contacts", ""),
     ],

@@ -24,7 +24,7 @@ from contactlab.testing.check import (
     apply_if,
     hold,
 )
-from contactlab.testing.every_law import _wrong, claims
+from contactlab.testing.every_law import claims
 from tests.testing.broken_laws import Sound
 
 
@@ -213,10 +213,3 @@ def test_words_that_a_law_may_offer_are_those_that_checks_test():
     assert claims(contracts.NormalLaw) == {"radius", "hertzian_pressure", "elastic_hertz"}
     assert claims(contracts.TangentialLaw) == {"partial_slip", "rigid", "no_friction"}
     assert claims(contracts.Integrator) == set()
-
-
-def test_what_a_parameter_must_refuse_depends_on_its_type():
-    assert str(_wrong(1.0)) == "(nan, inf, -inf, 'seven', 1j)"
-    assert _wrong(3)[3:] == ("seven", 1j)
-    assert _wrong("word") == ("no such word", 3.5)
-    assert str(_wrong(True)) == "(nan, 'yes', 2)"

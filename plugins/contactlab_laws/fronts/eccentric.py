@@ -16,11 +16,13 @@ from contactlab.contracts import (
     NormalMotion,
 )
 from contactlab.contracts.status import Status
-from contactlab.impact.hertz import hertz_scales
-from contactlab_laws.fronts.planar import Impact, LostError, Watch
+from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
+from contactlab_laws.fronts.planar import Impact, Watch, follow
 
 #: Error of a step over the accuracy asked for; and the accuracy if none is asked for.
 STEP_PART, USUAL = 1e-2, 1e-9
+#: V, psi's change, work, T, u and compressions of an impact without friction (theory §1).
+SMOOTH = (-1.0, 0.0, 0.0, DURATION_CONSTANT, 1.0, 1.0)
 
 
 def motion(
@@ -37,34 +39,22 @@ def motion(
     columns = (scene.psi1, scene.chi, scene.lam, scene.eta)
     # without friction nothing slips: psi is infinite, and V and the slip are closed forms
     smooth = np.broadcast_to(mu == 0.0, shape)
-    numbers = np.array([np.broadcast_to(column, shape) for column in columns]).reshape(4, -1)
-    rows, statuses, details = [], [], []
-    steps = 0
-    for place, still in zip(numbers.T.tolist(), smooth.reshape(-1).tolist(), strict=True):
-        watch = None if observer is None else _watch(scene, scales, observer)
-        status, detail, answer = Status.SUCCESS, "", (math.nan,) * 6
-        if still:
-            answer = (-1.0, 0.0, 0.0, 2.9432751843, 1.0, 1)
+    numbers = np.array([np.broadcast_to(column, shape) for column in columns], dtype=float)
+    watch = None if observer is None else _watch(scene, scales, observer)
+    moving = np.flatnonzero(~smooth)
+    places = numbers.reshape(4, -1).T[moving].tolist()
+    impacts = [Impact(psi1, chi, lam, eta, watch) for psi1, chi, lam, eta in places]
+    lost = follow(impacts, tolerance)
+    rows = np.full((smooth.size, 6), SMOOTH)
+    statuses = np.full(len(rows), Status.SUCCESS, dtype=object)
+    details = np.full(len(rows), "", dtype=object)
+    for place, impact, reason in zip(moving.tolist(), impacts, lost, strict=True):
+        if reason:
+            rows[place], statuses[place] = math.nan, Status.UNRESOLVED
+            details[place] = f"{reason}, from Fronts."
         else:
-            psi1, chi, lam, eta = place
-            impact = Impact(psi1, chi, lam, eta, tolerance, watch)
-            try:
-                impact.follow()
-                answer = (
-                    impact.rate,
-                    impact.change,
-                    impact.work,
-                    impact.time,
-                    impact.deepest,
-                    impact.compressions,
-                )
-            except (LostError, OverflowError, ZeroDivisionError) as error:
-                status, detail = Status.UNRESOLVED, f"{error}, from Fronts."
-            steps += impact.steps
-        rows.append(answer)
-        statuses.append(status)
-        details.append(detail)
-    rate, psi, work, time, radius, times = np.array(rows, dtype=float).T.reshape(6, *shape)
+            rows[place] = impact.outcome
+    rate, psi, work, time, radius, times = rows.T.reshape(6, *shape)
     unit = mu * speed / kappa
     dragged = -2.0 * speed * W[..., 0, 1] / W[..., 0, 0]
     change = np.zeros((*shape, 3))
@@ -83,9 +73,9 @@ def motion(
         maximum_approach=number(approach * scales.approach),
         maximum_force=number(radius * approach * scales.force),
         compressions=np.nan_to_num(times).astype(int) if shape else int(np.nan_to_num(times)),
-        status=np.array(statuses, dtype=object).reshape(shape) if shape else statuses[0],
-        detail=np.array(details, dtype=object).reshape(shape) if shape else details[0],
-        counters={"steps": steps},
+        status=statuses.reshape(shape) if shape else statuses[0],
+        detail=details.reshape(shape) if shape else details[0],
+        counters={"steps": sum(impact.steps for impact in impacts)},
     )
 
 

@@ -7,28 +7,28 @@ was drawn while all stuck, or locked out of slip of one sign. Slip eats the piec
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Callable, Generator
+from typing import Any, NamedTuple, TypeAlias
 
-from contactlab_laws.fronts.series import (
-    ORDER,
-    Laws,
-    Series,
-    along_drawn,
-    along_locked,
-    first_fall,
-    stuck,
-    value,
+import numpy as np
+
+from contactlab_laws.fronts.series import Laws, Series, value
+from contactlab_laws.fronts.steps import (
+    Answer,
+    Request,
+    drawn,
+    gross,
+    locked,
+    many,
+    one,
+    stick,
 )
+from contactlab_laws.hertz.motion import scaled_motion, velocity_factor
 
-#: A series is followed as far as its last two terms stay below the tolerance, times this.
-CAREFUL = 0.9
-#: Longest step: beyond it forces turn more than events are looked for.
-LONGEST = 1.0
-#: Error of a step over its velocity that is rounding: a jam may multiply velocities by 1e8.
-ROUNDING = 1e-14
 #: Steps of an impact before it is given up; a hard one takes 40, one of kappa = 1e6 some 10,000.
 MOST_STEPS = 20_000
+#: Fewer impacts than these are stepped one at a time.
+FEW = 12
 
 
 class Drawn(NamedTuple):
@@ -48,11 +48,9 @@ class Locked(NamedTuple):
     outer: float
 
 
-class LostError(ArithmeticError):
-    """The impact does not end."""
-
-
-Phase = Callable[[], Any]
+#: What a phase asks and is answered, and the phase after it.
+Phase: TypeAlias = Generator[Request, Answer, "Callable[[], Phase] | None"]
+Next: TypeAlias = Callable[[], Phase]
 #: Called with T, u, V, psi and F/(mu P_max) at instants of the impact.
 Watch = Callable[[float, float, float, float, float], object]
 
@@ -64,15 +62,13 @@ class Impact:
     ----------
     psi1, chi, lam, eta : float
         The parameters of theory §14.
-    tolerance : float
-        Error of the scaled velocities in a step.
     watch : callable, optional
         Sees the instants.
 
     Attributes
     ----------
-    rate, change : float
-        V, and the change of psi so far.
+    rate : float
+        V.
     work : float
         Friction work over 2.5 mu² v1²/(2 kappa W_nn).
     time, radius, deepest : float
@@ -87,10 +83,9 @@ class Impact:
         chi: float,
         lam: float,
         eta: float,
-        tolerance: float,
         watch: Watch | None = None,
     ) -> None:
-        self.numbers, self.tolerance, self.watch = (chi, lam, eta), tolerance, watch
+        self.numbers, self.watch = (chi, lam, eta), watch
         self.psi1 = psi1
         self.radius, self.rate, self.lack = 0.0, 1.0, 0.0
         self.time = self.work = self.deepest = 0.0
@@ -100,76 +95,54 @@ class Impact:
         self.memory: list[Drawn | Locked] = []
         self.steps, self.compressions = 0, 1
 
-    def follow(self) -> Impact:
-        """Return this impact at separation.
-
-        Raises
-        ------
-        LostError
-            If it does not end in ``MOST_STEPS``.
-        """
+    def motion(self) -> Generator[Request, Answer, None]:
+        """Ask for the steps of the impact until separation."""
         slips = self.margin < 0.0 or (self.margin == 0.0 and self.laws.drive <= 0.0)
-        phase: Phase | None = self._gross if slips else self._stuck
+        phase: Next | None = self._gross if slips else self._stuck
         while phase is not None:
-            phase = phase()
-        return self
+            phase = yield from phase()
 
     @property
-    def change(self) -> float:
-        """The change of psi so far."""
-        return self.sign * (self.rate - self.margin) - self.psi1
+    def outcome(self) -> tuple[float, ...]:
+        """V, the change of psi, friction work, T, the greatest u, and compressions."""
+        change = self.sign * (self.rate - self.margin) - self.psi1
+        return self.rate, change, self.work, self.time, self.deepest, self.compressions
 
     # ---------------------------------------------------------------------------- the phases
 
     def _stuck(self) -> Phase:
         """All sticks; the edge begins to slip where k, or its like of the other sign, is zero."""
-        length, fresh = 0.0, self.margin == 0.0
-        while True:
-            rows = stuck(self.laws, self.radius, self.rate, self.margin, self.lack)
-            other = [2.0 * V - k for V, k in zip(rows[1], rows[2], strict=True)]
-            t, event = self._step(rows[:4], [(rows[2], fresh), (other, False)])
-            self._arrive(rows[:3], t)
-            self._look(rows, t)
-            self.lack, self.time = value(rows[3], t), self.time + value(rows[4], t)
+        length, fresh, event = 0.0, self.margin == 0.0, -1
+        while event < 0:
+            state = (self.radius, self.rate, self.margin, self.lack)
+            t, event, values, peak = yield (stick,), (*self.laws, *state, fresh)
+            self._arrive(values, peak)
             length, fresh = length + t, False
-            if event >= 0:
-                break
         if event == 1:
             self._turn()
         self.margin = 0.0
         outer = (self.radius, self.rate, 0.0, self.lack)
         self.memory.append(Drawn(self.sign, outer, length))
-        return self._slip
+        return self._slip()
 
     def _drawn(self) -> Phase:
         """Let the front run back along a piece that was drawn while all stuck."""
         piece = self.memory[-1]
         assert isinstance(piece, Drawn)
         then, left = piece.outer, piece.length
-        meets = then[0] == self.radius
-        while True:
-            fresh = self.margin == 0.0 and then[2] == 0.0
-            now = (self.radius, self.rate, self.margin)
-            rows = along_drawn(self.laws, now, then, fresh=fresh)
-            rows[7][0] = left
-            slip, gap = (
-                [-k for k in rows[2]],
-                [u - c for u, c in zip(rows[0], rows[3], strict=True)],
-            )
+        meets, event = then[0] == self.radius, -1
+        while event < 0:
             begins = self.margin == 0.0
-            t, event = self._step(rows[:8], [(slip, begins), (rows[7], False), (gap, meets)])
-            self._arrive(rows[:3], t)
-            self._look([*rows[:3], rows[6], rows[8]], t)
-            front, *others, left = (value(row, t) for row in rows[3:8])
-            then = (front, others[0], others[1], others[2])
-            self.lack = then[3]
-            self.time, self.work = self.time + value(rows[8], t), self.work + value(rows[9], t)
-            meets = False
-            if event >= 0:
-                break
+            now = (self.radius, self.rate, self.margin)
+            numbers = (*self.laws, *now, *then, left, begins, meets)
+            _, event, values, peak = yield (drawn, begins and then[2] == 0.0), numbers
+            self._arrive(values, peak)
+            front, rate, margin, left, work = values[5:]
+            then, meets = (front, rate, margin, self.lack), False
+            self.work += work
         if event == 1:
             self.memory.pop()
-            return self._slip
+            return self._slip()
         self.memory[-1] = Drawn(piece.sign, then, left)
         return self._stopped(front) if event == 0 else self._caught(front)
 
@@ -178,33 +151,21 @@ class Impact:
         piece = self.memory[-1]
         assert isinstance(piece, Locked)
         front, base = piece.outer, -piece.lack
-        meets = front == self.radius
-        while True:
+        meets, event = front == self.radius, -1
+        while event < 0:
             now = (self.radius, self.rate, self.margin)
-            rows = along_locked(self.laws, now, front, base)
-            slip, gap = (
-                [-k for k in rows[2]],
-                [u - c for u, c in zip(rows[0], rows[3], strict=True)],
-            )
-            rest = [rows[3][0] - piece.inner, *rows[3][1:]]
-            begins = self.margin == 0.0
-            t, event = self._step(rows[:4], [(slip, begins), (rest, False), (gap, meets)])
-            self._arrive(rows[:3], t)
-            front = value(rows[3], t)
-            self.lack = base + (4.0 / 3.0) * front**3
-            self.time, self.work = self.time + value(rows[4], t), self.work + value(rows[5], t)
-            if self.watch is not None:
-                self._show(self.time, self.radius, self.rate, self.margin, self.lack)
-            meets = False
-            if event >= 0:
-                break
+            numbers = (*self.laws, *now, front, base, piece.inner, self.margin == 0.0, meets)
+            _, event, values, peak = yield (locked,), numbers
+            self._arrive(values, peak)
+            front, work = values[5:]
+            self.work, meets = self.work + work, False
         if event == 1:
             self.memory.pop()
-            return self._slip
+            return self._slip()
         self.memory[-1] = piece._replace(outer=front)
         return self._stopped(front) if event == 0 else self._caught(front)
 
-    def _gross(self) -> Phase | None:
+    def _gross(self) -> Phase:
         """All slips, J = 0: V² + (1 + s lam) zeta^2.5 is constant, and k rises as V falls."""
         press, _, drive, _ = self.laws
         rate, margin, depth = self.rate, self.margin, self.radius**5
@@ -230,32 +191,29 @@ class Impact:
         else:
             self.work += 0.8 * fall * (-margin - 0.5 * drive * fall / press) / press
             margin += drive * fall / press
-        self._through(last, stops)
-        self.rate, self.radius = last, max(after, 0.0) ** 0.2
+        radius = max(after, 0.0) ** 0.2
+        if press > 0.0 and self.watch is None:
+            self.time += _time(press, left, (self.radius, rate), (radius, last))
+        else:
+            yield from self._through(last, stops)
+        self.rate, self.radius = last, radius
         self.deepest = max(self.deepest, self.radius)
         self.margin = 0.0 if stops else margin
-        return self._stopped(0.0) if stops else None
+        return self._stopped() if stops else None
 
-    def _through(self, last: float, stops: bool) -> None:
+    def _through(self, last: float, stops: bool) -> Generator[Request, Answer, None]:
         """Add the time of gross slip until the rate is ``last``, and show the instants."""
-        laws, k, event = self.laws, self.margin, -1
-        excess = laws.drive / laws.press if laws.press else 0.0
-        alone = laws._replace(drive=0.0, spring=0.0)  # then k and J stay zero
-        falls = self.rate > last
-        u, V, start = self.radius, self.rate, self.rate
-        while event < 0 and last != V:
-            rows = stuck(alone, u, V, 0.0, 0.0)
-            ahead = [V - last, *rows[1][1:]] if falls else [last - V, *(-v for v in rows[1][1:])]
-            t, event = self._step(rows[:2], [(ahead, False)] if stops else [(rows[0], u == 0.0)])
-            for part in (0.25, 0.5, 0.75, 1.0) if self.watch is not None else ():
-                u, V, time = (value(row, part * t) for row in (rows[0], rows[1], rows[4]))
-                self._show(self.time + time, u, V, k + excess * (start - V), 0.0)
-            u, V, time = (value(row, t) for row in (rows[0], rows[1], rows[4]))
+        u, rate, margin, event = self.radius, self.rate, self.margin, -1
+        falls = stops and rate > last
+        while event < 0 and last != rate:
+            numbers = (*self.laws, u, rate, margin, last, u == 0.0)
+            _, event, values, _ = yield (gross, stops, falls), numbers
+            u, rate, margin, _, time = values
             self.time += time
 
     # --------------------------------------------------------------------- what comes after
 
-    def _slip(self) -> Phase:
+    def _slip(self) -> Next:
         """Let the edge slip into the outermost piece; without any all slips."""
         memory = self.memory
         while memory and isinstance(memory[-1], Locked) and memory[-1].sign == self.sign:
@@ -271,20 +229,20 @@ class Impact:
             memory[-1] = Drawn(self.sign, outer, piece.length)
         return self._drawn
 
-    def _stopped(self, front: float) -> Phase:
+    def _stopped(self, front: float = 0.0) -> Next:
         """Slip has stopped: its zone locks. In unloading the edge slips on with the other sign."""
         self.margin = 0.0
         self.memory.append(Locked(self.sign, self.lack, front, self.radius))
         if self.rate > 0.0:
             return self._stuck
         self._turn()
-        return self._slip
+        return self._slip()
 
-    def _caught(self, front: float) -> Phase:
+    def _caught(self, front: float) -> Next:
         """Let the edge, which has met the front, slip with the other sign."""
         self.radius = front
         self._turn()
-        return self._slip
+        return self._slip()
 
     def _turn(self) -> None:
         """Look from the other sign of slip."""
@@ -295,39 +253,71 @@ class Impact:
 
     # ------------------------------------------------------------------------------ steps
 
-    def _step(self, rows: list[Series], events: list[tuple[Series, bool]]) -> tuple[float, int]:
-        """Return how far the series hold, or the first event within, and which."""
-        length = LONGEST
-        for row in rows:
-            tolerance = max(self.tolerance, ROUNDING * abs(row[0]))
-            for order in (ORDER, ORDER - 1):
-                size = abs(row[order])
-                if not size < math.inf:
-                    raise LostError("The velocities of a jam outgrow the numbers")
-                if size > 0.0:
-                    length = min(length, (tolerance / size) ** (1.0 / order))
-        self.steps += 1
-        if self.steps > MOST_STEPS:
-            raise LostError(f"The contact neither ends nor settles in {MOST_STEPS} steps")
-        return first_fall(events, CAREFUL * length)
-
-    def _arrive(self, rows: list[Series], t: float) -> None:
-        """Take u, V and k at the end of a step."""
+    def _arrive(self, values: list[float], peak: float) -> None:
+        """Take u, V, k and J at the end of a step, and its time."""
         before = self.rate
-        self.radius, self.rate, self.margin = (value(row, t) for row in rows)
-        if before > 0.0 >= self.rate:
-            self.deepest = max(self.deepest, *(value(rows[0], t * j / 16) for j in range(17)))
-        self.deepest = max(self.deepest, self.radius)
+        self.radius, self.rate, self.margin, self.lack, time = values[:5]
+        self.time += time
+        self.deepest = max(self.deepest, peak)
         self.compressions += before <= 0.0 < self.rate
 
-    def _look(self, rows: list[Series], t: float) -> None:
-        """Show u, V, k, J and T within a step."""
-        if self.watch is not None:
-            for part in (0.25, 0.5, 0.75, 1.0):
-                *state, time = (value(row, part * t) for row in rows)
-                self._show(self.time + time, *state)
+    def look(self, rows: list[Series], t: float) -> None:
+        """Show u, V, psi and F within a step."""
+        if self.watch is None:
+            return
+        for part in (0.25, 0.5, 0.75, 1.0):
+            u, rate, margin, lack, time = (value(row, part * t) for row in rows[:5])
+            psi, force = self.sign * (rate - margin), self.sign * (u**3 - 1.5 * lack)
+            self.watch(self.time + time, u, rate, psi, force)
 
-    def _show(self, time: float, u: float, rate: float, margin: float, lack: float) -> None:
-        """Show one instant."""
-        if self.watch is not None:
-            self.watch(time, u, rate, self.sign * (rate - margin), self.sign * (u**3 - 1.5 * lack))
+
+def _time(press: float, left: float, *ends: tuple[float, float]) -> float:
+    """Return T between two ends, u and V each, where V² + ``press`` u⁵ is ``left``, as Hertz's."""
+    top, speed = (left / press) ** 0.2, math.sqrt(left)
+    phases = []
+    for u, rate in ends:
+        sine = u / top
+        phases.append(math.atan2(sine, rate / (speed * velocity_factor(sine))))
+    begin, end = scaled_motion(np.array(phases))[2].tolist()
+    time: float = top * top / speed * (end - begin)
+    return time
+
+
+def follow(impacts: list[Impact], tolerance: float) -> list[str]:
+    """Follow impacts to separation; return why each has no answer, "" if it has one.
+
+    All that wait in one phase are stepped at once, first those whose first has made the fewest.
+    """
+    lost = [""] * len(impacts)
+    motions = [impact.motion() for impact in impacts]
+    waiting: dict[Any, list[tuple[int, Request]]] = {}
+
+    def send(place: int, answer: Answer | None) -> None:
+        """Let an impact ask for its next step."""
+        impacts[place].steps += 1
+        try:
+            request = motions[place].send(answer)  # type: ignore[arg-type]
+        except StopIteration:
+            return
+        except ArithmeticError as error:
+            lost[place] = str(error)
+        else:
+            waiting.setdefault(request[0], []).append((place, request))
+
+    for place in range(len(impacts)):
+        send(place, None)
+    while waiting:
+        behind = min(waiting, key=lambda phase: impacts[waiting[phase][0][0]].steps)
+        places, requests = zip(*waiting.pop(behind), strict=True)
+        if len(places) < FEW:
+            answers = [one(request, tolerance, impacts[0].look) for request in requests]
+        else:
+            answers = many(requests, tolerance)
+        for place, answer in zip(places, answers, strict=True):
+            if answer is None:
+                lost[place] = "The velocities of a jam outgrow the numbers"
+            elif impacts[place].steps > MOST_STEPS:
+                lost[place] = f"The contact neither ends nor settles in {MOST_STEPS} steps"
+            else:
+                send(place, answer)
+    return lost

@@ -1,0 +1,84 @@
+"""What every result of a run says: failures, cautions, and a check that raises them."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Any, Self
+
+import numpy as np
+
+from contactlab.contracts.status import Status
+
+
+class ImpactError(RuntimeError):
+    """Raised by ``check()`` of a result if an impact failed.
+
+    ``status`` is the status of the impact in the message.
+    """
+
+    def __init__(self, sentence: str, status: Status) -> None:
+        super().__init__(sentence, status)
+        self.status = status
+
+    def __str__(self) -> str:
+        """Return the sentence without the status."""
+        return str(self.args[0])
+
+
+class Answer:
+    """Base of results: of one impact or a batch, of collisions, and along paths."""
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def cautions(self) -> list[str]:
+        """Doubts about the numbers, in sentences."""
+
+    @abstractmethod
+    def _ends(self) -> tuple[Any, Any]:
+        """Return statuses and details of what was run."""
+
+    @property
+    def failures(self) -> dict[int, str]:
+        """A sentence for each impact that failed, by its index in C order."""
+        statuses, details = (np.ravel(np.array(entry, dtype=object)) for entry in self._ends())
+        return {
+            index: f"{status.value} {detail}".strip()
+            for index, (status, detail) in enumerate(np.broadcast(statuses, details))
+            if status is not Status.SUCCESS
+        }
+
+    def check(self, *, cautions: bool = False) -> Self:
+        """Return this result if every impact succeeded; with ``cautions`` only if there is none.
+
+        Parameters
+        ----------
+        cautions : bool
+            Raise the first caution too.
+
+        Raises
+        ------
+        ImpactError
+            With the sentence of the first impact that failed, or of the first caution.
+        """
+        statuses = np.array(self._ends()[0], dtype=object)
+        for index, sentence in self.failures.items():
+            where = f"impact {index}: " if statuses.ndim else ""
+            raise ImpactError(where + sentence, np.ravel(statuses)[index])
+        for sentence in self.cautions if cautions else ():
+            raise ImpactError(f"caution: {sentence}", Status.SUCCESS)
+        return self
+
+    def _first_lines(self) -> list[str]:
+        """Return what ``str`` begins with."""
+        return [repr(self)]
+
+    def __str__(self) -> str:
+        """Return ``repr``, the first failure and every caution, in lines."""
+        lines, failures = self._first_lines(), self.failures
+        for index in [*failures][:1]:
+            batch = np.ndim(self._ends()[0])
+            where = f" (impact {index}; {len(failures)} in all)" if batch else ""
+            lines.append(f"failed{where}: {failures[index]}")
+        return "\n".join([*lines, *(f"caution: {text}" for text in self.cautions)])
