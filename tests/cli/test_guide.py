@@ -81,7 +81,7 @@ def test_an_unknown_topic_is_refused_with_the_nearest(run):
 @pytest.mark.parametrize(
     ("word", "pages"),
     [
-        ("restitution", ("theory-normal-laws", "choosing")), ("plugin", ("extending-kit",)),
+        ("restitution", ("fitting", "choosing")), ("plugin", ("extending-kit",)),
         ("trust", ("how-far-to-trust",)), ("Hysteresis", ("load-paths",)), ("zzzzzz", ()),
         ("psi1", ("getting-started",)), ("v_x", ("theory-impact", "units-and-signs")),
     ],
