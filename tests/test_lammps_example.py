@@ -16,7 +16,7 @@ from tests.kernels.test_kernels import COMPILER, HERE, KERNELS, driven, needs_c
 
 FOLDER = Path(__file__).parents[1] / "examples" / "lammps"
 PAGE = (FOLDER / "README.md").read_text("utf-8")
-SCRIPTS = ("build", "rebounds", "checks", "cost", "gas", "dense_flow")
+SCRIPTS = ("build", "rebounds", "checks", "cost", "gas", "dense_flow", "drum")
 
 
 def shown():
