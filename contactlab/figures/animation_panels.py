@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from contactlab.figures.stick_slip import NO_CONTACT, STATES
 from contactlab.figures.style import (
-    LAW_COLOURS,
     LAW_DASHES,
     QUIET,
     TIME_LABEL,
+    curve_colour,
     friction_limit,
     zero_line,
 )
@@ -92,7 +92,7 @@ class Ball:
         scene, start = self.result.scene, self.place[-1]
         fastest = self.fastest
         for number, (name, result) in enumerate(ghosts.items(), start=1):
-            look = {"edgecolor": LAW_COLOURS[number], "linestyle": LAW_DASHES[1], "linewidth": 1.8}
+            look = {"edgecolor": curve_colour(number), "linestyle": LAW_DASHES[1], "linewidth": 1.8}
             outline = Circle((0.0, 1.0), 1.0, facecolor="none", visible=False, zorder=2, **look)
             self.axes.add_patch(outline)
             velocity = np.array(
@@ -107,7 +107,7 @@ class Ball:
             place = np.array([along / float(scene.sphere.radius), start[1]])  # type: ignore[union-attr]
             word = self.axes.text(
                 0.02, 0.90 - 0.08 * number, f"ghost: {name}", transform=self.axes.transAxes,
-                va="top", color=LAW_COLOURS[number], visible=False,
+                va="top", color=curve_colour(number), visible=False,
             )  # fmt: skip
             self.ghosts.append((outline, word, place, velocity / fastest))
 
@@ -168,8 +168,8 @@ class Forces:
         self.time, self.tangential, normal = scaled_forces(result)
         zero_line(axes)
         friction_limit(axes, self.time, normal)
-        (self.line,) = axes.plot([], [], color=LAW_COLOURS[0])
-        (self.point,) = axes.plot([], [], "o", color=LAW_COLOURS[0], markersize=6)
+        (self.line,) = axes.plot([], [], color=curve_colour(0))
+        (self.point,) = axes.plot([], [], "o", color=curve_colour(0), markersize=6)
         axes.set_xlim(0.0, 1.0)
         axes.set_ylim(-1.08, 1.08)
         axes.set_xlabel(TIME_LABEL)

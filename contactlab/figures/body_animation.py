@@ -13,7 +13,7 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from contactlab.figures.animation import ARRIVING, DOTS, IN_CONTACT, LEAVING, SIZE, write_gif
-from contactlab.figures.style import LAW_COLOURS, LAW_DASHES, QUIET, styled, zero_line
+from contactlab.figures.style import LAW_DASHES, QUIET, curve_colour, styled, zero_line
 from contactlab.outcome.columns import unit_in
 
 Array = NDArray[np.float64]
@@ -146,7 +146,7 @@ def _scene(axes: Any, body: Body, others: Mapping[str, Body], times: Array) -> C
     look: dict[str, Any] = {"closed": True, "linewidth": 1.6}
     drawn = [(Polygon(body.outline(0.0), facecolor="#CFE3F1", edgecolor="black", **look), body)]
     for number, (name, other) in enumerate(others.items(), start=1):
-        colour = LAW_COLOURS[number]
+        colour = curve_colour(number)
         outline = Polygon(
             other.outline(0.0), facecolor="none", edgecolor=colour, linestyle=LAW_DASHES[1], **look
         )
@@ -184,7 +184,7 @@ def _course(axes: Any, result: Any) -> Callable[[float], None]:
         curves.append(("slip along t2", slip[:, 1]))
     zero_line(axes)
     for number, (name, values) in enumerate(curves):
-        axes.plot(time, values, color=LAW_COLOURS[number], label=name)
+        axes.plot(time, values, color=curve_colour(number), label=name)
     axes.set_xlabel("time over duration of contact")
     axes.set_ylabel(f"velocity of the contact point ({unit})")
     axes.legend(loc="upper right")  # not moved by the cursor

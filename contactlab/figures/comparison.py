@@ -13,9 +13,9 @@ from matplotlib.lines import Line2D
 from contactlab.figures.names import name_curves
 from contactlab.figures.style import (
     BELOW,
-    LAW_COLOURS,
     MEASURED_COLOUR,
     NARROW,
+    curve_colour,
     error_band,
     figure_width,
     force_axes,
@@ -90,7 +90,7 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
         family = name.split()[0]
         number = forms[family] = forms.get(family, -1) + 1
         look: Any = {
-            "color": LAW_COLOURS[families.index(family) % len(LAW_COLOURS)],
+            "color": curve_colour(families.index(family)),
             "linestyle": FORM_DASHES[number % len(FORM_DASHES)],
             "linewidth": 1.6,
         }

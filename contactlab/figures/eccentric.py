@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from contactlab.figures.results import on_axes
-from contactlab.figures.style import LAW_COLOURS, label, zero_line
+from contactlab.figures.style import curve_colour, label, zero_line
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import unit_in
 
@@ -56,9 +56,9 @@ def _path(axes: Axes, result: Any) -> Axes:
         axes.set_xlabel(label("slip velocity along t1", unit))
         axes.set_ylabel(label("slip velocity along t2", unit))
     axes.axvline(0.0, color="0.8", linewidth=0.8, zorder=0)
-    axes.plot(across, up, color=LAW_COLOURS[0])
-    axes.plot(across[0], up[0], "o", color=LAW_COLOURS[0], label="first touch")
-    axes.plot(across[-1], up[-1], "s", color=LAW_COLOURS[1], label="separation")
+    axes.plot(across, up, color=curve_colour(0))
+    axes.plot(across[0], up[0], "o", color=curve_colour(0), label="first touch")
+    axes.plot(across[-1], up[-1], "s", color=curve_colour(1), label="separation")
     axes.legend()
     return axes
 
@@ -77,7 +77,7 @@ def _many(axes: Axes, result: Any, x: tuple[str, Any] | None) -> Axes:
     zero_line(axes)
     curves = (("rebound over approach, -V2", -result.normal_velocity), ("psi2", size(result.psi2)))
     for number, (word, after) in enumerate(curves):
-        look: dict[str, Any] = {"color": LAW_COLOURS[number], "label": word}
+        look: dict[str, Any] = {"color": curve_colour(number), "label": word}
         axes.plot(before[order], np.ravel(after)[order], ".-", **look)
     axes.set_xlabel(name)
     axes.legend()

@@ -12,8 +12,8 @@ from matplotlib.lines import Line2D
 from contactlab.figures.names import name_curves
 from contactlab.figures.style import (
     ASIDE,
-    LAW_COLOURS,
     QUIET,
+    curve_colour,
     force_axes,
     friction_limit,
     label,
@@ -134,7 +134,7 @@ def _reflexion(axes: Axes, data: FigureData) -> list[Line2D]:
     zero_line(axes)
     elastic, rigid, exact = data.curves
     law = f"{elastic.name} law"
-    lines = axes.plot(elastic.x, elastic.y, color=LAW_COLOURS[0], linewidth=3.0, label=law)
+    lines = axes.plot(elastic.x, elastic.y, color=curve_colour(0), linewidth=3.0, label=law)
     lines += axes.plot(exact.x, exact.y, color="black", linewidth=0.9, label=exact.name)
     lines += axes.plot(rigid.x, rigid.y, **law_style(1), label=rigid.name)
     axes.set_ylabel(label("psi2"))

@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from contactlab.figures.style import (
-    LAW_COLOURS,
     Width,
+    curve_colour,
     error_band,
     figure_size,
     force_axes,
@@ -68,7 +68,7 @@ def draw_history(axes: Axes | None, history: Any, *, width: Width | None = None)
     with on_axes(axes, width) as drawn:
         zero_line(drawn)
         for number, name in enumerate(("normal_force", "tangential_force")):
-            curves = drawn.plot(history.time, getattr(history, name), color=LAW_COLOURS[number])
+            curves = drawn.plot(history.time, getattr(history, name), color=curve_colour(number))
             curves[0].set_label(name.replace("_", " "))
         drawn.set_xlabel(f"time ({time})")
         drawn.set_ylabel(f"force ({force})")
@@ -101,7 +101,7 @@ def _forces(axes: Axes, result: Any) -> Axes:
     time, tangential, normal = scaled_forces(result)
     zero_line(axes)
     friction_limit(axes, time, normal)
-    axes.plot(time, tangential, color=LAW_COLOURS[0])
+    axes.plot(time, tangential, color=curve_colour(0))
     force_axes(axes)
     return axes
 
@@ -117,7 +117,7 @@ def _quantities(axes: Axes, result: Any, x: str, y: str) -> Axes:
     order = np.argsort(abscissa, kind="stable")
     curve = np.unique(abscissa).size == abscissa.size
     look: dict[str, Any] = {"marker": "" if curve else ".", "linestyle": "-" if curve else "none"}
-    axes.plot(abscissa[order], ordinate[order], color=LAW_COLOURS[0], **look)
+    axes.plot(abscissa[order], ordinate[order], color=curve_colour(0), **look)
     if curve and y == "psi2":
         _band(axes, result, abscissa, ordinate, order)
     axes.set_xlabel(label(x, unit_in(across.unit, scene)))
@@ -131,7 +131,7 @@ def _band(axes: Axes, result: Any, x: Any, y: Any, order: Any) -> None:
     if error is None:
         error = result.plan.psi2_error
     error = np.broadcast_to(np.asarray(error, dtype=float), result.scene.shape).ravel()
-    look = {"color": LAW_COLOURS[0], "label": "numerical error"}
+    look = {"color": curve_colour(0), "label": "numerical error"}
     error_band(axes, x[order], y[order], error[order], look)
     if axes.collections:
         axes.legend()

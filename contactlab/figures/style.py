@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from contextlib import contextmanager
 from typing import Any, Literal
 
@@ -156,21 +156,21 @@ def styled(look: Look = "print", width: Width | None = None) -> Iterator[None]:
 
 def darken(figure: Figure) -> None:
     """Put a figure on the dark ground of slides: greys are turned round, colours lightened."""
-    changes: list[
-        tuple[Any, Any]
-    ] = []  # every colour is read before any is changed: some follow others
+    kept = {*map(mpl.colors.to_rgb, own_colours())}
+    # every colour is read before any is changed: some follow others
+    changes: list[tuple[Any, Any]] = []
     for artist in figure.findobj(lambda each: not isinstance(each, Figure | Axes)):
         if getattr(artist, "get_array", lambda: None)() is not None:  # coloured by a map
             kinds = artist.get_cmap()  # type: ignore[attr-defined]
             if isinstance(kinds, ListedColormap) and kinds.N <= FEW_COLOURS:
-                listed = [_on_dark(each) for each in mpl.colors.to_rgba_array(kinds.colors)]
+                listed = [_on_dark(each, kept) for each in mpl.colors.to_rgba_array(kinds.colors)]
                 changes.append((artist.set_cmap, ListedColormap(listed)))  # type: ignore[attr-defined]
             continue
         parts = TEXT_AND_LINES if hasattr(artist, "get_color") else PATCHES
         for part in parts:
             given = getattr(artist, f"get_{part}", lambda: None)()
             if given is not None:
-                colours = [_on_dark(each) for each in mpl.colors.to_rgba_array(given)]
+                colours = [_on_dark(each, kept) for each in mpl.colors.to_rgba_array(given)]
                 many = np.ndim(given) > 1
                 changes.append(
                     (getattr(artist, f"set_{part}"), colours if many else (*colours, "none")[0])
@@ -179,9 +179,11 @@ def darken(figure: Figure) -> None:
         put(colour)
 
 
-def _on_dark(colour: Any) -> tuple[float, ...]:
-    """Return a colour for the dark ground; what is transparent stays so."""
+def _on_dark(colour: Any, kept: Set[Any]) -> tuple[float, ...]:
+    """Return a colour for the dark ground, or one that is kept; what is transparent stays so."""
     red, green, blue, alpha = map(float, colour)
+    if (red, green, blue) in kept:
+        return red, green, blue, alpha
     if max(red, green, blue) - min(red, green, blue) <= GREY:
         return (*[GROUND + (1.0 - GROUND) * (1.0 - red)] * 3, alpha)
     return (*(part + LIGHTER * (1.0 - part) for part in (red, green, blue)), alpha)
@@ -227,10 +229,22 @@ def ordered_colours(count: int) -> list[Any]:
     return [colours(place) for place in np.linspace(0.0, ORDERED_END, count)]
 
 
+def own_colours() -> list[Any]:
+    """Return the colours of matplotlib's ``axes.prop_cycle`` where it was changed."""
+    cycle = mpl.rcParams["axes.prop_cycle"]
+    changed = cycle != mpl.rcParamsDefault["axes.prop_cycle"]
+    return list(cycle.by_key().get("color", ())) if changed else []
+
+
+def curve_colour(number: int) -> Any:
+    """Return the colour of the curve at place ``number``: one's own, or of the palette."""
+    colours = own_colours() or LAW_COLOURS
+    return colours[number % len(colours)]
+
+
 def law_style(number: int) -> dict[str, Any]:
     """Return colour and dashes of the law at place ``number``."""
-    place = number % len(LAW_COLOURS)
-    return {"color": LAW_COLOURS[place], "linestyle": LAW_DASHES[place]}
+    return {"color": curve_colour(number), "linestyle": LAW_DASHES[number % len(LAW_DASHES)]}
 
 
 def zero_line(axes: Axes) -> Axes:

@@ -77,6 +77,20 @@ def test_laws_have_colours_and_dashes_of_their_own_in_turn():
     assert len(set(map(str, style.LAW_DASHES[:4]))) == 4
 
 
+def test_colours_of_ones_own_take_the_place_of_the_palette_and_stay_on_a_slide(tmp_path):
+    kept = []
+
+    def draw(axes):
+        axes.plot([0.0, 1.0], **style.law_style(3))
+        kept.append(axes)
+
+    with mpl.rc_context({"axes.prop_cycle": mpl.cycler(color=["tab:red", "#123456"])}):
+        assert [style.law_style(place)["color"] for place in (0, 2)] == ["tab:red"] * 2
+        save(tmp_path / "a.png", draw, look="slides")
+    assert mpl.colors.to_hex(kept[0].lines[0].get_color()) == "#123456"
+    assert style.law_style(0)["color"] == style.LAW_COLOURS[0]
+
+
 @pytest.mark.parametrize(
     ("arguments", "size", "family", "width"),
     [

@@ -12,7 +12,7 @@ import contactlab
 from contactlab import Scene, Simulation
 from contactlab.impact.coupling import coupling_shift
 
-GUIDE = Path(contactlab.__file__).parent / "guide" / "theory.md"
+GUIDE = Path(contactlab.__file__).parent / "guide" / "theory-coupling.md"
 CHI = 49.0 / 34.0
 PSI1 = (0.5, 1.0, 1.5, 2.0, 3.0)
 SOLID, SHELL = np.sqrt(0.4), np.sqrt(2.0 / 3.0)
@@ -28,6 +28,7 @@ def table():
     text = GUIDE.read_text(encoding="utf-8")
     rows = re.findall(r"^\| (0\.25|0\.5|1|2) \|((?: -[\d.]+ \|){5})$", text, re.MULTILINE)
     rows = rows[:4]  # the first of the tables with a Lambda
+    assert len(rows) == 4
     return {float(name): [float(word) for word in re.findall(r"[\d.]+", row)] for name, row in rows}
 
 

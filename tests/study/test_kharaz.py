@@ -127,7 +127,7 @@ def test_no_page_says_that_mfix_has_two_thirds():
 
 
 def test_the_table_of_the_theory_page_is_that_of_the_figures():
-    page = Path(contactlab.__file__).parent / "guide" / "theory.md"
+    page = Path(contactlab.__file__).parent / "guide" / "theory-coupling.md"
     pattern = r"^\| ([\d.]+)° \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$"
     rows = re.findall(pattern, page.read_text(encoding="utf-8"), re.MULTILINE)
     told = np.array([[float(number) for number in row] for row in rows if float(row[1]) > 1.0])
