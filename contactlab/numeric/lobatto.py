@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 ON_NODE = 1e-290
 #: A root is found to this part of the values around it, or to this width of tau.
 ROOT_VALUE, ROOT_WIDTH, ROOT_CAP = 1e-16, 1e-15, 60
+#: The parabola through three finer points is this part of its bend off at its lowest.
+PARABOLA = 0.05
 
 
 class Nodes(NamedTuple):
@@ -155,12 +157,15 @@ def _dip(nodes: Nodes, values: Array, fine: Array, begin: int, level: float) -> 
     if not (fall > 0.0 and rise > 0.0):
         return 0.0, 0.0
     slope, bend = 0.5 * (rise - fall), rise + fall
-    if fine[k].item() - 0.5 * slope * slope / bend >= level:
+    if fine[k].item() - 0.5 * slope * slope / bend >= level + PARABOLA * bend:
         return 0.0, 0.0
+    before = nodes.fine[k - 1].item()
     tau = 0.5 - 0.5 * math.cos((k - slope / bend) * math.pi / (len(fine) - 1))
     if value_at(nodes, tau, values) >= level:
-        return 0.0, 0.0
-    return nodes.fine[k - 1].item(), tau
+        tau = _root(nodes, -(nodes.derivative @ values), before, nodes.fine[k + 1].item())
+        if value_at(nodes, tau, values) >= level:
+            return 0.0, 0.0
+    return before, tau
 
 
 def _root(nodes: Nodes, values: Array, a: float, b: float) -> float:

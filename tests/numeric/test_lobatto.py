@@ -34,10 +34,11 @@ def test_the_first_fall_of_several_is_found_to_rounding():
     assert falls(lambda t: 1.0 + t) == (math.inf, -1)
 
 
-def test_a_dip_between_the_points_looked_at_is_found():
-    middle, depth = 0.5 * (NODES.fine[20] + NODES.fine[21]), 1e-7
+@pytest.mark.parametrize("depth", [1e-4, 1e-7, 1e-10])
+@pytest.mark.parametrize("middle", [0.1, 0.2615, 0.5, 0.7384, 0.9])
+def test_a_dip_between_the_points_looked_at_is_found(middle, depth):
     tau, which = falls(lambda t: (t - middle) ** 2 - depth)
-    assert (tau, which) == (pytest.approx(middle - math.sqrt(depth), abs=1e-12), 0)
+    assert (tau, which) == (pytest.approx(middle - math.sqrt(depth), abs=1e-9), 0)
     assert falls(lambda t: (t - middle) ** 2 + depth)[1] == -1
 
 
