@@ -75,9 +75,11 @@ class BodyCollision(Answer):
             e that the laws stand for, which the plan tells.
         """
         met: Any = encounter.approaching
-        collided = encounter if np.all(met) else encounter.take(met)
-        impulse = np.zeros((*encounter.shape, 3))
-        impulse[met] = _impulse(collided, result)
+        if np.all(met):
+            impulse = _impulse(encounter, result)
+        else:
+            impulse = np.zeros((*encounter.shape, 3))
+            impulse[met] = _impulse(encounter.take(met), result)
         return cls(
             encounter=encounter,
             **_pushed(encounter, impulse),

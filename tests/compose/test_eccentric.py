@@ -330,6 +330,23 @@ def as_bodies(met):
     )  # fmt: skip
 
 
+@pytest.mark.parametrize("shape", [(6,), (2, 3), (1, 2, 3)])
+@pytest.mark.parametrize("separating", ["pass", "refuse"])
+def test_batches_of_every_shape_collide_as_their_pairs(shape, separating):
+    pairs = two_bodies(6, 14)
+    if separating == "refuse":
+        pairs = attrs.evolve(pairs, velocity=pairs.velocity + 3.0 * pairs.normal)
+    place = np.arange(6).reshape(shape)
+    laws = springs(8, 40)
+    made = collide(pairs.take(place), laws, separating=separating)
+    assert made.velocity.shape == (*shape, 3)
+    for k, where in enumerate(np.ndindex(shape)):
+        alone = collide(pairs.take(slice(k, k + 1)), laws, separating="pass")
+        assert made.velocity[where] == pytest.approx(alone.velocity[0], abs=1e-12)
+        assert made.target_spin[where] == pytest.approx(alone.target_spin[0], abs=1e-11)
+        assert made.status[where] is Status.SUCCESS
+
+
 def test_spheres_as_bodies_collide_as_spheres():
     rng = np.random.default_rng(11)
     one, other = Sphere(0.01, STEEL), Sphere(0.02, STEEL)
