@@ -53,12 +53,20 @@ class Body(NamedTuple):
         corners = flat / np.sqrt(np.sum(normals * flat, axis=0)) + centre[:2, None]
         return np.stack((corners[1], -corners[0]), axis=-1)
 
+    def arm(self, time: float) -> Array:
+        """Return the centre of mass and the point that touches, as in ``outline``: shape (2, 2)."""
+        velocity, spin = self.before if time < 0.0 else self.after
+        centre = self.centre + velocity * time
+        ends = np.stack((centre, centre - _rotation(spin * time) @ self.centre))
+        return np.stack((ends[:, 1], -ends[:, 0]), axis=-1)
+
 
 def body_of(collision: Any, axes: Array) -> Body:
     """Return the first body of a collision; ``axes`` has n, t1 and t2 as rows.
 
     The body is drawn as the ellipsoid of the same inertia, at the scale at which it touches:
-    an ellipsoid as it is, a rod as a slender one.
+    an ellipsoid as it is, a rod as a slender one; and with the arm from its centre of mass to the
+    point that touches.
     """
     encounter = collision.encounter
     body, contact = encounter.body, axes @ encounter.contact
@@ -155,12 +163,14 @@ def _scene(axes: Any, body: Body, others: Mapping[str, Body], times: Array) -> C
         axes.text(0.02, height, f"ghost: {name}", transform=axes.transAxes, color=colour)
     for patch, _ in drawn:
         axes.add_patch(patch)
+    (arm,) = axes.plot(*body.arm(0.0).T, "o-", color="black", linewidth=1.0, markersize=4.0)
     words = axes.text(0.02, 0.97, "", transform=axes.transAxes)
 
     def show(time: float, share: float) -> None:
         for place, (patch, each) in enumerate(drawn):
             patch.set_xy(each.outline(time))
             patch.set_visible(place == 0 or time > 0.0)
+        arm.set_data(*body.arm(time).T)
         touching = f"in contact: {100.0 * share:.0f} % of the time"
         words.set_text("arrives" if time < 0.0 else "leaves" if time > 0.0 else touching)
 
