@@ -23,11 +23,8 @@ from contactlab.numeric.checks import shown
 
 Mask = NDArray[np.bool_]
 
-#: The masks of a single impact: NumPy takes longer to make one than to say what it says.
+#: The mask of a single impact: NumPy takes longer to make one than to say what it says.
 ONE: Mask = locked(np.array(True))
-NONE: Mask = locked(np.array(False))
-
-
 #: Errors that differ by less, over themselves, are equal.
 ROUNDING = 1e-12
 

@@ -27,7 +27,7 @@ from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.plan import Plan
+from contactlab.outcome.plan import Plan, PlanColumns
 from contactlab.outcome.result import ImpactResult
 
 if TYPE_CHECKING:
@@ -141,7 +141,7 @@ class Collision(Answer):
         ]
         return ImpactResult(
             scene=scene,
-            plan=_joined([(mask, part.plan) for mask, part in parts]),
+            plan=Plan.merged([(mask, part.plan) for mask, part in parts], scene.shape),
             motion=Motion.merged([(mask, part.motion) for mask, part in parts], scene.shape),
             laws=parts[0][1].laws,
             run_time=sum(part.run_time for _, part in parts),
@@ -152,7 +152,7 @@ class Collision(Answer):
         """The plan of the collision: what is computed, what is left out, and the cautions."""
         passed = ~np.asarray(self.collided)
         if passed.all():
-            return collision_plan(Plan.nothing(passed.shape), None, passed)
+            return collision_plan(Plan(PlanColumns.nothing(passed.shape)), None, passed)
         met = self._met
         if self.known is not None:
             plan = self.known.plan
@@ -164,12 +164,10 @@ class Collision(Answer):
             if len(groups) > MANY:
                 masks = [mask for mask in (each == 1.0, each < 1.0) if mask.any()]
                 groups = [(mask, float(each[mask].min())) for mask in masks]
-            plan = _joined(
-                [
-                    (mask, _planned(met.scene.take(mask), value, each[mask]))
-                    for mask, value in groups
-                ]
-            )
+            plans = [
+                (mask, _planned(met.scene.take(mask), value, each[mask])) for mask, value in groups
+            ]
+            plan = Plan.merged(plans, met.shape)
         return collision_plan(plan, met, passed)
 
     @property
@@ -376,13 +374,6 @@ def _planned(scene: Scene, restitution: float, each: Real) -> Plan:
 def _alike(restitution: Array) -> list[tuple[Any, float]]:
     """Return masks of equal restitutions, and the restitution of each mask."""
     return [(restitution == value, value) for value in np.unique(restitution).tolist()]
-
-
-def _joined(parts: list[tuple[Any, Plan]]) -> Plan:
-    """Return the plan of a batch from masks and the plans of their impacts."""
-    places = np.concatenate([np.flatnonzero(mask) for mask, _ in parts])
-    order = np.argsort(places).reshape(parts[0][0].shape)
-    return Plan.joined([plan for _, plan in parts], places.shape)[order]
 
 
 def _spread(restitution: Any, shape: tuple[int, ...]) -> Any:

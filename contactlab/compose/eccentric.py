@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -23,56 +21,45 @@ from contactlab.contracts.eccentric import (
     IncrementalTangentialLaw,
     VectorTangentialLaw,
 )
+from contactlab.impact.cautions import large_contact
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.hertz import hertz_scales
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.eccentric import (
-    EccentricHistory,
-    EccentricRecorder,
     EccentricResult,
     balanced,
 )
-from contactlab.outcome.history import NO_HISTORY, NoHistory
-from contactlab.outcome.plan import Clause, Plan, PlanColumns
-
-if TYPE_CHECKING:
-    from concurrent.futures import Executor
+from contactlab.outcome.history import NO_HISTORY, EccentricHistory, NoHistory, Recorder
+from contactlab.outcome.plan import MARCHED, Clause, Plan, PlanColumns
 
 #: Least bound of the imbalance of the energy books: where W is nearly singular the energy is the
 #: small difference of large products.
 CANCELS = 1e-4
-#: Above this ratio of contact radius to R the theory of half-spaces is doubtful (theory §8).
-DOUBTFUL_SIZE_RATIO = 0.1
 #: Shares of W_nn that friction leaves, 1 - W_nt²/(W_nn W_tt), and the largest errors from each down
 #: to a tenth of it, where abs(lam) > 1: of V2 over max(1, V2) and psi2 over max(1, psi1), in 1,200
 #: random planar impacts by 50 springs and 200 steps.
 NEAR_SINGULAR = ((0.1, 0.07), (0.01, 0.4), (0.001, 1.2))
 
 
-def run(laws: Laws, scene: EccentricScene, *, history: bool | str = False) -> EccentricResult:
-    """Return the result of one impact, or of a batch.
+def run(laws: Laws, scene: EccentricScene, recorder: Recorder | None) -> EccentricMotion:
+    """Return the motion of one impact, or of a batch by blocks.
 
     Raises
     ------
     ValueError
         If a law has no answer to the scene, or a history is asked of a batch.
     """
-    started = time.perf_counter()
-    _accept(laws, scene)
-    if history and scene.shape:
-        raise refuse("history", history, "is kept of a single impact", "run them one by one")
-    recorder = EccentricRecorder() if history else None
-    if scene.shape:
-        flat = scene.take(np.ones(scene.shape, dtype=bool)) if len(scene.shape) > 1 else scene
-        piece = solved(laws, flat, Chunk(0, flat.shape[0]), sweep.ECCENTRIC_IMPACTS)
-        motion = EccentricMotion.joined([piece.motion], scene.shape)
-    else:
-        motion = _motion(laws, scene, recorder)
-    kept = NO_HISTORY if recorder is None else recorder.history()
-    return _result(laws, scene, motion, started, kept)
+    accept(laws, scene)
+    if not scene.shape:
+        return _motion(laws, scene, recorder)
+    if recorder is not None:
+        raise refuse("history", True, "is kept of a single impact", "run them one by one")
+    flat = scene.take(np.ones(scene.shape, dtype=bool)) if len(scene.shape) > 1 else scene
+    piece = solved(laws, flat, Chunk(0, flat.shape[0]), sweep.ECCENTRIC_IMPACTS)
+    return EccentricMotion.joined([piece.motion], scene.shape)
 
 
-def _result(
+def result_of(
     laws: Laws,
     scene: EccentricScene,
     motion: EccentricMotion,
@@ -107,31 +94,12 @@ def are_eccentric(scenes: Any) -> bool:
     return isinstance(scenes, EccentricScene)
 
 
-def swept(
-    laws: Laws,
-    scenes: Any,
-    *,
-    progress: Callable[[int, int], object] | None,
-    chunk: int | None,
-    executor: Executor | None,
-    keep: str | Path | None,
-) -> EccentricResult:
-    """Return the result of many impacts: a batch, or a sequence of single ones."""
-    started = time.perf_counter()
-    scene = scenes if isinstance(scenes, EccentricScene) else EccentricScene.stack(scenes)
-    sweep.one_axis(scene.shape)
-    _accept(laws, scene)
-    options: dict[str, Any] = {"progress": progress, "chunk": chunk}
-    _, motion = sweep.swept(laws, scene, solved, executor=executor, keep=keep, **options)
-    return _result(laws, scene, motion, started)
-
-
 def preferred(scene: EccentricScene) -> dict[str, str]:
     """Return the names of the laws that answer ``scene`` best: exact in the plane."""
     return composition.EXACT if scene.planar else composition.IN_SPACE
 
 
-def _accept(laws: Laws, scene: EccentricScene) -> None:
+def accept(laws: Laws, scene: EccentricScene) -> None:
     """Refuse laws that have no answer to the scene, and name laws that have one."""
     tangential, integrator = laws.tangential, laws.integrator
     name = type(tangential).__name__
@@ -184,25 +152,20 @@ def plan(laws: Laws, scene: EccentricScene) -> Plan:
     else:
         what = "error of psi2: none is declared in space"
     left_out = (Clause(what, everywhere),)
-    return Plan(
-        computed=computed,
-        left_out=left_out,
-        cautions=tuple(Clause(text, everywhere) for text in _cautions(laws, scene)),
-        marched=np.full(scene.shape, not whole),
-        psi2_error=np.full(scene.shape, np.nan) if scene.shape else np.nan,
-    )
+    cautions = tuple(Clause(text, everywhere) for text in _cautions(laws, scene))
+    columns = PlanColumns.nothing(scene.shape)
+    if not whole:
+        columns = columns._replace(code=np.full(scene.shape, MARCHED))
+    return Plan(columns, (computed, left_out, cautions))
 
 
 def _cautions(laws: Laws, scene: EccentricScene) -> list[str]:
     """Return a sentence for each doubt about the model."""
-    cautions = []
+    cautions: list[str] = []
     scales = hertz_scales(scene.central)
     largest = float(np.max(np.asarray(scales.radius) / scene.pair.radius))
-    if scene.bodies and largest > DOUBTFUL_SIZE_RATIO:
-        cautions.append(
-            f"C = {largest:.3g}, contact radius over R: the contact is not small against the "
-            f"radius, the theory of half-spaces is doubtful above {DOUBTFUL_SIZE_RATIO}"
-        )
+    if scene.bodies:
+        cautions += large_contact(largest)
     if np.any(np.asarray(scene.pair.dundurs_beta) != 0.0):
         cautions.append(
             "unlike materials: pressure also shears the surfaces, which is left out (model)"

@@ -201,8 +201,4 @@ def _piece(content: Mapping[str, Any]) -> Piece:
         detail=np.array(content["detail"].tolist(), dtype=object),
         counters=json.loads(str(content["counters"])),
     )
-    for name in (*kind.numbers(), "status", "detail"):
-        count = len(np.atleast_1d(getattr(motion, name)))
-        if count != stop - first:
-            raise ValueError(f"{name} has {count} impacts where its place has {stop - first}")
     return Piece(Chunk(first, stop), PlanColumns.from_arrays(content), motion)

@@ -15,9 +15,9 @@ from contactlab.compose.path_steps import Followed, Points, followed
 from contactlab.contracts import faults
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
+from contactlab.impact.cautions import path_cautions
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
-from contactlab.impact.yielding import path_cautions
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import Rule, real, refuse
 from contactlab.outcome.answer import Answer
@@ -178,7 +178,19 @@ def load_path(
         raise refuse("scene", scene, "must be a Scene", "make one: Scene(...)")
     laws = _laws(scene, normal, tangential)
     points, origin, scene = _path(scene, approach, displacement, time)
-    return _result(laws, scene, points, origin, _followed(laws, scene, points))
+    columns, states, status, detail = _followed(laws, scene, points)
+    return LoadPath(
+        scene=scene,
+        normal=laws[0],
+        tangential=laws[1],
+        time=locked(points.time + origin),
+        approach=locked(points.approach),
+        displacement=points.displacement,
+        **{name: locked(column) for name, column in columns.items()},
+        status=status,
+        detail=detail,
+        states=states,
+    )
 
 
 def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any]:
@@ -258,21 +270,3 @@ def _followed(laws: tuple[Any, Any], scene: Scene, points: Points) -> Followed:
             column[(slice(None), *place)] = one.columns[name]
     detail = next(one.detail for one in each.values() if one.detail)
     return Followed(columns, (), status, detail)
-
-
-def _result(
-    laws: tuple[Any, Any], scene: Scene, points: Points, origin: Array, answers: Followed
-) -> LoadPath:
-    """Return the path with the answers of the laws."""
-    normal, tangential = laws
-    entries = {"time": points.time + origin, "approach": points.approach, **answers.columns}
-    return LoadPath(
-        scene=scene,
-        normal=normal,
-        tangential=tangential,
-        displacement=points.displacement,
-        **{name: locked(column) for name, column in entries.items()},
-        status=answers.status,
-        detail=answers.detail,
-        states=answers.states,
-    )

@@ -76,7 +76,11 @@ def followed(
         If a law raises, or its answer is malformed.
     """
     contacts = _pressed(normal, scene, points)
-    motion = _motion(normal, scene, points, contacts)
+    sampled = NormalContact(*(_column(rows, scene.shape) for rows in zip(*contacts, strict=True)))
+    rate = points.moved(points.approach, 0.0)[1]
+    motion = SampledMotion(
+        normal, scene, time=points.time, approach=points.approach, rate=rate, contact=sampled
+    )
     with faults.blaming(tangential) as blamed:
         nothing = NormalContact(*(locked(0.0 * entry) for entry in contacts[0]))
         state = tangential.start(scene, motion)
@@ -86,19 +90,16 @@ def followed(
             if faults.malformed(entry, scene.shape):
                 sentence = faults.sentence(tangential, f"the answer {shown(entry)}", number)
                 raise faults.LawFaultError(Status.MALFORMED, sentence)
+    force, work, settled = (_column(rows, scene.shape) for rows in zip(*answers, strict=True))
     columns = {
-        "normal_force": [each.force for each in contacts],
-        "friction_load": [each.friction_load for each in contacts],
-        "contact_radius": [each.radius for each in contacts],
-        "friction_force": [force for force, _, _ in answers],
-        "friction_work": [work for _, work, _ in answers],
-        "settled": [settled for _, _, settled in answers],
+        "normal_force": sampled.force,
+        "friction_load": sampled.friction_load,
+        "contact_radius": sampled.radius,
+        "friction_force": force,
+        "friction_work": np.cumsum(work, axis=0),
     }
-    full = {name: _column(rows, scene.shape) for name, rows in columns.items()}
-    full["friction_work"] = np.cumsum(full["friction_work"], axis=0)
-    status, detail = _judged((normal, tangential), full, points)
-    del full["settled"]
-    return Followed(full, states, status, detail)
+    status, detail = _judged((normal, tangential), columns, settled == 0.0)
+    return Followed(columns, states, status, detail)
 
 
 def _pressed(normal: NormalLaw, scene: Scene, points: Points) -> list[NormalContact]:
@@ -115,21 +116,6 @@ def _pressed(normal: NormalLaw, scene: Scene, points: Points) -> list[NormalCont
     return contacts
 
 
-def _motion(
-    normal: NormalLaw, scene: Scene, points: Points, contacts: list[NormalContact]
-) -> SampledMotion:
-    """Return the normal motion along a path."""
-    columns = (_column(rows, scene.shape) for rows in zip(*contacts, strict=True))
-    return SampledMotion(
-        normal,
-        scene,
-        time=points.time,
-        approach=points.approach,
-        rate=points.moved(points.approach, 0.0)[1],
-        contact=NormalContact(*columns),
-    )
-
-
 def _steps(
     points: Points, contacts: list[NormalContact], blamed: faults.blaming
 ) -> Iterable[tuple[Increment, NormalContact]]:
@@ -142,15 +128,14 @@ def _steps(
         yield Increment(locked(by), locked(speed), after.friction_load, 0.0 * time, time), after
 
 
-def _judged(laws: Any, columns: dict[str, Array], points: Points) -> tuple[Any, str]:
+def _judged(laws: Any, columns: dict[str, Array], unsettled: Any) -> tuple[Any, str]:
     """Return statuses and the sentence of the first failure; what follows a failure is NaN."""
     normal, tangential = laws
-    shape = points.time.shape[1:]
+    shape = unsettled.shape[1:]
     status = np.full(shape, Status.SUCCESS, dtype=object)
     detail = ""
     bad_load = ~np.isfinite(columns["normal_force"] + columns["contact_radius"])
     bad_force = ~np.isfinite(columns["friction_force"] + columns["friction_work"])
-    unsettled = columns["settled"] == 0.0
     for law, bad, kind, what in (
         (normal, bad_load, Status.NON_FINITE, "a contact that is not finite"),
         (tangential, unsettled, Status.UNSETTLED, "no division found"),

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.compose.answers import NONE, ONE, Answer, Mask, separated
+from contactlab.compose.answers import Answer, Mask, separated
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import faults
@@ -19,9 +19,8 @@ from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
-from contactlab.impact.coupling import three_numbers
+from contactlab.impact.cautions import three_numbers, unit_slips, unlikely
 from contactlab.impact.scene import Scene
-from contactlab.impact.unit_slips import unit_slips, unlikely
 from contactlab.numeric.arrays import every, some, spread, taken
 from contactlab.outcome.energy import ledger
 from contactlab.outcome.motion import ENDS, Motion
@@ -36,6 +35,7 @@ from contactlab.outcome.plan import (
     Plan,
     PlanColumns,
     Reason,
+    Words,
 )
 
 #: Error of what is known in closed form, over max(1, |psi1|).
@@ -84,7 +84,7 @@ def plan_of(
     that failed.
     """
 
-    def words() -> tuple[Clauses, Clauses, Clauses]:
+    def words() -> Words:
         masks = _Masks.of(columns)
         if not some(masks.known):
             return (), (), ()
@@ -104,7 +104,7 @@ def plan_of(
             cautions = _cautions(laws, scene, motion, masks)
         return tuple(computed), tuple(left_out), cautions
 
-    return Plan(columns=columns, late=words)
+    return Plan(columns, words)
 
 
 class _Masks(NamedTuple):
@@ -119,18 +119,8 @@ class _Masks(NamedTuple):
     def of(cls, columns: PlanColumns) -> _Masks:
         """Return the masks of a plan's columns."""
         code: Any = columns.code
-        if isinstance(code, int):  # NumPy takes longer to make a mask than to say what it says
-            return SINGLE[min(code, 0)]
         masks = code != UNKNOWN, code > ENDLESS, code == ENDLESS, code == MARCHED
         return cls(*map(np.asarray, masks))
-
-
-#: Masks of one impact, by its code; 0 for any reason.
-SINGLE = {
-    0: _Masks(ONE, ONE, NONE, NONE),
-    MARCHED: _Masks(ONE, ONE, NONE, ONE),
-    ENDLESS: _Masks(ONE, NONE, ONE, NONE),
-}
 
 
 def _cautions(laws: Laws, scene: Scene, motion: NormalMotion | Motion, masks: _Masks) -> Clauses:
@@ -237,13 +227,12 @@ def _defaults(law: Any) -> str:
 def _not_marched(columns: PlanColumns, masks: _Masks) -> list[Clause]:
     """Return why impacts are not marched, and whose books check nothing."""
     march = "march of the tangential motion"
-    single = not masks.known.ndim
     clauses = [
-        Clause(f"{march}: {reason.text}", ONE if single else columns.code == place)
+        Clause(f"{march}: {reason.text}", np.asarray(columns.code == place))
         for place, reason in enumerate(columns.reasons)
     ]
     if any(reason.unchecked for reason in columns.reasons):
-        clauses.append(Clause(UNCHECKED, ONE if single else columns.unchecked))
+        clauses.append(Clause(UNCHECKED, np.asarray(columns.unchecked)))
     if some(masks.endless):
         clauses.append(Clause(f"{march}: the normal motion came to no end", masks.endless))
     return clauses
@@ -280,11 +269,8 @@ def _error(normal: NormalMotion, laws: Laws, known: Sequence[Answer], marched: M
 
 def _error_clauses(error: Any, ended: Mask) -> list[Clause]:
     """Return what a plan says of the numerical error."""
-    if ended.ndim:
-        undeclared = ended & np.isnan(error)
-        declared = ended & ~undeclared
-    else:
-        undeclared, declared = (ended, NONE) if math.isnan(error) else (NONE, ended)
+    undeclared = np.asarray(ended & np.isnan(error))
+    declared = np.asarray(ended & ~undeclared)
     clauses = []
     if some(declared):
         text = "numerical error of psi2: at most {:.2g}, declared"

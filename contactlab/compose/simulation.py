@@ -26,8 +26,8 @@ from contactlab.numeric.arrays import taken
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import arguments_told
 from contactlab.outcome.eccentric import EccentricResult
-from contactlab.outcome.history import NO_HISTORY, Recorder
-from contactlab.outcome.motion import without_failures
+from contactlab.outcome.history import NO_HISTORY, EccentricHistory, History, NoHistory, Recorder
+from contactlab.outcome.motion import Motion, without_failures
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
 
@@ -124,13 +124,14 @@ class Simulation:
             If ``scene`` is not a Scene, ``history`` is none of its three values, or the history of
             a batch is requested whose impacts have different instants.
         """
-        if isinstance(scene, EccentricScene):
-            return eccentric.run(self.laws, scene, history=_history(history))
-        started = time.perf_counter()
-        laws, recorder = self.laws, None
-        laws.accept(_scene(scene))
+        started, laws, recorder = time.perf_counter(), self.laws, None
         if _history(history):
             recorder = Recorder(scene.shape, with_fields=history == "fields")
+        if isinstance(scene, EccentricScene):
+            moved = eccentric.run(laws, scene, recorder)
+            kept = NO_HISTORY if recorder is None else recorder.history(EccentricHistory)
+            return eccentric.result_of(laws, scene, moved, started, kept)
+        laws.accept(_scene(scene))
         flat = scene
         if len(scene.shape) > 1:  # laws and integrators are run over one axis
             flat = scene.take(np.ones(scene.shape, dtype=bool))
@@ -138,14 +139,9 @@ class Simulation:
         if flat is not scene:
             place = np.arange(flat.shape[0]).reshape(scene.shape)
             columns, motion = columns.take(place), taken(motion, flat.shape, place)
-        result = ImpactResult(
-            scene=scene,
-            plan=plan_of(laws, scene, columns, motion, history),
-            motion=motion if succeeded(motion.status) else without_failures(motion),
-            laws=composition.versions(*laws),
-            history=NO_HISTORY if recorder is None else recorder.history(),
-            run_time=time.perf_counter() - started,
-        )
+        plan = plan_of(laws, scene, columns, motion, history)
+        kept = NO_HISTORY if recorder is None else recorder.history()
+        result = _result(laws, scene, plan, motion, started, kept)
         if not estimate_error:
             return result
         return attrs.evolve(result, psi2_error_estimate=estimated(self.laws, result))
@@ -219,23 +215,19 @@ class Simulation:
             scenes of psi1 and chi; if a law cannot be sent to ``executor``; if ``keep`` holds
             another sweep.
         """
+        started, laws = time.perf_counter(), self.laws
         options: dict[str, Any] = {"progress": progress, "chunk": chunk}
         options |= {"executor": executor, "keep": keep}
-        if eccentric.are_eccentric(scenes):
-            return eccentric.swept(self.laws, scenes, **options)
-        started = time.perf_counter()
-        batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
+        kind: Any = EccentricScene if eccentric.are_eccentric(scenes) else Scene
+        batch = scenes if isinstance(scenes, kind) else kind.stack(scenes)
         one_axis(batch.shape)
-        laws = self.laws
+        if kind is EccentricScene:
+            eccentric.accept(laws, batch)
+            _, moved = swept(laws, batch, eccentric.solved, **options)
+            return eccentric.result_of(laws, batch, moved, started)
         laws.accept(batch)
         columns, motion = swept(laws, batch, solve.solved, **options)
-        return ImpactResult(
-            scene=batch,
-            plan=plan_of(laws, batch, columns, motion),
-            motion=motion if succeeded(motion.status) else without_failures(motion),
-            laws=composition.versions(*laws),
-            run_time=time.perf_counter() - started,
-        )
+        return _result(laws, batch, plan_of(laws, batch, columns, motion), motion, started)
 
     def normal_motion(self, scene: Scene) -> NormalMotion:
         """Return the normal motion of ``scene``; all values are NaN if the normal law fails.
@@ -251,6 +243,25 @@ class Simulation:
     def laws(self) -> Laws:
         """The three laws: normal, tangential, integrator."""
         return Laws(self.normal, self.tangential, self.integrator)
+
+
+def _result(
+    laws: Laws,
+    scene: Scene,
+    plan: Plan,
+    motion: Motion,
+    started: float,
+    history: History | NoHistory = NO_HISTORY,
+) -> ImpactResult:
+    """Return the result of a motion, without the numbers of impacts that failed."""
+    return ImpactResult(
+        scene=scene,
+        plan=plan,
+        motion=motion if succeeded(motion.status) else without_failures(motion),
+        laws=composition.versions(*laws),
+        history=history,
+        run_time=time.perf_counter() - started,
+    )
 
 
 def _scene(scene: object) -> Scene:

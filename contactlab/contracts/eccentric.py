@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-import math
 from abc import abstractmethod
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias
 
 import attrs
-import numpy as np
 
+from contactlab.contracts.batch_motion import BatchMotion
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import Real
 
 
 @attrs.frozen(kw_only=True, eq=False)
-class EccentricMotion:
+class EccentricMotion(BatchMotion):
     """The motion of an eccentric impact; entries have the batch shape.
 
     Attributes
@@ -46,60 +42,14 @@ class EccentricMotion:
     counters : mapping of str to int
     """
 
-    velocity_change: Any
+    velocity_change: Any = attrs.field(metadata={"ends": (3,)})
     friction_work: Real
     normal_loss: Real
     duration: Real
     maximum_radius: Real
     maximum_approach: Real
     maximum_force: Real
-    compressions: Any = 1
-    status: Any = Status.SUCCESS
-    detail: Any = ""
-    counters: Mapping[str, int] = attrs.field(factory=dict)
-
-    @classmethod
-    def numbers(cls) -> tuple[str, ...]:
-        """Return the names of the entries that are numbers."""
-        no_numbers = ("status", "detail", "counters")
-        return tuple(each.name for each in attrs.fields(cls) if each.name not in no_numbers)
-
-    @classmethod
-    def joined(cls, motions: Sequence[EccentricMotion], shape: tuple[int, ...]) -> EccentricMotion:
-        """Return one motion of ``shape`` from the motions of consecutive parts of the batch.
-
-        Parameters
-        ----------
-        motions : sequence of EccentricMotion
-            Motions of batches of one axis, in the order of the impacts.
-        shape : tuple of int
-            Shape of the whole batch.
-        """
-        counters: Counter[str] = Counter()
-        for motion in motions:
-            counters.update(motion.counters)
-        entries: dict[str, Any] = {}
-        for name in (*cls.numbers(), "status", "detail"):
-            whole = np.concatenate([getattr(motion, name) for motion in motions])
-            entries[name] = whole.reshape(*shape, *whole.shape[1:])
-        return cls(**entries, counters=dict(counters))
-
-    @classmethod
-    def nothing(cls, shape: tuple[int, ...], status: Status, detail: str = "") -> EccentricMotion:
-        """Return the motion of impacts that have no answer.
-
-        Parameters
-        ----------
-        shape : tuple of int
-            Batch shape.
-        status : Status
-        detail : str
-        """
-        none: Any = np.full(shape, math.nan) if shape else math.nan
-        entries: dict[str, Any] = dict.fromkeys(cls.numbers(), none)
-        entries["velocity_change"] = np.full((*shape, 3), math.nan)
-        entries["compressions"] = np.zeros(shape, dtype=int) if shape else 0
-        return cls(**entries, status=filled(status, shape), detail=filled(detail, shape))
+    compressions: Any = attrs.field(default=1, metadata={"kind": int})
 
 
 class EccentricSample(NamedTuple):
@@ -133,23 +83,16 @@ class IncrementalTangentialLaw(SteppedTangentialLaw):
 
     Contract
     --------
-    1. ``begin(scene, normal)`` returns the state at first touch. ``normal`` is the approach without
-       friction, from which a law may take scales; the motion that follows may be another, with a
-       larger contact, or with several compressions.
+    1. ``begin(scene, normal)`` returns the state at first touch. ``scene`` is the central impact
+       with the same approach, ``normal`` the approach without friction, from which a law may take
+       scales; the motion that follows may be another, with a larger contact, or with several
+       compressions.
     2. ``advance`` depends on its arguments only: the contact before and after, and the step.
     3. ``stiffness`` is an upper bound for the contacts of the approach without friction.
     """
 
     def begin(self, scene: Scene, normal: NormalMotion) -> Any:
-        """Return the state at first touch; by default that of ``start``.
-
-        Parameters
-        ----------
-        scene : Scene
-            The central impact with the same approach, one or a batch.
-        normal : NormalMotion
-            Its normal motion, that of the approach without friction.
-        """
+        """Return the state at first touch; by default that of ``start``."""
         return self.start(scene, normal)
 
 
@@ -166,26 +109,27 @@ class VectorTangentialLaw(IncrementalTangentialLaw):
 
     @abstractmethod
     def begin_vectors(self, scene: Scene, normal: NormalMotion) -> Any:
-        """Return the state at first touch for displacements that are vectors.
-
-        Parameters
-        ----------
-        scene, normal
-            As of ``begin``.
-        """
+        """Return the state at first touch for displacements that are vectors, as ``begin``."""
 
 
 class EccentricTangentialLaw(TangentialLaw):
-    """Base of tangential laws that answer eccentric impacts as a whole; no integrator is used."""
+    """Base of tangential laws that answer eccentric impacts as a whole; no integrator is used.
+
+    Parameters of methods
+    ---------------------
+    scene : EccentricScene
+        One impact or a batch.
+    normal : NormalMotion
+        The approach without friction, with its law.
+    accuracy : float or None
+        Error of psi2 over max(1, psi1) that is aimed at; None for the law's own.
+    observer : callable, optional
+        Called with the instants of a single impact.
+    """
 
     @abstractmethod
     def refuses_eccentric(self, scene: EccentricScene) -> str | None:
-        """Return why the law has no answer to ``scene``; None if it has one.
-
-        Parameters
-        ----------
-        scene : EccentricScene
-        """
+        """Return why the law has no answer to ``scene``; None if it has one."""
 
     @abstractmethod
     def eccentric_impacts(
@@ -195,19 +139,7 @@ class EccentricTangentialLaw(TangentialLaw):
         accuracy: float | None,
         observer: EccentricObserver | None = None,
     ) -> EccentricMotion:
-        """Return the motion of every impact of ``scene``.
-
-        Parameters
-        ----------
-        scene : EccentricScene
-            One impact or a batch.
-        normal : NormalMotion
-            The approach without friction, with its law.
-        accuracy : float or None
-            Error of psi2 over max(1, psi1) that is aimed at; None for the law's own.
-        observer : callable, optional
-            Called with the instants of a single impact.
-        """
+        """Return the motion of every impact of ``scene``."""
 
 
 class EccentricIntegrator(Integrator):
@@ -234,14 +166,3 @@ class EccentricIntegrator(Integrator):
         observer : callable, optional
             Called with every sample.
         """
-
-
-__all__ = [
-    "EccentricIntegrator",
-    "EccentricMotion",
-    "EccentricObserver",
-    "EccentricSample",
-    "EccentricTangentialLaw",
-    "IncrementalTangentialLaw",
-    "VectorTangentialLaw",
-]

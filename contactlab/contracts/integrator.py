@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
 from typing import Any, ClassVar, NamedTuple, Self, TypeAlias
 
 import attrs
-import numpy as np
 
+from contactlab.contracts.batch_motion import BatchMotion
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.sampled_motion import NormalMotions
-from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import consecutive, filled, merged, spread
-from contactlab.numeric.checks import Mask, Real
+from contactlab.numeric.checks import Real
 
 #: Impacts of a sweep that an integrator receives at a time, by default.
 CHUNK = 1000
@@ -61,7 +57,7 @@ Observer: TypeAlias = Callable[[Sample], None]
 
 
 @attrs.frozen(kw_only=True, eq=False)
-class TangentialMotion:
+class TangentialMotion(BatchMotion):
     """The tangential motion that an integrator returns; entries have the batch shape.
 
     Attributes
@@ -86,114 +82,22 @@ class TangentialMotion:
 
     slip_velocity_change: Real
     friction_work: Real
-    status: Any = Status.SUCCESS
-    detail: Any = ""
-    counters: Mapping[str, int] = attrs.field(factory=dict)
     normal: NormalMotion | NormalMotions | None = None
-
-    def __attrs_post_init__(self) -> None:
-        if isinstance(self.status, Status):
-            return  # one impact: np.ndim is slower than this test
-        if isinstance(self.detail, str) and np.ndim(self.status):
-            details = filled("", np.shape(self.status))
-            if self.detail:
-                details[self.status != Status.SUCCESS] = self.detail
-            object.__setattr__(self, "detail", details)
-
-    @classmethod
-    @cache
-    def numbers(cls) -> tuple[str, ...]:
-        """Return the names of the entries that are numbers."""
-        fields: Any = attrs.fields(cls)
-        no_numbers = ("status", "detail", "counters", "normal")
-        return tuple(field.name for field in fields if field.name not in no_numbers)
-
-    @classmethod
-    def joined(cls, motions: Sequence[Self], shape: tuple[int, ...]) -> Self:
-        """Return one motion of ``shape`` from the motions of consecutive parts of the batch.
-
-        Parameters
-        ----------
-        motions : sequence of TangentialMotion
-            Motions of single impacts or of batches, in the order of the impacts.
-        shape : tuple of int
-            Shape of the whole batch.
-        """
-        if len(motions) == 1 and shape and np.shape(motions[0].status) == shape:
-            return motions[0]
-        places = consecutive(np.size(motion.status) for motion in motions)
-        return cls.merged(list(zip(places, motions, strict=True)), shape)
 
     @classmethod
     def merged(cls, parts: Sequence[tuple[Any, Self]], shape: tuple[int, ...]) -> Self:
-        """Return one motion of ``shape`` from pairs of a place and the motion of its impacts.
-
-        An impact in several parts has the motion of the last of these parts.
+        """Return one motion of ``shape``, with the normal motions of the parts.
 
         Parameters
         ----------
-        parts : sequence of (array of bool or slice, TangentialMotion)
-            Masks of shape ``shape``, or slices of the batch in C order, each with the motion of
-            its impacts.
-        shape : tuple of int
-            Shape of the whole batch.
+        parts, shape
+            As of ``BatchMotion.merged``.
         """
-        counters: Counter[str] = Counter()
-        for _, motion in parts:
-            counters.update(motion.counters)
-        entries: dict[str, Any] = {}
-        for name in (*cls.numbers(), "status", "detail"):
-            columns = [(where, getattr(motion, name)) for where, motion in parts]
-            entries[name] = merged(columns, shape, float if name in cls.numbers() else object)
-        normals = [(where, motion.normal) for where, motion in parts]
-        if any(normal is not None for _, normal in normals):
-            entries["normal"] = NormalMotions(shape, tuple(normals))
-        return cls(**entries, counters=dict(counters))
-
-    @classmethod
-    def nothing(
-        cls, shape: tuple[int, ...], status: Status, detail: str | Sequence[str] = ""
-    ) -> Self:
-        """Return the motion of impacts that were not computed: all numbers are NaN.
-
-        Parameters
-        ----------
-        shape : tuple of int
-            Batch shape.
-        status : Status
-            Status of all impacts.
-        detail : str or sequence of str
-            One sentence for all impacts, or one for each.
-        """
-        entries: dict[str, Any] = dict.fromkeys(cls.numbers(), spread(math.nan, shape))
-        return cls(
-            **entries,
-            status=filled(status, shape),
-            detail=detail if isinstance(detail, str) else np.array(detail, dtype=object),
-        )
-
-    def failing(self, where: Mask, status: Status, detail: Any) -> Self:
-        """Return this motion with another status for the successful impacts that ``where`` marks.
-
-        Parameters
-        ----------
-        where : bool or array of bool
-            The impacts that fail; those that had failed before keep status and detail.
-        status : Status
-            New status.
-        detail : str or array of str
-            One sentence for all these impacts, or one for each impact of the batch.
-        """
-        statuses: Any = np.array(self.status, dtype=object)
-        failing = np.asarray(where) & (statuses == Status.SUCCESS)
-        if not failing.any():
-            return self
-        if not statuses.shape:
-            return attrs.evolve(self, status=status, detail=detail)
-        statuses[failing] = status
-        return attrs.evolve(
-            self, status=statuses, detail=np.where(failing, detail, self.detail).astype(object)
-        )
+        motion = super().merged(parts, shape)
+        normals = [(where, part.normal) for where, part in parts]
+        if all(normal is None for _, normal in normals):
+            return motion
+        return attrs.evolve(motion, normal=NormalMotions(shape, tuple(normals)))
 
 
 class Integrator(Law):

@@ -11,8 +11,8 @@ import numpy as np
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import ClosedFormMotion, NormalMotion
+from contactlab.impact.cautions import large_contact, yielding
 from contactlab.impact.scene import Scene
-from contactlab.impact.yielding import large_contact, yielding
 from contactlab.numeric.checks import Real
 
 

@@ -10,11 +10,11 @@ import numpy as np
 from contactlab.compose.rebound import damped, rebound
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
+from contactlab.impact.cautions import unit_slips
 from contactlab.impact.coupling import coupling
 from contactlab.impact.scene import Scene
-from contactlab.impact.unit_slips import unit_slips
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.plan import Clause, Clauses, Plan
+from contactlab.outcome.plan import Clause, Plan, PlanColumns, Words
 from contactlab.outcome.result import ImpactResult
 
 
@@ -60,9 +60,9 @@ def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
     laws = simulation or Simulation()
     everywhere = np.ones(shape, dtype=bool)
 
-    def clauses() -> tuple[Clauses, Clauses, Clauses]:
+    def clauses() -> Words:
         said = (*unit_slips(scene), *laws.normal.cautions(scene, course), *coupling(scene))
         return (), (), tuple(Clause(text, everywhere) for text in said)
 
-    plan = Plan(late=clauses, marched=~everywhere)
+    plan = Plan(PlanColumns.nothing(shape), clauses)
     return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})

@@ -1,4 +1,4 @@
-"""Cautions about elastic coupling of unlike bodies (theory §9), and about three numbers."""
+"""The caution about elastic coupling of unlike bodies (theory §9)."""
 
 from __future__ import annotations
 
@@ -115,17 +115,4 @@ def coupling(scene: Scene) -> tuple[str, ...]:
         f"{LEFT_OUT}, Lambda = kappa beta/mu = {number[worst]:.2g}; it moves psi2 by "
         f"{upto}{beyond}{shift[worst]:.1g} (model, not numerical error; by a table "
         f"of half-space solutions, chi from {low:g} to {high:g}{rough})",
-    )
-
-
-def three_numbers(scene: Scene) -> tuple[str, ...]:
-    """Return the caution of a single entry with three numbers, which may be meant as a vector."""
-    if scene.shape != (3,) or scene.sphere is None:
-        return ()
-    arrays = [name for name, number in scene.numbers().items() if np.ndim(number)]
-    if len(arrays) != 1:
-        return ()
-    return (
-        f"{arrays[0]} has three numbers, taken for three impacts: vectors in space belong in an "
-        "Encounter",
     )

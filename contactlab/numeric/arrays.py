@@ -63,9 +63,13 @@ def stacked(items: Sequence[Any]) -> Any:
 
 
 def taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
-    """Return the tree of the impacts that ``part`` indexes; plain numbers stay plain."""
+    """Return the tree of the impacts that ``part`` indexes; plain numbers stay plain.
+
+    An array with more axes than ``shape`` begins with those of the batch.
+    """
     if isinstance(tree, np.ndarray):
-        numbers = (tree if tree.shape == shape else np.broadcast_to(tree, shape))[part]
+        spread = tree.shape != shape and tree.ndim <= len(shape)
+        numbers = (np.broadcast_to(tree, shape) if spread else tree)[part]
         return numbers.item() if isinstance(numbers, np.generic) else locked(numbers)
     if isinstance(tree, float):
         return tree
@@ -78,16 +82,23 @@ def taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
     return tree
 
 
-def merged(parts: Sequence[tuple[Any, Any]], shape: tuple[int, ...], kind: Any = float) -> Any:
+def merged(
+    parts: Sequence[tuple[Any, Any]],
+    shape: tuple[int, ...],
+    kind: Any = float,
+    ends: tuple[int, ...] = (),
+) -> Any:
     """Return an array of ``shape`` from pairs of a place and its values; later pairs overwrite.
 
-    A place is a mask of ``shape``, or a slice of the batch in C order.
+    A place is a mask of ``shape``, or a slice of the batch in C order. Each value has the axes
+    ``ends``, none if it is a number.
     """
-    entry = np.empty(math.prod(shape), dtype=kind)
+    entry = np.empty((math.prod(shape), *ends), dtype=kind)
     for where, values in parts:
         place = where if isinstance(where, slice) else np.ravel(where)
-        entry[place] = np.ravel(np.asarray(values, dtype=kind)) if np.ndim(values) else values
-    return entry.reshape(shape)
+        many = np.ndim(values) > 0
+        entry[place] = np.asarray(values, dtype=kind).reshape(-1, *ends) if many else values
+    return entry.reshape(*shape, *ends)
 
 
 def consecutive(sizes: Iterable[int]) -> list[slice]:

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from typing import Any, Self
 
+import attrs
 import numpy as np
 
 from contactlab.contracts.status import Status
+from contactlab.numeric.arrays import taken
+from contactlab.outcome.plan import Plan
 
 
 class ImpactError(RuntimeError):
@@ -82,3 +87,101 @@ class Answer:
             where = f" (impact {index}; {len(failures)} in all)" if batch else ""
             lines.append(f"failed{where}: {failures[index]}")
         return "\n".join([*lines, *(f"caution: {text}" for text in self.cautions)])
+
+
+def statuses_told(statuses: Any) -> str:
+    """Return the names of statuses in words, in a batch with the count of each."""
+    if isinstance(statuses, Status):
+        return statuses.name
+    counts = Counter(status.name for status in np.ravel(np.array(statuses, dtype=object)))
+    return ", ".join(f"{count} {name}" for name, count in counts.items())
+
+
+class RunResult(Answer):
+    """Base of the results of runs: scene, plan, motion, history, laws; a batch can be indexed."""
+
+    __slots__ = ()
+
+    scene: Any
+    plan: Plan
+    motion: Any
+    run_time: float
+    laws: Mapping[str, str]
+    history: Any
+
+    @abstractmethod
+    def _told(self) -> str:
+        """Return what ``repr`` says of the answer."""
+
+    def __repr__(self) -> str:
+        """Return the answer, statuses and laws on one line."""
+        laws = ", ".join(name.partition(" ")[0] for name in self.laws.values())
+        return f"{type(self).__name__}({self._told()}; {statuses_told(self.status)}; {laws})"
+
+    def _ends(self) -> tuple[Any, Any]:
+        return self.motion.status, self.motion.detail
+
+    @property
+    def status(self) -> Any:
+        """Status of the impact, or an array of statuses of the scene's shape."""
+        return self.motion.status
+
+    @property
+    def counters(self) -> Mapping[str, int]:
+        """Counts of steps, evaluations, solves and rejected steps, by name."""
+        counters: Mapping[str, int] = self.motion.counters
+        return counters
+
+    @property
+    def cautions(self) -> list[str]:
+        """Cautions of the plan."""
+        return [*map(str, self.plan.cautions)]
+
+    def to_dataframe(self) -> Any:
+        """Return a ``pandas.DataFrame``, one row for each impact, units in ``.attrs["units"]``.
+
+        The index is the axes of a ``Scene.grid`` or of a file's product, else ``impact``.
+        """
+        from contactlab.outcome.frames import to_dataframe
+
+        return to_dataframe(self)
+
+    def to_xarray(self) -> Any:
+        """Return an ``xarray.Dataset`` with units, its dimensions the axes of a ``Scene.grid``."""
+        from contactlab.outcome.frames import to_xarray
+
+        return to_xarray(self)
+
+    def __len__(self) -> int:
+        """Return the number of impacts of a batch."""
+        if not self.scene.shape:
+            raise TypeError("the result of a single impact has no length")
+        return int(self.scene.shape[0])
+
+    def __getitem__(self, index: int | slice) -> Self:
+        """Return the result of one impact of a batch, or of a slice."""
+        shape = self.scene.shape
+        if not shape:
+            raise TypeError("the result of a single impact cannot be indexed")
+        if isinstance(index, bool) or not isinstance(index, int | np.integer | slice):
+            raise TypeError(f"a result is indexed by a number or a slice, not {index!r}")
+        places = index if isinstance(index, slice) else slice(index, index + 1 or None)
+        if not np.size(np.arange(shape[0])[places]):
+            raise IndexError(f"{index}: is out of range for a batch of {shape[0]} impacts")
+        history = self.history
+        if history:
+            columns = {name: column[:, index] for name, column in history.columns().items()}
+            fields = {name: field[:, index] for name, field in history.fields.items()}
+            history = type(history)(**columns, fields=fields)
+        part: Any = self
+        return attrs.evolve(  # type: ignore[no-any-return]
+            part,
+            scene=self.scene.take(index),
+            plan=self.plan[index],
+            motion=taken(self.motion, shape, index),
+            history=history,
+        )
+
+    def __iter__(self) -> Iterator[Self]:
+        """Iterate over the impacts of a batch."""
+        return (self[index] for index in range(len(self)))

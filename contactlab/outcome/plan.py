@@ -6,7 +6,7 @@ import html
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 import attrs
 import numpy as np
@@ -17,6 +17,9 @@ from contactlab.numeric.checks import Real
 from contactlab.outcome.columns import json_value
 
 Mask = NDArray[np.bool_]
+T = TypeVar("T")
+#: Parts of a batch: masks or slices, each with what belongs to its impacts.
+Parts: TypeAlias = Sequence[tuple[Any, T]]
 
 #: Codes of clauses that programs look for: the march of the tangential motion, and the declared or
 #: undeclared numerical error of psi2.
@@ -70,14 +73,19 @@ class PlanColumns(NamedTuple):
         """Return the columns of a batch of ``shape`` from those of its parts, in order."""
         if len(parts) == 1 and np.shape(parts[0].code) == shape == np.shape(parts[0].psi2_error):
             return parts[0]
-        reasons = tuple(dict.fromkeys(reason for part in parts for reason in part.reasons))
+        places = consecutive(np.size(part.code) for part in parts)
+        return cls.merged(list(zip(places, parts, strict=True)), shape)
+
+    @classmethod
+    def merged(cls, parts: Parts[PlanColumns], shape: tuple[int, ...]) -> PlanColumns:
+        """Return the columns of a batch of ``shape`` from places and the columns of parts."""
+        reasons = tuple(dict.fromkeys(reason for _, part in parts for reason in part.reasons))
         codes = []
-        for part in parts:
+        for where, part in parts:
             numbers = [reasons.index(reason) for reason in part.reasons]
-            codes.append(np.array([*numbers, UNKNOWN, ENDLESS, MARCHED])[part.code])
-        places = consecutive(map(np.size, codes))
-        error = merged(list(zip(places, (part.psi2_error for part in parts), strict=True)), shape)
-        return cls(merged(list(zip(places, codes, strict=True)), shape, np.int16), error, reasons)
+            codes.append((where, np.array([*numbers, UNKNOWN, ENDLESS, MARCHED])[part.code]))
+        error = merged([(where, part.psi2_error) for where, part in parts], shape)
+        return cls(merged(codes, shape, np.int16), error, reasons)
 
     def take(self, part: Any) -> PlanColumns:
         """Return the columns of some impacts of a batch."""
@@ -151,58 +159,33 @@ class Clause(NamedTuple):
 
 
 Clauses = tuple[Clause, ...]
+#: Clauses of the three kinds.
+Words = tuple[Clauses, Clauses, Clauses]
 #: The attributes of a plan that hold clauses.
 KINDS = ("computed", "left_out", "cautions")
 
 
-@attrs.frozen(init=False, eq=False)
+@attrs.frozen(eq=False)
 class Plan:
     """What will be computed, what is left out, and what to be wary of.
 
     Parameters
     ----------
-    computed, left_out, cautions : tuple of Clause
-    marched : bool or array of bool, optional
-        In place of ``columns``: impacts whose tangential motion an integrator follows.
-    psi2_error : float or array
-        Together with ``marched``.
-    late : callable, optional
-        Returns the clauses of the three kinds when they are first read, in place of those given.
-    columns : PlanColumns, optional
-
-    Attributes
-    ----------
     columns : PlanColumns
+    words : tuple of tuples of Clause, or callable
+        What is computed, what is left out, and cautions; or a function that returns them, which
+        is called when they are first read.
     """
 
     columns: PlanColumns
-    _clauses: tuple[Clauses, Clauses, Clauses] | None
-    _late: Callable[[], tuple[Clauses, Clauses, Clauses]] | None
+    _words: Words | Callable[[], Words] = ((), (), ())
 
-    def __init__(
-        self,
-        *,
-        computed: Clauses = (),
-        left_out: Clauses = (),
-        cautions: Clauses = (),
-        marched: Any = False,
-        psi2_error: Real = math.nan,
-        late: Callable[[], tuple[Clauses, Clauses, Clauses]] | None = None,
-        columns: PlanColumns | None = None,
-    ) -> None:
-        if columns is None:
-            columns = PlanColumns(np.where(marched, MARCHED, UNKNOWN), psi2_error)
-        clauses = None if late is not None else (computed, left_out, cautions)
-        self.__attrs_init__(columns, clauses, late)
-
-    def _read(self) -> tuple[Clauses, Clauses, Clauses]:
+    def _read(self) -> Words:
         """Return the clauses of the three kinds."""
-        if self._clauses is None:
-            assert self._late is not None
-            object.__setattr__(self, "_clauses", self._late())
-            object.__setattr__(self, "_late", None)
-            assert self._clauses is not None
-        return self._clauses
+        if callable(self._words):
+            object.__setattr__(self, "_words", self._words())
+        words: Any = self._words
+        return words  # type: ignore[no-any-return]
 
     @property
     def marched(self) -> Mask:
@@ -243,15 +226,17 @@ class Plan:
         Parameters
         ----------
         **entries
-            New values of ``computed``, ``left_out``, ``cautions``, ``columns`` or ``psi2_error``.
+            New values of ``computed``, ``left_out``, ``cautions`` or ``psi2_error``.
         """
+        columns = self.columns
         if "psi2_error" in entries:
-            entries["columns"] = self.columns._replace(psi2_error=entries.pop("psi2_error"))
-        return Plan(**dict(zip(KINDS, self._read(), strict=True), columns=self.columns) | entries)
+            columns = columns._replace(psi2_error=entries.pop("psi2_error"))
+        words: Any = tuple((dict(zip(KINDS, self._read(), strict=True)) | entries).values())
+        return Plan(columns, words)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return how a copy is made: with the clauses as they are when read."""
-        return _plan, (self._read(), self.columns)
+        return Plan, (self.columns, self._read())
 
     def __str__(self) -> str:
         """Return the plan in words, a line a sentence."""
@@ -272,37 +257,25 @@ class Plan:
     def __getitem__(self, index: Any) -> Plan:
         """Return the plan of some impacts of a batch: the clauses that hold for any of them."""
         parts = (tuple(clause.take(index) for clause in kind) for kind in self._read())
-        words = [tuple(part for part in kind if some(part.where)) for kind in parts]
-        return _plan(words, self.columns.take(index))
+        words: Any = tuple(tuple(part for part in kind if some(part.where)) for kind in parts)
+        return Plan(self.columns.take(index), words)
 
     @classmethod
-    def nothing(cls, shape: tuple[int, ...]) -> Plan:
-        """Return the plan of impacts of which nothing is known."""
-        return cls(columns=PlanColumns.nothing(shape))
-
-    @classmethod
-    def joined(cls, plans: Sequence[Plan], shape: tuple[int, ...] = (-1,)) -> Plan:
-        """Return the plan of a batch of ``shape`` from those of its parts, in order."""
-        sizes = [plan.marched.size for plan in plans]
-        words = [_joined([getattr(plan, kind) for plan in plans], sizes) for kind in KINDS]
-        columns = PlanColumns.joined([plan.columns for plan in plans], (sum(sizes),))
-        return _plan(words, columns.take(np.arange(sum(sizes)).reshape(shape)))
+    def merged(cls, parts: Parts[Plan], shape: tuple[int, ...]) -> Plan:
+        """Return the plan of a batch of ``shape`` from places and the plans of parts."""
+        columns = PlanColumns.merged([(where, plan.columns) for where, plan in parts], shape)
+        said = ([(where, getattr(plan, kind)) for where, plan in parts] for kind in KINDS)
+        words: Any = tuple(_merged(clauses, shape) for clauses in said)
+        return cls(columns, words)
 
 
-def _plan(words: Sequence[Clauses], columns: PlanColumns) -> Plan:
-    """Return the plan of clauses of the three kinds, and columns."""
-    computed, left_out, cautions = words
-    return Plan(computed=computed, left_out=left_out, cautions=cautions, columns=columns)
-
-
-def _joined(parts: Sequence[Clauses], sizes: Sequence[int]) -> Clauses:
+def _merged(parts: Parts[Clauses], shape: tuple[int, ...]) -> Clauses:
     """Return the clauses of all parts; those of the same text and code are one."""
     same: dict[tuple[str, str], Clause] = {}
-    size = sum(sizes)
-    for place, clauses in zip(consecutive(sizes), parts, strict=True):
+    for place, clauses in parts:
         for clause in clauses:
-            values = clause.values and tuple(np.full(size, math.nan) for _ in clause.values)
-            empty = clause._replace(where=np.zeros(size, dtype=bool), values=values)
+            values = clause.values and tuple(np.full(shape, math.nan) for _ in clause.values)
+            empty = clause._replace(where=np.zeros(shape, dtype=bool), values=values)
             whole = same.setdefault((clause.text, clause.code), empty)
             whole.where[place] |= clause.where
             for entries, more in zip(whole.values or (), clause.values or (), strict=True):

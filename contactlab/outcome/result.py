@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import html
-from collections import Counter
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.scene import Scene
-from contactlab.numeric import arrays as batch
+from contactlab.numeric.arrays import taken
 from contactlab.numeric.checks import Real
 from contactlab.numeric.names import attributes_told
-from contactlab.outcome.answer import Answer
+from contactlab.outcome.answer import RunResult
 from contactlab.outcome.energy import EnergyLedger, ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory
 from contactlab.outcome.motion import Motion
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
 
 @attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False)
-class ImpactResult(Answer):
+class ImpactResult(RunResult):
     """Result of one impact, or of a batch: every quantity has the scene's shape.
 
     A batch can be indexed, sliced and iterated; each item is the result of one impact. Items keep
@@ -61,46 +60,25 @@ class ImpactResult(Answer):
     history: History | NoHistory = attrs.field(default=NO_HISTORY, repr=False)
     psi2_error_estimate: Real | None = attrs.field(default=None, repr=False)
 
-    def __repr__(self) -> str:
-        """Return psi2, statuses and laws on one line."""
-        shape, psi2 = self.scene.shape, np.asarray(self.psi2)
-        statuses = Counter(status.name for status in np.ravel(np.array(self.status, dtype=object)))
-        laws = ", ".join(name.partition(" ")[0] for name in self.laws.values())
-        if not shape:
-            answer = f"psi1={self.psi1:.6g}, chi={self.scene.chi:.6g}, psi2={psi2:.6g}"
-        else:
-            finite = psi2[np.isfinite(psi2)]
-            ends = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size else " unknown"
-            answer = f"{psi2.size} impacts, psi2{ends}"
-        outcome = ", ".join(
-            f"{count} {name}" if shape else name for name, count in statuses.items()
-        )
-        return f"ImpactResult({answer}; {outcome}; {laws})"
+    def _told(self) -> str:
+        psi2 = np.asarray(self.psi2)
+        if not self.scene.shape:
+            return f"psi1={self.psi1:.6g}, chi={self.scene.chi:.6g}, psi2={psi2:.6g}"
+        finite = psi2[np.isfinite(psi2)]
+        ends = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size else " unknown"
+        return f"{psi2.size} impacts, psi2{ends}"
 
     def _first_lines(self) -> list[str]:
         return [repr(self), f"numerical error of psi2: {error_words(self)}"]
-
-    def _ends(self) -> tuple[Any, Any]:
-        return self.motion.status, self.motion.detail
 
     def _repr_html_(self) -> str:
         """Return ``str(self)`` as HTML for a notebook."""
         return f"<pre>{html.escape(str(self))}</pre>"
 
     @property
-    def status(self) -> Any:
-        """Status of the impact, or an array of statuses of the scene's shape."""
-        return self.motion.status
-
-    @property
-    def counters(self) -> Mapping[str, int]:
-        """Counts of steps, evaluations, solves and rejected steps, by name."""
-        return self.motion.counters
-
-    @property
     def cautions(self) -> list[str]:
         """Cautions that ``str`` shows: about the numerical error, then those of the plan."""
-        return [*error_cautions(self), *map(str, self.plan.cautions)]
+        return [*error_cautions(self), *super().cautions]
 
     @property
     def psi1(self) -> Real:
@@ -253,62 +231,11 @@ class ImpactResult(Answer):
 
         return draw_result(axes, self, x, y, width=width)
 
-    def to_dataframe(self) -> Any:
-        """Return a ``pandas.DataFrame``, one row for each impact, units in ``.attrs["units"]``.
-
-        The index is the axes of a ``Scene.grid`` or of a file's product, else ``impact``.
-        """
-        from contactlab.outcome.frames import to_dataframe
-
-        return to_dataframe(self)
-
-    def to_xarray(self) -> Any:
-        """Return an ``xarray.Dataset`` with units, its dimensions the axes of a ``Scene.grid``."""
-        from contactlab.outcome.frames import to_xarray
-
-        return to_xarray(self)
-
-    def __len__(self) -> int:
-        """Return the number of impacts of a batch."""
-        if not self.scene.shape:
-            raise TypeError("the result of a single impact has no length")
-        return self.scene.shape[0]
-
     def __getitem__(self, index: int | slice) -> ImpactResult:
         """Return the result of one impact of a batch, or of a slice."""
-        shape = self.scene.shape
-        if not shape:
-            raise TypeError("the result of a single impact cannot be indexed")
-        if isinstance(index, bool) or not isinstance(index, int | np.integer | slice):
-            raise TypeError(f"a result is indexed by a number or a slice, not {index!r}")
-        if not np.size(np.arange(shape[0])[_slice(index)]):
-            raise IndexError(f"{index}: is out of range for a batch of {shape[0]} impacts")
-
-        history = self.history
-        if history:
-            columns = {name: column[:, index] for name, column in history.columns().items()}
-            fields = {name: field[:, index] for name, field in history.fields.items()}
-            history = History(**columns, fields=fields)
-        scene = self.scene.take(index)
-        return attrs.evolve(
-            self,
-            scene=scene,
-            plan=self.plan[index],
-            motion=batch.taken(self.motion, shape, index),
-            history=history,
-            psi2_error_estimate=batch.taken(self.psi2_error_estimate, shape, index),
-        )
-
-    def __iter__(self) -> Iterator[ImpactResult]:
-        """Iterate over the impacts of a batch."""
-        return (self[index] for index in range(len(self)))
-
-
-def _slice(index: int | slice) -> slice:
-    """Return the slice of the items at ``index``, empty if out of range."""
-    if isinstance(index, slice):
-        return index
-    return slice(index, index + 1 or None)
+        part = super().__getitem__(index)
+        estimate = taken(self.psi2_error_estimate, self.scene.shape, index)
+        return attrs.evolve(part, psi2_error_estimate=estimate)
 
 
 def _ratio(after: Real, before: Real) -> Real:

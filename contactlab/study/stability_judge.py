@@ -18,7 +18,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion, sound
-from contactlab.outcome.plan import Plan
+from contactlab.outcome.plan import MARCHED, Plan, PlanColumns
 from contactlab.outcome.result import ImpactResult
 from contactlab.study.stability_cases import Case
 from contactlab.study.stability_eccentric import judged_eccentric
@@ -147,10 +147,8 @@ def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
     law, integrator = simulation.tangential, simulation.integrator
     normal = simulation.normal_motion(scene)
     tangential = integrator.integrate(normal, law, scene, None)
-    plan = Plan(
-        marched=np.ones(scene.shape, dtype=bool),
-        psi2_error=integrator.psi2_error(normal, law, scene),
-    )
+    code = np.full(scene.shape, MARCHED)
+    plan = Plan(PlanColumns(code, integrator.psi2_error(normal, law, scene)))
     motion = sound(Motion.along(normal, tangential))
     return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
 

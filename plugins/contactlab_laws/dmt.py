@@ -9,7 +9,7 @@ import attrs
 
 from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
 from contactlab.contracts.contact import TOUCH
-from contactlab.impact.adhesion import tabor_caution
+from contactlab.impact.cautions import tabor_caution
 from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity

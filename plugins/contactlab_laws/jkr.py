@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
-from contactlab.impact.adhesion import tabor_caution
+from contactlab.impact.cautions import tabor_caution
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, Real, quantity
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Sphere
-from contactlab.impact.adhesion import tabor_caution
 from contactlab.impact.bodies import Pair
+from contactlab.impact.cautions import tabor_caution
 from contactlab.impact.hertz import rigid_body_rebound, slips_throughout_elastic
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)

@@ -8,7 +8,7 @@ import pytest
 
 from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere, collide
 from contactlab.impact import material as materials
-from contactlab.impact.unit_slips import unit_slips
+from contactlab.impact.cautions import unit_slips
 
 STEEL = Material.named("steel")
 BALL = Scene(Sphere(6.35e-3, STEEL), HalfSpace(STEEL), 0.15, 1.0, 0.5)

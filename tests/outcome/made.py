@@ -53,12 +53,12 @@ def plan(shape=(), *, error=0.01, marched=True, unchecked=False, cautions=()):
     books = np.array(np.broadcast_to(unchecked, shape))
     code = np.where(books, 0, np.where(marched, MARCHED, UNKNOWN))
     error = np.array(np.broadcast_to(error, shape), dtype=float) if shape else error
-    return Plan(
-        computed=(Clause("normal motion: Hertz", everywhere),),
-        left_out=(Clause("books", books),) if books.any() else (),
-        cautions=tuple(Clause(text, everywhere) for text in cautions),
-        columns=PlanColumns(code, error, (Reason("known", unchecked=True),)),
+    words = (
+        (Clause("normal motion: Hertz", everywhere),),
+        (Clause("books", books),) if books.any() else (),
+        tuple(Clause(text, everywhere) for text in cautions),
     )
+    return Plan(PlanColumns(code, error, (Reason("known", unchecked=True),)), words)
 
 
 def result(given=None, *, planned=None, **changes):

@@ -1,0 +1,146 @@
+"""What the motions of batches have in common: numbers, statuses, and how parts are joined."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from typing import Any, Self
+
+import attrs
+import numpy as np
+
+from contactlab.contracts.status import Status
+from contactlab.numeric.arrays import consecutive, filled, merged
+from contactlab.numeric.checks import Mask
+
+#: Entries of motions that are no numbers.
+NO_NUMBERS = ("status", "detail", "counters", "normal")
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class BatchMotion:
+    """Base of the motions of one impact or of a batch: numbers, and how the runs ended.
+
+    Attributes
+    ----------
+    status : Status or array of Status
+    detail : str or array of str
+    counters : mapping of str to int
+    """
+
+    status: Any = Status.SUCCESS
+    detail: Any = ""
+    counters: Mapping[str, int] = attrs.field(factory=dict)
+
+    def __attrs_post_init__(self) -> None:
+        if isinstance(self.status, Status):
+            return  # one impact: np.ndim is slower than this test
+        if isinstance(self.detail, str) and np.ndim(self.status):
+            details = filled("", np.shape(self.status))
+            if self.detail:
+                details[self.status != Status.SUCCESS] = self.detail
+            object.__setattr__(self, "detail", details)
+
+    @classmethod
+    @cache
+    def numbers(cls) -> tuple[str, ...]:
+        """Return the names of the entries that are numbers."""
+        return tuple(name for name, *_ in cls._entries())
+
+    @classmethod
+    def _entries(cls) -> Iterator[tuple[str, tuple[int, ...], type]]:
+        """Yield name, axes and type of every entry that is a number."""
+        fields: Any = attrs.fields(cls)
+        for field in fields:
+            if field.name not in NO_NUMBERS:
+                yield field.name, field.metadata.get("ends", ()), field.metadata.get("kind", float)
+
+    @classmethod
+    def joined(cls, motions: Sequence[Self], shape: tuple[int, ...]) -> Self:
+        """Return one motion of ``shape`` from the motions of consecutive parts of the batch.
+
+        Parameters
+        ----------
+        motions : sequence of motions
+            Motions of single impacts or of batches, in the order of the impacts.
+        shape : tuple of int
+            Shape of the whole batch.
+        """
+        if len(motions) == 1 and shape and np.shape(motions[0].status) == shape:
+            return motions[0]
+        places = consecutive(np.size(motion.status) for motion in motions)
+        return cls.merged(list(zip(places, motions, strict=True)), shape)
+
+    @classmethod
+    def merged(cls, parts: Sequence[tuple[Any, Self]], shape: tuple[int, ...]) -> Self:
+        """Return one motion of ``shape`` from pairs of a place and the motion of its impacts.
+
+        An impact in several parts has the motion of the last of these parts.
+
+        Parameters
+        ----------
+        parts : sequence of (array of bool or slice, motion)
+            Masks of shape ``shape``, or slices of the batch in C order, each with the motion of
+            its impacts.
+        shape : tuple of int
+            Shape of the whole batch.
+        """
+        counters: Counter[str] = Counter()
+        for _, motion in parts:
+            counters.update(motion.counters)
+        entries: dict[str, Any] = {}
+        for name, ends, kind in (*cls._entries(), ("status", (), object), ("detail", (), object)):
+            columns = [(where, getattr(motion, name)) for where, motion in parts]
+            entries[name] = merged(columns, shape, kind, ends)
+        return cls(**entries, counters=dict(counters))
+
+    @classmethod
+    def nothing(
+        cls, shape: tuple[int, ...], status: Status, detail: str | Sequence[str] = ""
+    ) -> Self:
+        """Return the motion of impacts that were not computed: numbers are NaN, counts 0.
+
+        Parameters
+        ----------
+        shape : tuple of int
+            Batch shape.
+        status : Status
+            Status of all impacts.
+        detail : str or sequence of str
+            One sentence for all impacts, or one for each.
+        """
+        entries: dict[str, Any] = {}
+        for name, ends, kind in cls._entries():
+            empty = math.nan if kind is float else 0
+            axes = (*shape, *ends)
+            entries[name] = np.full(axes, empty, dtype=kind) if axes else empty
+        return cls(
+            **entries,
+            status=filled(status, shape),
+            detail=detail if isinstance(detail, str) else np.array(detail, dtype=object),
+        )
+
+    def failing(self, where: Mask, status: Status, detail: Any) -> Self:
+        """Return this motion with another status for the successful impacts that ``where`` marks.
+
+        Parameters
+        ----------
+        where : bool or array of bool
+            The impacts that fail; those that had failed before keep status and detail.
+        status : Status
+            New status.
+        detail : str or array of str
+            One sentence for all these impacts, or one for each impact of the batch.
+        """
+        statuses: Any = np.array(self.status, dtype=object)
+        failing = np.asarray(where) & (statuses == Status.SUCCESS)
+        if not failing.any():
+            return self
+        if not statuses.shape:
+            return attrs.evolve(self, status=status, detail=detail)
+        statuses[failing] = status
+        return attrs.evolve(
+            self, status=statuses, detail=np.where(failing, detail, self.detail).astype(object)
+        )

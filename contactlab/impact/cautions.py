@@ -1,0 +1,199 @@
+"""Cautions about bodies and materials, and about numbers that are probably in another unit."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from contactlab.impact.bodies import Sphere
+from contactlab.impact.hertz import peak_pressure
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import for_share
+from contactlab.numeric.checks import Real
+
+#: Peak pressure of Hertz's contact at which yield begins beneath the surface, over the yield
+#: stress Y (Thornton's law has the same factor).
+FIRST_YIELD = 1.6
+GPA = 1e9
+#: Above this ratio of contact radius to R the theory of half-spaces is doubtful (theory §8).
+DOUBTFUL_SIZE_RATIO = 0.1
+#: Range of attraction of surfaces in m, about the distance between atoms.
+RANGE = 3e-10
+#: Sphere radius in m from which the unit was probably mm.
+LARGE_RADIUS = 1.0
+#: Density in kg/m³ and shear modulus in Pa of the lightest and softest solids, aerogels and gels.
+LEAST_DENSITY, LEAST_MODULUS = 25.0, 1e4
+#: A spin in turns a minute read as rad/s is 9.5 times too fast. Suspect are spins of at least
+#: LEAST_SPIN rad/s that move the surface at more than MOST_RIM times the speed of the centre; a
+#: rolling sphere has once that speed.
+LEAST_SPIN, MOST_RIM = 50.0, 8.0
+#: Friction coefficient above which it is doubtful; speed over that of sound, sqrt(E/rho), above
+#: which waves carry off energy and Hertz's law is doubtful.
+MOST_FRICTION, SOUND_PART = 2.0, 0.1
+#: An angle that is a multiple of STEP_DEG degrees, to NEAR_DEG, when read in radians is suspect.
+STEP_DEG, NEAR_DEG = 5.0, 0.003
+
+
+def large_contact(ratio: float) -> tuple[str, ...]:
+    """Return the caution of a contact radius over R that is not small."""
+    if not ratio > DOUBTFUL_SIZE_RATIO:
+        return ()
+    return (
+        f"C = {ratio:.3g}, contact radius over R: the contact is not small against the "
+        f"radius, the theory of half-spaces is doubtful above {DOUBTFUL_SIZE_RATIO}",
+    )
+
+
+def path_cautions(scene: Scene, deepest: float, *, plastic: bool) -> tuple[str, ...]:
+    """Return the cautions of bodies that are pressed together by ``deepest`` m."""
+    if scene.sphere is None or not deepest > 0.0:
+        return ()
+    ratio: Any = np.sqrt(deepest / scene.pair.radius)
+    pressure = (2.0 / math.pi) * scene.pair.effective_modulus * ratio
+    cautions = () if plastic else yielding(scene, pressure)
+    return (*cautions, *large_contact(float(np.max(ratio))))
+
+
+def yielding(scene: Scene, peak: Real | None = None) -> tuple[str, ...]:
+    """Return the caution of a Hertz pressure above 1.6 Y; empty without yield stresses.
+
+    Parameters
+    ----------
+    scene : Scene
+    peak : float or array, optional
+        Greatest pressure in Pa; that of the elastic impact by default.
+    """
+    bodies = {"sphere": scene.sphere, "target": scene.target}
+    stresses: dict[str, Any] = {
+        name: body.material.yield_stress
+        for name, body in bodies.items()
+        if body is not None and body.material.yield_stress is not None
+    }
+    if not stresses:
+        return ()
+    pressure = np.broadcast_to(peak_pressure(scene) if peak is None else peak, scene.shape)
+    limits = np.stack(
+        [np.broadcast_to(FIRST_YIELD * stress, scene.shape) for stress in stresses.values()]
+    )
+    limit = limits.min(axis=0)
+    yields = pressure > limit
+    if not yields.any():
+        return ()
+    worst = np.unravel_index(np.argmax(pressure / limit), scene.shape) if scene.shape else ()
+    softest = list(stresses)[int(np.argmin([each[worst] for each in limits]))]
+    return (
+        f"yield{for_share(yields)}: the peak pressure of Hertz's contact is "
+        f"{pressure[worst] / GPA:.2g} GPa, above 1.6 Y = {limit[worst] / GPA:.2g} GPa of the "
+        f"{softest}, which would deform plastically; the normal law leaves that out "
+        "(model, not numerical error)",
+    )
+
+
+def tabor_caution(
+    scene: Scene,
+    work_of_adhesion: float,
+    *,
+    other: str,
+    least: float = 0.0,
+    most: float = math.inf,
+) -> tuple[str, ...]:
+    """Return the caution if Tabor's parameter lies outside [``least``, ``most``].
+
+    Tabor's parameter is (R Gamma²/(E*² h³))^(1/3), h the range of attraction: Tabor, J. Colloid
+    Interface Sci. 58 (1977) 2-13, doi:10.1016/0021-9797(77)90366-6. ``work_of_adhesion`` is Gamma
+    in J/m², ``other`` names the law for the other range.
+    """
+    if scene.sphere is None or work_of_adhesion == 0.0:
+        return ()
+    pair = scene.pair
+    tabor = np.cbrt(pair.radius * (work_of_adhesion / pair.effective_modulus) ** 2) / RANGE
+    low, high = float(np.min(tabor)), float(np.max(tabor))
+    if least <= low and high <= most:
+        return ()
+    bound, value = (f"above {least:g}", low) if low < least else (f"below {most:g}", high)
+    return (
+        f"Tabor's parameter is {value:.2g}, with a range of attraction of {RANGE:g} m: the theory "
+        f"holds {bound}; see {other} (model, not numerical error)",
+    )
+
+
+def unit_slips(scene: Scene) -> list[str]:
+    """Return one sentence for each number of ``scene`` that is probably in another unit."""
+    if scene.sphere is None or scene.target is None:
+        return []
+    slips = []
+    for name, body in (("sphere", scene.sphere), ("target", scene.target)):
+        density, modulus = body.material.density, _least(body.material.shear_modulus)
+        radius = _most(body.radius) if isinstance(body, Sphere) else 0.0
+        if radius >= LARGE_RADIUS:
+            slips.append(f"unit: {name}.radius = {radius:.4g} m: is it in mm?")
+        if density is not None and _least(density) < LEAST_DENSITY:
+            number = f"{name}.material.density = {_least(density):.4g} kg/m³"
+            slips.append(f"unit: {number}: is it in g/cm³?")
+        if modulus < LEAST_MODULUS:
+            young = 2.0 * (1.0 + _least(body.material.poisson_ratio)) * modulus
+            number = f"{name}.material.shear_modulus = {modulus:.4g} Pa (Young's {young:.4g} Pa)"
+            slips.append(f"unit: {number}: is it in GPa?")
+    speed = math.hypot(_most(scene.normal_speed), _most(abs(scene.tangential_velocity)))
+    spin = _most(abs(scene.spin))
+    rim = _most(scene.sphere.radius) * spin
+    if spin >= LEAST_SPIN and rim > MOST_RIM * speed:
+        number = f"spin = {spin:.4g} rad/s: the surface moves {rim / speed:.3g} times as fast"
+        slips.append(f"unit: {number} as the centre; is it in turns a minute?")
+    with np.errstate(all="ignore"):
+        slope = _most(abs(scene.tangential_velocity / scene.normal_speed))
+    angle_deg = math.degrees(math.atan(slope))
+    intended = math.degrees(angle_deg)
+    nearest = STEP_DEG * round(intended / STEP_DEG)
+    if angle_deg <= 0.5 * math.pi and nearest > 0.0 and abs(intended - nearest) <= NEAR_DEG:
+        number = f"angle of incidence {angle_deg:.6g}°: {nearest:g}° are as many radians"
+        slips.append(f"unit: {number}; angle_deg is in degrees")
+    return slips
+
+
+def unlikely(scene: Scene) -> list[str]:
+    """Return one sentence for each number of ``scene`` that few contacts have."""
+    if scene.sphere is None or scene.target is None:
+        return []
+    slips, speed = [], _most(scene.normal_speed)
+    if (friction := _most(scene.friction_coefficient)) > MOST_FRICTION:
+        slips.append(
+            f"friction_coefficient = {friction:.4g}: above {MOST_FRICTION:g} surfaces stick like "
+            "soft rubber; is it in per cent, or an angle?"
+        )
+    for name, body in (("sphere", scene.sphere), ("target", scene.target)):
+        if (density := body.material.density) is not None:
+            young = 2.0 * (1.0 + body.material.poisson_ratio) * body.material.shear_modulus
+            sound = _least(np.sqrt(np.asarray(young) / density))
+            if speed > SOUND_PART * sound:
+                slips.append(
+                    f"normal speed {speed:.4g} m/s is {speed / sound:.2g} of the speed of sound in "
+                    f"the {name}, {sound:.4g} m/s: above {SOUND_PART:g} the contact is not "
+                    "quasi-static"
+                )
+    return slips
+
+
+def three_numbers(scene: Scene) -> tuple[str, ...]:
+    """Return the caution of a single entry with three numbers, which may be meant as a vector."""
+    if scene.shape != (3,) or scene.sphere is None:
+        return ()
+    arrays = [name for name, number in scene.numbers().items() if np.ndim(number)]
+    if len(arrays) != 1:
+        return ()
+    return (
+        f"{arrays[0]} has three numbers, taken for three impacts: vectors in space belong in an "
+        "Encounter",
+    )
+
+
+def _least(value: Any) -> float:
+    """Return the smallest number of a batch, or the number itself."""
+    return value if isinstance(value, float) else float(np.min(value))
+
+
+def _most(value: Any) -> float:
+    """Return the largest number of a batch, or the number itself."""
+    return value if isinstance(value, float) else float(np.max(value))
