@@ -10,8 +10,8 @@ import contactlab
 from contactlab import Scene
 from contactlab.compose.normal_motion import normal_motion
 from contactlab_laws.halfspace.basis import basis
-from contactlab_laws.halfspace.course import course
 from contactlab_laws.halfspace.hemispheres import displacement
+from contactlab_laws.halfspace.instants import instants
 from contactlab_laws.halfspace.march import follow
 from contactlab_laws.halfspace.modes import modes
 from contactlab_laws.halfspace.pressure import Answering, Prescribed
@@ -115,10 +115,10 @@ def test_spence(strength, lift):
 
     front, kappa, rings = brentq(unbalanced, 1e-6, 1.0 - 1e-12), 1.4 / 1.7, 32
     table = modes(rings, 4, 0.3, kappa * strength, None if lift is None else lift * strength)
-    path = course(MOTION, rings, 1)
+    path = instants(MOTION, rings, 1)
     pressure = (Prescribed if lift is None else Answering)(table, path, 1.25)
-    traction, _ = follow(pressure, 0.0, 1.0, fields=True).fields[rings - 1]
-    pressed = pressure.limit(rings) if lift is None else traction[2, 0]
+    traction, _, pressed = follow(pressure, 0.0, 1.0, fields=True).fields[rings - 1]
+    pressed = np.atleast_2d(pressed)[0]
     stuck = (np.hypot(*traction[:2, 0]) < (1.0 - 1e-6) * pressed) & (pressed > 0.0)
     edge = int(np.flatnonzero(stuck)[-1]) + 1
     nearest = table.basis.edges[edge - 1 : edge + 2]

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlab_laws.halfspace.course import Course
 from contactlab_laws.halfspace.hemispheres import Array
+from contactlab_laws.halfspace.instants import Instants
 from contactlab_laws.halfspace.modes import SPARE, Modes
 
 
@@ -44,13 +44,13 @@ class Prescribed:
     Parameters
     ----------
     table : Modes
-    course : Course
+    course : Instants
         Normal motion of one impact.
     stiffness : float
         Unit of force times that of time over M_n v1; 5/4 for elastic Hertz contacts.
     """
 
-    def __init__(self, table: Modes, course: Course, stiffness: float) -> None:
+    def __init__(self, table: Modes, course: Instants, stiffness: float) -> None:
         self.table, self.course, self.stiffness = table, course, stiffness
         self.duration = np.diff(course.time[:, 0])
         self._impulse = np.diff(course.impulse[:, 0])
@@ -100,7 +100,7 @@ class Answering(Prescribed):
         Departures of approach, rate and force.
     """
 
-    def __init__(self, table: Modes, course: Course, stiffness: float) -> None:
+    def __init__(self, table: Modes, course: Instants, stiffness: float) -> None:
         super().__init__(table, course, stiffness)
         self.approach, self.rate, self.excess = np.zeros((3, len(course.inside)))
 

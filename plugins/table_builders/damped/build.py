@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import NormalMotion
 from contactlab_laws.halfspace.axisymmetric import follow_all, rebound
-from contactlab_laws.halfspace.course import Course, course
+from contactlab_laws.halfspace.instants import Instants, instants
 from contactlab_laws.tables.damped import BORDERS, CHI, SLIPS, tsuji
 from contactlab_laws.tables.file import Stored, write
 from table_builders.damped.coordinates import (
@@ -55,7 +55,7 @@ def cuts_at(e: float, chi: Array, *, rings: int = RINGS) -> Array:
     # At the second all of the contact slips, for an instant, before the end. From the third on the
     # centre slips for good: the slip displacement grows at least as fast as that of a hemisphere at
     # its limit all through unloading.
-    path, cuts = course(tsuji(e), rings, 1), np.empty((3, len(chi)))
+    path, cuts = instants(tsuji(e), rings, 1), np.empty((3, len(chi)))
     top, end = int(path.radius.argmax()), int(np.flatnonzero(path.pressure[:, 0]).max())
     first = np.linspace(*FIRST, LOOKED)
     for k, ratio in enumerate(chi.tolist()):
@@ -96,7 +96,7 @@ def _reaching(psi1: Array, share: Array, slipping: float) -> float:
     return float(np.clip(psi1[k - 1] + (1.0 - share[k - 1]) / rise, psi1[k - 1], psi1[k]))
 
 
-def _margin(rate: Array, path: Course, top: int) -> Array:
+def _margin(rate: Array, path: Instants, top: int) -> Array:
     """Return the least excess of the slip rate over the growth of the central limit, unloading."""
     live = slice(len(rate) + 1)
     limit = path.pressure[live, 0] * path.radius[live] ** 2
