@@ -18,6 +18,8 @@ from contactlab.contracts import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Real, quantity
 from contactlab_laws.mindlin import (
+    DAMPED,
+    PARTIAL_SLIP,
     InPlane,
     along,
     critical_share,
@@ -31,17 +33,6 @@ from contactlab_laws.mindlin import (
 #: falls as the square of the steps. A dashpot adds the share of a step in which the velocity
 #: reverses.
 COARSEST_BOOKS = 0.05
-
-#: Checks that a law with a dashpot fails by its nature.
-DAMPED: Mapping[str, str] = {
-    "turning_points": "the force of a dashpot depends on the velocity, not on the path alone",
-    "stiffness": "the force of a dashpot does not depend on the displacement",
-}
-
-PARTIAL_SLIP = (
-    "one spring: the whole contact slips at once, which moves psi2 of solid spheres by "
-    "up to about 0.7 (model, not numerical error)"
-)
 
 PATH = (
     "one spring of one stiffness: along random paths the force is off by up to 2 mu N (0.95 rms), "

@@ -30,8 +30,8 @@ def test_list_as_table(run):
 
 def test_show(run):
     shown = json.loads(run("plugins", "show", "tangential.annulus", "--json").out)
-    assert shown["module"] == "contactlab_laws.annulus"
-    assert "contactlab_laws.annulus" in run("plugins", "show", "tangential.annulus").out
+    assert shown["module"] == "contactlab_laws.annulus.law:Annulus"
+    assert "contactlab_laws.annulus.law" in run("plugins", "show", "tangential.annulus").out
 
 
 def test_what_a_law_does_not_need_is_none(run):

@@ -16,7 +16,7 @@ from contactlab.contracts import (
     WholeImpact,
     WholeImpactTangentialLaw,
 )
-from contactlab_laws.hertz.law import Hertz
+from contactlab_laws.hertz import Hertz
 from contactlab_laws.springs.law import Springs
 
 CHI = 1.4412

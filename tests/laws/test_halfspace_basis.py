@@ -10,12 +10,12 @@ import contactlab
 from contactlab import Scene
 from contactlab.compose.normal_motion import normal_motion
 from contactlab_laws.halfspace.basis import basis
-from contactlab_laws.halfspace.course import course
 from contactlab_laws.halfspace.hemispheres import displacement
+from contactlab_laws.halfspace.instants import instants
 from contactlab_laws.halfspace.march import follow
 from contactlab_laws.halfspace.modes import modes
-from contactlab_laws.halfspace.pressure import Answering, Prescribed
-from contactlab_laws.halfspace.splitting import TOLERANCE, Step, settle
+from contactlab_laws.halfspace.pressure import Answering, Contact, Prescribed
+from contactlab_laws.halfspace.splitting import TOLERANCE, settle
 
 HERTZ = contactlab.create("normal.hertz")
 MOTION = normal_motion(HERTZ, Scene.nondimensional(psi1=1.0, chi=1.0))
@@ -99,8 +99,8 @@ def test_cattaneo_and_mindlin(front):
     """F/(mu P) = 1 - c³ at the displacement 1 - c², wherever the front is."""
     table = modes(32, 8, 0.0, 0.0, None)
     aim = (1.0 - front**2) * np.broadcast_to(table.along, (2, 8, 32))
-    step = Step(aim, np.sqrt(1.0 - table.points**2), 1.0, 0.0)
-    found = settle(table, step, np.zeros(aim.shape))
+    contact = Contact(32, np.sqrt(1.0 - table.points**2), 1.0)
+    found = settle(table, contact, aim, 0.0, np.zeros(aim.shape))
     assert found.share == pytest.approx(1.0 - front**3, abs=1e-3)
     assert found.residual < TOLERANCE
 
@@ -115,10 +115,10 @@ def test_spence(strength, lift):
 
     front, kappa, rings = brentq(unbalanced, 1e-6, 1.0 - 1e-12), 1.4 / 1.7, 32
     table = modes(rings, 4, 0.3, kappa * strength, None if lift is None else lift * strength)
-    path = course(MOTION, rings, 1)
+    path = instants(MOTION, rings, 1)
     pressure = (Prescribed if lift is None else Answering)(table, path, 1.25)
-    traction, _ = follow(pressure, 0.0, 1.0, fields=True).fields[rings - 1]
-    pressed = pressure.limit(rings) if lift is None else traction[2, 0]
+    traction, _, pressed = follow(pressure, 0.0, 1.0, fields=True).fields[rings - 1]
+    pressed = np.atleast_2d(pressed)[0]
     stuck = (np.hypot(*traction[:2, 0]) < (1.0 - 1e-6) * pressed) & (pressed > 0.0)
     edge = int(np.flatnonzero(stuck)[-1]) + 1
     nearest = table.basis.edges[edge - 1 : edge + 2]

@@ -8,9 +8,8 @@ from scipy.integrate import solve_ivp
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab_laws.stronge import lumped
-from contactlab_laws.stronge.lumped import rebound
-from contactlab_laws.stronge.roots import first_zero
+from contactlab_laws import stronge
+from contactlab_laws.stronge import first_zero, rebound
 from tests.laws.exact_laws import order
 from tests.laws.normal_laws import LinearSpring
 
@@ -124,14 +123,14 @@ def test_bodies_of_very_unlike_inertia_are_refused_with_a_sentence():
 
 def stages(psi1, chi):
     """Return the senses of slip, 0 for stick, in their order; e = 1."""
-    contact = lumped.Contact(psi1, 0.0, 0.0, 0.0, int(psi1 >= 1.0))
+    contact = stronge.Contact(psi1, 0.0, 0.0, 0.0, int(psi1 >= 1.0))
     found = []
-    for half in (lumped.Half(1.0, True), lumped.Half(1.0, False)):
+    for half in (stronge.Half(1.0, True), stronge.Half(1.0, False)):
         x = 0.0
         while x < 0.5 * np.pi:
             if not found or found[-1] != contact.sense:
                 found.append(contact.sense)
-            follow = lumped._slip if contact.sense else lumped._stick
+            follow = stronge._slip if contact.sense else stronge._stick
             contact, x = follow(contact, half, np.sqrt(2.0 * chi), x)
     return found
 

@@ -5,8 +5,7 @@ import math
 import pytest
 
 from contactlab import Scene, Simulation, create
-from contactlab_laws.stronge.lumped import rebound
-from contactlab_laws.stronge.roots import first_zero
+from contactlab_laws.stronge import first_zero, rebound
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import numpy as np
 
 import contactlab
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab_laws.hertz.law import Hertz
+from contactlab_laws.hertz import Hertz
 from tests.testing.broken_laws import Sound
 
 STEPS: Any = type(contactlab.create("integrator.symplectic"))

@@ -7,42 +7,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import NormalMotion
 from contactlab_laws.halfspace.basis import basis
-from contactlab_laws.halfspace.course import Course, course
 from contactlab_laws.halfspace.hemispheres import Array
-from contactlab_laws.halfspace.rest import begun, moved, rest
+from contactlab_laws.halfspace.instants import Instants, instants
+from contactlab_laws.halfspace.march import Followed
 from contactlab_laws.halfspace.rings import Rings, rings, settle
+from contactlab_laws.halfspace.slips import begun, moved, rest
 
 #: Steps from one ring to the next.
 STEPS = 4
 #: Solutions of a step: the share of Coulomb's limit at its end is taken from the one before.
 PASSES = 2
-
-
-class Axisymmetric(NamedTuple):
-    """Impacts followed to their end, at first touch and at K instants after it.
-
-    Attributes
-    ----------
-    change, share : array, shape (K + 1, impacts)
-        Change of slip velocity; F over mu times the friction load.
-    work : array, shape (impacts,)
-        Friction work over M_t times the square of the unit of velocity.
-    fields : list of (array, array, array)
-        Tractions, slips and pressures at the K instants, shape (impacts, rings); empty unless
-        asked for.
-    """
-
-    change: Array
-    share: Array
-    work: Array
-    fields: list[tuple[Array, Array, Array]]
 
 
 @lru_cache(maxsize=16)
@@ -52,21 +32,21 @@ def table_of(count: int) -> Rings:
 
 
 def follow_all(
-    count: int, course: Course, psi1: Array, chi: Array, stiffness: Array, *, fields: bool = False
-) -> Axisymmetric:
+    count: int, course: Instants, psi1: Array, chi: Array, stiffness: Array, *, fields: bool = False
+) -> Followed:
     """Return the motion of impacts over ``count`` rings.
 
     Parameters
     ----------
     count : int
         Rings within the largest contact.
-    course : Course
+    course : Instants
         Normal motions of the impacts.
     psi1, chi, stiffness : array, shape (impacts,)
         Dimensionless angles of incidence, inertia ratios, and units of force times those of time
         over M_n v1.
     fields : bool
-        Whether to keep tractions and slips.
+        Whether to keep tractions, slips and pressures.
 
     Raises
     ------
@@ -121,7 +101,9 @@ def follow_all(
         shares[k], traction = after, new
         if fields:
             kept.append((new, slip, limits))
-    return Axisymmetric(change, shares, 6.0 * chi * stiffness * work, kept)
+    impulse = np.broadcast_to(course.impulse, shares.shape)
+    works, residual = 6.0 * chi * stiffness * work, np.zeros(impacts)
+    return Followed(change, shares, impulse, works, residual, kept)
 
 
 def rebound(
@@ -141,12 +123,10 @@ def rebound(
     """
     changes = []
     for number in (count, count // 2):
-        paths = [course(motion, number, STEPS) for motion in motions]
+        paths = [instants(motion, number, STEPS) for motion in motions]
         path = paths[0]
         if len(paths) > 1:
-            names = ("time", "impulse", "pressure", "phase")
-            columns = (np.hstack([getattr(each, name) for each in paths]) for name in names)
-            chosen = {name: column[:, which] for name, column in zip(names, columns, strict=True)}
-            path = path._replace(**chosen)
+            both = zip(*(each[3:] for each in paths), strict=True)
+            path = Instants(*path[:3], *map(np.hstack, both)).take(which)
         changes.append(follow_all(number, path, psi1, chi, np.ones(psi1.shape)).change[-1])
     return np.asarray(psi1 + changes[0] + (changes[0] - changes[1]) / 3.0)

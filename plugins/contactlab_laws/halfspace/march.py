@@ -1,48 +1,62 @@
 """One impact on rings and angles: tractions as vectors, with coupling of unlike bodies.
 
-Scaled as in ``course``: lengths by the largest contact radius a, slip by mu a²/(kappa R), forces by
-(4/3) E* a³/R, tangential ones by mu times this, velocities of slip by mu v1/kappa.
+Scaled as in ``instants``: lengths by the largest contact radius a, slip by mu a²/(kappa R), forces
+by (4/3) E* a³/R, tangential ones by mu times this, velocities of slip by mu v1/kappa.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from contactlab_laws.halfspace.hemispheres import Array
-from contactlab_laws.halfspace.pressure import Prescribed
-from contactlab_laws.halfspace.rest import begun, moved, rest
-from contactlab_laws.halfspace.splitting import Step, settle
+from contactlab_laws.halfspace.pressure import Answering, Prescribed
+from contactlab_laws.halfspace.slips import begun, moved, rest
+from contactlab_laws.halfspace.splitting import settle
 
 
 class Followed(NamedTuple):
-    """An impact followed to its end, at first touch and at K instants after it.
+    """Impacts followed to their end, at first touch and at K instants after it, dimensionless.
 
     Attributes
     ----------
-    change, share, impulse : array, shape (K + 1,)
+    change, share, impulse : array, shape (K + 1, impacts)
         Change of slip velocity; F over mu times the friction load; integral of the friction load
         over M_n v1.
-    work : float
+    work : array, shape (impacts,)
         Friction work over M_t times the square of the unit of velocity.
-    residual : float
-        Largest residual of all steps.
-    fields : list of (array, array)
-        Tractions, shape (parts, angles, rings), and slips, shape (2, angles, rings), at the K
-        instants; empty unless asked for.
+    residual : array, shape (impacts,)
+        Largest residual of all steps, over the largest pressure; 0 where none is left.
+    fields : list of (array, array, array)
+        Tractions, slips and pressures at the K instants, empty unless asked for: shapes
+        (impacts, rings) along one direction, else (parts, angles, rings) of one impact.
+    departures : array, shape (3, K + 1, impacts), or None
+        Departures of approach, rate and force from the normal motion without friction; None unless
+        traction changes the pressure.
     """
 
     change: Array
     share: Array
     impulse: Array
-    work: float
-    residual: float
-    fields: list[tuple[Array, Array]]
+    work: Array
+    residual: Array
+    fields: list[tuple[Array, Array, Array]]
+    departures: Array | None = None
+
+
+def joined(parts: Sequence[Followed]) -> Followed:
+    """Return impacts one behind the other; fields are those of the first."""
+    columns: list[Any] = [
+        None if column[0] is None else np.concatenate(column, axis=-1)
+        for column in zip(*(part._replace(fields=[]) for part in parts), strict=True)
+    ]
+    return Followed(*columns)._replace(fields=parts[0].fields)
 
 
 def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = False) -> Followed:
-    """Return the impact with slip velocity ``psi1`` at first touch.
+    """Return one impact with slip velocity ``psi1`` at first touch.
 
     Parameters
     ----------
@@ -51,19 +65,18 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
     psi1, chi : float
         Dimensionless angle of incidence, and inertia ratio.
     fields : bool
-        Whether to keep tractions and slips.
+        Whether to keep tractions, slips and pressures.
     """
     # In every step the share of Coulomb's limit that acts is linear in the impulse of the friction
     # load, so that gross slip is exact. The first step has one share throughout. ``early`` and
     # ``late`` are the weights of the shares at its two ends in the displacement of a step.
-    table, course = pressure.table, pressure.course
-    count, along = len(course.inside), table.along
-    change, shares, impulse = np.zeros((3, count))
+    table, along = pressure.table, pressure.table.along
+    change, shares, impulse = columns = np.zeros((3, len(pressure.course.inside)))
     zero = np.zeros((table.parts, table.angles, table.count))
     slips, traction, memory = begun(zero[:2]), zero, zero
     displaced, work, residual = 0.0, 0.0, 0.0
     touched, kept = False, []
-    for k in range(1, count):
+    for k in range(1, len(change)):
         duration, gain = float(pressure.duration[k - 1]), 2.0 * chi * pressure.impulse(k)
         early, late = (1.0 / 3.0, 1.0 / 6.0) if touched else (0.0, 0.5)
         contact, new = pressure.contact(k), np.zeros(zero.shape)
@@ -78,8 +91,7 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
             start = np.zeros(target.shape)
             known = min(number, memory.shape[2])
             start[:, :, :known] = memory[:, :, :known]
-            step = Step(target, contact.limit, contact.load, slowing, contact.yielding)
-            solution = settle(table, step, start)
+            solution = settle(table, contact, target, slowing, start)
             new[:, :, :number], memory = solution.traction, solution.memory
             share, force = solution.share, solution.force
             residual = max(residual, solution.residual)
@@ -98,6 +110,13 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
         change[k] = change[k - 1] - chi * passed * (shares[k - 1] + share)
         shares[k], traction = share, new
         if fields:
-            kept.append((new, slip))
-    scale = 6.0 * chi * pressure.stiffness
-    return Followed(change, shares, impulse, scale * work, residual, kept)
+            pressed = new[2] if table.parts == 3 else np.zeros(table.count)
+            if contact is not None and contact.limit is not None:
+                pressed[: contact.rings] = contact.limit
+            kept.append((new, slip, pressed))
+    departures: Any = None
+    if isinstance(pressure, Answering):
+        departures = np.stack((pressure.approach, pressure.rate, pressure.excess))[..., None]
+    works = np.array([6.0 * chi * pressure.stiffness * work])
+    change, shares, impulse = (column[:, None] for column in columns)
+    return Followed(change, shares, impulse, works, np.array([residual]), kept, departures)

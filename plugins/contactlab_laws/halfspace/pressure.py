@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlab_laws.halfspace.course import Course
 from contactlab_laws.halfspace.hemispheres import Array
+from contactlab_laws.halfspace.instants import Instants
 from contactlab_laws.halfspace.modes import SPARE, Modes
 
 
@@ -44,13 +44,13 @@ class Prescribed:
     Parameters
     ----------
     table : Modes
-    course : Course
+    course : Instants
         Normal motion of one impact.
     stiffness : float
         Unit of force times that of time over M_n v1; 5/4 for elastic Hertz contacts.
     """
 
-    def __init__(self, table: Modes, course: Course, stiffness: float) -> None:
+    def __init__(self, table: Modes, course: Instants, stiffness: float) -> None:
         self.table, self.course, self.stiffness = table, course, stiffness
         self.duration = np.diff(course.time[:, 0])
         self._impulse = np.diff(course.impulse[:, 0])
@@ -76,13 +76,6 @@ class Prescribed:
             dragged = dragged + inner * self.table.drags[number - 2]
         return Contact(number, limit[:number], float(load), dragged)
 
-    def limit(self, k: int) -> Array:
-        """Return the pressure after step ``k``, shape (all rings,)."""
-        contact, pressure = self.contact(k), np.zeros(self.table.count)
-        if contact is not None and contact.limit is not None:
-            pressure[: contact.rings] = contact.limit
-        return pressure
-
     def advance(self, k: int, force: float) -> float:
         """Take step ``k``, which ends with this force; return its impulse."""
         return self.impulse(k)
@@ -100,7 +93,7 @@ class Answering(Prescribed):
         Departures of approach, rate and force.
     """
 
-    def __init__(self, table: Modes, course: Course, stiffness: float) -> None:
+    def __init__(self, table: Modes, course: Instants, stiffness: float) -> None:
         super().__init__(table, course, stiffness)
         self.approach, self.rate, self.excess = np.zeros((3, len(course.inside)))
 

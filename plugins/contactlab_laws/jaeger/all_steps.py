@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactlab.numeric.checks import Real
-from contactlab_laws.jaeger.bundle import Array, Bundle
-from contactlab_laws.jaeger.geometry import of_each
+from contactlab_laws.jaeger.bundle import Array, Bundle, of_each
 
 #: Most springs times steps of a geometry that is kept for the next impact: 8 of them take 13 MB.
 LARGEST_KEPT = 50_000

@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.numeric.checks import Real
-from contactlab_laws.jaeger.bundle import Array, Bundle
-from contactlab_laws.jaeger.geometry import Geometry, of_each, of_one
+from contactlab_laws.jaeger.bundle import Array, Bundle, Geometry, of_each, of_one
 
 #: Relative difference up to which numbers of a batch count as equal: scaled impacts of any size
 #: and speed agree up to rounding.

@@ -20,7 +20,8 @@ from contactlab.contracts import Increment, NormalContact, TangentialResponse
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
 from contactlab.numeric.checks import Real
-from contactlab_laws.jaeger.bundle import Array
+from contactlab_laws.jaeger.bundle import Array, spring_fields
+from contactlab_laws.springs.turning import turned
 
 #: Contacts whose radius is below this times that of the pair just touch: no friction. The cells of
 #: a smaller contact could underflow.
@@ -39,13 +40,17 @@ class Memory(NamedTuple):
     radius : array, shape (items,)
         b in m, the contact radius.
     deflection, limit : array, shape (springs, items)
-        w and its limit l in m; springs lead, so that a row is contiguous over the batch.
+        w and its limit l in m; springs lead, so that a row is contiguous over the batch. w is
+        complex if it is a vector of the tangent plane.
+    steepness : array, shape (items,)
+        l over b² - s², s the place of the spring, in 1/m.
     """
 
     size: Array
     radius: Array
     deflection: Array
     limit: Array
+    steepness: Array | float = 0.0
 
 
 class State(NamedTuple):
@@ -62,11 +67,12 @@ class State(NamedTuple):
     spans: bool
 
 
-def start(scene: Scene, springs: int, *, spanned: Any = None) -> State:
+def start(scene: Scene, springs: int, *, spanned: Any = None, vectors: bool = False) -> State:
     """Return contacts without traction; springs span at least the radius ``spanned`` in m."""
     shape, pair = scene.shape, scene.pair
     items = math.prod(shape)
     none, rows = np.zeros(items), np.zeros((springs, items))
+    deflection: Any = rows.astype(complex) if vectors else rows
     if spanned is not None:
         none = SPARE * flat(spanned, shape)
     return State(
@@ -74,7 +80,7 @@ def start(scene: Scene, springs: int, *, spanned: Any = None) -> State:
         flat(pair.radius, shape),
         flat(2.0 * pair.effective_shear_modulus, shape),
         flat(scene.friction_coefficient, shape),
-        Memory(none, np.zeros(items), rows, rows),
+        Memory(none, np.zeros(items), deflection, rows),
         spanned is not None,
     )
 
@@ -82,12 +88,16 @@ def start(scene: Scene, springs: int, *, spanned: Any = None) -> State:
 def advance(
     state: State, increment: Increment, after: NormalContact
 ) -> tuple[TangentialResponse, State]:
-    """Return force and friction work after the step, and the springs."""
-    shape = state.shape
+    """Return force, a number or (..., 2), friction work after the step, and the springs."""
+    shape, displacement = state.shape, np.asarray(increment.displacement)
+    vectors = state.memory.deflection.dtype.kind == "c"
+    if vectors:
+        components = (flat(displacement[..., axis], shape) for axis in (0, 1))
+        displacement = next(components) + 1j * next(components)
     limit = state.friction_coefficient * flat(after.friction_load, shape)
     force, work, memory = moved(
         state.memory,
-        flat(increment.displacement, shape),
+        displacement if vectors else flat(displacement, shape),
         flat(after.radius, shape),
         limit,
         unit=state.unit,
@@ -95,6 +105,9 @@ def advance(
         spans=state.spans,
     )
     state = state._replace(memory=memory)
+    if vectors:
+        both = np.stack((force.real, force.imag), axis=-1).reshape(*shape, 2)
+        return TangentialResponse(both, work.reshape(shape) if shape else work.item()), state
     if not shape:
         return TangentialResponse(force.item(), work.item()), state
     return TangentialResponse(force.reshape(shape), work.reshape(shape)), state
@@ -116,7 +129,7 @@ def moved(
     ----------
     before : Memory
     displacement, radius : array, shape (items,)
-        Displacement in the step, and contact radius at its end, in m.
+        Displacement in the step, complex if a vector, and contact radius at its end, in m.
     limit : array, shape (items,)
         mu times the friction load at the end of the step, in N.
     unit : array, shape (items,)
@@ -126,28 +139,35 @@ def moved(
     spans : bool
         True if the grid is kept where the contact is small or apart.
     """
-    radius = radius + 0.0 * (displacement + limit)  # NaN where any of the three is not finite
+    radius = radius + 0.0 * (abs(displacement) + limit)  # NaN where any of the three is not finite
     radius = radius * (1.0 - (radius <= TOUCH * unit)) + 0.0 * radius
     size, held, merged = fitted(before, radius, unit, spans=spans)
     cell = size / len(held)
     places = np.multiply.outer(np.arange(len(held)) + 0.5, cell)
     compression = np.maximum(radius * radius - places * places, 0.0)
-    trial = held + part_of_step(places, before.radius, radius) * displacement
+    move = part_of_step(places, before.radius, radius) * displacement
     stiffness = modulus * cell  # of one spring, the same for all
     total = stiffness * compression.sum(axis=0)
-    most = compression * (limit / (total + (total == 0.0)))
-    deflection = np.minimum(np.maximum(trial, -most), most)
+    steepness = limit / (total + (total == 0.0))
+    most = compression * steepness
+    if held.dtype.kind == "c":
+        least = np.maximum(before.radius * before.radius - places * places, 0.0)
+        deflection, lost = turned(held, move, before.steepness * least, most)
+    else:
+        trial = held + move
+        deflection = np.minimum(np.maximum(trial, -most), most)
+        # The work of a spring is the mean of w before and after times its slip.
+        trial -= deflection
+        trial *= held + deflection
+        lost = trial.sum(axis=0)
     force = stiffness * deflection.sum(axis=0)
-    # The work of a spring is the mean of w before and after times its slip.
-    trial -= deflection
-    trial *= held + deflection
-    work = np.maximum(0.5 * stiffness * trial.sum(axis=0), 0.0) + modulus * merged
+    work = np.maximum(0.5 * stiffness * lost, 0.0) + modulus * merged
     if (apart := radius <= 0.0).any():  # NaN stays until then
         touching = ~apart
         force = np.where(touching, force, 0.0)
         size = size if spans else np.where(touching, size, 0.0)
         deflection = np.where(touching, deflection, 0.0)
-    return force, work, Memory(size, radius, deflection, most)
+    return force, work, Memory(size, radius, deflection, most, steepness)
 
 
 def fitted(
@@ -191,21 +211,11 @@ def part_of_step(places: Array, before: Array, after: Array) -> Any:
 
 def fields(state: State) -> dict[str, Any]:
     """Return radius, displacement and limit (m), stuck and slipping, shape (*shape, springs)."""
-    size, _, deflection, limit = state.memory
+    size, _, deflection, limit, _ = state.memory
     springs = len(deflection)
     places = np.multiply.outer(np.arange(springs) + 0.5, size / springs)
-    slips = (limit > 0.0) & (np.abs(deflection) >= limit)
-
-    def of_all(rows: Any) -> Any:
-        return rows.T.reshape(*state.shape, springs)
-
-    return {
-        "radius": of_all(places),
-        "displacement": of_all(deflection),
-        "limit": of_all(limit),
-        "stuck": of_all((limit > 0.0) & ~slips),
-        "slipping": of_all((slips * np.sign(deflection)).astype(np.int8)),
-    }
+    rows = (each.T.reshape(*state.shape, springs) for each in (places, deflection, limit))
+    return spring_fields(*rows)
 
 
 def _least_size(radius: Array, unit: Array) -> Array:

@@ -24,7 +24,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, choice, count, refuse
 from contactlab_laws.jaeger.bundle import Array, Bundle
 from contactlab_laws.jaeger.law import ProfileLaw
-from contactlab_laws.springs import doubling, turning
+from contactlab_laws.springs import doubling
 
 
 class Midpoints(Bundle):
@@ -69,10 +69,7 @@ class Midpoints(Bundle):
         return square**1.5 / full if touching else 0.0
 
 
-@lru_cache(maxsize=32)
-def midpoints(springs: int) -> Midpoints:
-    """Return the bundle of ``springs`` springs, cached."""
-    return Midpoints(springs)
+midpoints = lru_cache(maxsize=32)(Midpoints)
 
 
 @attrs.frozen(kw_only=True)
@@ -145,7 +142,8 @@ class Springs(ProfileLaw, VectorTangentialLaw):
 
     def begin_vectors(self, scene: Scene, normal: NormalMotion) -> Any:
         """Return the springs of ``begin``, which turn with the slip."""
-        return turning.start(scene, self._even(), spanned=normal.maximum_radius)
+        spanned = normal.maximum_radius
+        return doubling.start(scene, self._even(), spanned=spanned, vectors=True)
 
     def _even(self) -> int:
         """Return the number of springs, one more if odd: a doubling grid merges pairs."""
@@ -155,8 +153,6 @@ class Springs(ProfileLaw, VectorTangentialLaw):
         self, state: Any, increment: Increment, before: NormalContact, after: NormalContact
     ) -> tuple[TangentialResponse, Any]:
         """Return the force after the step."""
-        if isinstance(state, turning.State):
-            return turning.advance(state, increment, after)
         if isinstance(state, doubling.State):
             return doubling.advance(state, increment, after)
         return super().advance(state, increment, before, after)

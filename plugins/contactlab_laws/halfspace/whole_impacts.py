@@ -10,10 +10,11 @@ import numpy as np
 
 from contactlab.contracts import NormalMotion, Status, WholeImpact, sliding
 from contactlab.impact.scene import Scene
+from contactlab_laws.halfspace.changed_motion import changed_motion
+from contactlab_laws.halfspace.fields import Fields
+from contactlab_laws.halfspace.groups import Options, groups
 from contactlab_laws.halfspace.hemispheres import Array
-from contactlab_laws.halfspace.impacts import Impacts, Matter, Options, followed
-from contactlab_laws.halfspace.own_motion import own_motion
-from contactlab_laws.halfspace.picture import Pictures
+from contactlab_laws.halfspace.march import Followed
 
 #: Residual above which a step counts as unsolved.
 LARGEST_RESIDUAL = 1e-6
@@ -26,23 +27,6 @@ GRAZING = 1e6
 GROWTH, LEAST = 0.07, 0.1
 #: Largest error by eight angles: eight and sixteen differ by less, for Lam up to 2.
 ANGLES_ERROR = 3e-4
-
-
-class Answered(NamedTuple):
-    """Answers to impacts, arrays of shape (impacts,) in dimensionless units.
-
-    ``impulse`` and ``share`` are lists of the histories of each impact, ``impulse`` from 0 to that
-    of the whole impact. ``departing`` are the impacts whose normal motion changes, by index, and
-    their places among those followed together.
-    """
-
-    change: Array
-    work: Array
-    error: Array
-    residual: Array
-    impulse: list[Array]
-    share: list[Array]
-    departing: dict[int, tuple[Impacts, int]]
 
 
 def own_answers(
@@ -62,43 +46,52 @@ def own_answers(
         answers.append(sliding(scene, normal, where=where, reason=reason, stops=False))
     left = left & ~grazing
     if left.any():
-        mine = normal.take(left) if shape else normal
-        answers.append(_whole_impact(options, normal, mine, left))
+        answers.append(_whole_impact(options, normal, left))
     return tuple(answers)
 
 
-def answered(options: Options, normal: NormalMotion) -> Answered:
-    """Return the answers to the impacts of a normal motion of shape () or (impacts,)."""
-    matter = Matter.of(normal)
-    count = len(matter.psi1)
-    change, work, error, residual = np.empty((4, count))
-    impulse: list[Array] = [np.empty(0)] * count
-    share: list[Array] = [np.empty(0)] * count
-    departing: dict[int, tuple[Impacts, int]] = {}
-    for items, fine, coarse, coupled in followed(options, normal, matter):
-        change[items], work[items], residual[items] = fine.change, fine.work, fine.residual
-        error[items], shares = math.nan, fine.share
-        if coarse is not None:
-            off = fine.change - coarse.change
-            chi, slow = matter.chi[items], np.minimum(3.0 * np.abs(matter.psi1[items]), 1.0)
-            by_chance = slow * chi * np.clip(GROWTH * chi**2, LEAST, 1.0)
-            error[items] = np.abs(off) + by_chance / options.rings**2
-            residual[items] = np.maximum(fine.residual, coarse.residual)
-            if coupled:
-                error[items] += ANGLES_ERROR
+class _Solved(NamedTuple):
+    """One impact in dimensionless units; change, work and share may be extrapolated."""
+
+    numbers: list[float]  # change of slip velocity, friction work, error of psi2, residual
+    impulse: Array
+    share: Array
+    changed: tuple[Array, Array] | None  # phases and departures of its normal motion
+
+
+def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
+    """Return the impacts of a normal motion of shape () or (impacts,)."""
+    solved: dict[int, _Solved] = {}
+    rings, angles = options.rings, options.angles
+    for group in groups(options, normal):
+        fine, matter = group.followed(rings, angles), group.matter
+        change, work, share = fine.change[-1], fine.work, fine.share
+        residual, error = fine.residual, np.full(work.shape, math.nan)
+        if options.extrapolate:
+            coarse = group.followed(rings // 2, angles)
+            off = change - coarse.change[-1]
+            slow = np.minimum(3.0 * np.abs(matter.psi1), 1.0)
+            by_chance = slow * matter.chi * np.clip(GROWTH * matter.chi**2, LEAST, 1.0)
+            error = np.abs(off) + by_chance / rings**2
+            residual = np.maximum(residual, coarse.residual)
+            if group.coupling != "none":
+                error += ANGLES_ERROR
             else:
-                work[items] += (fine.work - coarse.work) / 3.0
-                shares = _extrapolated(fine, coarse)
-                passed = np.diff(fine.impulse, axis=0) * (shares[1:] + shares[:-1])
-                change[items] = -matter.chi[items] * passed.sum(axis=0)
-        for place, item in enumerate(items.tolist()):
-            impulse[item], share[item] = fine.impulse[:, place], shares[:, place]
-            if fine.departures is not None:
-                departing[item] = fine, place
-    return Answered(change, np.maximum(work, 0.0), error, residual, impulse, share, departing)
+                work = work + (work - coarse.work) / 3.0
+                share = _extrapolated(fine, coarse)
+                passed = np.diff(fine.impulse, axis=0) * (share[1:] + share[:-1])
+                change = -matter.chi * passed.sum(axis=0)
+        numbers: Any = np.stack((change, np.maximum(work, 0.0), error, residual), axis=1).tolist()
+        phase = None if fine.departures is None else group.path(rings).phase[:, 0]
+        for place, item in enumerate(group.items.tolist()):
+            changed = None
+            if phase is not None and fine.departures is not None:
+                changed = phase, fine.departures[:, :, place]
+            solved[item] = _Solved(numbers[place], fine.impulse[:, place], share[:, place], changed)
+    return [solved[item] for item in range(len(solved))]
 
 
-def _extrapolated(fine: Impacts, coarse: Impacts) -> Array:
+def _extrapolated(fine: Followed, coarse: Followed) -> Array:
     """Return the extrapolated shares of Coulomb's limit, at the instants of ``fine``."""
     # Instants of half the rings are every other instant of all: their share is linear between.
     between = coarse.share.repeat(2, axis=0)[:-1]
@@ -110,23 +103,23 @@ def _extrapolated(fine: Impacts, coarse: Impacts) -> Array:
     return np.clip(fine.share + (fine.share - between) / 3.0, -1.0, 1.0)
 
 
-def _whole_impact(
-    options: Options, every: NormalMotion, normal: NormalMotion, left: Any
-) -> WholeImpact:
-    """Return the answer in SI units, with numbers of the batch shape."""
-    # ``normal`` is the motion of the impacts that ``left`` marks in the batch of ``every``.
-    solved, shape, scene = answered(options, normal), every.scene.shape, normal.scene
-    numbers = np.flatnonzero(left).tolist()
-    departing = {numbers[item]: each for item, each in solved.departing.items()}
-    own = own_motion(every, departing) if departing else None
+def _whole_impact(options: Options, every: NormalMotion, left: Any) -> WholeImpact:
+    """Return the answer in SI units of the impacts ``left``, with numbers of the batch shape."""
+    shape = every.scene.shape
+    normal = every.take(left) if shape else every
+    solved, scene, numbers = _solved(options, normal), normal.scene, np.flatnonzero(left).tolist()
+    own, own_impulses = None, dict[int, Array]()
+    changed = {n: each.changed for n, each in zip(numbers, solved, strict=True) if each.changed}
+    if changed:
+        own, own_impulses = changed_motion(every, changed)
+    change, work, error, residual = np.array([each.numbers for each in solved]).T
     unit: Any = 1.0 / np.atleast_1d(scene.psi_scale)
     mass: Any = np.atleast_1d(scene.pair.tangential_mass)
-    momentum: Any = np.atleast_1d(scene.pair.normal_mass * scene.normal_speed)
     # Under huge friction unit² may exceed what a float holds, and the work is as small.
-    change, work = unit * solved.change, mass * (unit * (unit * solved.work))
-    friction = np.broadcast_to(scene.friction_coefficient, change.shape)
-    units = np.broadcast_to(unit, change.shape), np.broadcast_to(momentum, change.shape)
-    chi = np.broadcast_to(scene.chi, change.shape)
+    change, work = unit * change, mass * (unit * (unit * work))
+    momentum = scene.pair.normal_mass * scene.normal_speed
+    scales: Any = unit, momentum, scene.friction_coefficient, scene.chi
+    scales = np.broadcast_arrays(*map(np.atleast_1d, scales), change)[:4]
 
     def spread(values: Array) -> Any:
         if not shape:
@@ -139,21 +132,22 @@ def _whole_impact(
         outer = np.broadcast_shapes(np.shape(load_impulse), np.shape(load), shape)
         passed, acting = (np.broadcast_to(each, outer) for each in (load_impulse, load))
         gained, force = np.zeros(outer), np.zeros(outer)
-        places = [()] if not shape else list(zip(*np.nonzero(left), strict=True))
-        for item, place in enumerate(places):
-            at = (..., *place)
-            knots, shares = solved.impulse[item], solved.share[item]
-            wanted = passed[at] / units[1][item]
-            if own is not None and item in solved.departing:
+        places = np.argwhere(left).tolist() if shape else [()]
+        for number, place, each, scale in zip(
+            numbers, places, solved, np.transpose(scales).tolist(), strict=True
+        ):
+            velocity, impulse, friction, chi = scale
+            at: Any = (..., *place)
+            wanted = passed[at] / impulse
+            if number in own_impulses:
                 # The samples carry another impulse than the steps, for force is linear between.
-                wanted = np.interp(passed[at], own.impulses[numbers[item]], knots)
-            gained[at], share = _along(wanted, knots, shares)
-            gained[at] *= -2.0 * chi[item] * units[0][item]
-            force[at] = friction[item] * share * acting[at]
+                wanted = np.interp(passed[at], own_impulses[number], each.impulse)
+            gained[at], share = _along(wanted, each.impulse, each.share)
+            gained[at] *= -2.0 * chi * velocity
+            force[at] = friction * share * acting[at]
         return (gained, force) if outer else (float(gained), float(force))
 
-    worst = float(solved.residual.max())
-    bad = solved.residual > LARGEST_RESIDUAL
+    worst, bad = float(residual.max()), residual > LARGEST_RESIDUAL
     detail = f"A step is solved to a residual of {worst:.2g} only, from HalfSpace."
     status: Any = Status.UNSETTLED if bad.any() else Status.SUCCESS
     if shape:
@@ -166,9 +160,9 @@ def _whole_impact(
         friction_work=spread(work),
         reason=f"followed by the law over {options.rings} rings, residual {most}{worst:.1e}",
         course=course,
-        fields=Pictures(options, every, left).at,
-        psi2_error=spread(solved.error),
-        normal=None if own is None else own.motion,
+        fields=Fields(options, every, left).at,
+        psi2_error=spread(error),
+        normal=own,
         status=status,
         detail=detail if bad.any() else "",
     )

@@ -21,7 +21,7 @@ from contactlab_laws.halfspace.hemispheres import Array
 SEARCHED, HALVINGS = 257, 50
 
 
-class Course(NamedTuple):
+class Instants(NamedTuple):
     """Instants of the normal motions of one impact or more; scaled, see ``units``.
 
     Attributes
@@ -48,6 +48,15 @@ class Course(NamedTuple):
     pressure: Array
     phase: Array
 
+    def take(self, items: Any) -> Instants:
+        """Return the instants of the impacts with these places."""
+        columns = {
+            name: column[:, items if column.shape[1] > 1 else np.zeros_like(items)]
+            for name, column in self._asdict().items()
+            if column.ndim == 2
+        }
+        return self._replace(**columns)
+
 
 class Units(NamedTuple):
     """Units of each impact: time in s, force in N of the largest Hertz contact of its radius."""
@@ -66,8 +75,8 @@ def units(normal: NormalMotion) -> Units:
     return Units(time, force, radius)
 
 
-def course(normal: NormalMotion, rings: int, parts: int) -> Course:
-    """Return the course over ``rings`` rings, each passed in ``parts`` steps.
+def instants(normal: NormalMotion, rings: int, parts: int) -> Instants:
+    """Return the instants over ``rings`` rings, each passed in ``parts`` steps.
 
     Parameters
     ----------
@@ -97,7 +106,7 @@ def course(normal: NormalMotion, rings: int, parts: int) -> Course:
     ]
     touching = (phase > 0.0) & (phase < math.pi) & (inside > 0)[:, None]
     hertz = unit.force * np.where(inside > 0, places, 1.0)[:, None] ** 3
-    return Course(
+    return Instants(
         inside=inside,
         share=share,
         radius=places,

@@ -1,50 +1,38 @@
-"""The normal motion that came of the friction, in SI units."""
+"""The normal motion that friction changed, in SI units."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from contactlab.contracts import NormalContact, NormalMotion, SampledMotion
-from contactlab_laws.halfspace.course import units
 from contactlab_laws.halfspace.hemispheres import Array
-from contactlab_laws.halfspace.impacts import Impacts
+from contactlab_laws.halfspace.instants import units
 
 
-class Own(NamedTuple):
-    """A normal motion, and the impulses in N s at its samples, of each impact; 0 at first touch."""
-
-    motion: SampledMotion
-    impulses: dict[int, Array]
-
-
-def own_motion(normal: NormalMotion, followed: dict[int, tuple[Impacts, int]]) -> Own:
-    """Return the normal motion of impacts, with departures where ``followed`` has them.
+def changed_motion(
+    normal: NormalMotion, changed: dict[int, tuple[Array, Array]]
+) -> tuple[SampledMotion, dict[int, Array]]:
+    """Return a motion, and the impulses in N s at its samples, of each changed impact from 0.
 
     Parameters
     ----------
     normal : NormalMotion
         Normal motion without friction, of one impact or a batch.
-    followed : dict of int to (Impacts, int)
-        Impacts with departures by their numbers in the batch: the group in which each was
-        followed, and its place in that group.
+    changed : dict of int to (array, array)
+        Phases, shape (K + 1,), and departures of approach, rate and force, shape (3, K + 1), of
+        impacts by their numbers in the batch.
     """
     scene, shape = normal.scene, normal.scene.shape
-    longest = max(len(each.path.inside) for each, _ in followed.values())
+    longest = max(len(phase) for phase, _ in changed.values())
     columns, impulses = np.empty((4, longest - 1, math.prod(shape))), {}
-    for item, place_in_batch in enumerate(np.ndindex(shape)):
-        one = normal.take(place_in_batch) if shape else normal
-        phase, departures = np.linspace(0.0, math.pi, longest), None
-        if item in followed:
-            impacts, place = followed[item]
-            assert impacts.departures is not None
-            departures = impacts.departures[:, :, place]
-            phase = impacts.path.phase[:, 0]
+    for item, place in enumerate(np.ndindex(shape)):
+        one = normal.take(place) if shape else normal
+        phase, departures = changed.get(item, (np.linspace(0.0, math.pi, longest), None))
         sample = one.at(phase)
-        rows = [np.asarray(each, float) for each in sample[:3]]
-        rows.append(np.asarray(sample.contact.force, float))
+        rows = [np.asarray(each, float) for each in (*sample[:3], sample.contact.force)]
         if departures is not None:
             unit, pair = units(one), one.scene.pair
             scales = unit.length**2 / pair.radius, one.scene.normal_speed, unit.force
@@ -61,7 +49,7 @@ def own_motion(normal: NormalMotion, followed: dict[int, tuple[Impacts, int]]) -
     motion = SampledMotion(
         normal.law, scene, time=time, approach=approach, rate=rate, contact=contact
     )
-    return Own(motion, impulses)
+    return motion, impulses
 
 
 def _parted(rows: list[Array], top: int) -> list[Array]:

@@ -1,4 +1,4 @@
-"""Where the slip of a point comes to rest: what decides between stick and slip in a step."""
+"""The slips of points over the last steps, and where they come to rest: stick or slip."""
 
 from __future__ import annotations
 

@@ -1,1 +1,0 @@
-"""Stronge's lumped compliance: a contact of two springs, in closed form."""
