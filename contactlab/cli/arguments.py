@@ -276,3 +276,8 @@ def check_budget(seconds: float) -> None:
     """Refuse a budget that is not positive."""
     if seconds <= 0.0:
         raise ValueError(f"--budget {seconds:g}: must be positive, in seconds")
+
+
+def why_not(report: Any) -> str:
+    """Return why a report over all laws is not complete."""
+    return "interrupted" if report.interrupted else "the budget ran out"
