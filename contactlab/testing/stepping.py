@@ -11,7 +11,7 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
-from contactlab.testing.check import check, hold, within
+from contactlab.testing.check import check, hold, within, worst
 from contactlab.testing.compare import same, well_formed
 from contactlab.testing.load_paths import (
     QUANTITIES,
@@ -75,7 +75,7 @@ def _alike(law: Any, whole: Bench, paths: list[Path], words: str) -> None:
     together = drive(law, whole, path)
     for place, own_path in zip(np.ndindex(shape), paths, strict=True):
         alone = drive(law, whole.alone(place), own_path)
-        gap = _gap(alone.force, together.force[(slice(None), *place)])
+        gap = worst(alone.force - together.force[(slice(None), *place)])
         name = place[0] if len(place) == 1 else place
         within(gap, ROUNDING, f"Contact {name} {words} is off by {gap:.1e} of mu P_max.")
 
@@ -170,11 +170,6 @@ def _spread(path: Path, shape: tuple[int, ...]) -> Path:
 def _row(column: Any, step: int) -> Any:
     row = column[step]
     return row if isinstance(row, np.ndarray) and row.ndim else float(row)
-
-
-def _gap(left: Any, right: Any) -> float:
-    """Return the largest difference; infinity if a value is NaN."""
-    return float(np.nan_to_num(np.max(np.abs(left - right)), nan=np.inf))
 
 
 def _short(value: object) -> str:
