@@ -63,32 +63,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_ranges(parser)
     shared.add_measured(parser)
-    parser.add_argument(
-        "--all",
-        action="store_true",
-        help="every installed tangential law that fits, one row a law",
-    )
+    words = "every installed tangential law that fits, one row a law"
+    parser.add_argument("--all", action="store_true", help=words)
     shared.add_laws(parser, many=True)
-    parser.add_argument(
-        "--quantity",
-        type=shared.names,
-        metavar="A,B,...",
-        help="quantities to compare (default: the measured quantities, or psi2)",
-    )
+    words = "quantities to compare (default: the measured quantities, or psi2)"
+    shared.add_names(parser, "--quantity", words)
     shared.add_figure(parser, "also draw the comparison")
-    parser.add_argument(
-        "--loops",
-        type=shared.file_of(*shared.PICTURES),
-        metavar="FILE",
-        help="also draw friction force over displacement, at constant and at oscillating load",
-    )
+    words = "also draw friction force over displacement, at constant and at oscillating load"
+    shared.add_file(parser, "--loops", *shared.PICTURES, words=words)
     parser.add_argument(
         "--estimate-error",
         action="store_true",
         help="estimate the numerical error of each law for the figure's bands (--all always does)",
     )
     form = parser.add_mutually_exclusive_group()
-    form.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    shared.add_json(form, "tables")
     form.add_argument("--csv", action="store_true", help="print CSV instead of tables")
     shared.add_progress(parser)
 
