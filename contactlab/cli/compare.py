@@ -152,18 +152,8 @@ def _file(arguments: argparse.Namespace) -> SceneFile:
         raise ValueError(f"{missing[0]}: must be given too (chi is 1.4412 for a solid sphere)")
     if len(varied) > 1:
         raise ValueError("--psi1, --chi: one of them may be a range; give the other one number")
-    return SceneFile(
-        path=Path("--psi1, --chi"),
-        title="",
-        citation="",
-        notes="",
-        scene=Scene.nondimensional(**parameters),
-        varied=varied,
-        laws=LawChoice(),
-        encounter=None,
-        measured=(),
-        tables={},
-    )
+    scene = Scene.nondimensional(**parameters)
+    return SceneFile(path=Path("--psi1, --chi"), scene=scene, varied=varied)
 
 
 def _draw(path: Path, arguments: argparse.Namespace, comparison: Comparison) -> None:

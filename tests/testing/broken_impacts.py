@@ -14,7 +14,6 @@ from contactlab.contracts import (
     NormalContact,
     PathTangentialLaw,
     Stretch,
-    TangentialResponse,
     WholeImpactTangentialLaw,
     sliding,
 )
@@ -23,27 +22,8 @@ from tests.testing.broken_laws import Sound
 from tests.testing.made import broken
 
 
-@attrs.frozen(kw_only=True)
-class AllAtOnce(AllStepsTangentialLaw):
-    """Rigid sliders, sound: all steps at once, which for such a law is the same loop."""
-
-    api_version: ClassVar[int] = 2
-
-    def start(self, scene, normal):
-        nothing = np.zeros(scene.shape) if scene.shape else 0.0
-        stiffness = 1.4 * scene.pair.effective_shear_modulus * normal.maximum_radius
-        return scene.friction_coefficient, stiffness, nothing
-
-    def stiffness(self, scene, normal):
-        return 1.4 * scene.pair.effective_shear_modulus * normal.maximum_radius
-
-    def advance(self, state, increment, before, after):
-        friction, stiffness, held = state
-        limit = friction * after.friction_load
-        trial = held + stiffness * increment.displacement
-        force = np.minimum(np.maximum(trial, -limit), limit)
-        work = np.maximum(0.5 * (force + held) * (trial - force) / stiffness, 0.0)
-        return TangentialResponse(force, work), (friction, stiffness, force)
+class AllAtOnce(Sound, AllStepsTangentialLaw):
+    """A sound spring and slider: all steps at once, which for such a law is the same loop."""
 
     def advance_all(self, scene, normal, steps):
         state, forces, work = self.start(scene, normal), [], 0.0

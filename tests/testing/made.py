@@ -1,6 +1,14 @@
-"""Broken laws out of a sound one, of which one member is another."""
+"""Broken laws out of a sound one, of which one member is another; and one check of a law."""
 
 from types import FunctionType
+
+from contactlab.testing import checks_for, outcome
+
+
+def checked(law, name, **options):
+    """Return the outcome of one check of a law."""
+    check = next(check for check in checks_for(law) if check.name == name)
+    return outcome(law, check, **options)
 
 
 def broken(base, member, *rows):

@@ -9,19 +9,19 @@ import pytest
 
 import contactlab
 from contactlab.contracts import NormalContact
-from contactlab.testing import Verdict, checks_for, outcome
+from contactlab.testing import Verdict
 from tests.testing.broken_declarations import Mutable
 from tests.testing.broken_impacts import AllAtOnce
 from tests.testing.broken_laws import Sound
 from tests.testing.broken_normal import Altered, Stepwise
 from tests.testing.fresh_faults import STEPS, Steps
 from tests.testing.fresh_sound import HardSphere, Mindlin, Press
-from tests.testing.made import altered, broken
+from tests.testing.made import altered, broken, checked
 
 
 def found(law, name):
     """Verdict and sentence of one check of a law."""
-    told = outcome(law, next(check for check in checks_for(law) if check.name == name))
+    told = checked(law, name)
     return told.verdict, told.sentence
 
 
