@@ -28,14 +28,9 @@ GHOST_NAMES = {"coulomb": "rigid", "mindlin_cap": "capped spring"}
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the scene, the laws and the file."""
     add_scene(parser)
-    parser.add_argument(
-        "--ghost",
-        type=shared.names,
-        default=[],
-        metavar="A,B,...",
-        help="tangential laws whose bodies part from this one after the contact, as outlines",
-    )
-    parser.add_argument("--out", type=shared.file_of(".gif"), required=True, metavar="FILE.gif")
+    words = "tangential laws whose bodies part from this one after the contact, as outlines"
+    shared.add_names(parser, "--ghost", words, default=[])
+    shared.add_file(parser, "--out", ".gif", required=True)
     shared.add_progress(parser)
 
 

@@ -86,15 +86,41 @@ def file_of(*suffixes: str) -> Callable[[str], Path]:
     return convert
 
 
+def add_file(
+    parser: argparse.ArgumentParser,
+    option: str,
+    *suffixes: str,
+    words: str = "",
+    required: bool = False,
+) -> None:
+    """Add an option for a file to write, with ``words`` as its help."""
+    metavar = "FILE" if suffixes[1:] else f"FILE{suffixes[0]}"
+    convert = file_of(*suffixes)
+    parser.add_argument(
+        option, type=convert, metavar=metavar, required=required, help=words or None
+    )
+
+
+def add_names(
+    parser: argparse.ArgumentParser, option: str, words: str, *, default: list[str] | None = None
+) -> None:
+    """Add an option for a list of names, with ``words`` as its help."""
+    parser.add_argument(option, type=names, default=default, metavar="A,B,...", help=words)
+
+
+def add_json(parser: argparse._ActionsContainer, instead_of: str = "the table") -> None:
+    """Add ``--json``."""
+    words = f"print JSON instead of {instead_of}"
+    parser.add_argument("--json", action="store_true", help=words)
+
+
 #: Suffixes of pictures, as in ``contactlab.figures.files.FORMATS``, which loads matplotlib.
 PICTURES = (".png", ".pdf", ".svg")
 
 
 def add_figure(parser: argparse.ArgumentParser, words: str) -> None:
     """Add ``--figure`` with ``words`` as its help, ``--style`` and ``--width``."""
-    parser.add_argument(
-        "--figure", type=file_of(*PICTURES), metavar="FILE", help=f"{words} (.png, .pdf or .svg)"
-    )
+    add_file(parser, "--figure", *PICTURES, words=f"{words} (.png, .pdf or .svg)")
     add_look(parser)
 
 
@@ -267,8 +293,8 @@ def add_report(parser: argparse.ArgumentParser) -> None:
         help="begin no further run after this time",
     )
     add_figure(parser, "also draw it")
-    parser.add_argument("--csv", type=file_of(".csv"), metavar="FILE.csv")
-    parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
+    add_file(parser, "--csv", ".csv")
+    add_json(parser)
     add_progress(parser)
 
 
@@ -276,3 +302,8 @@ def check_budget(seconds: float) -> None:
     """Refuse a budget that is not positive."""
     if seconds <= 0.0:
         raise ValueError(f"--budget {seconds:g}: must be positive, in seconds")
+
+
+def why_not(report: Any) -> str:
+    """Return why a report over all laws is not complete."""
+    return "interrupted" if report.interrupted else "the budget ran out"

@@ -23,9 +23,6 @@ from contactlab.study.bench_methods import methods
 from contactlab.study.benchmark import Benchmark, Row
 from contactlab.study.work_precision import bench
 
-#: Reason for an incomplete report.
-BUDGET = "the budget ran out"
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the laws, the size, and the outputs."""
@@ -90,17 +87,12 @@ def markdown(benchmark: Benchmark) -> str:
         numbers = [f"{value:.1e}" if value == value else "-" for value in errors]
         lines.append([name, row.options, *numbers, *_times(row)])
     text = "\n".join(f"| {' | '.join(line)} |" for line in lines)
-    return text if benchmark.complete else f"{text}\n\n{_incomplete(benchmark)}"
+    return text if benchmark.complete else f"{text}\n\nnot complete: {shared.why_not(benchmark)}"
 
 
 def _times(row: Row) -> list[str]:
     """Return the run time of one impact alone and in a sweep, a dash for NaN."""
     return [time(value) if value == value else "-" for value in (row.time_s, row.sweep_time_s)]
-
-
-def _incomplete(benchmark: Benchmark) -> str:
-    """Return why the report is not complete."""
-    return f"not complete: {'interrupted' if benchmark.interrupted else BUDGET}"
 
 
 def _report(benchmark: Benchmark) -> str:
@@ -122,6 +114,4 @@ def _report(benchmark: Benchmark) -> str:
     orders = [[name, order] for name, order in benchmark.orders.items() if order == order]
     if orders:
         text += "\n\n" + table(["method", "order observed"], orders, digits=3)
-    if benchmark.complete:
-        return text
-    return f"{text}\n\n{_incomplete(benchmark)}"
+    return text if benchmark.complete else f"{text}\n\nnot complete: {shared.why_not(benchmark)}"

@@ -63,32 +63,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_ranges(parser)
     shared.add_measured(parser)
-    parser.add_argument(
-        "--all",
-        action="store_true",
-        help="every installed tangential law that fits, one row a law",
-    )
+    words = "every installed tangential law that fits, one row a law"
+    parser.add_argument("--all", action="store_true", help=words)
     shared.add_laws(parser, many=True)
-    parser.add_argument(
-        "--quantity",
-        type=shared.names,
-        metavar="A,B,...",
-        help="quantities to compare (default: the measured quantities, or psi2)",
-    )
+    words = "quantities to compare (default: the measured quantities, or psi2)"
+    shared.add_names(parser, "--quantity", words)
     shared.add_figure(parser, "also draw the comparison")
-    parser.add_argument(
-        "--loops",
-        type=shared.file_of(*shared.PICTURES),
-        metavar="FILE",
-        help="also draw friction force over displacement, at constant and at oscillating load",
-    )
+    words = "also draw friction force over displacement, at constant and at oscillating load"
+    shared.add_file(parser, "--loops", *shared.PICTURES, words=words)
     parser.add_argument(
         "--estimate-error",
         action="store_true",
         help="estimate the numerical error of each law for the figure's bands (--all always does)",
     )
     form = parser.add_mutually_exclusive_group()
-    form.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    shared.add_json(form, "tables")
     form.add_argument("--csv", action="store_true", help="print CSV instead of tables")
     shared.add_progress(parser)
 
@@ -163,18 +152,8 @@ def _file(arguments: argparse.Namespace) -> SceneFile:
         raise ValueError(f"{missing[0]}: must be given too (chi is 1.4412 for a solid sphere)")
     if len(varied) > 1:
         raise ValueError("--psi1, --chi: one of them may be a range; give the other one number")
-    return SceneFile(
-        path=Path("--psi1, --chi"),
-        title="",
-        citation="",
-        notes="",
-        scene=Scene.nondimensional(**parameters),
-        varied=varied,
-        laws=LawChoice(),
-        encounter=None,
-        measured=(),
-        tables={},
-    )
+    scene = Scene.nondimensional(**parameters)
+    return SceneFile(path=Path("--psi1, --chi"), scene=scene, varied=varied)
 
 
 def _draw(path: Path, arguments: argparse.Namespace, comparison: Comparison) -> None:

@@ -10,7 +10,6 @@ Examples
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import Any
@@ -38,29 +37,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="DATA.csv and SCENE.toml, or a SCENE.toml that holds measured values",
     )
-    parser.add_argument(
-        "--fit",
-        type=shared.names,
-        default=["friction_coefficient"],
-        metavar="A,B,...",
-        help="friction_coefficient (default), stiffness_ratio, or options of the laws chosen, "
-        "such as normal.restitution",
+    words = (
+        "friction_coefficient (default), stiffness_ratio, or options of the laws chosen, such as "
+        "normal.restitution"
     )
-    parser.add_argument(
-        "--laws",
-        type=shared.names,
-        default=[EXACT],
-        metavar="A,B,...",
-        help="tangential laws, the first reported and all ranked; exact (default) is the exact "
-        "elastic law, computed from a table",
+    shared.add_names(parser, "--fit", words, default=["friction_coefficient"])
+    words = (
+        "tangential laws, the first reported and all ranked; exact (default) is the exact elastic "
+        "law, computed from a table"
     )
+    shared.add_names(parser, "--laws", words, default=[EXACT])
     shared.add_laws(parser, kinds=("normal", "integrator"))
-    parser.add_argument(
-        "--quantity",
-        type=shared.names,
-        metavar="A,B,...",
-        help="measured quantities to fit (default: all)",
-    )
+    shared.add_names(parser, "--quantity", "measured quantities to fit (default: all)")
     parser.add_argument(
         "--bootstrap",
         type=int,
@@ -70,10 +58,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     shared.add_columns(parser)
     shared.add_figure(parser, "draw measured values, laws and residuals")
-    parser.add_argument(
-        "--csv", type=shared.file_of(".csv"), metavar="FILE.csv", help="write the residuals"
-    )
-    parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    shared.add_file(parser, "--csv", ".csv", words="write the residuals")
+    shared.add_json(parser, "tables")
     shared.add_progress(parser)
 
 
@@ -132,7 +118,7 @@ def _report(fitted: Fit, ranked: list[Ranked], *, complete: bool, as_json: bool)
             for law in ranked
         ]
         content = fitted.to_dict() | {"ranking": rows, "complete": complete}
-        print(json.dumps(content, indent=2, allow_nan=False))
+        shared.print_json(content)
         return
     print(describe(fitted))
     if ranked:

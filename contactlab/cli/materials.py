@@ -22,7 +22,7 @@ from contactlab.outcome.text_table import table
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the name and the output."""
     parser.add_argument("name", nargs="?", metavar="NAME", help="leave it out for the list")
-    parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
+    shared.add_json(parser)
 
 
 def execute(arguments: argparse.Namespace) -> int:

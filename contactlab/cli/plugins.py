@@ -133,13 +133,7 @@ def _check(arguments: argparse.Namespace) -> int:
 
 def _entry(info: PluginInfo) -> dict[str, str | bool]:
     """Return the entry of a law in the JSON."""
-    return {
-        "name": info.name,
-        "known_as": info.known_as,
-        "kind": info.kind,
-        "distribution": info.distribution,
-        "version": info.version,
-        "module": info.module,
-        "blocked": info.blocked,
-        "malformed": info.malformed,
-    }
+    names = (
+        "name", "known_as", "kind", "distribution", "version", "module", "blocked", "malformed",
+    )  # fmt: skip
+    return {name: getattr(info, name) for name in names}

@@ -25,19 +25,17 @@ DEFAULT_LAWS = ("fronts", "coulomb")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the scene, the laws and the file."""
     parser.add_argument("scene", metavar="SCENE.toml", help="a scene or a sweep")
-    parser.add_argument(
-        "--tangential",
-        type=shared.names,
-        metavar="A,B,...",
-        help="tangential laws to compare with the file's own (default: fronts and coulomb, "
-        "if they fit its normal law)",
+    words = (
+        "tangential laws to compare with the file's own (default: fronts and coulomb, if they fit "
+        "its normal law)"
     )
+    shared.add_names(parser, "--tangential", words)
     parser.add_argument("--normal", metavar="NAME", help="normal law in place of the file's own")
     parser.add_argument(
         "--integrator", metavar="NAME", help="integrator in place of the file's own"
     )
     shared.add_measured(parser)
-    parser.add_argument("--out", type=shared.file_of(".html"), required=True, metavar="FILE.html")
+    shared.add_file(parser, "--out", ".html", required=True)
     shared.add_progress(parser)
 
 

@@ -18,15 +18,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from contactlab.cli import arguments as shared
 from contactlab.cli import bodies
 from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, inputs
 from contactlab.compose.body_collision import BodyCollision
 from contactlab.compose.collision import Collision
-from contactlab.contracts.status import Status
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome import export
@@ -35,31 +32,19 @@ from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.export import WRITERS
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
+from contactlab.study.interrupts import was_interrupted
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the scene, the laws and the outputs."""
     add_scene(parser)
-    parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
-    parser.add_argument(
-        "--out",
-        type=shared.file_of(*WRITERS),
-        metavar="FILE",
-        help="also write .json, .csv or .npz",
-    )
-    parser.add_argument(
-        "--history",
-        type=shared.file_of(".csv"),
-        metavar="FILE.csv",
-        help="also write the history of a single impact",
-    )
+    shared.add_json(parser)
+    shared.add_file(parser, "--out", *WRITERS, words="also write .json, .csv or .npz")
+    words = "also write the history of a single impact"
+    shared.add_file(parser, "--history", ".csv", words=words)
     shared.add_figure(parser, "also draw the forces over the contact, or psi2 over psi1")
-    parser.add_argument(
-        "--stick-slip",
-        type=shared.file_of(*shared.PICTURES),
-        metavar="FILE",
-        help="also draw regions of stick and slip over the contact of a single impact",
-    )
+    words = "also draw regions of stick and slip over the contact of a single impact"
+    shared.add_file(parser, "--stick-slip", *shared.PICTURES, words=words)
     parser.add_argument(
         "--estimate",
         action=argparse.BooleanOptionalAction,
@@ -102,7 +87,7 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.figure, lambda path: draw(path, result, varied, **shared.look(arguments))),
         (arguments.stick_slip, lambda path: draw_map(path, result, **shared.look(arguments))),
         progress_wanted=arguments.progress,
-        interrupted=Status.INTERRUPTED in np.ravel(np.array(result.status, dtype=object)),
+        interrupted=was_interrupted(result),
     )
     encounter = file.encounter if file else None
     of_bodies = encounter is not None and not encounter.of_spheres
@@ -155,7 +140,7 @@ def report(
     failures = result.failures
     if not failures:
         return shared.OK
-    interrupted = Status.INTERRUPTED in np.ravel(np.array(result.status, dtype=object))
+    interrupted = was_interrupted(result)
     which = f"{len(failures)} of {len(result)} impacts: " if result.scene.shape else ""
     word = "interrupted" if interrupted else "failed"
     print(f"contactlab: {word}: {which}{next(iter(failures.values()))}", file=sys.stderr)

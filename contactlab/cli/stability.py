@@ -23,13 +23,12 @@ from contactlab.study.bench_methods import Method, methods
 from contactlab.study.error_map import error_maps
 from contactlab.study.model_error import ModelError
 from contactlab.study.stability import Stability, stability
-from contactlab.study.stability_cases import Case
-from contactlab.study.stability_judge import RAISED, WRONG, Outcome, judge
+from contactlab.study.stability_judge import RAISED, SKIPPED, WRONG, Outcome
 
-#: Most failures listed under the table; CSV and JSON hold all of them.
+#: Most failures listed under the table; CSV and JSON hold every case.
 LISTED = 40
 #: Outcomes, in the order of the table.
-WORDS = ("answered", "coarse", "refused", "skipped", RAISED, WRONG)
+WORDS = ("answered", "coarse", "refused", SKIPPED, RAISED, WRONG)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -42,52 +41,37 @@ def execute(arguments: argparse.Namespace) -> int:
     shared.check_budget(arguments.budget)
     if arguments.width == "one":
         raise ValueError("--width one: the map is too wide for one column; use --width two")
-    judgements: list[Outcome] = []
-
-    def judged(case: Case) -> Outcome:
-        judgements.append(judge(case))
-        return judgements[-1]
-
-    why_not, chosen = "the budget ran out", methods(arguments.law)
-    try:
-        with shared.progress(arguments.progress, "stability") as progress:
-            result = stability(
-                chosen,
-                quick=arguments.quick,
-                budget=arguments.budget,
-                progress=progress,
-                judged=judged,
-            )
-    except KeyboardInterrupt:
-        # The outcomes of an unfinished map are listed with the others.
-        why_not = "interrupted"
-        result = Stability(outcomes=tuple(judgements), regions=(), complete=False)
+    chosen = methods(arguments.law)
+    with shared.progress(arguments.progress, "stability") as progress:
+        result = stability(
+            chosen, quick=arguments.quick, budget=arguments.budget, progress=progress
+        )
     saved = shared.save(
-        (arguments.csv, lambda path: shared.write_items(path, Outcome, _listed(result))),
-        (arguments.figure, lambda path: _draw(path, arguments, chosen, result, why_not)),
+        (arguments.csv, lambda path: shared.write_items(path, Outcome, result.outcomes)),
+        (arguments.figure, lambda path: _draw(path, arguments, chosen, result)),
         progress_wanted=arguments.progress,
-        interrupted=why_not == "interrupted",
+        interrupted=result.interrupted,
     )
     if arguments.json:
         shared.print_json(_content(result))
     else:
-        print(report(result, why_not))
-    if why_not == "interrupted":
+        print(report(result))
+    if result.interrupted:
         return shared.INTERRUPTED
     return shared.FAILED if result.failures() else saved
 
 
 def _draw(
-    path: Path,
-    arguments: argparse.Namespace,
-    chosen: Sequence[Method],
-    result: Stability,
-    why_not: str,
+    path: Path, arguments: argparse.Namespace, chosen: Sequence[Method], result: Stability
 ) -> None:
     """Draw the steps that the laws need, or report on stderr why there is nothing to draw."""
     maps = error_maps(chosen, quick=arguments.quick) if result.complete else []
     if not maps:
-        why = "there is nothing to map" if result.complete else f"{why_not} before the map was done"
+        why = (
+            "there is nothing to map"
+            if result.complete
+            else f"{shared.why_not(result)} before the map was done"
+        )
         print(f"no map drawn: {why}", file=sys.stderr)
         return
     from contactlab.figures.stability import draw_stability  # matplotlib only when drawing
@@ -95,19 +79,13 @@ def _draw(
     draw_stability(path, maps, **shared.look(arguments))
 
 
-def report(result: Stability, why_not: str = "the budget ran out") -> str:
-    """Return tables, failures and totals, and ``why_not`` if the report is not complete."""
+def report(result: Stability) -> str:
+    """Return tables, failures and totals, and why the report is not complete if it is not."""
     families = list(dict.fromkeys(item.family for item in result.outcomes))
     names = list(dict.fromkeys(item.method for item in result.outcomes))
     errors = [[name, *(result.worst(name, family) for family in families)] for name in names]
     counts = [[name, *(result.counts(name)[word] for word in WORDS)] for name in names]
     parts = [table(["worst error", *families], errors, digits=1), table(["runs", *WORDS], counts)]
-    if result.regions:
-        rows = [
-            [item.method, item.word, item.tried, item.count(RAISED), item.count(WRONG)]
-            for item in result.regions
-        ]
-        parts.append(table(["map", "against chi", "tried", *WORDS[-2:]], rows))
     if result.models:
         rows = [[item.law, *_worst(item)] for item in result.models]
         parts.append(table(["model error", "worst", "at chi"], rows, digits=1))
@@ -116,16 +94,16 @@ def report(result: Stability, why_not: str = "the budget ran out") -> str:
         rows = [[item.method, item.case, item.outcome, item.note] for item in failures[:LISTED]]
         parts.append(table(["method", "case", "", ""], rows))
     parts.append(
-        f"{result.tried()} runs tried, {result.silently_wrong()} silently wrong; "
-        f"{result.skipped()} more were skipped as too much work.\nErrors are numerical: distances "
-        "from the law's own exact answer, over the range of psi2.\nAnswers whose declared or "
-        "estimated error is a quarter of the range or more are counted as coarse\nand have no "
-        "error in the table.\n"
+        f"{result.tried()} runs tried, {result.count(WRONG)} silently wrong; "
+        f"{result.count(SKIPPED)} more were skipped as too much work.\n"
+        "Errors are numerical: distances from the law's own exact answer, over the range of psi2.\n"
+        "Answers whose declared or estimated error is a quarter of the range or more are counted "
+        "as coarse\nand have no error in the table.\n"
         "A law whose exact answer differs from the elastic continuum is listed with its model "
         "error."
     )
     if not result.complete:
-        parts.append(f"not complete: {why_not}")
+        parts.append(f"not complete: {shared.why_not(result)}")
     return "\n\n".join(parts)
 
 
@@ -141,14 +119,8 @@ def _content(result: Stability) -> dict[str, object]:
     """Return the content of the JSON."""
     return {
         "outcomes": json_value(result.outcomes),
-        "map": json_value(result.regions),
         "model_errors": json_value(result.models),
         "tried": result.tried(),
-        "silently_wrong": result.silently_wrong(),
+        "silently_wrong": result.count(WRONG),
         "complete": result.complete,
     }
-
-
-def _listed(result: Stability) -> list[Outcome]:
-    """Return all outcomes, and the failures of the map."""
-    return [*result.outcomes, *(item for region in result.regions for item in region.failures)]

@@ -24,7 +24,6 @@ from contactlab.cli import arguments as shared
 from contactlab.cli import bodies
 from contactlab.cli.run import draw, report
 from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
-from contactlab.contracts.status import Status
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
@@ -35,6 +34,7 @@ from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import evenly, sweep_section
 from contactlab.outcome.text_table import table
 from contactlab.scene_file import LawChoice, read_scene
+from contactlab.study.interrupts import was_interrupted
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -51,14 +51,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_ranges(parser)
     shared.add_laws(parser)
     form = parser.add_mutually_exclusive_group()
-    form.add_argument("--json", action="store_true", help="print JSON instead of the table")
+    shared.add_json(form)
     form.add_argument("--csv", action="store_true", help="print psi1, chi, psi2 as CSV")
-    parser.add_argument("--out", type=shared.file_of(*WRITERS), metavar="FILE")
-    parser.add_argument(
-        "--resume",
-        action="store_true",
-        help="keep finished impacts in a folder beside --out, and continue a stopped sweep",
-    )
+    shared.add_file(parser, "--out", *WRITERS)
+    words = "keep finished impacts in a folder beside --out, and continue a stopped sweep"
+    parser.add_argument("--resume", action="store_true", help=words)
     parser.add_argument("--workers", type=int, metavar="N", help="share the work among N processes")
     shared.add_figure(parser, "also draw psi2 over psi1")
     shared.add_progress(parser)
@@ -89,7 +86,7 @@ def execute(arguments: argparse.Namespace) -> int:
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.figure, lambda path: draw(path, result, varied, **shared.look(arguments))),
         progress_wanted=arguments.progress,
-        interrupted=Status.INTERRUPTED in result.status,
+        interrupted=was_interrupted(result),
     )
     if keep is not None and saved == shared.OK:
         _clear(keep, result)

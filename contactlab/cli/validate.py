@@ -20,7 +20,8 @@ from contactlab.cli import arguments as shared
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.tables import heading
 from contactlab.outcome.text_table import WIDTH, table
-from contactlab.study.validation import Evidence, Finding, gather, judged, validate
+from contactlab.study.evidence import Evidence, gather
+from contactlab.study.validation import Finding, validate
 
 #: Laws in a picture, if installed; more curves could not be distinguished.
 DRAWN = ("fronts", "springs, tsuji restitution=0.98", "mindlin_cap", "coulomb")
@@ -31,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--figures", type=Path, metavar="DIR", help="draw a picture of each source in this folder"
     )
-    parser.add_argument("--json", action="store_true", help="print JSON instead of the tables")
+    shared.add_json(parser, "the tables")
     shared.add_progress(parser)
 
 
@@ -52,7 +53,7 @@ def execute(arguments: argparse.Namespace) -> int:
         if not findings:
             raise
         interrupted = True
-    findings += [finding for evidence in gathered for finding in judged(evidence)]
+    findings += [finding for evidence in gathered for finding in evidence.findings()]
     saved = shared.OK
     if folder is not None:
         folder.mkdir(exist_ok=True)

@@ -59,15 +59,15 @@ class SceneFile:
     """
 
     path: Path
-    title: str
-    citation: str
-    notes: str
+    title: str = ""
+    citation: str = ""
+    notes: str = ""
     scene: Any
     varied: Mapping[str, Real]
-    laws: LawChoice
-    encounter: Encounter | None
-    measured: tuple[Measured, ...]
-    tables: Mapping[str, Any] = attrs.field(repr=False)
+    laws: LawChoice = attrs.field(factory=LawChoice)
+    encounter: Encounter | None = None
+    measured: tuple[Measured, ...] = ()
+    tables: Mapping[str, Any] = attrs.field(factory=dict, repr=False)
 
     @property
     def of_spheres(self) -> Scene:

@@ -41,15 +41,15 @@ class Row:
     """
 
     method: str
-    options: str
-    error_rms: float
-    error_worst: float
-    force_error_rms: float
-    books_worst: float
-    time_s: float
-    sweep_time_s: float
-    failed: int
-    status: str
+    options: str = ""
+    error_rms: float = np.nan
+    error_worst: float = np.nan
+    force_error_rms: float = np.nan
+    books_worst: float = np.nan
+    time_s: float = np.nan
+    sweep_time_s: float = np.nan
+    failed: int = 0
+    status: str = "SUCCESS"
     elsewhere_rms: float = np.nan
     converges: bool = True
 

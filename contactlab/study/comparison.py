@@ -139,9 +139,13 @@ class Comparison:
         runs = tuple(run for run in self.runs if run.name in names)
         return attrs.evolve(self, runs=runs, agreements=agreements)
 
+    def result(self, law: str) -> ImpactResult:
+        """Return the result of one law."""
+        return next(run.result for run in self.runs if run.name == law)
+
     def values(self, quantity: str, law: str) -> Array:
         """Return a quantity of one law over the scene or sweep; NaN where an impact failed."""
-        return _values(quantity, next(run.result for run in self.runs if run.name == law))
+        return _values(quantity, self.result(law))
 
     def difference(self, quantity: str, law: str) -> Array:
         """Return a quantity of one law less that of the first law."""
@@ -149,14 +153,14 @@ class Comparison:
 
     def numerical_error(self, law: str) -> Array:
         """Return the estimated numerical error of psi2, else the declared one; NaN if neither."""
-        result = next(run.result for run in self.runs if run.name == law)
+        result = self.result(law)
         estimate = np.nan if result.psi2_error_estimate is None else result.psi2_error_estimate
         error = np.where(np.isfinite(estimate), estimate, result.plan.psi2_error)
         return np.array(np.broadcast_to(error, result.scene.shape))
 
     def band(self, quantity: str, law: str) -> Array:
         """Return the error of a quantity that follows from the numerical error of psi2, or NaN."""
-        result = next(run.result for run in self.runs if run.name == law)
+        result = self.result(law)
         with np.errstate(all="ignore"):
             error = self.numerical_error(law) / result.scene.psi_scale
             change = np.asarray(result.motion.slip_velocity_change)

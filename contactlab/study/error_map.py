@@ -16,7 +16,7 @@ from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.study.bench_methods import Method
-from contactlab.study.stability_map import INCIDENCES
+from contactlab.study.stability_cases import INCIDENCES
 from contactlab.study.stability_references import REFERENCE_TOLERANCES, converges
 
 Array = NDArray[np.float64]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from contactlab.contracts.status import Status
@@ -19,6 +21,11 @@ def uninterrupted(result: ImpactResult) -> ImpactResult:
     KeyboardInterrupt
         If any impact has the status ``INTERRUPTED``.
     """
-    if Status.INTERRUPTED in np.ravel(np.array(result.status, dtype=object)):
+    if was_interrupted(result):
         raise KeyboardInterrupt
     return result
+
+
+def was_interrupted(result: Any) -> bool:
+    """Return whether Ctrl-C left impacts out."""
+    return Status.INTERRUPTED in np.ravel(np.array(result.status, dtype=object))

@@ -17,16 +17,8 @@ from contactlab.compose.composition import DEFAULT_NORMAL
 from contactlab.contracts.error_model import COARSE
 from contactlab.study.bench_methods import Method
 from contactlab.study.model_error import ModelError, model_error
-from contactlab.study.stability_cases import Case, cases
-from contactlab.study.stability_judge import (
-    ANSWERED,
-    RAISED,
-    SKIPPED,
-    WRONG,
-    Outcome,
-    judge,
-)
-from contactlab.study.stability_map import INCIDENCES, Region, map_chis, region, region_cells
+from contactlab.study.stability_cases import INCIDENCES, MAP, Case, cases, map_chis
+from contactlab.study.stability_judge import ANSWERED, RAISED, SKIPPED, WRONG, Outcome, judge
 
 #: A case of more work than this, in steps of one part, is skipped. Work is not time: which cases
 #: are tried does not depend on the machine.
@@ -37,34 +29,29 @@ DEFAULT_STEPS, DEFAULT_TOLERANCE = 200, 1e-4
 
 @attrs.frozen(kw_only=True)
 class Stability:
-    """Every outcome, the usable region of each method, and the model error of each law.
+    """Every outcome, and the model error of each law.
 
-    Outcomes and regions hold numerical errors, against the law's own exact answer. ``models``
-    holds the model errors of laws whose exact answer is not that of the elastic continuum.
+    Outcomes hold numerical errors, against the law's own exact answer. ``models`` holds the model
+    errors of laws whose exact answer is not that of the elastic continuum. ``complete`` is False
+    if the budget or Ctrl-C left cases out; ``interrupted`` is True on Ctrl-C.
     """
 
     outcomes: tuple[Outcome, ...]
-    regions: tuple[Region, ...]
     complete: bool
     models: tuple[ModelError, ...] = ()
+    interrupted: bool = False
 
     def failures(self) -> list[Outcome]:
-        """Return the cases that are silently wrong or raised, the cells of the map included."""
-        listed = [item for item in self.outcomes if item.outcome in (WRONG, RAISED)]
-        return listed + [item for region in self.regions for item in region.failures]
+        """Return the cases that are silently wrong or raised."""
+        return [item for item in self.outcomes if item.outcome in (WRONG, RAISED)]
 
-    def silently_wrong(self) -> int:
-        """Return the number of silently wrong answers, the cells of the map included."""
-        return sum(item.outcome == WRONG for item in self.failures())
+    def count(self, outcome: str) -> int:
+        """Return the number of cases with an outcome."""
+        return sum(item.outcome == outcome for item in self.outcomes)
 
     def tried(self) -> int:
-        """Return the number of runs judged, the cells of the map included."""
-        done = sum(1 for item in self.outcomes if item.outcome != SKIPPED)
-        return done + sum(item.tried for item in self.regions)
-
-    def skipped(self) -> int:
-        """Return the number of cases skipped because they are too much work."""
-        return sum(item.outcome == SKIPPED for item in self.outcomes)
+        """Return the number of runs judged."""
+        return len(self.outcomes) - self.count(SKIPPED)
 
     def counts(self, method: str) -> Counter[str]:
         """Return the number of cases with each outcome; ``coarse`` is a part of ``ANSWERED``."""
@@ -90,9 +77,9 @@ def stability(
     quick: bool = False,
     budget: float = np.inf,
     progress: Callable[[int, int], object] | None = None,
-    judged: Callable[[Case], Outcome] = judge,
+    judge: Callable[[Case], Outcome] = judge,
 ) -> Stability:
-    """Run every case of every method, and return outcomes, regions and model errors.
+    """Run every case of every method, and return outcomes and model errors.
 
     Parameters
     ----------
@@ -103,8 +90,13 @@ def stability(
         Seconds after which no further case is begun; ``complete`` then is False.
     progress : callable, optional
         Called as ``progress(done, total)``.
-    judged : callable
-        Runs one case and returns its outcome, for the map too.
+    judge : callable
+        Runs one case and returns its outcome.
+
+    Returns
+    -------
+    Stability
+        Ctrl-C keeps the outcomes that there are.
     """
     until = time.perf_counter() + budget
     listed = [case for method in methods for case in cases(method, quick=quick)]
@@ -112,33 +104,30 @@ def stability(
     largest = QUICK_LARGEST if quick else LARGEST
     # A budget cuts all methods alike: family by family, and within a family by work. Model errors
     # come after the map, which has cached the costly exact answers.
-    jobs: list[tuple[int, Callable[[], Outcome | Region | ModelError | None]]] = [
-        (1, partial(judged if work(case) <= largest else _skipped, case))
-        for case in sorted(listed, key=lambda case: (case.family, work(case)))
+    jobs: list[Callable[[], Outcome | ModelError | None]] = [
+        partial(judge if work(case) <= largest else _skipped, case)
+        for case in sorted(listed, key=lambda case: (case.family == MAP, case.family, work(case)))
     ]
     jobs += [
-        (len(cells), partial(region, method, cells, until=until, judged=judged))
-        for method in methods
-        if (cells := region_cells(method, quick=quick))
-    ]
-    jobs += [
-        (1, partial(model_error, law, map_chis(quick=quick), INCIDENCES))
+        partial(model_error, law, map_chis(quick=quick), INCIDENCES)
         for law in dict.fromkeys(method.tangential for method in elastic)
     ]
-    total, done = sum(count for count, _ in jobs), 0
     items: list[Any] = []
-    for count, job in jobs:
-        if time.perf_counter() > until:
-            break
-        items.append(job())
-        done += count if getattr(items[-1], "complete", True) else 0
-        if progress is not None:
-            progress(done, total)
+    interrupted = False
+    try:
+        for done, job in enumerate(jobs, start=1):
+            if time.perf_counter() > until:
+                break
+            items.append(job())
+            if progress is not None:
+                progress(done, len(jobs))
+    except KeyboardInterrupt:
+        interrupted = True
     return Stability(
         outcomes=tuple(item for item in items if isinstance(item, Outcome)),
-        regions=tuple(item for item in items if isinstance(item, Region)),
         models=tuple(item for item in items if isinstance(item, ModelError)),
-        complete=done == total,
+        complete=len(items) == len(jobs),
+        interrupted=interrupted,
     )
 
 

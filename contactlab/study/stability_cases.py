@@ -1,7 +1,8 @@
-"""The cases of one method: extreme scenes at its own resolution, and ladders of resolutions."""
+"""The cases of one method: extreme scenes, ladders of resolutions, and a map over chi."""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any, NamedTuple
@@ -35,6 +36,19 @@ LADDER = ((0.3, 0.3), (0.5, CHI), (1.2, CHI), (3.0, CHI), (1.2, 30.0), (0.3, 1e3
 QUICK_LADDER = ((1.2, CHI), (1.2, 30.0))
 #: Steps over sqrt(chi) at the stability limit, and the multiple of them that large chi is run at.
 LIMIT, ABOVE_LIMIT = 2.85, 8
+
+#: The family of the map: psi1 of the impacts in each cell, its columns and its rows.
+MAP, INCIDENCES = "map", (0.3, 0.95, 1.2)
+MAP_CHIS = tuple(np.geomspace(0.05, 1e4, 17).tolist())
+MAP_STEPS = (
+    1, 2, 3, 4, 6, 9, 14, 21, 32, 48, 72, 108, 162, 243, 365, 547, 820, 1230, 1845, 2768, 4152,
+)  # fmt: skip
+MAP_TOLERANCES = tuple((10.0 ** -np.arange(0.0, 6.1, 1.0)).tolist())
+QUICK_MAP_CHIS, QUICK_MAP_STEPS, QUICK_MAP_TOLERANCES = (
+    (0.05, 0.5, 3.0, 30.0), (1, 5, 9, 30), (0.1, 1e-3),
+)  # fmt: skip
+#: Estimated steps under a tolerance, sqrt((1 + chi)/tolerance), beyond which there is no cell.
+MOST_STEPS = 3e4
 
 Options = dict[str, dict[str, Any]]
 
@@ -87,7 +101,8 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
     if method.whole:
         return
     for psi1, chi in QUICK_LADDER if quick else LADDER:
-        yield from _ladder(method, law.resolution, integrator.resolution, psi1, chi, quick=quick)
+        yield from _ladder(method, law.resolution, integrator, psi1, chi, quick=quick)
+    yield from _map(method, integrator, quick=quick)
 
 
 def _under(method: Method, normal: str, *, quick: bool) -> Iterator[Case]:
@@ -114,22 +129,19 @@ def other_normal_laws(method: Method) -> Iterator[str]:
 
 
 def _ladder(
-    method: Method, part: str | None, step: str | None, psi1: float, chi: float, *, quick: bool
+    method: Method, part: str | None, integrator: Any, psi1: float, chi: float, *, quick: bool
 ) -> Iterator[Case]:
     """Yield the cases of one impact at several resolutions."""
-
-    def scene(family: str) -> Extreme:
-        label = f"psi1={psi1:g} chi={chi:.4g}"
-        return Extreme(family, label, lambda: Scene.nondimensional(psi1=psi1, chi=chi))
-
+    scene = partial(_plain, label=f"psi1={psi1:g} chi={chi:.4g}", psi1=psi1, chi=chi)
+    step = integrator.resolution
     if step == "steps":
-        refines = hasattr(_class(method), "refine")
+        refines = hasattr(integrator, "refine")
         for count in QUICK_STEPS if quick else STEPS:
             yield _case(method, scene("steps"), {"integrator": {step: count}})
             if refines and count < QUICK_STEPS[-1]:
                 options = {"integrator": {step: count, "refine": False}}
                 yield _case(method, scene("steps"), options)
-    if "tolerance" in (part, step) or hasattr(_class(method), "tolerance"):
+    if "tolerance" in (part, step) or hasattr(integrator, "tolerance"):
         for tolerance in TOLERANCES[:: 3 if quick else 1]:
             yield _case(method, scene("tolerance"), {"integrator": {"tolerance": tolerance}})
     if part and part != "tolerance":
@@ -141,8 +153,25 @@ def _ladder(
                 yield _case(method, scene("parts"), both)
 
 
-def _class(method: Method) -> Any:
-    return REGISTRY.law_class(full_name("integrator", method.integrator))
+def _map(method: Method, integrator: Any, *, quick: bool) -> Iterator[Case]:
+    """Yield the impacts of each resolution and chi, marched in the steps asked for."""
+    word = integrator.resolution
+    if word is None:
+        return
+    steps = QUICK_MAP_STEPS if quick else MAP_STEPS
+    tolerances = QUICK_MAP_TOLERANCES if quick else MAP_TOLERANCES
+    as_asked = {"refine": False} if hasattr(integrator, "refine") else {}
+    for fine, chi, psi1 in itertools.product(
+        steps if word == "steps" else tolerances, map_chis(quick=quick), INCIDENCES
+    ):
+        if word == "steps" or ((1.0 + chi) / fine) ** 0.5 <= MOST_STEPS:
+            scene = _plain(MAP, f"psi1={psi1:g} chi={chi:.4g}", psi1, chi)
+            yield _case(method, scene, {"integrator": {word: fine, **as_asked}}, planned=False)
+
+
+def map_chis(*, quick: bool = False) -> tuple[float, ...]:
+    """Return the values of chi of the map."""
+    return QUICK_MAP_CHIS if quick else MAP_CHIS
 
 
 def _case(method: Method, scene: Extreme, options: Options, *, planned: bool = True) -> Case:

@@ -8,6 +8,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.compose import composition
 from contactlab.compose.error_estimate import estimated
 from contactlab.compose.registry import PluginError
 from contactlab.compose.simulation import Simulation
@@ -17,11 +18,12 @@ from contactlab.contracts.error_model import LARGEST_SHARE, range_of
 from contactlab.contracts.status import Status
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
+from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import MARCHED, Plan, PlanColumns
 from contactlab.outcome.result import ImpactResult
 from contactlab.study.stability_cases import Case
-from contactlab.study.stability_eccentric import judged_eccentric
+from contactlab.study.stability_eccentric import RIGID_DISTANCE, STIFF, distance
 from contactlab.study.stability_references import (
     SETTLED,
     Reference,
@@ -45,20 +47,22 @@ ESTIMATED = 3.0
 BOOKS = 1e-5
 #: Bound of energy from nothing, over the energy at the start, however coarse the method.
 LARGEST_GAIN = 0.1
+#: The same of eccentric impacts: of the books of a law that declares none, and of the gain.
+BODIES_BOOKS, BODIES_GAIN = 1e-3, 1e-3
 #: Bound of e - 1 under a law with a closed-form motion, and of 1 - e if elastic, however few steps.
 LARGEST_NORMAL = 1e-9
 
 
 @attrs.frozen(kw_only=True)
 class Outcome:
-    """One cell of the report.
+    """One case judged.
 
     Attributes
     ----------
     error, bound : float
         Error of the change of slip velocity and its bound, over the range; NaN without an answer.
         The bound of a law that declares no error is ``UNDECLARED``, or ``ESTIMATED`` times the
-        estimated error where that is larger.
+        estimated error where that is larger. Of eccentric impacts the distance from rigid bodies.
     note : str
         The status, or the sentences on what is wrong.
     """
@@ -86,28 +90,15 @@ def judge(case: Case) -> Outcome:
         simulation = case.method.simulation(case.options, normal=case.normal)
     except (ValueError, PluginError) as error:
         return Outcome.of(case, REFUSED, note=f"bad input: {error}")
-    if isinstance(scene, EccentricScene):
-        return _judge_eccentric(case, simulation, scene)
-    reference = reference_for(simulation.tangential, simulation.normal)
-    return judge_run(case, simulation, scene, reference)
+    return judge_run(case, simulation, scene)
 
 
-def _judge_eccentric(case: Case, simulation: Simulation, scene: EccentricScene) -> Outcome:
-    """Return the outcome of an eccentric impact, judged by its books and by rigid bodies."""
-    try:
-        with np.errstate(all="ignore"):
-            result = simulation.run(scene)
-    except Exception as error:
-        return Outcome.of(case, RAISED, note=f"{type(error).__name__}: {error}")
-    if result.failures:
-        return Outcome.of(case, REFUSED, note=result.failures[0], run_time_s=result.run_time)
-    apart, wrong = judged_eccentric(simulation, result)
-    outcome = WRONG if wrong else ANSWERED
-    note, time = "; ".join(wrong), result.run_time
-    return Outcome.of(case, outcome, error=apart, bound=UNDECLARED, note=note, run_time_s=time)
-
-
-def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Reference) -> Outcome:
+def judge_run(
+    case: Case,
+    simulation: Simulation,
+    scene: Scene | EccentricScene,
+    reference: Reference | None = None,
+) -> Outcome:
     """Return the outcome of one scene, its answer judged against ``reference``.
 
     Parameters
@@ -115,14 +106,15 @@ def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Refer
     case : Case
         Names the outcome; without ``planned`` the integrator marches the impact.
     simulation : Simulation
-    scene : Scene
-    reference : callable
-        Returns the exact change of slip velocity in m/s, or None if there is none.
+    scene : Scene or EccentricScene
+    reference : callable, optional
+        Returns the exact change of slip velocity in m/s, or None if there is none; by default
+        ``reference_for`` the laws.
     """
     before = time.perf_counter()
     try:
         with np.errstate(all="ignore"):
-            result = simulation.run(scene) if case.planned else marched(simulation, scene)
+            result: Any = simulation.run(scene) if case.planned else marched(simulation, scene)
     except Exception as error:
         # Any exception is an outcome, and the report goes on. A planned run turns an exception of
         # the integrator into a status; a march does not.
@@ -130,19 +122,26 @@ def judge_run(case: Case, simulation: Simulation, scene: Scene, reference: Refer
         if case.planned:
             return Outcome.of(case, RAISED, note=note)
         return Outcome.of(case, REFUSED, note=f"LAW_RAISED {note}")
-    run_time = time.perf_counter() - before
+    took = time.perf_counter() - before
     if result.status is not Status.SUCCESS:
         note = f"{result.status.name} {result.motion.detail}"
-        return Outcome.of(case, REFUSED, note=note, run_time_s=run_time)
+        return Outcome.of(case, REFUSED, note=note, run_time_s=took)
     try:
         with np.errstate(all="ignore"):
-            outcome = _judged(case, simulation, result, reference)
+            if isinstance(result, EccentricResult):
+                off, bound, wrong = _of_bodies(simulation, result)
+            else:
+                against = reference or reference_for(simulation.tangential, simulation.normal)
+                off, bound, wrong = _of_spheres(simulation, result, against)
     except Exception as error:
-        outcome = Outcome.of(case, RAISED, note=f"its reference: {type(error).__name__}: {error}")
-    return attrs.evolve(outcome, run_time_s=run_time)
+        note = f"its reference: {type(error).__name__}: {error}"
+        return Outcome.of(case, RAISED, note=note, run_time_s=took)
+    note = "; ".join(wrong) or ("no reference" if np.isnan(off) else "")
+    outcome = WRONG if wrong else ANSWERED
+    return Outcome.of(case, outcome, error=off, bound=bound, note=note, run_time_s=took)
 
 
-def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
+def marched(simulation: Simulation, scene: Any) -> ImpactResult:
     """Return the result of an impact marched by the integrator, without whole-impact answers."""
     law, integrator = simulation.tangential, simulation.integrator
     normal = simulation.normal_motion(scene)
@@ -153,13 +152,12 @@ def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
     return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
 
 
-def _judged(
-    case: Case, simulation: Simulation, result: ImpactResult, reference: Reference
-) -> Outcome:
-    """Return the outcome of a success."""
-    scene = result.scene
-    unit, width, _ = range_of(scene)
-    expected, error = reference(scene, simulation.tangential), np.nan
+def _of_spheres(
+    simulation: Simulation, result: ImpactResult, reference: Reference
+) -> tuple[float, float, list[str]]:
+    """Return error and bound over the range of psi2, and what breaks."""
+    unit, width, _ = range_of(result.scene)
+    expected, error = reference(result.scene, simulation.tangential), np.nan
     if expected is not None:
         difference = abs(float(result.motion.slip_velocity_change) - expected)
         error = difference / width if width > 0.0 else (0.0 if difference == 0.0 else np.inf)
@@ -172,9 +170,30 @@ def _judged(
         estimate = float(np.asarray(estimated(simulation.laws, result))) * unit / width
         bound = min(max(bound, ESTIMATED * estimate), LARGEST_SHARE)
         wrong = _wrong(simulation, result, excess, bound)
-    note = "; ".join(wrong) if wrong else "" if expected is not None else "no reference"
-    outcome = WRONG if wrong else ANSWERED
-    return Outcome.of(case, outcome, error=float(error), bound=bound, note=note)
+    return float(error), bound, wrong
+
+
+def _of_bodies(simulation: Simulation, result: EccentricResult) -> tuple[float, float, list[str]]:
+    """Return the distance from rigid bodies, NaN of a soft contact, its bound, and what breaks."""
+    law, books, wrong = simulation.tangential, result.energy, []
+    numbers = (result.normal_velocity, result.psi2, books.end, books.imbalance)
+    if not np.all(np.isfinite(np.array(numbers, dtype=float))):
+        return np.nan, UNDECLARED, ["a number that is not finite"]
+    if "books" not in law.expected_failures:
+        start: Any = books.start
+        bound: Any = law.books_bound(result.scene.central)
+        bound = max(BODIES_BOOKS, bound if np.isfinite(bound) else 0.0)
+        if books.end > start * (1.0 + BODIES_GAIN):
+            wrong.append(f"{float(books.end / start - 1.0):.2g} of the energy from nothing")
+        if abs(books.imbalance) > bound * start:
+            wrong.append("energy books do not close")
+    if result.scene.kappa < STIFF or "partial_slip" not in law.offers:
+        return np.nan, UNDECLARED, wrong
+    rigid = Simulation(**composition.RIGID).run(result.scene).check()
+    error = float(distance(result, rigid))
+    if error > RIGID_DISTANCE * float(result.scene.kappa) ** -0.5 + UNDECLARED:
+        wrong.append(f"{error:.2g} of v1 from rigid bodies")
+    return error, UNDECLARED, wrong
 
 
 def _wrong(simulation: Simulation, result: ImpactResult, error: float, bound: float) -> list[str]:

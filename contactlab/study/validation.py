@@ -1,30 +1,22 @@
-"""Checks of an installation: laws against reference values and measurements, with bounds.
-
-``validate`` compares laws with closed forms and reference values; ``gather`` runs every law on
-experiments, finite elements and the curves of other codes.
-"""
+"""Checks of an installation: laws against closed forms and reference values, with bounds."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from functools import partial
-from importlib import resources
-from typing import Any, NamedTuple
+from typing import Any
 
 import attrs
 import numpy as np
 
-from contactlab.compose.composition import DEFAULT_NORMAL
-from contactlab.compose.names import full_name, short_name
-from contactlab.compose.registry import REGISTRY, PluginError
+from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.hertz import hertz_scales, rigid_body_rebound
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
-from contactlab.scene_file import SceneFile, read_scene
-from contactlab.study.comparison import Agreement, Comparison, LawRun
+from contactlab.scene_file import read_scene
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.scores import DEFAULT_SCENE
 from contactlab.study.stability_eccentric import RIGID_DISTANCE, STIFF, distance, rod
@@ -104,10 +96,14 @@ def _checks() -> Iterator[Callable[[], Finding]]:
     for composition in COMPOSITIONS:
         if {f"tangential.{composition[0]}", f"integrator.{composition[2]}"} <= set(installed):
             yield partial(_reference, *composition)
-    for case in hertz_scalars():
-        yield partial(_scalars, case, ("force",), FORCE_READING)
-        if case.approach is not None:
-            yield partial(_scalars, case, ("approach", "duration"), OTHER_READING)
+    for name, (scene, published) in hertz_scalars().items():
+        for entries, bound in (
+            (("force",), FORCE_READING),
+            (("approach", "duration"), OTHER_READING),
+        ):
+            told = {entry: published[entry] for entry in entries if entry in published}
+            if told:
+                yield partial(_scalars, name, scene, told, bound)
     if {"tangential.fronts", "tangential.coulomb", "integrator.events"} <= set(installed):
         yield from (_no_friction, _slip_throughout, _first_slip, _stiff)
     if "tangential.mindlin_cap" in installed:
@@ -115,17 +111,18 @@ def _checks() -> Iterator[Callable[[], Finding]]:
             yield partial(_codes, number, form)
 
 
+def _finding(what: str, against: str, off: Any, bound: float) -> Finding:
+    """Return the finding of differences, of which the largest counts."""
+    worst = float(np.max(np.abs(off)))
+    return Finding(what=what, against=against, difference=worst, bound=bound)
+
+
 def _hertz() -> Finding:
     scene = Scene.nondimensional(psi1=0.0, chi=1.0)
     result = Simulation(tangential="coulomb", integrator="symplectic").run(scene)
-    duration = float(np.asarray(result.motion.duration / hertz_scales(scene).duration)) - 1.0
-    worst = max(abs(duration), abs(float(np.asarray(result.normal_restitution)) - 1.0))
-    return Finding(
-        what="hertz: duration and restitution",
-        against="eq. (7), e = 1",
-        difference=worst,
-        bound=1e-9,
-    )
+    duration = np.asarray(result.motion.duration / hertz_scales(scene).duration) - 1.0
+    off = np.append(duration, np.asarray(result.normal_restitution) - 1.0)
+    return _finding("hertz: duration and restitution", "eq. (7), e = 1", off, 1e-9)
 
 
 def _rigid() -> Finding:
@@ -133,21 +130,12 @@ def _rigid() -> Finding:
     psi1 = np.linspace(-8.0, 8.0, 65)
     sim = Simulation(tangential="coulomb", integrator="symplectic")
     psi2 = uninterrupted(sim.sweep(Scene.nondimensional(psi1=psi1, chi=chi))).psi2
-    worst = float(np.max(np.abs(psi2 - rigid_body_rebound(psi1, chi))))
-    return Finding(
-        what="coulomb: psi2", against="slip, then rolling", difference=worst, bound=1e-12
-    )
+    off = psi2 - rigid_body_rebound(psi1, chi)
+    return _finding("coulomb: psi2", "slip, then rolling", off, 1e-12)
 
 
 def _eccentric() -> Simulation:
     return Simulation(tangential="fronts", integrator="events")
-
-
-def _eccentric_finding(what: str, against: str, difference: Any, bound: float) -> Finding:
-    worst = float(np.max(np.abs(difference)))
-    return Finding(
-        what=f"fronts, two bodies: {what}", against=against, difference=worst, bound=bound
-    )
 
 
 def _no_friction() -> Finding:
@@ -156,7 +144,7 @@ def _no_friction() -> Finding:
     W = scene.inverse_mass
     slip = scene.slip_velocity[:, 0] - 2.0 * W[:, 0, 1] / W[:, 0, 0]
     off = np.hypot(result.normal_velocity + 1.0, result.slip_velocity[:, 0] - slip)
-    return _eccentric_finding("no friction", "V2 = -1, psi2 = psi1 - 2 eta", off, 1e-12)
+    return _finding("fronts, two bodies: no friction", "V2 = -1, psi2 = psi1 - 2 eta", off, 1e-12)
 
 
 def _sliding() -> tuple[EccentricScene, Any, Any]:
@@ -171,7 +159,7 @@ def _slip_throughout() -> Finding:
     scene, slip, k = _sliding()
     result = _eccentric().run(scene).check()
     off = np.hypot(result.normal_velocity + 1.0, result.psi2 - (slip - 2.0 * k))
-    return _eccentric_finding("slip throughout", "V2 = -1, psi2 = psi1 - 2k", off, 1e-10)
+    return _finding("fronts, two bodies: slip throughout", "V2 = -1, psi2 = psi1 - 2k", off, 1e-10)
 
 
 def _first_slip() -> Finding:
@@ -187,20 +175,17 @@ def _first_slip() -> Finding:
         full = np.abs(history.tangential_force[:, 0]) >= limit * (1.0 - 1e-9)
         stopped = int(np.argmin(full)) - 1
         off.append(history.normal_velocity[stopped] - (each - psi1) / (each - 1.0))
-    return _eccentric_finding("end of first slip", "V = (k - psi1)/(k - 1)", off, 1e-9)
+    return _finding("fronts, two bodies: end of first slip", "V = (k - psi1)/(k - 1)", off, 1e-9)
 
 
 def _stiff() -> Finding:
     off = []
     for angle, friction, slip in STIFF_RODS:
         scene = rod(angle, friction, slip, kappa=STIFF)
-        soft, rigid = (
-            simulation.run(scene).check()
-            for simulation in (_eccentric(), Simulation(tangential="coulomb"))
-        )
-        off.append(distance(soft, rigid))
+        rigid = Simulation(tangential="coulomb").run(scene).check()
+        off.append(distance(_eccentric().run(scene).check(), rigid))
     bound = RIGID_DISTANCE * STIFF**-0.5
-    return _eccentric_finding("rods, kappa = 1e4", "Routh's construction", off, bound)
+    return _finding("fronts, two bodies: rods, kappa = 1e4", "Routh's construction", off, bound)
 
 
 def _reference(
@@ -215,93 +200,59 @@ def _reference(
         tangential=REGISTRY.create(f"tangential.{tangential}", **options),
         integrator=REGISTRY.create(f"integrator.{integrator}", **settings),
     )
-    worst = 0.0
-    for chi, expected in REFERENCE_PSI2.items():
-        batch = Scene.nondimensional(psi1=np.array(REFERENCE_PSI1), chi=chi)
-        psi2 = uninterrupted(sim.sweep(batch)).psi2
-        worst = float(np.max(np.append(np.abs(psi2 - np.array(expected)), worst)))
+    off = [
+        uninterrupted(sim.sweep(Scene.nondimensional(psi1=np.array(REFERENCE_PSI1), chi=chi))).psi2
+        - np.array(expected)
+        for chi, expected in REFERENCE_PSI2.items()
+    ]
     numbers = ", ".join(f"{key}={value}" for key, value in (options | settings).items())
-    return Finding(
-        what=f"{tangential} / {integrator}" + (f", {numbers}" if numbers else ""),
-        against="21 reference values of psi2",
-        difference=worst,
-        bound=bound,
-    )
+    what = f"{tangential} / {integrator}" + (f", {numbers}" if numbers else "")
+    return _finding(what, "21 reference values of psi2", off, bound)
 
 
 def _codes(number: int, form: str) -> Finding:
     file = read_scene(DEFAULT_SCENE)
     series = file.measured[number]
-    sim = Simulation(
-        tangential=REGISTRY.create("tangential.mindlin_cap", form=form), integrator="symplectic"
-    )
+    law = REGISTRY.create("tangential.mindlin_cap", form=form)
+    sim = Simulation(tangential=law, integrator="symplectic")
     psi2 = uninterrupted(sim.sweep(file.scene_at(psi1=series.x))).psi2
-    return Finding(
-        what=f"mindlin_cap, form={form}: psi2",
-        against=series.label,
-        difference=float(np.max(np.abs(psi2 - series.values))),
-        bound=CODE_BOUND,
-    )
+    what = f"mindlin_cap, form={form}: psi2"
+    return _finding(what, series.label, psi2 - series.values, CODE_BOUND)
 
 
-def _scalars(case: Scalars, names: tuple[str, ...], bound: float) -> Finding:
-    """Return the finding of Hertz's law against the named scalars of a normal impact."""
+def _scalars(name: str, scene: Scene, published: dict[str, float], bound: float) -> Finding:
+    """Return the finding of Hertz's law against published scalars of a normal impact."""
     sim = Simulation(tangential="frictionless", integrator="symplectic")
-    motion: Any = sim.run(case.scene).check().motion
+    motion: Any = sim.run(scene).check().motion
     computed = {
         "force": motion.maximum_force,
         "approach": motion.maximum_approach,
         "duration": motion.duration,
     }
-    published = {name: getattr(case, name) for name in names if getattr(case, name) is not None}
-    return Finding(
-        what=f"hertz: {case.name}, {' and '.join(published)}",
-        against="Chung & Ooi (2011), relative",
-        difference=max(
-            abs(float(computed[name]) / value - 1.0) for name, value in published.items()
-        ),
-        bound=bound,
-    )
+    off = [float(computed[entry]) / value - 1.0 for entry, value in published.items()]
+    what = f"hertz: {name}, {' and '.join(published)}"
+    return _finding(what, "Chung & Ooi (2011), relative", off, bound)
 
 
-class Scalars(NamedTuple):
-    """A normal impact and its published scalars; None for a scalar that is not published.
+def hertz_scalars() -> dict[str, tuple[Scene, dict[str, float]]]:
+    """Return the normal impacts of tests 1 and 2 of Chung & Ooi, and their published scalars.
 
-    Attributes
-    ----------
-    name : str
-    scene : Scene
-    force : float, optional
-        Largest normal force, in N.
-    approach : float, optional
-        Largest approach, in m.
-    duration : float, optional
-        In s.
-    """
-
-    name: str
-    scene: Scene
-    force: float | None = None
-    approach: float | None = None
-    duration: float | None = None
-
-
-def hertz_scalars() -> tuple[Scalars, ...]:
-    """Return the normal impacts of tests 1 and 2 of Chung & Ooi.
-
-    The scalars are Hertz's theory, read off their figures by the authors of the benchmarks of
-    Kratos and Cabana; the mean where both read the same scalar.
+    Scalars are the largest force (N), the largest approach (m) and the duration (s): Hertz's
+    theory, read off their figures by the authors of the benchmarks of Kratos and Cabana; the mean
+    where both read the same scalar.
 
     References
     ----------
     Chung & Ooi, Granular Matter 13 (2011) 643-656, doi:10.1007/s10035-011-0277-0.
     """
-    return (
-        Scalars("test 1, glass", _spheres(48e9, 0.20, 2800.0), 10.7055e3, 274.96e-6, 40.48e-6),
-        Scalars("test 1, limestone", _spheres(20e9, 0.25, 2500.0), 7108.0),
-        Scalars("test 2, aluminium", _on_plane(70e9, 0.30, 2699.0), 11.357e3, 49.855e-6, 727.5e-6),
-        Scalars("test 2, magnesium", _on_plane(40e9, 0.35, 1800.0), 7233.0),
-    )
+    glass = {"force": 10.7055e3, "approach": 274.96e-6, "duration": 40.48e-6}
+    aluminium = {"force": 11.357e3, "approach": 49.855e-6, "duration": 727.5e-6}
+    return {
+        "test 1, glass": (_spheres(48e9, 0.20, 2800.0), glass),
+        "test 1, limestone": (_spheres(20e9, 0.25, 2500.0), {"force": 7108.0}),
+        "test 2, aluminium": (_on_plane(70e9, 0.30, 2699.0), aluminium),
+        "test 2, magnesium": (_on_plane(40e9, 0.35, 1800.0), {"force": 7233.0}),
+    }
 
 
 def _spheres(young: float, poisson: float, density: float) -> Scene:
@@ -315,170 +266,3 @@ def _on_plane(young: float, poisson: float, density: float) -> Scene:
     material = Material(young_modulus=young, poisson_ratio=poisson, density=density)
     plane = HalfSpace(Material(young_modulus=RIGID, poisson_ratio=0.3))
     return Scene(Sphere(0.1, material), plane, 0.0, 0.2)
-
-
-@attrs.frozen(kw_only=True)
-class Source:
-    """A file of measured or computed rebounds, the normal laws to run, and bounds.
-
-    Attributes
-    ----------
-    name : str
-        Name of the file in ``contactlab/study/measured``, without its suffix.
-    kind : str
-        Where the numbers are from: "experiment", "finite elements" or "other codes".
-    normals : mapping of str to mapping
-        Options of the normal laws, by name.
-    bounds : mapping
-        Bound of the rms difference by quantity and law: ``{("psi2", "fronts"): 0.06}``.
-    """
-
-    name: str
-    kind: str
-    normals: Mapping[str, Mapping[str, Any]] = attrs.field(factory=lambda: {DEFAULT_NORMAL: {}})
-    bounds: Mapping[tuple[str, str], float] = attrs.field(factory=dict)
-
-    def read(self) -> SceneFile:
-        """Return the contents of the file."""
-        place = resources.files("contactlab").joinpath("study", "measured", f"{self.name}.toml")
-        with resources.as_file(place) as path:
-            return read_scene(path)
-
-
-#: Normal laws for the impacts of Kharaz et al.: elastic, and damped to the loss that they measured.
-DAMPED = {DEFAULT_NORMAL: {}, "tsuji": {"restitution": 0.98}}
-E_T = "tangential_restitution"
-SOURCES = (
-    Source(
-        name="kharaz2001",
-        kind="experiment",
-        normals=DAMPED,
-        bounds={
-            (E_T, "fronts"): 0.015,
-            (E_T, "springs, tsuji restitution=0.98"): 0.015,
-            (E_T, "sharp_annulus, tsuji restitution=0.98"): 0.015,
-        },
-    ),
-    Source(name="finite-elements", kind="finite elements", bounds={("psi2", "fronts"): 0.06}),
-    Source(name="codes-test4-oxide", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),
-    Source(name="codes-test4-alloy", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),
-    Source(name="codes-mfix", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),
-)
-
-
-@attrs.frozen(kw_only=True, eq=False)
-class Evidence:
-    """A source, and the results of every law that fits.
-
-    Attributes
-    ----------
-    source : Source
-    file : SceneFile
-    comparison : Comparison
-        Agreements with all series; with ``curves``, the laws over the file's sweep too.
-    left_out : mapping of str to str
-        Reasons by law, for laws that could not be composed.
-    """
-
-    source: Source
-    file: SceneFile
-    comparison: Comparison
-    left_out: Mapping[str, str]
-
-    @property
-    def laws(self) -> list[str]:
-        """Names of the laws by rms difference from the first series; failed laws come last."""
-        first = self.comparison.agreements[0]
-        rms = {name: first.rms(name) for name in first.results}
-        return sorted(rms, key=lambda name: (np.isnan(rms[name]), rms[name]))
-
-    def scatter(self, agreement: Agreement) -> float:
-        """Return the rms measurement error of a series, in its unit; NaN if none is stated."""
-        errors = agreement.measured.error[agreement.measured.error > 0.0]
-        return float(np.sqrt(np.mean(errors**2))) if errors.size else float("nan")
-
-    def bound(self, quantity: str, law: str) -> float | None:
-        """Return the bound of the rms difference; None if there is none."""
-        return self.source.bounds.get((quantity, law))
-
-
-def gather(
-    *, curves: bool = False, progress: Callable[[int, int], object] | None = None
-) -> Iterator[Evidence]:
-    """Iterate over the sources, each with every law that fits under its preferred integrator.
-
-    Parameters
-    ----------
-    curves : bool
-        Run each law over the sweep of each file too, for figures.
-    progress : callable, optional
-        Called as ``progress(done, total)`` after each source.
-    """
-    for done, source in enumerate(SOURCES, start=1):
-        yield _evidence(source, curves=curves)
-        if progress is not None:
-            progress(done, len(SOURCES))
-
-
-def _evidence(source: Source, *, curves: bool) -> Evidence:
-    file = source.read()
-    simulations, left_out = simulations_over(source.normals)
-    agreements = []
-    for measured in file.measured:
-        scene = file.scene_at(**{measured.against: measured.x})
-        results = {
-            name: uninterrupted(simulation.sweep(scene)) for name, simulation in simulations.items()
-        }
-        agreements.append(Agreement(measured=measured, results=results))
-    runs = [
-        LawRun(
-            name=name,
-            result=uninterrupted(simulation.sweep(file.scene)),
-            run_time_per_impact=float("nan"),
-        )
-        for name, simulation in simulations.items()
-        if curves
-    ]
-    comparison = Comparison(
-        scene=file.scene, varied=file.varied, runs=tuple(runs), agreements=tuple(agreements)
-    )
-    return Evidence(source=source, file=file, comparison=comparison, left_out=left_out)
-
-
-def simulations_over(
-    normals: Mapping[str, Mapping[str, Any]],
-) -> tuple[dict[str, Simulation], dict[str, str]]:
-    """Return simulations of every tangential law under the normal laws, and reasons for misfits.
-
-    Both are keyed by the tangential law's name, followed by normal law and options if the normal
-    law is not the default.
-    """
-    simulations: dict[str, Simulation] = {}
-    left_out: dict[str, str] = {}
-    for normal, options in normals.items():
-        for full in REGISTRY.names("tangential"):
-            name = short_name(full)
-            if normal != DEFAULT_NORMAL:
-                words = ", ".join(f"{key}={value}" for key, value in options.items())
-                name += f", {normal} {words}".rstrip()
-            try:
-                normal_law = REGISTRY.create(full_name("normal", normal), **options)
-                simulations[name] = Simulation(normal=normal_law, tangential=full)
-            except (ValueError, PluginError) as error:
-                left_out[name] = str(error)
-    return simulations, left_out
-
-
-def judged(evidence: Evidence) -> Iterator[Finding]:
-    """Iterate over the findings of a source: the bounds of the laws that are installed."""
-    for agreement in evidence.comparison.agreements:
-        quantity = agreement.measured.quantity
-        for law in agreement.results:
-            bound = evidence.bound(quantity, law)
-            if bound is not None:
-                yield Finding(
-                    what=f"{law}: {quantity}, rms",
-                    against=f"{evidence.source.kind}: {evidence.source.name}",
-                    difference=agreement.rms(law),
-                    bound=bound,
-                )

@@ -72,7 +72,7 @@ def bench(
     Benchmark
         Ctrl-C keeps the resolutions that are done.
     """
-    truths = {key: _truths(*key, quick=quick) for key in {_judged(method) for method in methods}}
+    truths = {key: _truths(*key, quick=quick) for key in {_limit(method) for method in methods}}
     resolutions = [
         (method, resolution) for method in methods for resolution in method.resolutions(quick=quick)
     ]
@@ -88,7 +88,7 @@ def bench(
             rows.append(
                 _left_out(method, resolution)
                 if method.name in slow
-                else _row(method, resolution, truths[_judged(method)], quick=quick)
+                else _row(method, resolution, truths[_limit(method)], quick=quick)
             )
             if rows[-1].time_s > limit:
                 slow.add(method.name)
@@ -116,7 +116,7 @@ class Truth(NamedTuple):
     result: ImpactResult | None
 
 
-def _judged(method: Method) -> tuple[str, str]:
+def _limit(method: Method) -> tuple[str, str]:
     """Return the normal law of a method, and the friction law whose limit it is judged by.
 
     The limit is the law's own if it converges to the continuum, and that of the default law
@@ -176,40 +176,37 @@ def _rebound_row(*, quick: bool) -> Row:
     """Return error and run time of ``contactlab.rebound``, which no simulation runs."""
     truths = _truths(composition.DEFAULT_NORMAL, "", quick=quick)
     pairs = [(float(truth.scene.psi1), float(truth.scene.chi)) for truth in truths]
-    exact = [psi1 + truth.psi_change for (psi1, _), truth in zip(pairs, truths, strict=True)]
-    errors: Any = [rebound(*pair) - psi2 for pair, psi2 in zip(pairs, exact, strict=True)]
-    rest = _elsewhere(quick=quick)
-    off = [
-        rebound(float(one.scene.psi1), float(one.scene.chi)) - one.scene.psi1 - one.psi_change
-        for one in rest
-    ]
-    batch = _swept_scenes()
-    psi1, chi = np.asarray(batch.psi1), np.asarray(batch.chi)
-    least = np.inf
-    for _ in range(REPEATS):
-        before = time.perf_counter()
+
+    def off(truth: Truth) -> Any:
+        psi1, chi = float(truth.scene.psi1), float(truth.scene.chi)
+        return rebound(psi1, chi) - psi1 - truth.psi_change
+
+    def one_by_one() -> None:
         for pair in pairs:
             for _ in range(CALLS):
                 rebound(*pair)
-        least = min(least, (time.perf_counter() - before) / (CALLS * len(pairs)))
-    together = np.inf
-    for _ in range(CALLS):
-        before = time.perf_counter()
-        rebound(psi1, chi)
-        together = min(together, (time.perf_counter() - before) / SWEEP)
+
+    errors = [off(truth) for truth in truths]
+    batch = _swept_scenes()
+    psi1, chi = np.asarray(batch.psi1), np.asarray(batch.chi)
     return Row(
         method=REBOUND,
-        options="",
         error_rms=_rms(errors),
         error_worst=float(np.max(np.abs(errors))),
-        force_error_rms=np.nan,
-        books_worst=np.nan,
-        time_s=least,
-        sweep_time_s=together,
-        failed=0,
-        status="SUCCESS",
-        elsewhere_rms=_rms(off),
+        elsewhere_rms=_rms(off(truth) for truth in _elsewhere(quick=quick)),
+        time_s=_least(one_by_one, repeats=REPEATS) / (CALLS * len(pairs)),
+        sweep_time_s=_least(lambda: rebound(psi1, chi), repeats=CALLS) / SWEEP,
     )
+
+
+def _least(call: Callable[[], object], *, repeats: int) -> float:
+    """Return the least time of several calls, in s."""
+    least = np.inf
+    for _ in range(repeats):
+        before = time.perf_counter()
+        call()
+        least = min(least, time.perf_counter() - before)
+    return least
 
 
 def _row(
@@ -221,34 +218,31 @@ def _row(
     # Timed are runs without history: a law may answer those in another way than it follows one.
     results = [simulation.run(scene) for scene in impacts]
     followed = [simulation.run(scene, history=True) for scene in impacts]
-    failed = [result for result in (*results, *followed) if not result.status]
-    good = not failed
-    errors: Any = np.array(
-        [result.psi_change - true.psi_change for result, true in zip(results, truths, strict=True)]
+    row = Row(
+        method=method.name, options=_words(resolution), converges=converges(simulation.tangential)
     )
-    forces = (
-        [_force_error(result, true.result) for result, true in zip(followed, truths, strict=True)]
-        if good
-        else [np.nan]
-    )
+    if failed := [result for result in (*results, *followed) if not result.status]:
+        return attrs.evolve(row, failed=len(failed), status=failed[0].status.name)
+    errors: list[Any] = [
+        result.psi_change - true.psi_change for result, true in zip(results, truths, strict=True)
+    ]
+    forces = [
+        _force_error(result, true.result) for result, true in zip(followed, truths, strict=True)
+    ]
     books: list[Any] = [
         abs(result.energy.relative_imbalance) if np.all(result.energy.checked) else np.nan
         for result in results
     ]
-    least = _least_time(simulation, impacts) if good else np.nan
-    return Row(
-        method=method.name,
-        options=_words(resolution),
-        error_rms=_rms(errors) if good else np.nan,
-        error_worst=float(np.max(np.abs(errors))) if good else np.nan,
-        force_error_rms=float(np.sqrt(np.mean(np.square(forces)))),
-        books_worst=float(np.max(books)) if good else np.nan,
+    least = _least_time(simulation, impacts)
+    return attrs.evolve(
+        row,
+        error_rms=_rms(errors),
+        error_worst=float(np.max(np.abs(errors))),
+        force_error_rms=_rms(forces),
+        books_worst=float(np.max(books)),
         time_s=least,
-        sweep_time_s=_sweep_time(simulation, least) if good and least < SLOW else np.nan,
-        failed=len(failed),
-        status=failed[0].status.name if failed else "SUCCESS",
-        elsewhere_rms=_elsewhere_rms(simulation, method, quick=quick) if good else np.nan,
-        converges=converges(simulation.tangential),
+        sweep_time_s=_sweep_time(simulation, least) if least < SLOW else np.nan,
+        elsewhere_rms=_elsewhere_rms(simulation, method, quick=quick),
     )
 
 
@@ -264,13 +258,9 @@ def _with_nearer(rows: list[Row]) -> list[Row]:
 
 def _left_out(method: Method, resolution: dict[str, dict[str, Any]]) -> Row:
     """Return the row of a resolution that is not run because it would take too long."""
-    errors = dict.fromkeys(("error_rms", "error_worst", "force_error_rms", "books_worst"), np.nan)
     return Row(
         method=method.name,
         options=_words(resolution),
-        **errors,
-        time_s=np.nan,
-        sweep_time_s=np.nan,
         failed=1,
         status="NOT_RUN",
         converges=converges(composition.law("tangential", method.tangential)),
@@ -327,12 +317,7 @@ def _sweep_time(simulation: Simulation, alone: float) -> float:
     """Return the least time per impact of a sweep of solid spheres; ``alone`` is one's, in s."""
     size = int(np.clip(SWEEP_BUDGET / alone, FEWEST, SWEEP))
     batch = _swept_scenes(size)
-    least = np.inf
-    for _ in range(2):
-        before = time.perf_counter()
-        uninterrupted(simulation.sweep(batch))
-        least = min(least, time.perf_counter() - before)
-    return least / size
+    return _least(lambda: uninterrupted(simulation.sweep(batch)), repeats=2) / size
 
 
 def _order(rows: list[Row]) -> float:

@@ -34,9 +34,9 @@ from contactlab.testing.parametrize import parametrize_with_checks
 #: Modules with checks, in the order in which the checks run. Importing a module enters its checks.
 ORDER = (
     "every_law", "normal", "normal_contact", "normal_motions", "motion", "stepping", "friction",
-    "stiffness", "energy", "memory", "point", "impacts", "whole_impacts", "coulomb", "unlike",
-    "vectors", "rigid_bodies", "integrators", "integrator_faults", "accuracy", "declared_errors",
-    "declarations",
+    "stiffness", "energy", "memory", "coulomb_at_a_point", "impacts", "whole_impacts", "coulomb",
+    "unlike_bodies", "vectors", "rigid_bodies", "integrators", "integrator_faults", "accuracy",
+    "declared_errors", "declarations",
 )  # fmt: skip
 for _module in ORDER:
     importlib.import_module(f"contactlab.testing.{_module}")

@@ -34,7 +34,9 @@ def order(integrator: Any) -> None:
         errors = []
         for steps in LADDER:
             finer = attrs.evolve(integrator, **{integrator.resolution: steps})
-            change = marched_impact(_with(simulation, finer), 2.0).slip_velocity_change
+            change = marched_impact(
+                attrs.evolve(simulation, integrator=finer), 2.0
+            ).slip_velocity_change
             errors.append(abs(change / exact - 1.0))
         observed = -float(np.polyfit(np.log(LADDER), np.log(errors), 1)[0])
         hold(
@@ -56,7 +58,9 @@ def finer_is_better(integrator: Any) -> None:
         value = getattr(integrator, integrator.resolution)
         better = 4 * value if isinstance(value, int) else value / 16.0
         finer = attrs.evolve(integrator, **{integrator.resolution: better})
-        change = marched_impact(_with(simulation, finer), 7.0).slip_velocity_change
+        change = marched_impact(
+            attrs.evolve(simulation, integrator=finer), 7.0
+        ).slip_velocity_change
         finer_error = abs(change - exact) / unit
         within(
             finer_error,
@@ -111,7 +115,7 @@ def books_by(integrator: Any) -> None:
         if isinstance(getattr(integrator, integrator.resolution or "", None), int):
             worst = max(_imbalance(simulation, psi1) for psi1 in (0.5, 1.2, 2.0))
             finer_steps = {integrator.resolution: 8 * getattr(integrator, integrator.resolution)}
-            finer = _with(simulation, attrs.evolve(integrator, **finer_steps))
+            finer = attrs.evolve(simulation, integrator=attrs.evolve(integrator, **finer_steps))
             finer_worst = max(_imbalance(finer, psi1) for psi1 in (0.5, 1.2, 2.0))
             within(
                 finer_worst,
@@ -138,9 +142,3 @@ def _exact(simulation: Simulation, psi1: float) -> Any:
     assert isinstance(simulation.normal, ClosedFormNormalLaw)
     motion = simulation.normal.motion(impact)
     return impact.slip_velocity * (PressedSpring.rebound(motion) - 1.0)
-
-
-def _with(simulation: Simulation, integrator: Integrator) -> Simulation:
-    return Simulation(
-        normal=simulation.normal, tangential=simulation.tangential, integrator=integrator
-    )

@@ -121,6 +121,11 @@ def within(value: Any, bound: Any, sentence: str) -> None:
     hold(value <= bound, f"{sentence.rstrip()} Bound: {float(bound):.2g}.")
 
 
+def worst(values: Any) -> float:
+    """Return the largest magnitude; infinity if a value is NaN."""
+    return float(np.nan_to_num(np.max(np.abs(values)), nan=np.inf))
+
+
 def hold_success(motion: TangentialMotion, words: str = "{}") -> None:
     """Hold that every impact was followed to its end; ``words`` get status and detail of one."""
     pair = (np.asarray(entry, dtype=object) for entry in (motion.status, motion.detail))

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import copy
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
+
+from contactlab.testing.check import hold
 
 #: Values nested deeper than this count as equal.
 DEEPEST = 12
@@ -63,3 +66,14 @@ def well_formed(value: Any, shape: tuple[int, ...]) -> bool:
     """Return whether ``value`` holds real numbers of ``shape`` (floats, or an array of them)."""
     array = np.asarray(value)
     return array.dtype.kind in "fiu" and array.shape == shape
+
+
+def hold_read_only(run: Callable[[], object], scene: Any) -> None:
+    """Hold that a run with read-only arguments writes into none of them, and not into the scene."""
+    kept = copy.deepcopy(scene)
+    try:
+        run()
+    except ValueError as error:
+        hold("read-only" not in str(error), f"The law writes into what it was given: {error}.")
+        raise
+    hold(same(scene, kept), "The law changed the scene.")

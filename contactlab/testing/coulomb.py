@@ -6,16 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.answers import answers
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import SteppedTangentialLaw, TangentialLaw
-from contactlab.numeric.arrays import spread
 from contactlab.testing.check import NotApplicableError, apply_if, check, within
 from contactlab.testing.impacts import CHI
 from contactlab.testing.laws import PullingHertz
 from contactlab.testing.load_paths import Bench, continue_from, drive, scene, slack, straight
 from contactlab.testing.ways import INTEGRATION, ways
-from contactlab.testing.whole_impacts import GRAZING
+from contactlab.testing.whole_impacts import GRAZING, changes
 
 #: dF/dD at rest over 2 G* b, Mindlin's and Di Renzo & Di Maio's; bound of the difference.
 MINDLIN, NEAR = (1.0, 2.0 / 3.0), 0.03
@@ -83,13 +81,8 @@ def load_impulse(law: Any) -> None:
         normal = normal_motion(pulling, impact)
         mass = float(np.asarray(impact.pair.tangential_mass))
         expected = float(np.asarray(impact.friction_coefficient)) * float(normal.total_load_impulse)
-        changes = [(way.run(impact).motion.slip_velocity_change, str(way)) for way in marches]
-        if marches:  # a law that cannot run under this normal law is not asked either
-            changes += [
-                (spread(answer.slip_velocity_change, ()), answer.reason)
-                for _, answer in answers(normal, law, history=False)
-            ]
-        for change, origin in changes:
+        # a law that cannot run under this normal law is not asked for wholes either
+        for _, change, origin in changes(law, marches, impact, normal) if marches else ():
             apply_if(change != 0.0, "It makes no force in slip throughout.")
             tried += 1
             error = abs(abs(float(np.asarray(change))) * mass / expected - 1.0)

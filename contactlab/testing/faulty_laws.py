@@ -52,6 +52,7 @@ class FailingSpring(SteppedTangentialLaw):
     """
 
     api_version: ClassVar[int] = 2
+    settles: ClassVar[bool] = True
     at: int = 7
     raises: bool = False
 
@@ -62,35 +63,20 @@ class FailingSpring(SteppedTangentialLaw):
         return 0
 
     def advance(
-        self,
-        state: int,
-        increment: Increment,
-        before: NormalContact,
-        after: NormalContact,
+        self, state: int, increment: Increment, before: NormalContact, after: NormalContact
     ) -> tuple[TangentialResponse, int]:
-        """Return no force; NaN or an exception from step ``at`` on."""
-        nothing = 0.0 * increment.displacement
-        if state + 1 >= self.at:
-            if self.raises:
-                raise ArithmeticError("as it was asked to")
-            nothing = nothing + math.nan
-        return TangentialResponse(nothing, nothing), state + 1
+        """Return no force; the fault from step ``at`` on."""
+        failed = state + 1 >= self.at
+        if failed and self.raises:
+            raise ArithmeticError("as it was asked to")
+        nothing = 0.0 * increment.displacement + (math.nan if failed and self.settles else 0.0)
+        return TangentialResponse(nothing, nothing, self.settles or not failed), state + 1
 
 
-@attrs.frozen(kw_only=True)
 class UnsettledSpring(FailingSpring):
     """A law without force that does not settle from step ``at`` on."""
 
-    def advance(
-        self,
-        state: int,
-        increment: Increment,
-        before: NormalContact,
-        after: NormalContact,
-    ) -> tuple[TangentialResponse, int]:
-        """Return no force; not settled from step ``at`` on."""
-        nothing = 0.0 * increment.displacement
-        return TangentialResponse(nothing, nothing, state + 1 < self.at), state + 1
+    settles: ClassVar[bool] = False
 
 
 @attrs.frozen(kw_only=True)
@@ -108,11 +94,7 @@ class Unyielding(SteppedTangentialLaw):
         """Return None; the law has no state."""
 
     def advance(
-        self,
-        state: None,
-        increment: Increment,
-        before: NormalContact,
-        after: NormalContact,
+        self, state: None, increment: Increment, before: NormalContact, after: NormalContact
     ) -> tuple[TangentialResponse, None]:
         """Return no force, and count the call."""
         _count(self.calls)
@@ -191,9 +173,10 @@ class SpoiledMotion(ClosedFormMotion):
 
     def scaled_at(self, phase: float) -> ScaledContact:
         """Return the scaled contact in floats, or NaN."""
-        factor = 1.0 if phase < SPOILED_FROM else math.nan
         at, *others = self.motion.scaled_at(phase)
-        return ScaledContact(at, *(factor * other for other in others))
+        return ScaledContact(
+            at, *((1.0 if phase < SPOILED_FROM else math.nan) * other for other in others)
+        )
 
     def phase_at_rate(self, rate: Real) -> Real:
         """Return the phase of the sound motion at a rate."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.contracts import NormalContact, SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
-from contactlab.testing.check import GROWS, check, hold, within
+from contactlab.testing.check import GROWS, check, hold, within, worst
 from contactlab.testing.load_paths import (
     STEPS_TO_KNOT,
     Bench,
@@ -38,13 +38,13 @@ def odd_in_slip(law: Any) -> None:
         path = wandering(seed)
         forward = drive(law, bench, path)
         reversed_answers = drive(law, bench, Path(-path.slip, path.level))
-        gap = _worst(forward.force + reversed_answers.force)
+        gap = worst(forward.force + reversed_answers.force)
         within(gap, ROUNDING, f"Reversed slip gives a force that differs by {gap:.1e} mu P_max.")
-        gap = _worst(forward.work - reversed_answers.work)
+        gap = worst(forward.work - reversed_answers.work)
         within(gap, ROUNDING, f"Reversed slip gives a friction work that differs by {gap:.1e}.")
     far = straight((0.0, 0.5), (FAR, 0.9), (FAR - 1.0, 0.7))
     ahead = drive(law, bench, far).force
-    gap = _worst(ahead + drive(law, bench, Path(-far.slip, far.level)).force)
+    gap = worst(ahead + drive(law, bench, Path(-far.slip, far.level)).force)
     within(
         gap,
         ROUNDING,
@@ -68,7 +68,7 @@ def units(law: Any) -> None:
         path = wandering(seed)
         in_si = drive(law, Bench.of(), path)
         in_odd_units = drive(converted, Bench.of(units=ODD_UNITS), path)
-        gap = max(_worst(in_si.force - in_odd_units.force), _worst(in_si.work - in_odd_units.work))
+        gap = max(worst(in_si.force - in_odd_units.force), worst(in_si.work - in_odd_units.work))
         within(gap, ROUNDING, f"In other units the answer differs by {gap:.1e} of mu P_max.")
 
 
@@ -102,11 +102,11 @@ def normal_load_alone(law: Any) -> None:
     """A change of normal load alone makes no tangential force (stepped contract, 4)."""
     bench = Bench.of()
     force = drive(law, bench, straight((0.0, 1.0), (0.0, 0.2), (0.0, 0.6))).force
-    hold(np.all(force == 0.0), f"Pressing alone makes F = {_worst(force):.2g} mu P_max.")
+    hold(np.all(force == 0.0), f"Pressing alone makes F = {worst(force):.2g} mu P_max.")
     path = straight((0.0, 0.4), (0.3, 0.4), (0.3, 1.0))
     held = drive(law, bench, path).force
     sheared = 2 * STEPS_TO_KNOT  # the third leg only presses
-    rise = _worst(held[sheared:]) - abs(held[sheared - 1])
+    rise = worst(held[sheared:]) - abs(held[sheared - 1])
     within(
         rise,
         slack(law),
@@ -211,7 +211,3 @@ def last_step(law: Any) -> None:
                 f"Friction work of {work:.2g} in a step of {moved} as the load falls to zeta = "
                 f"{remaining:.1g}.",
             )
-
-
-def _worst(values: Any) -> float:
-    return float(np.nan_to_num(np.max(np.abs(values)), nan=np.inf))

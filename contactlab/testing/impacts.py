@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import itertools
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from contactlab.testing.check import CHANGES, GROWS, WHOLE, apply_if, check, hol
 from contactlab.testing.compare import same
 from contactlab.testing.load_paths import FRICTION, bodies, scene
 from contactlab.testing.units import ODD_UNITS, in_units
-from contactlab.testing.ways import allowed, course, meet, ways
+from contactlab.testing.ways import Way, allowed, course, meet, ways
 
 #: Entries of a motion.
 ENTRIES = (*TangentialMotion.numbers(), "status", "detail")
@@ -42,19 +43,25 @@ REFERENCE = {
 }
 
 
-@check(TangentialLaw, Integrator)
-def impact_odd(law: Any) -> None:
-    """An impact from the other side is the mirror image (theory §7)."""
+def met(law: Any) -> Iterator[tuple[Way, float, float, Any, Any]]:
+    """Iterate over ways, psi1 and chi, with change of psi and friction work of each impact."""
     for way in ways(law):
         for chi, psi1 in itertools.product(CHI, PSI1):
             change, _, work = meet(way, psi1, chi)
-            mirrored, _, work_back = meet(way, -psi1, chi)
-            gap = max(abs(change + mirrored), abs(work - work_back)) / max(1.0, psi1)
-            within(
-                gap,
-                1e-9,
-                f"psi1 = -{psi1}, chi = {chi}: differs by {gap:.1e} from the mirror image ({way}).",
-            )
+            yield way, psi1, chi, change, work
+
+
+@check(TangentialLaw, Integrator)
+def impact_odd(law: Any) -> None:
+    """An impact from the other side is the mirror image (theory §7)."""
+    for way, psi1, chi, change, work in met(law):
+        mirrored, _, work_back = meet(way, -psi1, chi)
+        gap = max(abs(change + mirrored), abs(work - work_back)) / max(1.0, psi1)
+        within(
+            gap,
+            1e-9,
+            f"psi1 = -{psi1}, chi = {chi}: differs by {gap:.1e} from the mirror image ({way}).",
+        )
 
 
 @check(TangentialLaw)
@@ -75,37 +82,32 @@ def impact_units(law: Any) -> None:
 @check(TangentialLaw, nature=GROWS)
 def impact_bounds(law: Any) -> None:
     """|psi2| is at most |psi1|, and psi changes by at most 4 chi (theory §7)."""
-    for way in ways(law):
+    for way, psi1, chi, change, _ in met(law):
         room = allowed(way)
-        for chi, psi1 in itertools.product(CHI, PSI1):
-            change, _, _ = meet(way, psi1, chi)
-            after = psi1 + change
-            within(
-                abs(after),
-                psi1 + room,
-                f"psi1 = {psi1}, chi = {chi}: |psi2| = {abs(after):.4g}, energy from nothing "
-                f"({way}).",
-            )
-            hold(
-                -change <= 4.0 * chi * (1.0 + room) and change <= 4.0 * chi * (1.0 + room),
-                f"psi1 = {psi1}, chi = {chi}: psi changes by {change:.4g}, more than mu P can.",
-            )
+        after = psi1 + change
+        within(
+            abs(after),
+            psi1 + room,
+            f"psi1 = {psi1}, chi = {chi}: |psi2| = {abs(after):.4g}, energy from nothing ({way}).",
+        )
+        hold(
+            -change <= 4.0 * chi * (1.0 + room) and change <= 4.0 * chi * (1.0 + room),
+            f"psi1 = {psi1}, chi = {chi}: psi changes by {change:.4g}, more than mu P can.",
+        )
 
 
 @check(TangentialLaw, nature=CHANGES)
 def impact_books(law: Any) -> None:
     """The energy lost in an impact is the friction work, at any angle (theory §7)."""
-    for way in ways(law):
-        for chi, psi1 in itertools.product(CHI, PSI1):
-            change, _, work = meet(way, psi1, chi)
-            loss = -change * (psi1 + 0.5 * change)
-            # The loss is over the energy of psi = 1 at least: no grid resolves a very small slip.
-            missing = abs(loss - work) / (0.5 * max(psi1, 1.0) ** 2)
-            within(
-                missing,
-                1e-6 if way.exact else BOOKS,
-                f"psi1 = {psi1}, chi = {chi}: {missing:.1%} of the energy is unaccounted ({way}).",
-            )
+    for way, psi1, chi, change, work in met(law):
+        loss = -change * (psi1 + 0.5 * change)
+        # The loss is over the energy of psi = 1 at least: no grid resolves a very small slip.
+        missing = abs(loss - work) / (0.5 * max(psi1, 1.0) ** 2)
+        within(
+            missing,
+            1e-6 if way.exact else BOOKS,
+            f"psi1 = {psi1}, chi = {chi}: {missing:.1%} of the energy is unaccounted ({way}).",
+        )
 
 
 @check(TangentialLaw)

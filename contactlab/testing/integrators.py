@@ -21,19 +21,9 @@ from contactlab.testing.ways import sound
 CHI = 1.4411764706
 
 
-def marched_impact(
-    simulation: Simulation, psi1: Any, chi: Any = CHI, recorder: Any = None
-) -> TangentialMotion:
-    """Return the motion of an impact by the integrator alone, without whole-impact answers.
-
-    Parameters
-    ----------
-    simulation : Simulation
-    psi1, chi : float or array
-    recorder : callable, optional
-        Observer of the run.
-    """
-    return marched(simulation, scene(psi1, chi), recorder)
+def marched_impact(simulation: Simulation, psi1: Any, recorder: Any = None) -> TangentialMotion:
+    """Return the motion of an impact by the integrator alone, without whole-impact answers."""
+    return marched(simulation, scene(psi1, CHI), recorder)
 
 
 def marched(simulation: Simulation, impact: Any, recorder: Any = None) -> TangentialMotion:

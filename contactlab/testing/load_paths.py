@@ -76,10 +76,10 @@ QUANTITIES = (
 )  # fmt: skip
 
 
-def varied(quantity: str, *, count: int = 3) -> Scene:
-    """Return a batch of central impacts of heavy bodies that differ in one quantity."""
+def varied(quantity: str) -> Scene:
+    """Return a batch of three central impacts of heavy bodies that differ in one quantity."""
     base = scene(0.0, HEAVY)
-    factors = np.linspace(0.6, 1.6, count)
+    factors = np.linspace(0.6, 1.6, 3)
     if quantity in ("friction_coefficient", "normal_speed"):
         return attrs.evolve(base, **{quantity: getattr(base, quantity) * factors})
     pair = attrs.evolve(base.pair, **{quantity: getattr(base.pair, quantity) * factors})

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from contactlab.contracts import IncrementalTangentialLaw, VectorTangentialLaw
 from contactlab.numeric.arrays import locked
 from contactlab.testing import limits
-from contactlab.testing.check import check, hold, within
+from contactlab.testing.check import check, hold, within, worst
 from contactlab.testing.load_paths import (
     Answers,
     Bench,
@@ -42,7 +42,7 @@ def begin_is_start(law: Any) -> None:
         for seed in SEEDS:
             path = wandering(seed)
             begun = continue_from(law, bench, law.begin(bench.scene, bench.normal), path)
-            gap = _worst(begun.force - drive(law, bench, path).force)
+            gap = worst(begun.force - drive(law, bench, path).force)
             within(
                 gap,
                 slack(law),
@@ -70,7 +70,7 @@ def deeper_contact(law: Any) -> None:
     )
     away = continue_from(law, bench, deep.state, apart, slip=4.0 * DEEP, count=STEPS)
     second = continue_from(law, bench, away.state, again, level=-0.1, count=STEPS)
-    gap = _worst(second.force - first.force)
+    gap = worst(second.force - first.force)
     within(
         gap,
         slack(law),
@@ -87,7 +87,7 @@ def vectors_rotate(law: Any) -> None:
             path, turn = _wandering(seed), _rotation(1.0 + seed)
             told = drive_vectors(law, bench, path)
             turned = drive_vectors(law, bench, Path(path.slip @ turn.T, path.level))
-            gap = max(_worst(turned.force - told.force @ turn.T), _worst(turned.work - told.work))
+            gap = max(worst(turned.force - told.force @ turn.T), worst(turned.work - told.work))
             within(
                 gap,
                 ROUNDING,
@@ -107,7 +107,7 @@ def vectors_turn(law: Any) -> None:
         slip = np.stack((path.slip - aside, 0.0 * aside), axis=-1)
         slip += aside[:, None] * np.array((np.cos(angle), np.sin(angle)))
         force = drive_vectors(law, bench, Path(slip, path.level)).force[-1] / level**1.5
-        gap = _worst(force - np.array((np.cos(angle), np.sin(angle))))
+        gap = worst(force - np.array((np.cos(angle), np.sin(angle))))
         within(
             gap,
             bound,
@@ -123,7 +123,7 @@ def vector_limit(law: Any) -> None:
     for seed in SEEDS:
         path = _wandering(seed)
         size = np.linalg.norm(drive_vectors(law, bench, path).force, axis=-1)
-        excess = _worst(np.maximum(size - path.level[:, None] ** 1.5, 0.0))
+        excess = worst(np.maximum(size - path.level[:, None] ** 1.5, 0.0))
         within(
             excess,
             slack(law),
@@ -143,9 +143,9 @@ def vectors_on_a_line(law: Any) -> None:
             slip = np.stack((path.slip, 0.0 * path.slip), axis=-1)
             told = drive_vectors(law, bench, Path(slip, path.level))
             gap = max(
-                _worst(told.force[..., 0] - numbers.force),
-                _worst(told.force[..., 1]),
-                _worst(told.work - numbers.work),
+                worst(told.force[..., 0] - numbers.force),
+                worst(told.force[..., 1]),
+                worst(told.work - numbers.work),
             )
             within(
                 gap,
@@ -188,7 +188,3 @@ def _wandering(seed: int) -> Path:
 def _rotation(angle: float) -> Array:
     cos, sin = np.cos(angle), np.sin(angle)
     return np.array([[cos, -sin], [sin, cos]])
-
-
-def _worst(values: Any) -> float:
-    return float(np.nan_to_num(np.max(np.abs(values)), nan=np.inf))

@@ -12,7 +12,7 @@ from PIL import Image
 from contactlab.cli import fit as fit_command
 from contactlab.figures import animation
 from contactlab.fitting import estimation
-from contactlab.study import comparison, validation
+from contactlab.study import comparison, evidence, validation
 from tests.cli.conftest import EXAMPLES, interrupting, partial
 
 KHARAZ = EXAMPLES / "kharaz2001.toml"
@@ -54,7 +54,7 @@ def test_compare_keeps_the_laws_that_are_done(run, monkeypatch, measured, tmp_pa
 def test_validate_keeps_checks_and_sources(run, monkeypatch, done, sources):
     checks = [validation._rigid] * done + [interrupting(None, 0)] * (sources == 0)
     monkeypatch.setattr(validation, "_checks", lambda: iter(checks))
-    monkeypatch.setattr(validation, "_evidence", interrupting(validation._evidence, sources))
+    monkeypatch.setattr(evidence, "_evidence", interrupting(evidence._evidence, sources))
     ran = run("validate")
     assert ran.status == 130
     assert ran.out.endswith("not complete: interrupted\n")

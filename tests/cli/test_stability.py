@@ -5,24 +5,14 @@ import json
 import re
 
 import attrs
-import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
 from contactlab.cli import stability
 from contactlab.compose.registry import REGISTRY
-from contactlab.study import stability_map
 from contactlab.study.bench_methods import Method
 from contactlab.study.stability import Stability
 from contactlab.study.stability_judge import RAISED, WRONG, Outcome
-from contactlab.study.stability_map import (
-    ALL_ANSWERED,
-    ONE_RAISED,
-    ONE_REFUSED,
-    ONE_WRONG,
-    Region,
-    region,
-)
 
 pytestmark = pytest.mark.slow
 
@@ -31,21 +21,6 @@ COMMAND = ("stability", "--quick", "--law", "springs")
 
 def failed(outcome):
     return Outcome(method="a / paper", family="map", case="here", outcome=outcome, note="off by 9")
-
-
-def area(state, *, word="steps", method="a / paper", failures=()):
-    """A map of one row, a column a state; what is answered is 3e-3 off."""
-    state = np.array([state, state], dtype=np.int8)
-    return Region(
-        method=method,
-        word=word,
-        resolutions=(10, 100) if word == "steps" else (1e-2, 1e-4),
-        chis=tuple(np.geomspace(0.1, 10.0, state.shape[1])),
-        error=np.where(state == ALL_ANSWERED, 3e-3, np.nan),
-        state=state,
-        tried=state.size,
-        failures=failures,
-    )
 
 
 def test_a_law_without_steps_has_a_model_error_and_no_picture(run, tmp_path):
@@ -61,12 +36,12 @@ def test_table_csv_and_figure_of_a_law(run, tmp_path):
     ran = run(*COMMAND, "--csv", files[0], "--figure", files[1])
     assert ran.status == 0
     for integrator in ("paper", "symplectic", "adaptive"):
-        assert len(re.findall(rf"^springs / {integrator} ", ran.out, re.MULTILINE)) == 3
+        assert len(re.findall(rf"^springs / {integrator} ", ran.out, re.MULTILINE)) == 2
     with files[0].open(newline="", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     total = re.search(r"(\d+) runs tried, 0 silently wrong; (\d+) more were skipped", ran.out)
-    mapped = sum(map(int, re.findall(r"(?:steps|tolerance) +(\d+) +0 +0$", ran.out, re.MULTILINE)))
-    assert len(rows) == int(total[1]) + int(total[2]) - mapped
+    assert len(rows) == int(total[1]) + int(total[2])
+    assert sum(row["family"] == "map" for row in rows) == 3 * 4 * (4 + 4 + 2)
     answered = [row for row in rows if row["outcome"] == "answered"]
     assert len(answered) > 100
     # eccentric impacts that no other method answers have no error
@@ -94,44 +69,25 @@ def test_a_law_that_is_silently_wrong_fails_it_and_is_named(run, monkeypatch, tm
     assert ran.status == 1
     assert re.search(r"springs / symplectic +\S.* silently wrong +error \S+ of the range", ran.out)
     wrong = int(re.search(r"(\d+) silently wrong;", ran.out)[1])
-    rows = re.findall(r"^springs / symplectic +(?:steps|[\d ]+?) .* (\d+)$", ran.out, re.MULTILINE)
-    assert sum(map(int, rows)) == wrong > 10  # those of the cases and those of the map
+    row = re.search(r"^springs / symplectic +\d+ [\d ]+ (\d+)$", ran.out, re.MULTILINE)
+    assert int(row[1]) == wrong > 10
     with (tmp_path / "s.csv").open(newline="", encoding="utf-8") as stream:
         listed = [row for row in csv.DictReader(stream) if row["outcome"] == "silently wrong"]
     assert len(listed) == wrong
     assert {"map", "chi"} <= {row["family"] for row in listed}
     content = json.loads(run(*COMMAND, "--json").out)
     assert content["silently_wrong"] == wrong
-    assert len(content["map"][0]["failures"]) == int(rows[-1])
+    assert sum(item["outcome"] == "silently wrong" for item in content["outcomes"]) == wrong
 
 
 @pytest.mark.parametrize("outcome", [WRONG, RAISED])
 def test_a_failure_on_the_map_alone_fails_it(run, monkeypatch, outcome):
-    found = Stability(
-        outcomes=(), regions=(area([ALL_ANSWERED], failures=(failed(outcome),)),), complete=True
-    )
+    found = Stability(outcomes=(failed(outcome),), complete=True)
     monkeypatch.setattr(stability, "stability", lambda *_, **__: found)
     ran = run(*COMMAND)
     assert ran.status == 1
     assert re.search(rf"a / paper +here +{outcome} +off by 9", ran.out)
-    assert f"2 runs tried, {int(outcome == WRONG)} silently wrong" in ran.out
-
-
-def test_what_raises_on_the_map_is_not_called_silently_wrong():
-    method = Method(tangential="springs", integrator="symplectic")
-    cells = [(5, 0.5), (5, 3.0), (9, 0.5), (9, 3.0)]
-    answers = {(5, 0.5): RAISED, (5, 3.0): WRONG, (9, 0.5): "refused", (9, 3.0): "answered"}
-
-    def judged(case):
-        cell = case.options["integrator"]["steps"], float(case.scene.make().chi)
-        return Outcome(
-            method=method.name, family="map", case="", outcome=answers[cell], error=float(cell[0])
-        )
-
-    found = region(method, cells, judged=judged)
-    assert found.state.tolist() == [[ONE_RAISED, ONE_WRONG], [ONE_REFUSED, ALL_ANSWERED]]
-    impacts = len(stability_map.INCIDENCES)
-    assert (found.count(RAISED), found.count(WRONG), found.tried) == (impacts, impacts, 4 * impacts)
+    assert f"1 runs tried, {int(outcome == WRONG)} silently wrong" in ran.out
 
 
 def test_the_picture_has_a_curve_a_law_under_its_usual_integrator(run, tmp_path, monkeypatch):

@@ -8,15 +8,15 @@ import pytest
 
 import contactlab
 from contactlab.scene_file import read_scene
-from contactlab.study import validation
+from contactlab.study import evidence, validation
 from tests.cli.conftest import EXAMPLES
 
-SOURCES = {source.name: source for source in validation.SOURCES}
+SOURCES = {source.name: source for source in evidence.SOURCES}
 
 
 @pytest.fixture(scope="module")
 def gathered():
-    return {one.source.name: one for one in validation.gather()}
+    return {one.source.name: one for one in evidence.gather()}
 
 
 def rms(one, law, series=0):
@@ -110,7 +110,7 @@ def test_scalars_of_hertz_are_the_codes(monkeypatch):
 def short(monkeypatch):
     """Validate against one source of few laws, and no reference values."""
     monkeypatch.setattr(validation, "COMPOSITIONS", validation.COMPOSITIONS[:1])
-    monkeypatch.setattr(validation, "SOURCES", (SOURCES["codes-test4-alloy"],))
+    monkeypatch.setattr(evidence, "SOURCES", (SOURCES["codes-test4-alloy"],))
     monkeypatch.setattr(
         validation.REGISTRY,
         "names",
@@ -139,10 +139,10 @@ def test_a_folder_that_cannot_be(run, tmp_path):
 
 
 def test_a_law_that_misses_an_experiment_fails(run, short, monkeypatch):
-    (source,) = validation.SOURCES
+    (source,) = evidence.SOURCES
     quantity = source.read().measured[0].quantity
     bounds = {(quantity, law): 1e-2 for law in ("mindlin_cap", "coulomb")}
-    monkeypatch.setattr(validation, "SOURCES", (attrs.evolve(source, bounds=bounds),))
+    monkeypatch.setattr(evidence, "SOURCES", (attrs.evolve(source, bounds=bounds),))
     ran = run("validate", "--json")
     told = {row["what"]: row["ok"] for row in json.loads(ran.out)["checks"]}
     assert ran.status == 1
@@ -156,7 +156,7 @@ def test_a_wrong_value_fails(run, monkeypatch):
     }
     monkeypatch.setattr(validation, "REFERENCE_PSI2", wrong)
     monkeypatch.setattr(validation, "COMPOSITIONS", validation.COMPOSITIONS[:1])
-    monkeypatch.setattr(validation, "SOURCES", ())
+    monkeypatch.setattr(evidence, "SOURCES", ())
     ran = run("validate")
     assert ran.status == 1
     assert "FAILS" in ran.out
@@ -164,7 +164,7 @@ def test_a_wrong_value_fails(run, monkeypatch):
 
 def test_laws_over_several_normal_laws_are_told_apart():
     normals = {"hertz": {}, "tsuji": {"restitution": 0.9}, "jkr": {}}
-    found, left_out = validation.simulations_over(normals)
+    found, left_out = evidence.simulations_over(normals)
     assert found["springs"].normal.__class__.__name__ == "Hertz"
     assert found["springs, tsuji restitution=0.9"].normal.restitution == 0.9
     assert "springs, jkr" in found

@@ -8,7 +8,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab.study.validation import SOURCES
+from contactlab.study.evidence import SOURCES
 
 FILES = {source.name: source.read() for source in SOURCES}
 KHARAZ, MFIX = FILES["kharaz2001"], FILES["codes-mfix"]

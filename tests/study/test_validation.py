@@ -6,16 +6,11 @@ import pytest
 
 from contactlab import Scene, Simulation
 from contactlab.scene_file import read_scene
-from contactlab.study import validation
+from contactlab.study import evidence, validation
 from contactlab.study.comparison import Agreement, Comparison
+from contactlab.study.evidence import SOURCES, Evidence, Source, simulations_over
 from contactlab.study.stability_eccentric import rod
-from contactlab.study.validation import (
-    SOURCES,
-    Evidence,
-    Finding,
-    Source,
-    simulations_over,
-)
+from contactlab.study.validation import Finding
 from tests.study.made_up import ERRORS, SERIES, SWEEP
 
 RIGID = Simulation(tangential="coulomb")
@@ -36,7 +31,7 @@ def source(tmp_path, monkeypatch):
     path.write_text(FILE, encoding="utf-8")
     monkeypatch.setattr(Source, "read", lambda _: read_scene(path))
     monkeypatch.setattr(
-        validation, "simulations_over", lambda _: ({"smooth": SMOOTH, "rigid": RIGID}, {"x": "y"})
+        evidence, "simulations_over", lambda _: ({"smooth": SMOOTH, "rigid": RIGID}, {"x": "y"})
     )
     return Source(name="small", kind="experiment", bounds={("psi2", "rigid"): 0.4})
 
@@ -58,8 +53,8 @@ def test_failed_laws_come_last(source):
     results["failed"] = attrs.evolve(results["failed"], motion=motion)
     agreement = Agreement(measured=file.measured[0], results=results)
     comparison = Comparison(scene=file.scene, varied={}, runs=(), agreements=(agreement,))
-    evidence = Evidence(source=source, file=file, comparison=comparison, left_out={})
-    assert evidence.laws == ["rigid", "smooth", "failed"]
+    gathered = Evidence(source=source, file=file, comparison=comparison, left_out={})
+    assert gathered.laws == ["rigid", "smooth", "failed"]
 
 
 @pytest.mark.parametrize(

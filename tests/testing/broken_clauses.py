@@ -14,9 +14,10 @@ from contactlab.contracts import TangentialMotion, faults, quantity
 from tests.testing.broken_impacts import AllAtOnce, Knowing, OtherwiseAtOnce, Whole
 from tests.testing.broken_integrators import AsksTillItGives
 from tests.testing.broken_laws import Answering, Sound
-from tests.testing.broken_normal import HERTZ, MOTION, Altered, Moving, Stepwise
-from tests.testing.fresh_faults import STEPS, Steps
+from tests.testing.broken_normal import Altered, Moving, Stepwise
+from tests.testing.fresh_faults import HERTZ, MOTION, STEPS, Steps
 from tests.testing.fresh_sound import Brush, HardSphere, Press
+from tests.testing.made import altered, broken
 
 NUMBERS: dict[str, Any] = {"force": 0.0, "calls": 0}
 
@@ -24,37 +25,9 @@ NUMBERS: dict[str, Any] = {"force": 0.0, "calls": 0}
 # What a law declares.
 
 
-class OfNoKind(Sound):
-    kind: ClassVar[str] = "elastic"
-
-
-class OfAnotherKind(Sound):
-    kind: ClassVar[str] = "normal"
-
-
-class NeedsAsANormalLaw(Press):
-    needs: ClassVar[frozenset] = frozenset({"radius"})
-
-
-class NamesNoParameter(Sound):
-    resolution: ClassVar[str] = "fineness"
-
-
-class NeedsInAList(Sound):
-    needs: ClassVar[Any] = ["radius"]
-
-
-class OffersHertzWithoutAMotion(Press):
-    offers: ClassVar[frozenset] = frozenset({"radius", "elastic_hertz"})
-
-
 class ClaimsAndExpects(Sound):
     offers: ClassVar[frozenset] = frozenset({"partial_slip"})
     expected_failures: ClassVar[dict] = {"cattaneo_mindlin": "one spring for the whole contact"}
-
-
-class ExpectsOfAnother(Sound):
-    expected_failures: ClassVar[dict] = {"grows": "it is no normal law at all"}
 
 
 @attrs.frozen(kw_only=True)
@@ -122,23 +95,12 @@ class ChangesTheScene(Sound):
         return state
 
 
-class FieldsWithoutNames(Sound):
-    def fields(self, state):
-        return {1: np.zeros(3)}
-
-
 class InfinitelyStiff(Sound):
     def stiffness(self, scene, normal):
         return np.inf * super().stiffness(scene, normal)
 
     def start(self, scene, normal):
         return super().start(scene, normal)._replace(stiffness=super().stiffness(scene, normal))
-
-
-class NeverSettles(Sound):
-    def advance(self, state, increment, before, after):
-        response, new = super().advance(state, increment, before, after)
-        return response._replace(settled=False), new
 
 
 class RemembersAClosedLoop(Sound):
@@ -154,26 +116,6 @@ class RemembersAClosedLoop(Sound):
         told = response._replace(force=np.where(turns > 1, 0.999, 1.0)[()] * response.force)
         moved = np.where(increment.displacement == 0.0, last, increment.displacement)[()]
         return told, (new, (moved, turns))
-
-
-class BundleUnderDamping(Brush):
-    """Springs cut alone, without a word of what that does under a damped normal law."""
-
-    expected_failures: ClassVar[dict] = {}
-
-
-class SofterBundle(Brush):
-    """Springs of nine tenths of the stiffness, which never reach more than the true force."""
-
-    def modulus(self, scene):
-        return 0.9 * scene.pair.effective_shear_modulus
-
-
-class NeedsBodies(HardSphere):
-    """Twice the restitution where bodies are known."""
-
-    def restitution(self, scene):
-        return 0.2 if scene.sphere is None else 0.4
 
 
 class WeakerInABatch(AllAtOnce):
@@ -220,11 +162,6 @@ class CountsItsImpacts(Whole):
 # Normal laws.
 
 
-class AnswersANumber(Press):
-    def respond(self, state, approach, rate):
-        return 0.0 * approach, state
-
-
 @attrs.frozen(kw_only=True)
 class CountsItsCalls(Press):
     calls: Any = attrs.field(factory=dict, eq=False)
@@ -251,95 +188,21 @@ class ChangesTheSceneToo(Press):
         return state
 
 
-class NanOverlap(Altered):
-    """An approach of NaN is out of contact; the force is NaN all the same."""
-
-    def alter(self, contact, approach, rate):
-        return contact._replace(overlap=np.where(np.isnan(approach), -1.0, contact.overlap)[()])
-
-
-class NanLoad(Altered):
-    def alter(self, contact, approach, rate):
-        return contact._replace(friction_load=np.nan_to_num(contact.friction_load)[()])
-
-
-class NegativeRadius(Altered):
-    def alter(self, contact, approach, rate):
-        return contact._replace(radius=-contact.radius)
-
-
-class WideWithoutContact(Altered):
-    def alter(self, contact, approach, rate):
-        return contact._replace(radius=contact.radius + 1e-9)
-
-
-class LoadedWithoutContact(Altered):
-    def alter(self, contact, approach, rate):
-        return contact._replace(friction_load=contact.friction_load + 1e-3)
-
-
-class NoForceAtAll(Altered):
-    def alter(self, contact, approach, rate):
-        return contact._replace(force=0.0 * contact.force, friction_load=0.0 * contact.force)
-
-
-class NeverEnds(Altered):
-    def alter(self, contact, approach, rate):
-        return contact._replace(overlap=1.0 + abs(contact.overlap))
-
-
-class NeverParts(Stepwise):
-    """A dashpot alone: the bodies come to rest in contact."""
-
-    def alter(self, contact, dashpot, rate):
-        return contact._replace(force=3.0 * dashpot * np.maximum(rate, 0.0))
-
-
-class Faulty(MOTION):
-    """Hertz's motion with something done to it."""
-
-
-class StartsSlower(Faulty):
-    def at(self, phase):
-        sample = super().at(phase)
-        return sample._replace(rate=sample.rate * (1.0 - 1e-9))
-
-
-class StartsApart(Faulty):
+class StartsApart(MOTION):
     def at(self, phase):
         sample = super().at(phase)
         return sample._replace(approach=sample.approach - 1e-10 * self.maximum_approach)
 
 
-class HeavierScaled(Faulty):
+class HeavierScaled(MOTION):
     @property
     def scaled_mass(self):
         return 0.81
 
 
-class WiderScaled(Faulty):
-    def scaled(self, phase):
-        return super().scaled(phase)._replace(radius=1.01 * super().scaled(phase).radius)
-
-
-class LaterAtARate(Faulty):
-    def phase_at_rate(self, rate):
-        return super().phase_at_rate(rate) + 1e-6
-
-
-class LaterAtAFraction(Faulty):
-    def phase(self, fraction):
-        return super().phase(fraction) * (1.0 + 1e-5)
-
-
-def moving(motion):
-    """Return Hertz's law with that motion."""
-    return type(f"With{motion.__name__}", (Moving,), {"moving": motion, "__module__": __name__})
-
-
-WithStartsSlower, WithStartsApart = moving(StartsSlower), moving(StartsApart)
-WithHeavierScaled, WithWiderScaled = moving(HeavierScaled), moving(WiderScaled)
-WithLaterAtARate, WithLaterAtAFraction = moving(LaterAtARate), moving(LaterAtAFraction)
+def motion(member, change):
+    """Return Hertz's motion, of which one member is a function of what the sound one answers."""
+    return altered(MOTION, member, ("Changed", change, "", ""))[0][0]
 
 
 # Integrators.
@@ -355,43 +218,6 @@ class MassOfTheSphere(STEPS):
             scene = attrs.evolve(scene, sphere=None, target=None, pair=pair)
             normal = normal_motion(normal.law, scene)
         return super().integrate(normal, tangential, scene, observer)
-
-
-class ClaimsAccuracy(STEPS):
-    """Twenty steps, and an accuracy of 1e-9."""
-
-    accuracy: ClassVar[float] = 1e-9
-
-
-class GivesUp(Steps):
-    """Reports every impact as unresolved."""
-
-    def alter(self, motion, scene):
-        return attrs.evolve(motion, status=Status.UNRESOLVED) if not scene.shape else motion
-
-
-class SaysMore(Steps):
-    """A success with a remark."""
-
-    def alter(self, motion, scene):
-        return attrs.evolve(motion, detail="all is well") if not scene.shape else motion
-
-
-class WrongWay(Steps):
-    def alter(self, motion, scene):
-        return attrs.evolve(motion, slip_velocity_change=-motion.slip_velocity_change)
-
-
-class CountsInHalves(Steps):
-    def alter(self, motion, scene):
-        return attrs.evolve(motion, counters={"steps": 199.5})
-
-
-class SilentFault(Steps):
-    """A status without a word."""
-
-    def alter(self, motion, scene):
-        return attrs.evolve(motion, detail="") if not scene.shape else motion
 
 
 class ShowsInstantsTwice(STEPS):
@@ -514,15 +340,6 @@ class ThrowsAtTheEnd(Sound):
         return response._replace(force=response.force + thrown), new
 
 
-class PaysUnderTension(Sound):
-    """Friction works on the bodies where the normal force is negative."""
-
-    def advance(self, state, increment, before, after):
-        response, new = super().advance(state, increment, before, after)
-        gift = 1e-3 * abs(after.force * increment.displacement) * (after.force < 0.0)
-        return response._replace(friction_work=response.friction_work - gift), new
-
-
 class StatesTooStiff(Sound):
     """A stiffness that no number of steps follows, and a force of a softer spring."""
 
@@ -549,21 +366,6 @@ class InFurlongs(Sound):
     length: float = quantity("furlong", default=1.0)
 
 
-class EndsFaster(HERTZ):
-    """A final rate that the motion does not reach."""
-
-    def motion(self, scene):
-        motion = super().motion(scene)
-        return attrs.evolve(motion, final_rate=(1.0 + 1e-8) * motion.final_rate)
-
-
-class MissesOnePerThousand(Steps):
-    """Friction work, one per thousand too much at any number of steps."""
-
-    def alter(self, motion, scene):
-        return attrs.evolve(motion, friction_work=1.001 * motion.friction_work)
-
-
 class ShowsSuccessesOnly(STEPS):
     """Keeps what an observer should see until the end, and shows nothing of a failed run."""
 
@@ -584,54 +386,21 @@ class RunsItsOwnLawsOnly(STEPS):
 
 #: Each with the check meant for it, and words of what the check says of it.
 BROKEN = [
-    (OfNoKind, "contract", "kind = 'elastic': must be one of"),
-    (OfAnotherKind, "contract", "A normal law must be a NormalLaw"),
-    (NeedsAsANormalLaw, "contract", "Only a tangential law needs something"),
-    (NamesNoParameter, "contract", "resolution = 'fineness': must name a parameter"),
-    (NeedsInAList, "contract", "needs = ['radius']: must be a frozenset of words"),
-    (OffersHertzWithoutAMotion, "contract", "offers 'elastic_hertz', and is no ClosedForm"),
     (ClaimsAndExpects, "expected_failures", "It offers 'partial_slip' and expects to fail"),
-    (ExpectsOfAnother, "expected_failures", "'grows' is not a check of such a law"),
     (RefusesNamelessly, "parameters", "extra = nan: refused without its name: must be 1"),
     (CopiesOtherwise, "copies", "A copy differs: "),
     (ChangesItself, "pure", "The law itself was changed by a run"),
     (WritesIntoItsState, "pure", "The state that went in was changed at step 1."),
     (WearsByTheRun, "repeatable", "gives other forces"),
-    (FieldsWithoutNames, "fields", "fields: 1 is not a name"),
     (InfinitelyStiff, "stiffness", "stiffness = inf"),
-    (NeverSettles, "coulomb_limit", "The law found no answer on a straight load path"),
     (RemembersAClosedLoop, "turning_points", "A closed loop at slip 0.3 is not forgotten"),
-    (SofterBundle, "cattaneo_mindlin", "off Cattaneo and Mindlin's"),
-    (BundleUnderDamping, "coulomb_at_a_point_damped", "under StronglyDampedHertz"),
     (MassOfTheSphere, "unlike_bodies", "Balls unlike in mass, psi1 = 0.5: exchanged, psi2"),
-    (NeedsBodies, "unlike_bodies", "off that of a scene with the same pair and no bodies"),
     (WeakerInABatch, "all_steps", "A batch of shape (8,): differs by"),
     (HurriedForce, "whole_impacts", "along the course the force is"),
     (CourseOfTheEnd, "whole_impact_form", "its course answers shapes (1,), (1,) to (20001,)"),
     (CountsItsImpacts, "impact_repeatable", "A run changed the law (as whole impacts)"),
-    (AnswersANumber, "grows", "respond returned "),
     (CountsItsCalls, "contacts_pure", "The law itself was changed by a run"),
     (HeedsTheCallBefore, "contacts_pure", "A step tried and thrown away changed the next one"),
-    (NanOverlap, "contacts_non_finite", "An approach of NaN is taken for no contact"),
-    (NanLoad, "contacts_non_finite", "An approach of NaN gives a friction load of 0.0"),
-    (NegativeRadius, "presses", "A contact radius of -"),
-    (WideWithoutContact, "presses", "There is a contact radius out of contact"),
-    (LoadedWithoutContact, "presses", "There is a friction load out of contact"),
-    (NoForceAtAll, "presses", "There is no force at any approach"),
-    (NeverEnds, "presses", "Far behind first touch the overlap says that there is still"),
-    (NeverParts, "rebounds", "An impact does not end: "),
-    (WithStartsSlower, "motion_agrees", "It starts at 0.8299"),
-    (WithStartsApart, "motion_agrees", "It does not start at touch"),
-    (WithHeavierScaled, "motion_obeys_newton", "The scaled mass is 1.3e-02 off"),
-    (WithWiderScaled, "motion_scaled", "The scaled radius is 1.0e-02 off"),
-    (WithLaterAtARate, "motion_scaled", "phase_at_rate is 1.0e-06 off"),
-    (WithLaterAtAFraction, "motion_scaled", "off the inverse of time"),
-    (ClaimsAccuracy, "finer_is_better", "off the exact solution"),
-    (GivesUp, "ends_well", "UNRESOLVED"),
-    (SaysMore, "ends_well", "A success says 'all is well'"),
-    (WrongWay, "ends_well", "m/s changes by 1.1"),
-    (CountsInHalves, "ends_well", "counters = {'steps': 199.5}: must be whole numbers"),
-    (SilentFault, "faults_reported", "says nothing of what and where"),
     (ShowsInstantsTwice, "observer_changes_nothing", "called at times that do not increase"),
     (ShowsTheFirstHalf, "observer_changes_nothing", "The last instant seen is at 0.4"),
     (CountsItsRuns, "impact_repeatable", "A run changed the law"),
@@ -645,13 +414,136 @@ BROKEN = [
     (StiffensUnderLoad, "normal_load_alone", "Pressing on a contact that is sheared adds"),
     (SpoilsTheOthers, "non_finite", "of one contact of a batch changes the force of the others"),
     (ThrowsAtTheEnd, "last_step", "mu P_max as the load falls to zeta = 1e-06"),
-    (PaysUnderTension, "tension", "Under tension friction work is -"),
     (StatesTooStiff, "impact_central", "the stiffness that it states, "),
     (EqualToItselfOnly, "copies", "A copy is not equal to the law"),
     (InFurlongs, "units", "The unit 'furlong' is not understood"),
-    (EndsFaster, "motion_obeys_newton", "It does not end at its final rate"),
-    (MissesOnePerThousand, "books_by", "With 8 times the steps "),
     (ShowsSuccessesOnly, "faults_reported", "0 instants of the history are left"),
     (RunsItsOwnLawsOnly, "impact_odd", "It fits none of the laws of the kit"),
     (OtherwiseAtOnce, "impact_repeatable", "Watched, an impact ends differently, by 1"),
-]
+    *broken(Sound, "kind",
+        ("OfNoKind", "elastic", "contract", "kind = 'elastic': must be one of"),
+        ("OfAnotherKind", "normal", "contract", "A normal law must be a NormalLaw"),
+    ),
+    *broken(Press, "needs",
+        ("NeedsAsANormalLaw", frozenset({"radius"}),
+         "contract", "Only a tangential law needs something"),
+    ),
+    *broken(Sound, "resolution",
+        ("NamesNoParameter", "fineness",
+         "contract", "resolution = 'fineness': must name a parameter"),
+    ),
+    *broken(Sound, "needs",
+        ("NeedsInAList", ["radius"],
+         "contract", "needs = ['radius']: must be a frozenset of words"),
+    ),
+    *broken(Press, "offers",
+        ("OffersHertzWithoutAMotion", frozenset({"radius", "elastic_hertz"}),
+         "contract", "offers 'elastic_hertz', and is no ClosedForm"),
+    ),
+    *broken(Sound, "expected_failures",
+        ("ExpectsOfAnother", {"grows": "it is no normal law at all"},
+         "expected_failures", "'grows' is not a check of such a law"),
+    ),
+    *broken(Sound, "fields",
+        ("FieldsWithoutNames", lambda *_: {1: np.zeros(3)}, "fields", "fields: 1 is not a name"),
+    ),
+    *broken(Brush, "expected_failures",
+        ("BundleUnderDamping", {}, "coulomb_at_a_point_damped", "under StronglyDampedHertz"),
+    ),
+    *broken(Brush, "modulus",
+        ("SofterBundle", lambda scene: 0.9 * scene.pair.effective_shear_modulus,
+         "cattaneo_mindlin", "off Cattaneo and Mindlin's"),
+    ),
+    *broken(HardSphere, "restitution",
+        ("NeedsBodies", lambda scene: 0.2 if scene.sphere is None else 0.4,
+         "unlike_bodies", "off that of a scene with the same pair and no bodies"),
+    ),
+    *broken(Press, "respond",
+        ("AnswersANumber", lambda state, approach, _rate: (0.0 * approach, state),
+         "grows", "respond returned "),
+    ),
+    *broken(Altered, "alter",
+        ("NanOverlap",
+         lambda contact, approach, _rate: contact._replace(
+             overlap=np.where(np.isnan(approach), -1.0, contact.overlap)[()]),
+         "contacts_non_finite", "An approach of NaN is taken for no contact"),
+        ("NanLoad",
+         lambda contact, *_: contact._replace(
+             friction_load=np.nan_to_num(contact.friction_load)[()]),
+         "contacts_non_finite", "An approach of NaN gives a friction load of 0.0"),
+        ("NegativeRadius", lambda contact, *_: contact._replace(radius=-contact.radius),
+         "presses", "A contact radius of -"),
+        ("WideWithoutContact",
+         lambda contact, *_: contact._replace(radius=contact.radius + 1e-9),
+         "presses", "There is a contact radius out of contact"),
+        ("LoadedWithoutContact",
+         lambda contact, *_: contact._replace(friction_load=contact.friction_load + 1e-3),
+         "presses", "There is a friction load out of contact"),
+        ("NoForceAtAll",
+         lambda contact, *_: contact._replace(
+             force=0.0 * contact.force, friction_load=0.0 * contact.force),
+         "presses", "There is no force at any approach"),
+        ("NeverEnds", lambda contact, *_: contact._replace(overlap=1.0 + abs(contact.overlap)),
+         "presses", "Far behind first touch the overlap says that there is still"),
+    ),
+    *broken(Stepwise, "alter",
+        ("NeverParts",
+         lambda contact, dashpot, rate: contact._replace(
+             force=3.0 * dashpot * np.maximum(rate, 0.0)),
+         "rebounds", "An impact does not end: "),
+    ),
+    *broken(STEPS, "accuracy",
+        ("ClaimsAccuracy", 1e-9, "finer_is_better", "off the exact solution"),
+    ),
+    *broken(Steps, "alter",
+        ("GivesUp",
+         lambda motion, scene: motion if scene.shape else attrs.evolve(
+             motion, status=Status.UNRESOLVED),
+         "ends_well", "UNRESOLVED"),
+        ("SaysMore",
+         lambda motion, scene: motion if scene.shape else attrs.evolve(
+             motion, detail="all is well"),
+         "ends_well", "A success says 'all is well'"),
+        ("WrongWay",
+         lambda motion, _scene: attrs.evolve(
+             motion, slip_velocity_change=-motion.slip_velocity_change),
+         "ends_well", "m/s changes by 1.1"),
+        ("CountsInHalves",
+         lambda motion, _scene: attrs.evolve(motion, counters={"steps": 199.5}),
+         "ends_well", "counters = {'steps': 199.5}: must be whole numbers"),
+        ("SilentFault",
+         lambda motion, scene: attrs.evolve(motion, detail="") if not scene.shape else motion,
+         "faults_reported", "says nothing of what and where"),
+        ("MissesOnePerThousand",
+         lambda motion, _scene: attrs.evolve(motion, friction_work=1.001 * motion.friction_work),
+         "books_by", "With 8 times the steps "),
+    ),
+    *altered(Sound, "advance",
+        ("NeverSettles", lambda response, new, *_: (response._replace(settled=False), new),
+         "coulomb_limit", "The law found no answer on a straight load path"),
+        ("PaysUnderTension", lambda response, new, _, increment, _before, after: (response._replace(
+            friction_work=response.friction_work - (
+                1e-3 * abs(after.force * increment.displacement) * (after.force < 0.0))), new),
+         "tension", "Under tension friction work is -"),
+    ),
+    *altered(HERTZ, "motion",
+        ("EndsFaster",
+         lambda motion, _: attrs.evolve(motion, final_rate=(1.0 + 1e-8) * motion.final_rate),
+         "motion_obeys_newton", "It does not end at its final rate"),
+    ),
+    *broken(Moving, "moving",
+        ("WithStartsSlower",
+         motion("at", lambda sample, _: sample._replace(rate=sample.rate * (1.0 - 1e-9))),
+         "motion_agrees", "It starts at 0.8299"),
+        ("WithStartsApart", StartsApart, "motion_agrees", "It does not start at touch"),
+        ("WithHeavierScaled", HeavierScaled,
+         "motion_obeys_newton", "The scaled mass is 1.3e-02 off"),
+        ("WithWiderScaled",
+         motion("scaled", lambda scaled, _: scaled._replace(radius=1.01 * scaled.radius)),
+         "motion_scaled", "The scaled radius is 1.0e-02 off"),
+        ("WithLaterAtARate", motion("phase_at_rate", lambda phase, _: phase + 1e-6),
+         "motion_scaled", "phase_at_rate is 1.0e-06 off"),
+        ("WithLaterAtAFraction", motion("phase", lambda phase, _: phase * (1.0 + 1e-5)),
+         "motion_scaled", "off the inverse of time"),
+    ),
+]  # fmt: skip

@@ -10,35 +10,11 @@ from scipy.interpolate import PchipInterpolator
 from contactlab.contracts import TangentialLaw
 from contactlab.numeric.checks import POSITIVE, count, quantity
 from tests.testing.broken_laws import Sound
-
-
-class WrongVersion(Sound):
-    api_version: ClassVar[int] = 1
+from tests.testing.made import broken
 
 
 class ExpectsTooMuch(Sound):
     expected_failures: ClassVar[dict] = {"units": "it says so, but it is not so"}
-
-
-class ExpectsWithoutReason(Sound):
-    expected_failures: ClassVar[dict] = {"units": ""}
-
-
-class ExpectsTheUnknown(Sound):
-    expected_failures: ClassVar[dict] = {"unit": "there is no such check at all"}
-
-
-class Misspells(Sound):
-    offers: ClassVar[frozenset] = frozenset({"partialslip"})
-
-
-class MisspellsMember(Sound):
-    def psi2_eror(self, scene, normal, steps):
-        return 0.1
-
-
-class NeedsTheUnknown(Sound):
-    needs: ClassVar[frozenset] = frozenset({"advance"})
 
 
 class OneOfThreeWays(TangentialLaw):
@@ -93,15 +69,29 @@ class Interpolates(Sound):
 
 #: Each with the check meant for it, and words of what the check says of it.
 BROKEN = [
-    (WrongVersion, "api_version", "api_version = 1"),
-    (ExpectsWithoutReason, "expected_failures", "'units' needs a reason"),
-    (ExpectsTheUnknown, "expected_failures", "'unit', which is not a check"),
-    (Misspells, "contract", "'partialslip' is a word that no check knows"),
-    (MisspellsMember, "spelling", "psi2_eror is no member of its contracts: psi2_error misspelt?"),
-    (NeedsTheUnknown, "contract", "needs: 'advance' is a word that no check knows; there are: el"),
     (OneOfThreeWays, "contract", "It must be derived from one of SteppedTangentialLaw"),
     (Mutable, "immutable", "ratio can be set"),
     (CannotBePickled, "copies", "Can't pickle local object"),
     (TakesAnything, "parameters", "extra = nan: accepted without a ValueError"),
     (TakesAnyFlag, "parameters", "flag = nan: accepted without a ValueError"),
-]
+    *broken(Sound, "api_version",
+        ("WrongVersion", 1, "api_version", "api_version = 1"),
+    ),
+    *broken(Sound, "expected_failures",
+        ("ExpectsWithoutReason", {"units": ""}, "expected_failures", "'units' needs a reason"),
+        ("ExpectsTheUnknown", {"unit": "there is no such check at all"},
+         "expected_failures", "'unit', which is not a check"),
+    ),
+    *broken(Sound, "offers",
+        ("Misspells", frozenset({"partialslip"}),
+         "contract", "'partialslip' is a word that no check knows"),
+    ),
+    *broken(Sound, "psi2_eror",
+        ("MisspellsMember", lambda *_: 0.1,
+         "spelling", "psi2_eror is no member of its contracts: psi2_error misspelt?"),
+    ),
+    *broken(Sound, "needs",
+        ("NeedsTheUnknown", frozenset({"advance"}),
+         "contract", "needs: 'advance' is a word that no check knows; there are: el"),
+    ),
+]  # fmt: skip

@@ -14,35 +14,16 @@ from contactlab.contracts import (
     NormalContact,
     PathTangentialLaw,
     Stretch,
-    TangentialResponse,
     WholeImpactTangentialLaw,
     sliding,
 )
 from contactlab.contracts.tangential import Increment
 from tests.testing.broken_laws import Sound
+from tests.testing.made import broken
 
 
-@attrs.frozen(kw_only=True)
-class AllAtOnce(AllStepsTangentialLaw):
-    """Rigid sliders, sound: all steps at once, which for such a law is the same loop."""
-
-    api_version: ClassVar[int] = 2
-
-    def start(self, scene, normal):
-        nothing = np.zeros(scene.shape) if scene.shape else 0.0
-        stiffness = 1.4 * scene.pair.effective_shear_modulus * normal.maximum_radius
-        return scene.friction_coefficient, stiffness, nothing
-
-    def stiffness(self, scene, normal):
-        return 1.4 * scene.pair.effective_shear_modulus * normal.maximum_radius
-
-    def advance(self, state, increment, before, after):
-        friction, stiffness, held = state
-        limit = friction * after.friction_load
-        trial = held + stiffness * increment.displacement
-        force = np.minimum(np.maximum(trial, -limit), limit)
-        work = np.maximum(0.5 * (force + held) * (trial - force) / stiffness, 0.0)
-        return TangentialResponse(force, work), (friction, stiffness, force)
+class AllAtOnce(Sound, AllStepsTangentialLaw):
+    """A sound spring and slider: all steps at once, which for such a law is the same loop."""
 
     def advance_all(self, scene, normal, steps):
         state, forces, work = self.start(scene, normal), [], 0.0
@@ -87,11 +68,6 @@ class KnowsTooMuch(Knowing):
         return attrs.evolve(known, where=True)
 
 
-class KnowsHalfTheWork(Knowing):
-    def told(self, known, scene):
-        return attrs.evolve(known, friction_work=0.5 * known.friction_work, course=None)
-
-
 class KnowsAnotherCourse(Knowing):
     """The right end, by a course that hurries."""
 
@@ -101,15 +77,6 @@ class KnowsAnotherCourse(Knowing):
             return known.slip_velocity_change * (change / known.slip_velocity_change) ** 0.5, force
 
         return attrs.evolve(known, course=course)
-
-
-class ShortImpulse(Knowing):
-    """One per cent short of the impulse that friction has, as a whole; it slips all the same."""
-
-    def told(self, known, scene):
-        return attrs.evolve(
-            known, slip_velocity_change=0.99 * known.slip_velocity_change, course=None
-        )
 
 
 @attrs.frozen(kw_only=True)
@@ -164,25 +131,6 @@ class WholeTooLong(Whole):
         return attrs.evolve(known, slip_velocity_change=change, course=None)
 
 
-class WholeOfOtherWork(Whole):
-    """One per cent more work than its course does."""
-
-    def told(self, known, scene):
-        return attrs.evolve(known, friction_work=1.01 * known.friction_work)
-
-
-class WholeOfNan(Whole):
-    """Does not know the work."""
-
-    def told(self, known, scene):
-        return attrs.evolve(known, friction_work=np.nan * known.friction_work)
-
-
-class WholeWithoutBooks(Whole):
-    def told(self, known, scene):
-        return attrs.evolve(known, friction_work=0.5 * known.friction_work)
-
-
 class WholeBeyondCoulomb(Whole):
     """Twice the friction along its course."""
 
@@ -226,22 +174,6 @@ class WholeWears(Whole):
         return attrs.evolve(known, slip_velocity_change=share * known.slip_velocity_change)
 
 
-class WholeClaims(Whole):
-    offers: ClassVar[frozenset] = frozenset({"partial_slip"})
-
-
-class WholeOnePercentShort(Whole):
-    """No more than 0.99 of what friction can do."""
-
-    def told(self, known, scene):
-        return attrs.evolve(known, slip_velocity_change=0.99 * known.slip_velocity_change)
-
-
-class NegativeAsAWhole(Whole):
-    def told(self, known, scene):
-        return attrs.evolve(known, friction_work=-known.friction_work)
-
-
 @attrs.frozen
 class Slide(Stretch):
     """Gross slip with a factor on the force."""
@@ -274,18 +206,6 @@ class Paths(PathTangentialLaw):
         yield Slide(factor, change, self.power * fall * (velocity + 0.5 * change))
 
 
-class TooStrong(Paths):
-    force: ClassVar[float] = 1.2
-
-
-class TooWeakInTheBooks(Paths):
-    power: ClassVar[float] = 0.5
-
-
-class PathOfNan(Paths):
-    force: ClassVar[float] = float("nan")
-
-
 class PushesAlong(Paths):
     """Speeds slip up."""
 
@@ -294,13 +214,6 @@ class PushesAlong(Paths):
 
 class SlipsWhateverItClaims(Paths):
     offers: ClassVar[frozenset] = frozenset({"partial_slip"})
-
-
-class PathInMetres(Paths):
-    """Weaker in a wide contact, by a constant with a unit."""
-
-    def factor(self, motion):
-        return 1.0 / (1.0 + 100.0 * motion.maximum_radius)
 
 
 IMPACTS = {"count": 0}
@@ -318,31 +231,62 @@ class Wears(Paths):
 BROKEN = [
     (OtherwiseAtOnce, "all_steps", "differs by"),
     (KnowsTooMuch, "whole_impacts", "off the law's own run (KnowsTooMuch by Symplectic)"),
-    (KnowsHalfTheWork, "whole_impacts", "off the energy lost in the law's own run"),
     (KnowsAnotherCourse, "whole_impacts", "along the course psi is"),
-    (ShortImpulse, "whole_impacts", "'grazing': psi2 is 0.0"),
-    (ShortImpulse, "sliding_impulse", "0.01 off mu (1 + e) v1 M_n/M_t (grazing)"),
     (WholeNotOdd, "impact_odd", "(as whole impacts)"),
     (WholeInMetres, "impact_units", "(as whole impacts)"),
     (WholeTooStrong, "impact_bounds", "energy from nothing (as whole impacts)"),
     (WholeStopsAnything, "impact_bounds", "psi changes by -2, more than mu P can"),
     (WholeTooLong, "impact_bounds", "psi changes by -1.68, more than mu P can"),
-    (WholeOfOtherWork, "whole_impact_form", "psi1 = 0.3, chi = 0.4, 'rigid': the force along its"),
-    (WholeOfNan, "whole_impact_form", "'rigid': friction_work = "),
-    (WholeWithoutBooks, "impact_books", "of the energy is unaccounted (as whole impacts)"),
     (WholeBeyondCoulomb, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.74 of mu P_max"),
     (WholeBeyondCoulomb, "whole_impact_form", "the force along its course gives an impulse of"),
-    (NegativeAsAWhole, "whole_impact_form", "the friction work is -"),
     (MovesTheCentral, "impact_central", "psi1 = 0, chi = 0.4: UNBALANCED The contact slips inf"),
     (WholeOfTheFirst, "impact_batch", "(as whole impacts)"),
     (WholeWears, "impact_repeatable", "run twice, ends differently (as whole impacts)"),
-    (WholeClaims, "impact_reference", "off (as whole impacts)"),
-    (WholeOnePercentShort, "sliding_impulse", "0.01 off mu (1 + e) v1 M_n/M_t (as whole impacts)"),
-    (TooStrong, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.2"),
-    (TooWeakInTheBooks, "impact_books", "UNRESOLVED At step 2: the energy books miss"),
-    (PathOfNan, "impact_odd", "NON_FINITE At step 1: velocity, work or x is not finite"),
     (PushesAlong, "impact_bounds", "energy from nothing (PushesAlong by Events)"),
     (SlipsWhateverItClaims, "impact_reference", "off (SlipsWhateverItClaims by Events)"),
-    (PathInMetres, "impact_units", "differs by"),
     (Wears, "impact_repeatable", "run twice, ends differently"),
-]
+    *broken(Knowing, "told",
+        ("KnowsHalfTheWork",
+         lambda known, _scene: attrs.evolve(
+             known, friction_work=0.5 * known.friction_work, course=None),
+         "whole_impacts", "off the energy lost in the law's own run"),
+        ("ShortImpulse",
+         lambda known, _scene: attrs.evolve(
+             known, slip_velocity_change=0.99 * known.slip_velocity_change, course=None),
+         "whole_impacts", "'grazing': psi2 is 0.0",
+         "sliding_impulse", "0.01 off mu (1 + e) v1 M_n/M_t (grazing)"),
+    ),
+    *broken(Whole, "told",
+        ("WholeOfOtherWork",
+         lambda known, _scene: attrs.evolve(known, friction_work=1.01 * known.friction_work),
+         "whole_impact_form", "psi1 = 0.3, chi = 0.4, 'rigid': the force along its"),
+        ("WholeOfNan",
+         lambda known, _scene: attrs.evolve(known, friction_work=np.nan * known.friction_work),
+         "whole_impact_form", "'rigid': friction_work = "),
+        ("WholeWithoutBooks",
+         lambda known, _scene: attrs.evolve(known, friction_work=0.5 * known.friction_work),
+         "impact_books", "of the energy is unaccounted (as whole impacts)"),
+        ("WholeOnePercentShort",
+         lambda known, _scene: attrs.evolve(
+             known, slip_velocity_change=0.99 * known.slip_velocity_change),
+         "sliding_impulse", "0.01 off mu (1 + e) v1 M_n/M_t (as whole impacts)"),
+        ("NegativeAsAWhole",
+         lambda known, _scene: attrs.evolve(known, friction_work=-known.friction_work),
+         "whole_impact_form", "the friction work is -"),
+    ),
+    *broken(Whole, "offers",
+        ("WholeClaims", frozenset({"partial_slip"}), "impact_reference", "off (as whole impacts)"),
+    ),
+    *broken(Paths, "force",
+        ("TooStrong", 1.2, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.2"),
+        ("PathOfNan", float("nan"),
+         "impact_odd", "NON_FINITE At step 1: velocity, work or x is not finite"),
+    ),
+    *broken(Paths, "power",
+        ("TooWeakInTheBooks", 0.5, "impact_books", "UNRESOLVED At step 2: the energy books miss"),
+    ),
+    *broken(Paths, "factor",
+        ("PathInMetres", lambda motion: 1.0 / (1.0 + 100.0 * motion.maximum_radius),
+         "impact_units", "differs by"),
+    ),
+]  # fmt: skip

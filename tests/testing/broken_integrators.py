@@ -8,7 +8,6 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
-import contactlab
 from contactlab import Status
 from contactlab.contracts import (
     Increment,
@@ -17,30 +16,21 @@ from contactlab.contracts import (
     NormalSample,
 )
 from contactlab.testing.faulty_laws import Unyielding
-
-STEPS = contactlab.compose.registry.REGISTRY.law_class("integrator.symplectic")
-
-
-class Steps(STEPS):
-    """The symplectic scheme with something done to its motion."""
-
-    def alter(self, motion, scene, observer):
-        raise NotImplementedError
-
-    def integrate(self, normal, tangential, scene, observer=None):
-        return self.alter(super().integrate(normal, tangential, scene, observer), scene, observer)
+from tests.testing.fresh_faults import STEPS, Steps
+from tests.testing.made import broken
 
 
 class AlwaysSucceeds(Steps):
-    def alter(self, motion, scene, observer):
+    def alter(self, motion, scene):
         success = np.full(scene.shape, Status.SUCCESS, dtype=object)
         numbers = {name: np.nan_to_num(getattr(motion, name))[()] for name in motion.numbers()}
         status = success if scene.shape else Status.SUCCESS
         return attrs.evolve(motion, status=status, **numbers)
 
 
-class HeedsItsObserver(Steps):
-    def alter(self, motion, scene, observer):
+class HeedsItsObserver(STEPS):
+    def integrate(self, normal, tangential, scene, observer=None):
+        motion = super().integrate(normal, tangential, scene, observer)
         return motion if observer is None else attrs.evolve(motion, friction_work=0.5)
 
 
@@ -49,28 +39,18 @@ class KeepsItsObserverWaiting(STEPS):
         return super().integrate(normal, tangential, scene, None)
 
 
-class OneStatusForAll(Steps):
-    def alter(self, motion, scene, observer):
-        return attrs.evolve(motion, status=Status.SUCCESS, detail="") if scene.shape else motion
-
-
 class MeanOfTheBatch(Steps):
     """One change of velocity for all impacts of a batch."""
 
-    def alter(self, motion, scene, observer):
+    def alter(self, motion, scene):
         change = np.mean(motion.slip_velocity_change) + 0.0 * motion.slip_velocity_change
         return attrs.evolve(motion, slip_velocity_change=change)
-
-
-class TellsTheTime(Steps):
-    def alter(self, motion, scene, observer):
-        return attrs.evolve(motion, friction_work=motion.friction_work + time.perf_counter())
 
 
 class Sloppy(Steps):
     """Of no order at all."""
 
-    def alter(self, motion, scene, observer):
+    def alter(self, motion, scene):
         change = motion.slip_velocity_change * (1.0 + 1e-3)
         return attrs.evolve(motion, slip_velocity_change=change)
 
@@ -80,7 +60,7 @@ class ShortImpulse(Steps):
 
     order: ClassVar[int | None] = None
 
-    def alter(self, motion, scene, observer):
+    def alter(self, motion, scene):
         return attrs.evolve(motion, slip_velocity_change=0.99 * motion.slip_velocity_change)
 
 
@@ -117,21 +97,16 @@ class Pointwise(NormalMotion):
 class ArrayOfOne(Steps):
     """An array where one number is due."""
 
-    def alter(self, motion, scene, observer):
+    def alter(self, motion, scene):
         if scene.shape:
             return motion
         return attrs.evolve(motion, slip_velocity_change=np.array([motion.slip_velocity_change]))
 
 
-class ReturnsATuple(Steps):
-    def alter(self, motion, scene, observer):
-        return motion.slip_velocity_change, motion.friction_work
-
-
 class NamesNobody(Steps):
     """Says that something was raised, and not by whom."""
 
-    def alter(self, motion, scene, observer):
+    def alter(self, motion, scene):
         raised = motion.status is Status.LAW_RAISED
         return attrs.evolve(motion, detail="Something was raised.") if raised else motion
 
@@ -139,7 +114,7 @@ class NamesNobody(Steps):
 class NamesNobodyAtTheStart(Steps):
     """Says who raised in a step, and not who raised before the first one."""
 
-    def alter(self, motion, scene, observer):
+    def alter(self, motion, scene):
         first = motion.status is Status.LAW_RAISED and motion.detail.startswith("At step 0")
         return attrs.evolve(motion, detail="Something was raised.") if first else motion
 
@@ -183,25 +158,6 @@ class Mended(Pointwise):
         )
 
 
-class WorkOfTheLastStage(Steps):
-    """The work of two stages, each of the whole step."""
-
-    def alter(self, motion, scene, observer):
-        return attrs.evolve(motion, friction_work=2.0 * motion.friction_work)
-
-
-class NoContract(STEPS):
-    """Does not say what it runs."""
-
-    tangential_contract: ClassVar[object] = "stepped"
-
-
-class RunsNumbers(STEPS):
-    """Says that it runs whole numbers."""
-
-    tangential_contract: ClassVar[object] = int
-
-
 #: Each with the check meant for it, and words of what the check says of it.
 BROKEN = [
     (AlwaysSucceeds, "faults_reported", "A fault in Hertz and FailingSpring reads as success"),
@@ -210,17 +166,30 @@ BROKEN = [
     (NamesNobodyAtTheStart, "faults_named", "FailingSpring raised, and is not named"),
     (HeedsItsObserver, "observer_changes_nothing", "Watched, the friction_work is 0.5"),
     (KeepsItsObserverWaiting, "observer_changes_nothing", "The observer was not called"),
-    (OneStatusForAll, "impact_batch", "status has not the batch's shape"),
     (MeanOfTheBatch, "impact_batch", "Impact (0, 0) of a batch is off"),
-    (TellsTheTime, "impact_repeatable", "run twice, ends differently"),
     (Sloppy, "order", "Order 2 is declared, and 0.09 is found"),
     (IgnoresItsSteps, "finer_is_better", "Made finer, the error goes from"),
     (ShortImpulse, "sliding_impulse_by", "The impulse of sliding is 0.01 off"),
     (FirstLoad, "sliding_impulse_by", "The impulse of sliding is 0.0002 off"),
-    (WorkOfTheLastStage, "books_by", "of the energy is unaccounted"),
     (ArrayOfOne, "ends_well", "slip_velocity_change = array(["),
-    (ReturnsATuple, "ends_well", "It returns a tuple"),
     (AsksTillItGives, "bounded", "Unyielding is asked without end"),
-    (NoContract, "contract", "tangential_contract = 'stepped'"),
-    (RunsNumbers, "contract", "must be a class derived from TangentialLaw"),
-]
+    *broken(Steps, "alter",
+        ("OneStatusForAll",
+         lambda motion, scene: motion if not scene.shape else attrs.evolve(
+             motion, status=Status.SUCCESS, detail=""),
+         "impact_batch", "status has not the batch's shape"),
+        ("TellsTheTime",
+         lambda motion, *_: attrs.evolve(
+             motion, friction_work=motion.friction_work + time.perf_counter()),
+         "impact_repeatable", "run twice, ends differently"),
+        ("ReturnsATuple", lambda motion, *_: (motion.slip_velocity_change, motion.friction_work),
+         "ends_well", "It returns a tuple"),
+        ("WorkOfTheLastStage",
+         lambda motion, *_: attrs.evolve(motion, friction_work=2.0 * motion.friction_work),
+         "books_by", "of the energy is unaccounted"),
+    ),
+    *broken(STEPS, "tangential_contract",
+        ("NoContract", "stepped", "contract", "tangential_contract = 'stepped'"),
+        ("RunsNumbers", int, "contract", "must be a class derived from TangentialLaw"),
+    ),
+]  # fmt: skip

@@ -7,13 +7,10 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
-import contactlab
-from contactlab import Scene
 from contactlab.contracts import NormalContact, NormalLaw
 from tests.laws.outside_laws import Plastic
-
-HERTZ = contactlab.compose.registry.REGISTRY.law_class("normal.hertz")
-MOTION = type(HERTZ().motion(Scene.nondimensional(psi1=0.0, chi=1.0)))
+from tests.testing.fresh_faults import HERTZ, MOTION
+from tests.testing.made import altered, broken
 
 
 class Altered(HERTZ):
@@ -35,25 +32,6 @@ class NegativeLoad(Altered):
         return contact._replace(force=force, friction_load=force)
 
 
-class PullsFromAfar(Altered):
-    """A force of attraction, whatever the distance."""
-
-    def alter(self, contact, approach, rate):
-        return contact._replace(force=contact.force - 1.0)
-
-
-class GivesMore(Altered):
-    """Harder on the way out than on the way in."""
-
-    def alter(self, contact, approach, rate):
-        return contact._replace(force=contact.force * np.where(rate < 0.0, 1.1, 1.0)[()])
-
-
-class Narrows(Altered):
-    def alter(self, contact, approach, rate):
-        return contact._replace(radius=contact.radius * (1.0 - 0.8 * (approach > 1e-5)))
-
-
 class LosesContact(Altered):
     """No contact any more where it is deep."""
 
@@ -62,40 +40,6 @@ class LosesContact(Altered):
         overlap = contact.overlap * (2.0 * shallow - 1.0)
         held = NormalContact(*(part * shallow for part in contact))
         return held._replace(overlap=overlap)
-
-
-class ReadsNanAsNoContact(Altered):
-    def alter(self, contact, approach, rate):
-        return NormalContact(*[np.nan_to_num(part)[()] for part in contact])
-
-
-class InNewtons(Altered):
-    def alter(self, contact, approach, rate):
-        return contact._replace(force=contact.force * (1.0 + 1e-6 * contact.force))
-
-
-class ComplexForce(Altered):
-    def alter(self, contact, approach, rate):
-        return contact._replace(force=contact.force + 0j)
-
-
-class MeanApproach(Altered):
-    def alter(self, contact, approach, rate):
-        return contact._replace(force=np.mean(contact.force) + 0.0 * contact.force)
-
-
-class NotItsMotion(Altered):
-    """Stiffer than its closed form says."""
-
-    def alter(self, contact, approach, rate):
-        return contact._replace(force=1.01 * contact.force)
-
-
-class Wide(Altered):
-    """A radius one per cent too large for eq. (2)."""
-
-    def alter(self, contact, approach, rate):
-        return contact._replace(radius=1.01 * contact.radius)
 
 
 @attrs.frozen(kw_only=True)
@@ -121,13 +65,6 @@ class Stepwise(NormalLaw):
         return contact
 
 
-class PushesBothWays(Stepwise):
-    """A dashpot by the speed, and not by the rate: it pushes on the way out too."""
-
-    def alter(self, contact, dashpot, rate):
-        return contact._replace(force=contact.force + 0.2 * dashpot * abs(rate))
-
-
 class EndsUnderLoad(Stepwise):
     """Lets go at a depth that is not behind first touch."""
 
@@ -135,37 +72,6 @@ class EndsUnderLoad(Stepwise):
         depth = contact.overlap - 2e-5
         gone = np.where(depth > 0.0, 1.0, 0.0)[()]
         return NormalContact(contact.force * gone, contact.radius * gone, depth)
-
-
-class ALittleWide(Stepwise):
-    def alter(self, contact, dashpot, rate):
-        return contact._replace(radius=1.05 * contact.radius)
-
-
-class TwiceAsWide(Plastic):
-    def respond(self, state, approach, rate):
-        contact, state = super().respond(state, approach, rate)
-        return contact._replace(radius=2.0 * contact.radius), state
-
-
-class HalfAsWide(Stepwise):
-    def alter(self, contact, dashpot, rate):
-        return contact._replace(radius=0.5 * contact.radius)
-
-
-class WithoutItsRadius(Stepwise):
-    """Says that it has a radius, and gives none."""
-
-    def alter(self, contact, dashpot, rate):
-        return contact._replace(radius=0.0 * contact.radius)
-
-
-class FirstBody(Stepwise):
-    """Of a batch the first body's radius, for all."""
-
-    def start(self, scene):
-        modulus, radius, mass = super().start(scene)
-        return modulus, float(np.ravel(radius)[0]), mass
 
 
 class FirstOfTheMotion(HERTZ):
@@ -228,70 +134,78 @@ class Hurried(MOTION):
         return here._replace(time_rate=1.01 * here.time_rate)
 
 
-class ScaledOtherwise(Moving):
-    moving: ClassVar[type] = Hurried
-
-
-class Runaway(HERTZ):
-    """Parts faster than it met, in closed form."""
-
-    def motion(self, scene):
-        return attrs.evolve(super().motion(scene), final_rate=-1.5 * scene.normal_speed)
-
-
-class StillApproaches(HERTZ):
-    """Contact ends before the bodies have been stopped."""
-
-    def motion(self, scene):
-        return attrs.evolve(super().motion(scene), final_rate=0.1 * scene.normal_speed)
-
-
-class PartsSlowerThanItPushes(HERTZ):
-    """The force of an elastic impact, and a rate of separation that is less."""
-
-    def motion(self, scene):
-        return attrs.evolve(super().motion(scene), final_rate=-0.9 * scene.normal_speed)
-
-
-class MisstatesItsImpulse(HERTZ):
-    """An impulse of the friction load that is not that of its force."""
-
-    def motion(self, scene):
-        motion = super().motion(scene)
-        return attrs.evolve(motion, total_load_impulse=1.01 * motion.total_load_impulse)
-
-
 #: Each with the check meant for it, and words of what the check says of it.
 BROKEN = [
     (NegativeLoad, "presses", "N is negative"),
     (LosesContact, "presses", "At the deepest approach the overlap says that there is no"),
-    (PullsFromAfar, "presses", "There is force out of contact"),
-    (GivesMore, "normal_passive", "from nothing"),
-    (PushesBothWays, "normal_passive", "A closed cycle at rates (0.05, 1.0) of v1 gives"),
     (EndsUnderLoad, "ends_unloaded", "Contact ends under load: the force is still"),
-    (Runaway, "rebounds", "The bodies part 1.5 times as fast"),
-    (StillApproaches, "rebounds", "The bodies part -0.1 times as fast"),
-    (PartsSlowerThanItPushes, "rebounds", "The force adds up to an impulse that is 0.053 off"),
-    (MisstatesItsImpulse, "rebounds", "The friction load's impulse is 0.01 off its integral"),
-    (Wide, "elastic_hertz", "The radius is 0.01 off Hertz's"),
-    (
-        ALittleWide,
-        "hertzian_pressure",
-        "At rest its force is that of an elastic body, and b² is 1.1",
-    ),
-    (TwiceAsWide, "hertzian_pressure", "At rest b² comes to 4 R z_max"),
-    (HalfAsWide, "hertzian_pressure", "b² is 0.25 R z at greatest compression: less than"),
-    (WithoutItsRadius, "radius", "has none where it presses"),
-    (FirstBody, "contacts_batch", "Contact 1 of a batch that differs in radius only is off"),
     (FirstOfTheMotion, "motion_batch", "impact 1 of a batch is off"),
     (WritesIntoIt, "contacts_read_only", "The law writes into what it was given"),
-    (Narrows, "grows", "The radius falls by 0.8"),
-    (ReadsNanAsNoContact, "contacts_non_finite", "An approach of NaN gives a force of 0.0"),
-    (InNewtons, "contacts_units", "In other units the force differs"),
-    (ComplexForce, "contacts", "force = 0j"),
-    (MeanApproach, "contacts_batch", "Contact 0 of a batch that differs in normal_speed only"),
-    (NotItsMotion, "motion_agrees", "The force of the motion is 1.0e-02 off"),
     (MovesAsIfHeavier, "motion_obeys_newton", "The rate is"),
-    (ScaledOtherwise, "motion_scaled", "off scaled"),
     (Remembers, "contacts_pure", "The state that went in was changed"),
-]
+    *broken(Altered, "alter",
+        ("PullsFromAfar", lambda contact, *_: contact._replace(force=contact.force - 1.0),
+         "presses", "There is force out of contact"),
+        ("GivesMore",
+         lambda contact, _approach, rate: contact._replace(
+             force=contact.force * np.where(rate < 0.0, 1.1, 1.0)[()]),
+         "normal_passive", "from nothing"),
+        ("Narrows",
+         lambda contact, approach, _rate: contact._replace(
+             radius=contact.radius * (1.0 - 0.8 * (approach > 1e-5))),
+         "grows", "The radius falls by 0.8"),
+        ("ReadsNanAsNoContact",
+         lambda contact, *_: NormalContact(*[np.nan_to_num(part)[()] for part in contact]),
+         "contacts_non_finite", "An approach of NaN gives a force of 0.0"),
+        ("InNewtons",
+         lambda contact, *_: contact._replace(force=contact.force * (1.0 + 1e-6 * contact.force)),
+         "contacts_units", "In other units the force differs"),
+        ("ComplexForce", lambda contact, *_: contact._replace(force=contact.force + 0j),
+         "contacts", "force = 0j"),
+        ("MeanApproach",
+         lambda contact, *_: contact._replace(force=np.mean(contact.force) + 0.0 * contact.force),
+         "contacts_batch", "Contact 0 of a batch that differs in normal_speed only"),
+        ("NotItsMotion", lambda contact, *_: contact._replace(force=1.01 * contact.force),
+         "motion_agrees", "The force of the motion is 1.0e-02 off"),
+        ("Wide", lambda contact, *_: contact._replace(radius=1.01 * contact.radius),
+         "elastic_hertz", "The radius is 0.01 off Hertz's"),
+    ),
+    *broken(Stepwise, "alter",
+        ("PushesBothWays",
+         lambda contact, dashpot, rate: contact._replace(
+             force=contact.force + 0.2 * dashpot * abs(rate)),
+         "normal_passive", "A closed cycle at rates (0.05, 1.0) of v1 gives"),
+        ("ALittleWide", lambda contact, *_: contact._replace(radius=1.05 * contact.radius),
+         "hertzian_pressure", "At rest its force is that of an elastic body, and b² is 1.1"),
+        ("HalfAsWide", lambda contact, *_: contact._replace(radius=0.5 * contact.radius),
+         "hertzian_pressure", "b² is 0.25 R z at greatest compression: less than"),
+        ("WithoutItsRadius", lambda contact, *_: contact._replace(radius=0.0 * contact.radius),
+         "radius", "has none where it presses"),
+    ),
+    *broken(Moving, "moving",
+        ("ScaledOtherwise", Hurried, "motion_scaled", "off scaled"),
+    ),
+    *altered(HERTZ, "motion",
+        ("Runaway",
+         lambda motion, scene: attrs.evolve(motion, final_rate=-1.5 * scene.normal_speed),
+         "rebounds", "The bodies part 1.5 times as fast"),
+        ("StillApproaches",
+         lambda motion, scene: attrs.evolve(motion, final_rate=0.1 * scene.normal_speed),
+         "rebounds", "The bodies part -0.1 times as fast"),
+        ("PartsSlowerThanItPushes",
+         lambda motion, scene: attrs.evolve(motion, final_rate=-0.9 * scene.normal_speed),
+         "rebounds", "The force adds up to an impulse that is 0.053 off"),
+        ("MisstatesItsImpulse", lambda motion, _: attrs.evolve(
+            motion, total_load_impulse=1.01 * motion.total_load_impulse),
+         "rebounds", "The friction load's impulse is 0.01 off its integral"),
+    ),
+    *altered(Plastic, "respond",
+        ("TwiceAsWide",
+         lambda contact, state, *_: (contact._replace(radius=2.0 * contact.radius), state),
+         "hertzian_pressure", "At rest b² comes to 4 R z_max"),
+    ),
+    *altered(Stepwise, "start",
+        ("FirstBody", lambda modulus, radius, mass, _: (modulus, float(np.ravel(radius)[0]), mass),
+         "contacts_batch", "Contact 1 of a batch that differs in radius only is off"),
+    ),
+]  # fmt: skip

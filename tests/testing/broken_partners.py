@@ -5,12 +5,11 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
-import contactlab
 from contactlab.contracts import SteppedTangentialLaw
 from contactlab_laws.hertz import Hertz
 from tests.testing.broken_laws import Sound
-
-STEPS: Any = type(contactlab.create("integrator.symplectic"))
+from tests.testing.fresh_faults import STEPS
+from tests.testing.made import broken
 
 
 @attrs.frozen(kw_only=True)
@@ -39,34 +38,6 @@ class MisTellsDrift(STEPS):
         return super().integrate(normal, Seen(law=tangential, times=0.5), scene, observer)
 
 
-class BoundOfABatch(Sound):
-    """Bounds the books of two impacts, whatever is asked."""
-
-    def books_bound(self, scene):
-        return np.array([0.1, 0.1])
-
-
-class NegativeBound(Sound):
-    """Bounds its books by less than nothing."""
-
-    def books_bound(self, scene):
-        return -1.0
-
-
-class RefusesByNod(Sound):
-    """Refuses every partner, without a reason."""
-
-    def refuses(self, other):
-        return True
-
-
-class RefusesBlankly(Sound):
-    """Refuses an integrator by a blank."""
-
-    def refuses(self, other):
-        return " " if other.kind == "integrator" else None
-
-
 class RefusesSpeechless(Sound):
     """Refuses a scene without units, and says nothing."""
 
@@ -75,19 +46,22 @@ class RefusesSpeechless(Sound):
             raise ValueError
 
 
-class LosesByWord(Hertz):
-    """Says that it loses half of the energy."""
-
-    def dissipation(self, motion):
-        return 0.25 * motion.scene.pair.normal_mass * motion.scene.normal_speed**2
-
-
 BROKEN = [
     (MisTellsDrift, "drift", "0.5 off velocity times drift"),
-    (BoundOfABatch, "books_bound_told", "must be at least 0, of shape () or ()"),
-    (RefusesBlankly, "partners", "refuses(integrator.symplectic) returned ' '"),
     (RefusesSpeechless, "partners", "It refuses a scene without a word"),
-    (NegativeBound, "books_bound_told", "must be at least 0"),
-    (RefusesByNod, "partners", "returned True"),
-    (LosesByWord, "dissipation", "off by 0.5"),
-]
+    *broken(Sound, "books_bound",
+        ("BoundOfABatch", lambda *_: np.array([0.1, 0.1]),
+         "books_bound_told", "must be at least 0, of shape () or ()"),
+        ("NegativeBound", lambda *_: -1.0, "books_bound_told", "must be at least 0"),
+    ),
+    *broken(Sound, "refuses",
+        ("RefusesByNod", lambda *_: True, "partners", "returned True"),
+        ("RefusesBlankly", lambda other: " " if other.kind == "integrator" else None,
+         "partners", "refuses(integrator.symplectic) returned ' '"),
+    ),
+    *broken(Hertz, "dissipation",
+        ("LosesByWord",
+         lambda motion: 0.25 * motion.scene.pair.normal_mass * motion.scene.normal_speed**2,
+         "dissipation", "off by 0.5"),
+    ),
+]  # fmt: skip

@@ -25,6 +25,7 @@ from tests.testing import broken_partners as partners
 from tests.testing import broken_rigid as rigid
 from tests.testing import broken_vectors as vectors
 from tests.testing import fresh_faults
+from tests.testing.made import checked
 
 ROOT = Path(__file__).parents[2]
 TOLD = (ROOT / "README.md", ROOT / "contactlab/guide/how-far-to-trust.md")
@@ -77,8 +78,7 @@ def test_each_broken_law_is_caught_by_the_check_meant_for_it(broken, name, words
     """For the fault it has: a check that only stumbles over it says something else."""
     np.random.seed(1)  # noqa: NPY002 one of the faults draws from the global generator
     law = broken()
-    check = next(check for check in checks_for(law) if check.name == name)
-    found = outcome(law, check)
+    found = checked(law, name)
     assert found.verdict is Verdict.FAILED, found
     assert words in found.sentence
 
@@ -115,8 +115,7 @@ def test_what_cannot_be_run_is_not_passed():
 
 def test_a_force_that_is_not_told_is_not_judged():
     law = impacts.WholeTooLong()
-    check = next(check for check in checks_for(law) if check.name == "impact_coulomb_limit")
-    assert outcome(law, check).verdict is Verdict.NOT_APPLICABLE
+    assert checked(law, "impact_coulomb_limit").verdict is Verdict.NOT_APPLICABLE
 
 
 def test_a_refusal_names_law_check_and_fault():
@@ -136,8 +135,7 @@ def test_a_failure_that_may_be_the_nature_of_a_law_says_so(name):
 
 def test_an_unexpected_pass_is_reported():
     law = declarations.ExpectsTooMuch()
-    check = next(check for check in checks_for(law) if check.name == "units")
-    assert outcome(law, check).verdict is Verdict.UNEXPECTED_PASS
+    assert checked(law, "units").verdict is Verdict.UNEXPECTED_PASS
     with pytest.raises(ConformanceError, match="units: unexpected pass"):
         check_law(law)
 

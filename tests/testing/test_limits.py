@@ -6,8 +6,9 @@ from typing import ClassVar
 import attrs
 import pytest
 
-from contactlab.testing import CheckFailedError, Verdict, checks_for, examine, limits, outcome
+from contactlab.testing import CheckFailedError, Verdict, checks_for, examine, limits
 from tests.testing.fresh_sound import HardSphere, Press, Slider
+from tests.testing.made import checked
 
 #: Seconds that a check may take here: enough for any that does not hang.
 SECONDS = 0.5
@@ -54,11 +55,6 @@ class TooStiff(Slider):
         return self.factor * super().stiffness(scene, normal)
 
 
-def verdict(law, name, **options):
-    check = next(check for check in checks_for(law) if check.name == name)
-    return outcome(law, check, **options)
-
-
 @pytest.fixture(autouse=True)
 def _looks_often(monkeypatch):
     """The clock is looked at often, and who waits is stopped after a second."""
@@ -81,7 +77,7 @@ def _looks_often(monkeypatch):
     ids=["path", "march", "sleep", "sound"],
 )
 def test_a_law_that_hangs_is_told_check_time_and_place(law, name, words):
-    found = verdict(law, name, seconds=SECONDS if words else limits.SECONDS)
+    found = checked(law, name, seconds=SECONDS if words else limits.SECONDS)
     assert found.out_of_time == bool(words)
     if words:
         assert found.verdict is Verdict.FAILED
@@ -97,12 +93,12 @@ def test_a_check_that_is_stopped_fails_and_does_not_end_the_process():
 
 
 def test_a_law_that_swallows_the_interruption_is_interrupted_again():
-    found = verdict(SwallowsEverything(), "grows", seconds=SECONDS)
+    found = checked(SwallowsEverything(), "grows", seconds=SECONDS)
     assert found.verdict is Verdict.FAILED
 
 
 def test_a_law_that_asks_for_too_many_steps_is_told_how_many():
-    found = verdict(TooStiff(), "impact_odd")
+    found = checked(TooStiff(), "impact_odd")
     assert found.verdict is Verdict.FAILED
     assert "psi1 = 0.01, chi = 0.4: the stiffness that it states, " in found.sentence
     assert "steps; 20000 are the limit of a check." in found.sentence
@@ -117,5 +113,5 @@ def test_after_three_checks_out_of_time_the_others_are_not_tried():
 
 
 def test_what_runs_after_a_check_is_not_interrupted():
-    verdict(Slider(), "opposes_slip", seconds=SECONDS)
+    checked(Slider(), "opposes_slip", seconds=SECONDS)
     time.sleep(1.5 * SECONDS)

@@ -7,9 +7,10 @@ import pytest
 
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from contactlab.numeric.checks import POSITIVE, quantity
-from contactlab.testing import CheckFailedError, Verdict, check_law, checks_for, outcome
+from contactlab.testing import CheckFailedError, Verdict, check_law
 from contactlab.testing.units import ODD_UNITS, Units, factor, in_units
 from tests.laws.normal_laws import Damped
+from tests.testing.made import checked
 
 
 @attrs.frozen(kw_only=True)
@@ -40,22 +41,18 @@ class UnknownUnit(Damped):
     damping: float = quantity("furlong", default=0.2)
 
 
-def verdict(law, name):
-    return outcome(law, next(check for check in checks_for(law) if check.name == name))
-
-
 def test_a_damped_normal_law_conforms():
     verdicts = {found.verdict for found in check_law(Damped())}
     assert verdicts <= {Verdict.PASSED, Verdict.NOT_CLAIMED, Verdict.NOT_APPLICABLE}
 
 
 def test_a_tangential_law_with_a_unit_is_the_same_in_any_units():
-    assert verdict(Viscous(), "units").verdict is Verdict.PASSED
+    assert checked(Viscous(), "units").verdict is Verdict.PASSED
 
 
 @pytest.mark.parametrize("law", [WrongUnit(), UnknownUnit()])
 def test_a_wrong_unit_is_caught(law):
-    found = verdict(law, "contacts_units")
+    found = checked(law, "contacts_units")
     assert found.verdict is Verdict.FAILED
     assert "units" in found.sentence or "furlong" in found.sentence
 

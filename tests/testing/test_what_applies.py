@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from contactlab.contracts import TangentialMotion
-from contactlab.testing import CHECKS, Verdict, checks_for, normal_motions, outcome
+from contactlab.testing import CHECKS, Verdict, normal_motions
 from contactlab.testing.faulty_laws import SpoiledHertz
 from tests.laws.outside_laws import Adhesive
 from tests.testing.broken_clauses import RunsItsOwnLawsOnly
@@ -15,6 +15,7 @@ from tests.testing.broken_laws import Sound
 from tests.testing.broken_normal import Stepwise
 from tests.testing.broken_partners import STEPS, Seen
 from tests.testing.fresh_sound import HardSphere, Press
+from tests.testing.made import checked
 
 BOOKS = "It runs neither of the laws of the kit whose books close."
 FAULTY = "None of the faulty laws of the kit fits it."
@@ -135,11 +136,6 @@ SOUND = [
 ]
 
 
-def found(law, name):
-    """Outcome of one check of a law."""
-    return outcome(law, next(check for check in checks_for(law) if check.name == name))
-
-
 def named(case):
     return f"{type(case[0]).__name__}-{case[1]}"
 
@@ -148,7 +144,7 @@ def named(case):
 def test_a_check_that_does_not_apply_says_why(law, name, sentence, monkeypatch):
     if law is GLUED:
         monkeypatch.setattr(normal_motions, "SPEEDS", (1.0,))  # a glued motion takes long
-    told = found(law, name)
+    told = checked(law, name)
     assert (told.verdict, told.sentence) == (Verdict.NOT_APPLICABLE, sentence)
 
 
@@ -156,13 +152,13 @@ def test_a_check_that_does_not_apply_says_why(law, name, sentence, monkeypatch):
 def test_a_sound_law_of_a_rare_kind_passes(law, name, monkeypatch):
     if law is STICKY:
         monkeypatch.setattr(normal_motions, "SPEEDS", (0.1, 1.0))
-    told = found(law, name)
+    told = checked(law, name)
     check = next(check for check in CHECKS if check.name == name)
     assert (told.verdict, told.sentence) == (Verdict.PASSED, check.holds)
 
 
 def test_a_claim_that_is_not_made_is_told():
-    told = found(Sound(), "cattaneo_mindlin")
+    told = checked(Sound(), "cattaneo_mindlin")
     assert told.verdict is Verdict.NOT_CLAIMED
     assert told.sentence == "The law does not offer 'partial_slip'."
 
@@ -177,7 +173,7 @@ class RaisesOtherwise(Press):
 
 
 def test_an_error_that_is_not_of_writing_is_told_as_it_is():
-    told = found(RaisesOtherwise(), "contacts_read_only")
+    told = checked(RaisesOtherwise(), "contacts_read_only")
     assert told.verdict is Verdict.FAILED
     assert told.sentence.startswith("Raised ValueError: no batches (in respond, line ")
 

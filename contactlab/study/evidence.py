@@ -1,0 +1,180 @@
+"""Experiments, finite elements and the curves of other codes, with every law beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from importlib import resources
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.compose.composition import DEFAULT_NORMAL
+from contactlab.compose.names import full_name, short_name
+from contactlab.compose.registry import REGISTRY, PluginError
+from contactlab.compose.simulation import Simulation
+from contactlab.scene_file import SceneFile, read_scene
+from contactlab.study.comparison import Agreement, Comparison, LawRun
+from contactlab.study.interrupts import uninterrupted
+from contactlab.study.validation import Finding
+
+
+@attrs.frozen(kw_only=True)
+class Source:
+    """A file of measured or computed rebounds, the normal laws to run, and bounds.
+
+    Attributes
+    ----------
+    name : str
+        Name of the file in ``contactlab/study/measured``, without its suffix.
+    kind : str
+        Where the numbers are from: "experiment", "finite elements" or "other codes".
+    normals : mapping of str to mapping
+        Options of the normal laws, by name.
+    bounds : mapping
+        Bound of the rms difference by quantity and law: ``{("psi2", "fronts"): 0.06}``.
+    """
+
+    name: str
+    kind: str
+    normals: Mapping[str, Mapping[str, Any]] = attrs.field(factory=lambda: {DEFAULT_NORMAL: {}})
+    bounds: Mapping[tuple[str, str], float] = attrs.field(factory=dict)
+
+    def read(self) -> SceneFile:
+        """Return the contents of the file."""
+        place = resources.files("contactlab").joinpath("study", "measured", f"{self.name}.toml")
+        with resources.as_file(place) as path:
+            return read_scene(path)
+
+
+#: Normal laws for the impacts of Kharaz et al.: elastic, and damped to the loss that they measured.
+DAMPED = {DEFAULT_NORMAL: {}, "tsuji": {"restitution": 0.98}}
+E_T = "tangential_restitution"
+SOURCES = (
+    Source(
+        name="kharaz2001",
+        kind="experiment",
+        normals=DAMPED,
+        bounds={
+            (E_T, "fronts"): 0.015,
+            (E_T, "springs, tsuji restitution=0.98"): 0.015,
+            (E_T, "sharp_annulus, tsuji restitution=0.98"): 0.015,
+        },
+    ),
+    Source(name="finite-elements", kind="finite elements", bounds={("psi2", "fronts"): 0.06}),
+    Source(name="codes-test4-oxide", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),
+    Source(name="codes-test4-alloy", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),
+    Source(name="codes-mfix", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),
+)
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class Evidence:
+    """A source, and the results of every law that fits.
+
+    Attributes
+    ----------
+    source : Source
+    file : SceneFile
+    comparison : Comparison
+        Agreements with all series; with ``curves``, the laws over the file's sweep too.
+    left_out : mapping of str to str
+        Reasons by law, for laws that could not be composed.
+    """
+
+    source: Source
+    file: SceneFile
+    comparison: Comparison
+    left_out: Mapping[str, str]
+
+    @property
+    def laws(self) -> list[str]:
+        """Names of the laws by rms difference from the first series; failed laws come last."""
+        first = self.comparison.agreements[0]
+        rms = {name: first.rms(name) for name in first.results}
+        return sorted(rms, key=lambda name: (np.isnan(rms[name]), rms[name]))
+
+    def scatter(self, agreement: Agreement) -> float:
+        """Return the rms measurement error of a series, in its unit; NaN if none is stated."""
+        errors = agreement.measured.error[agreement.measured.error > 0.0]
+        return float(np.sqrt(np.mean(errors**2))) if errors.size else float("nan")
+
+    def findings(self) -> Iterator[Finding]:
+        """Iterate over the bounds of the laws that are installed."""
+        for agreement in self.comparison.agreements:
+            quantity = agreement.measured.quantity
+            for law in agreement.results:
+                if (bound := self.source.bounds.get((quantity, law))) is not None:
+                    yield Finding(
+                        what=f"{law}: {quantity}, rms",
+                        against=f"{self.source.kind}: {self.source.name}",
+                        difference=agreement.rms(law),
+                        bound=bound,
+                    )
+
+
+def gather(
+    *, curves: bool = False, progress: Callable[[int, int], object] | None = None
+) -> Iterator[Evidence]:
+    """Iterate over the sources, each with every law that fits under its preferred integrator.
+
+    Parameters
+    ----------
+    curves : bool
+        Run each law over the sweep of each file too, for figures.
+    progress : callable, optional
+        Called as ``progress(done, total)`` after each source.
+    """
+    for done, source in enumerate(SOURCES, start=1):
+        yield _evidence(source, curves=curves)
+        if progress is not None:
+            progress(done, len(SOURCES))
+
+
+def _evidence(source: Source, *, curves: bool) -> Evidence:
+    file = source.read()
+    simulations, left_out = simulations_over(source.normals)
+    agreements = []
+    for measured in file.measured:
+        scene = file.scene_at(**{measured.against: measured.x})
+        results = {
+            name: uninterrupted(simulation.sweep(scene)) for name, simulation in simulations.items()
+        }
+        agreements.append(Agreement(measured=measured, results=results))
+    runs = [
+        LawRun(
+            name=name,
+            result=uninterrupted(simulation.sweep(file.scene)),
+            run_time_per_impact=float("nan"),
+        )
+        for name, simulation in simulations.items()
+        if curves
+    ]
+    comparison = Comparison(
+        scene=file.scene, varied=file.varied, runs=tuple(runs), agreements=tuple(agreements)
+    )
+    return Evidence(source=source, file=file, comparison=comparison, left_out=left_out)
+
+
+def simulations_over(
+    normals: Mapping[str, Mapping[str, Any]],
+) -> tuple[dict[str, Simulation], dict[str, str]]:
+    """Return simulations of every tangential law under the normal laws, and reasons for misfits.
+
+    Both are keyed by the tangential law's name, followed by normal law and options if the normal
+    law is not the default.
+    """
+    simulations: dict[str, Simulation] = {}
+    left_out: dict[str, str] = {}
+    for normal, options in normals.items():
+        for full in REGISTRY.names("tangential"):
+            name = short_name(full)
+            if normal != DEFAULT_NORMAL:
+                words = ", ".join(f"{key}={value}" for key, value in options.items())
+                name += f", {normal} {words}".rstrip()
+            try:
+                normal_law = REGISTRY.create(full_name("normal", normal), **options)
+                simulations[name] = Simulation(normal=normal_law, tangential=full)
+            except (ValueError, PluginError) as error:
+                left_out[name] = str(error)
+    return simulations, left_out
