@@ -39,7 +39,7 @@ def dropped(degrees):
 
 # %%
 # **Rebound and slip of the end**, from velocities and spins after the impact.
-angles = np.arange(0, 76, 3)
+angles = np.arange(0, 76)
 ends = {}
 for name, simulation in (("elastic", None), ("rigid", Simulation(tangential="coulomb"))):
     points = []
@@ -47,7 +47,7 @@ for name, simulation in (("elastic", None), ("rigid", Simulation(tangential="cou
         after = collide(encounter, simulation).check()
         points.append(after.velocity + np.cross(after.spin, encounter.contact))
     ends[name] = np.array(points)
-    print(f"{name:8s} 30°: rebound {ends[name][10, 2]:.3f}, slip {ends[name][10, 0]:.3f} m/s")
+    print(f"{name:8s} 30°: rebound {ends[name][30, 2]:.3f}, slip {ends[name][30, 0]:.3f} m/s")
 
 # %%
 # **Painlevé's rod**: lam < -1, scaled so that the approach begins at 1.
@@ -72,6 +72,6 @@ with styled():
     right.plot(past.time, slip / slip[0], color="C1", label="slip, over that at touch")
     right.axhline(0.0, color="0.6", linewidth=0.8)
     right.set(xlabel="time (scaled)", ylabel="velocity (scaled)")
-    right.set_title("Painlevé's rod through the jam")
+    right.set_title("Painlevé's rod: friction drives it in first")
     right.legend(loc="lower left")
     save_figure(figure, Path("any_two_bodies.png"))
