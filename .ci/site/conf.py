@@ -97,8 +97,8 @@ def not_followed(_: Any, module: str, name: str) -> str | None:
     return module if (module, name) == ("contactlab", "fit") else None
 
 
-#: Spaces that LaTeX sets and latex2mathml does not: none around a slash, a bar and a prime and behind
-#: a sign, a thin one behind a function without brackets that something follows.
+#: Spaces that LaTeX sets and latex2mathml does not: none around a slash, a bar and a prime, none
+#: behind a sign, a thin one behind a function without brackets that something follows.
 SPACES = {
     r"<mo>(&#x0002F;|&#x0007C;)</mo>": r'<mo stretchy="false" lspace="0" rspace="0">\1</mo>',
     r"(<mo[^>]*>&#x0(?:003D|0028|005B|2264);</mo><mo)(?=>&#x02212;)": r'\1 lspace="0" rspace="0"',
