@@ -47,7 +47,7 @@ def dropped(degrees):
 
 # %%
 # **Rebound and slip of the end**, from velocities and spins after the impact.
-angles = np.arange(76)
+angles = np.arange(0, 76)
 ends = {}
 for name, simulation in (("elastic", None), ("rigid", Simulation(tangential="coulomb"))):
     points = []
@@ -81,6 +81,6 @@ with styled():
     right.plot(past.time, slip / slip[0], color="C1", label="slip, over that at touch")
     right.axhline(0.0, color="0.6", linewidth=0.8)
     right.set(xlabel="time (scaled)", ylabel="velocity (scaled)")
-    right.set_title("Painlevé's rod through the jam")
+    right.set_title("Painlevé's rod: friction drives it in first")
     right.legend(loc="lower left")
     save_figure(figure, Path("any_two_bodies.png"))

@@ -249,7 +249,11 @@ def draw_map(axes):
     bar.ax.set_yticklabels([f"{level:g}" for level in LEVELS])
     bar.set_label(r"shift of $\psi_2$ by coupling")
     axes.contour(*impact.values(), shift, levels=[0.01], colors="white", linewidths=1.4)
-    axes.axvline(4.0 * CHI - 1.0, color="black", lw=0.8, ls="--")
+    axes.axvline(4.0 * CHI - 1.0, color="white", lw=0.8, ls="--")
+    axes.text(
+        4.0 * CHI - 0.92, 3.85, "slips\nthroughout", va="top", color="white", fontsize="small"
+    )
+    axes.set_title(r"coupling moves $\psi_2$ by more than 0.01 above the white line")
     axes.set(xlabel=PSI1, ylabel=r"coupling number $\Lambda = \kappa\beta/\mu$")
 
 

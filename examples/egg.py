@@ -96,12 +96,14 @@ with styled():
     top.axhline(0.0, color="0.4")
     top.set(xlabel="place (m)", ylabel="height (m)", aspect="equal", ylim=(-0.005, 0.14))
     top.set_title("The egg at its ten touches, and the path of its centre")
-    count = np.arange(1, BOUNCES + 1)
+    count, lost = np.arange(1, BOUNCES + 1), []
     for name, rows, line in (("elastic", elastic, "-"), ("rigid", rigid, "--")):
         energy = rows[:, 5:] / (mass * GRAVITY * first)
+        lost.append(1.0 - energy[-1].sum())
         bottom.plot(count, energy.sum(axis=1), "k" + line, label=f"all, {name}")
         bottom.plot(count, energy[:, 2], "C1" + line, label=f"spin, {name}")
     bottom.set(xlabel="after bounce", ylabel="energy over that of the drop", ylim=(0.0, 1.05))
     bottom.set_xticks(count)
+    bottom.set_title("Friction takes {:.0%} of the energy; of a rigid egg's {:.1%}".format(*lost))
     bottom.legend(loc="center right")
     save_figure(figure, Path("egg.png"))

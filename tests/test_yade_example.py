@@ -20,11 +20,12 @@ def test_the_page_lists_every_file():
 @pytest.mark.slow
 @pytest.mark.skipif(shutil.which("yade") is None, reason="YADE is not installed")
 def test_impacts_in_yade():
-    words = [sys.executable, FOLDER / "rebounds.py", "--angles", "4", "--springs", "0", "8"]
+    words = [sys.executable, FOLDER / "rebounds.py", "--angles", "4", "--springs", "0", "4", "8"]
     done = subprocess.run(words, capture_output=True, text=True, check=True)
-    own, kernel = [line.split() for line in done.stdout.splitlines()[1:]]
+    own, *kernel = [line.split() for line in done.stdout.splitlines()[1:]]
     assert own[:2] == ["none:", "YADE"]
     assert float(own[2]) > 0.3
-    springs, worst, rms, work = map(float, kernel)
-    assert (springs, worst <= 0.025, rms <= 0.007) == (8, True, True)
-    assert work == pytest.approx(1.0, abs=0.005)
+    for row, bounds in zip(kernel, ((4, 0.1, 0.03), (8, 0.025, 0.007)), strict=True):
+        springs, worst, rms, work = map(float, row)
+        assert (springs, worst <= bounds[1], rms <= bounds[2]) == (bounds[0], True, True)
+        assert work == pytest.approx(1.0, abs=0.005)

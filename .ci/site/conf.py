@@ -41,7 +41,7 @@ autodoc_member_order = "bysource"
 html_theme = "furo"
 html_title = f"contactlab {version}"
 html_theme_options = {"navigation_with_keys": True}
-exclude_patterns = ["gallery-source"]
+exclude_patterns = ["gallery-source", "**sg_execution_times.rst"]
 html_extra_path = ["explore.html"]
 html_static_path = ["site.css"]
 html_css_files = ["site.css"]
@@ -98,12 +98,12 @@ def not_followed(_: Any, module: str, name: str) -> str | None:
 
 
 #: Spaces that LaTeX sets and latex2mathml does not: none around a slash, a bar and behind a sign, a
-#: thin one behind a function without brackets.
+#: thin one behind a function without brackets that something follows.
 SPACES = {
     r"<mo>(&#x0002F;|&#x0007C;)</mo>": r'<mo stretchy="false" lspace="0" rspace="0">\1</mo>',
     r"(<mo[^>]*>&#x0(?:003D|0028|005B|2264);</mo><mo)(?=>&#x02212;)": r'\1 lspace="0" rspace="0"',
     r"<mo>([a-z]\w+)</mo>": r"<mi>\1</mi>",
-    r"(<mi>[a-z]\w+</mi>)(?!<mo stretchy=.false.>&#x00028;)": r'\1<mspace width=".2em"/>',
+    r"(<mi>[a-z]\w+</mi>)(?!<mo stretchy=.false.>&#x00028;|</m)": r'\1<mspace width=".2em"/>',
     r"<mi>&#x02032;</mi>": "<mo>&#x02032;</mo>",
 }
 

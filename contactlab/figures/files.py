@@ -122,7 +122,7 @@ def _size(
     across, up = figure_size(width)
     up *= sum(heights) / max(heights)
     if width is None:
-        across *= 0.85 * columns if columns > 1 else 1.6 if wide else 1.0
+        across *= 1.2 + 0.25 * columns if columns > 1 else 1.6 if wide else 1.0
     elif columns > 1:
         up *= columns if across < NARROW else NARROWER
     if wide:

@@ -234,7 +234,7 @@ class Scene:
         Parameters
         ----------
         psi1 : float or array
-            Dimensionless angle of incidence (29).
+            Local angle of incidence of the paper's eq. (29), without unit.
         chi : float or array
             Inertia ratio (38), positive, without unit; 1.4412 for a solid sphere of nu = 0.3.
         poisson_ratio : float or array, optional

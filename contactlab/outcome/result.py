@@ -82,7 +82,7 @@ class ImpactResult(RunResult):
 
     @property
     def psi1(self) -> Real:
-        """Non-dimensional local angle of incidence (29)."""
+        """Local angle of incidence of the paper's eq. (29), without unit."""
         return self.scene.psi1
 
     @property

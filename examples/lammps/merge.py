@@ -94,7 +94,7 @@ WALL = (
     "   fix 7 all wall/gran granular hertz/material 1e8 0.8 0.3 "
     "tangential mindlin_springs NULL 0.0 0.5 8 damping tsuji zplane 0.0 NULL\n"
 )
-#: Pages: what is inserted, after the last line that begins so.
+#: Pages: what is inserted, after the last line that has these words.
 PAGES: dict[str, tuple[tuple[str, str], ...]] = {
     "doc/src/pair_granular.rst": (
         ("6. *mindlin_rescale/force* :", ITEM),
@@ -149,10 +149,10 @@ def merge(lammps: Path) -> None:
         for anchor, more in inserted:
             if more in text:
                 continue
-            at = text.rfind(f"\n{anchor}")
+            at = text.rfind(anchor)
             if at < 0:
-                sys.exit(f"{path}: no line begins with {anchor!r}: sources of another year?")
-            end = text.index("\n", at + 1) + 1
+                sys.exit(f"{path}: no line has {anchor!r}: sources of another year?")
+            end = text.index("\n", at) + 1
             if text[end : end + 1] == " ":  # the entry goes on
                 end = text.index("\n", end) + 1
             text = text[:end] + more + text[end:]

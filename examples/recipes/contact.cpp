@@ -3,7 +3,7 @@
 //     contactlab kernel --out build
 //     g++ -std=c++17 -O2 -I build contact.cpp -o contact && ./contact
 //
-// It prints the angle of incidence, psi1 and psi2 of ten impacts, turned and spinning about the normal.
+// It prints the angle of incidence, psi1 and psi2 of eleven impacts, turned and spinning about the normal.
 
 #define CONTACTLAB_REAL float
 #include "contactlab_springs.h"

@@ -93,6 +93,19 @@ def test_every_page_of_the_guide_has_a_picture_that_is_there(site, opened):
         assert all(picture.get_property("naturalWidth") > 300 for picture in pictures), topic
 
 
+def test_on_a_phone_a_law_stands_above_its_words(site, opened):
+    page = opened(site / "laws.html")
+    screen = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
+    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
+    try:
+        rows = page.find_elements("css selector", "article table:first-of-type tbody tr")
+        name, words = (each.rect for each in rows[0].find_elements("css selector", "td"))
+        assert words["y"] >= name["y"] + name["height"]
+        assert words["width"] > 300
+    finally:
+        page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
 def test_the_reference_leads_from_each_public_name_to_its_source(site, opened):
     page = opened(site / "reference.html")
     told = page.find_element("css selector", "article").text
