@@ -16,7 +16,8 @@ from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import ECCENTRIC_COLUMNS, components, json_value, unit_in
 from contactlab.outcome.eccentric import EccentricResult
-from contactlab.outcome.tables import closing, evenly, heading, largest_imbalance
+from contactlab.outcome.numerical_error import error_cautions
+from contactlab.outcome.tables import answer, closing, evenly, heading, largest_imbalance
 from contactlab.outcome.tables import time as time_words
 from contactlab.outcome.text_table import table
 from contactlab.scene_file import SceneFile
@@ -44,10 +45,12 @@ def describe(
     if result.scene.shape:
         body = [sweep_table(result, varied), largest_imbalance(result)]
     else:
-        body = [_one(result)]
+        lines = "\n".join(f"{name:24} {words}" for name, words in answer(result)[1:])
+        body = [lines, _one(result)]
         if collision is not None:
-            body.insert(0, in_space(collision))
-    parts = [title, *body, str(result.plan), ending]
+            body.insert(1, in_space(collision))
+    cautions = "\n".join(f"caution:  {text}" for text in error_cautions(result))
+    parts = [title, *body, cautions, str(result.plan), ending]
     return "\n\n".join(part for part in parts if part)
 
 

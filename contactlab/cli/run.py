@@ -70,14 +70,11 @@ def execute(arguments: argparse.Namespace) -> int:
         result: Any
         if scene.shape:
             result = simulation.sweep(scene, progress=progress)
-        elif eccentric:
-            result = simulation.run(scene, history=bool(arguments.history or arguments.figure))
         else:
+            history = bool(arguments.history or arguments.figure)
             result = simulation.run(
                 scene,
-                history="fields"
-                if arguments.stick_slip
-                else bool(arguments.history or arguments.figure),
+                history="fields" if arguments.stick_slip else history,
                 estimate_error=arguments.estimate,
             )
     varied: Mapping[str, Any] = file.varied if file else {}
@@ -134,8 +131,7 @@ def report(
         if collision is not None:
             content["collision"] = collision.to_dict()
         shared.print_json(content)
-    numerical = as_json and isinstance(result, ImpactResult)
-    for sentence in error_cautions(result) if numerical else ():
+    for sentence in error_cautions(result) if as_json else ():
         print(f"contactlab: caution: {sentence}", file=sys.stderr)
     failures = result.failures
     if not failures:

@@ -7,14 +7,14 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.compose import solve
+from contactlab.compose import eccentric, solve
 from contactlab.compose.composition import Laws
 from contactlab.compose.planning import CLOSED_FORM
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.status import Status
-from contactlab.impact.scene import Scene
+from contactlab.impact.eccentric import EccentricScene
 from contactlab.numeric.checks import Real
-from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.answer import RunResult
 
 #: A single count is multiplied by the first factor and by its square, several counts together, or
 #: one that a law accepts no further, by the second: the finest run costs about sixteen times the
@@ -28,8 +28,10 @@ TOLERANCE = 4.0
 LEFT = 0.5, 1.0
 
 
-def estimated(laws: Laws, result: ImpactResult) -> Real:
+def estimated(laws: Laws, result: RunResult) -> Real:
     """Return the estimated numerical error of psi2 of a result, of the scene's shape.
+
+    In space the error of psi2 is the length of a vector.
 
     Each impact is run again at two finer resolutions of all laws that have a resolution: normal
     law, tangential law and, if the impact is marched, integrator. The estimate is the distance of
@@ -44,8 +46,10 @@ def estimated(laws: Laws, result: ImpactResult) -> Real:
     successes = _successes(result.status)
     error = np.where(successes, result.plan.psi2_error, np.nan)
     marched = successes & result.plan.marched
+    if isinstance(scene, EccentricScene):
+        marched = successes  # an answer as a whole has the accuracy of its integrator
     resolutions = np.where(marched, _resolution(laws, scene) if np.any(marched) else 0.0, np.nan)
-    change = np.asarray(result.motion.slip_velocity_change)
+    change = _slip_change(scene, result.motion)
     # not np.unique, which imports numpy.ma
     for resolution in [*sorted(set(resolutions[marched].tolist())), None]:
         where = successes & ~marched
@@ -58,14 +62,15 @@ def estimated(laws: Laws, result: ImpactResult) -> Real:
     return error if error.ndim else float(error)
 
 
-def _resolution(laws: Laws, scene: Scene) -> Any:
+def _resolution(laws: Laws, scene: Any) -> Any:
     """Return the resolution of the integrator for each impact; 0 if it has none."""
-    normal = solve.normal_or_failed(laws, scene)
-    resolution = laws.integrator.resolution_for(normal, laws.tangential, scene)
+    central = scene.central if isinstance(scene, EccentricScene) else scene
+    normal = solve.normal_or_failed(laws, central)
+    resolution = laws.integrator.resolution_for(normal, laws.tangential, central)
     return np.broadcast_to(resolution, scene.shape)
 
 
-def _distance(laws: Laws, scene: Scene, resolution: float | None, change: Any) -> Any:
+def _distance(laws: Laws, scene: Any, resolution: float | None, change: Any) -> Any:
     """Return the estimated error of psi2; 0 where no finer run is possible."""
     options = _options(laws, resolution)
     counts = {kind: value for kind, value in options.items() if isinstance(value, int)}
@@ -76,28 +81,49 @@ def _distance(laws: Laws, scene: Scene, resolution: float | None, change: Any) -
     refined = {times: _finer(laws, options, times) for times in (factor, factor**2)}
     for times, finer in refined.items():
         if finer is None or refined[factor**2] is None:
-            return np.zeros(change.shape)
+            return np.zeros(scene.shape)
         answer = _change(finer, scene)
         with_tolerance = _finer(laws, counts, times) if counts else None
         if with_tolerance is not None and np.isnan(answer).any():  # it cannot be tightened
             answer = np.where(np.isnan(answer), _change(with_tolerance, scene), answer)
         answers.append(answer)
     fine, finest = answers
-    last, before = np.abs(finest - fine), np.abs(fine - change)
+    last, before, all_of = (
+        _size(scene, each) for each in (finest - fine, fine - change, finest - change)
+    )
     # by a ratio, if the answers converge; steps of a tolerance fall by none
     falls = (before > last) & (len(options) == len(counts))
     ratio = last / np.where(falls, before - last, 1.0)
     left = np.where(falls, np.clip(ratio, *LEFT), LEFT[0])
-    distance = scene.psi(np.abs(finest - change) + left * last)
+    distance, central = all_of + left * last, scene
+    if isinstance(scene, EccentricScene):
+        central = scene.central
+    distance = central.psi(distance)
     return np.where(
-        distance > 0.0, np.maximum(distance, CLOSED_FORM * psi_magnitude(scene)), distance
+        distance > 0.0, np.maximum(distance, CLOSED_FORM * psi_magnitude(central)), distance
     )
 
 
-def _change(laws: Laws, scene: Scene) -> Any:
+def _change(laws: Laws, scene: Any) -> Any:
     """Return the change of slip velocity in m/s; NaN where the run failed."""
+    if isinstance(scene, EccentricScene):
+        return _slip_change(scene, eccentric.run(laws, scene, None))
     _, motion = solve.outcome(laws, scene, False, None)
-    return np.where(_successes(motion.status), motion.slip_velocity_change, np.nan)
+    return np.where(_successes(motion.status), _slip_change(scene, motion), np.nan)
+
+
+def _slip_change(scene: Any, motion: Any) -> Any:
+    """Return the change of slip velocity in m/s, of an eccentric impact a vector."""
+    if isinstance(scene, EccentricScene):
+        return np.asarray(motion.velocity_change[..., 1:])
+    return np.asarray(motion.slip_velocity_change)
+
+
+def _size(scene: Any, change: Any) -> Any:
+    """Return the magnitude of changes of slip velocity, of the scene's shape."""
+    if isinstance(scene, EccentricScene):
+        return np.hypot(change[..., 0], change[..., 1])
+    return np.abs(change)
 
 
 def _options(laws: Laws, resolution: float | None) -> dict[str, Any]:

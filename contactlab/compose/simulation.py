@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 import attrs
 import numpy as np
@@ -33,6 +33,8 @@ from contactlab.outcome.result import ImpactResult
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
+
+R = TypeVar("R", ImpactResult, EccentricResult)
 
 
 @arguments_told
@@ -93,7 +95,9 @@ class Simulation:
         self, scene: Scene, *, history: bool | str = False, estimate_error: bool = False
     ) -> ImpactResult: ...
     @overload
-    def run(self, scene: EccentricScene, *, history: bool | str = False) -> EccentricResult: ...
+    def run(
+        self, scene: EccentricScene, *, history: bool | str = False, estimate_error: bool = False
+    ) -> EccentricResult: ...
     def run(
         self,
         scene: Scene | EccentricScene,
@@ -111,7 +115,7 @@ class Simulation:
             Keep the course of the impact; ``"fields"`` keeps traction and stick/slip too.
         estimate_error : bool
             Estimate the numerical error of psi2 by running the scene again at two finer
-            resolutions: ``ImpactResult.psi2_error_estimate``. About twenty times the work.
+            resolutions: ``result.psi2_error_estimate``. About twenty times the work.
 
         Returns
         -------
@@ -128,9 +132,13 @@ class Simulation:
         if _history(history):
             recorder = Recorder(scene.shape, with_fields=history == "fields")
         if isinstance(scene, EccentricScene):
+            if history == "fields":
+                rule = "has no fields for bodies of any shape"
+                raise refuse("history", history, rule, "history=True keeps forces and velocities")
             moved = eccentric.run(laws, scene, recorder)
             kept = NO_HISTORY if recorder is None else recorder.history(EccentricHistory)
-            return eccentric.result_of(laws, scene, moved, started, kept)
+            eccentric_result = eccentric.result_of(laws, scene, moved, started, kept)
+            return self._with_estimate(eccentric_result, estimate_error)
         laws.accept(_scene(scene))
         flat = scene
         if len(scene.shape) > 1:  # laws and integrators are run over one axis
@@ -142,7 +150,11 @@ class Simulation:
         plan = plan_of(laws, scene, columns, motion, history)
         kept = NO_HISTORY if recorder is None else recorder.history()
         result = _result(laws, scene, plan, motion, started, kept)
-        if not estimate_error:
+        return self._with_estimate(result, estimate_error)
+
+    def _with_estimate(self, result: R, wanted: bool) -> R:
+        """Return a result with the estimate of its numerical error, if that is wanted."""
+        if not wanted:
             return result
         return attrs.evolve(result, psi2_error_estimate=estimated(self.laws, result))
 

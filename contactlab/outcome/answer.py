@@ -12,6 +12,8 @@ import numpy as np
 
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import taken
+from contactlab.numeric.checks import Real
+from contactlab.outcome.numerical_error import error_cautions, error_words
 from contactlab.outcome.plan import Plan
 
 
@@ -108,6 +110,7 @@ class RunResult(Answer):
     run_time: float
     laws: Mapping[str, str]
     history: Any
+    psi2_error_estimate: Real | None
 
     @abstractmethod
     def _told(self) -> str:
@@ -117,6 +120,9 @@ class RunResult(Answer):
         """Return the answer, statuses and laws on one line."""
         laws = ", ".join(name.partition(" ")[0] for name in self.laws.values())
         return f"{type(self).__name__}({self._told()}; {statuses_told(self.status)}; {laws})"
+
+    def _first_lines(self) -> list[str]:
+        return [repr(self), f"numerical error of psi2: {error_words(self)}"]
 
     def _ends(self) -> tuple[Any, Any]:
         return self.motion.status, self.motion.detail
@@ -134,8 +140,8 @@ class RunResult(Answer):
 
     @property
     def cautions(self) -> list[str]:
-        """Cautions of the plan."""
-        return [*map(str, self.plan.cautions)]
+        """Cautions that ``str`` shows: about the numerical error, then those of the plan."""
+        return [*error_cautions(self), *map(str, self.plan.cautions)]
 
     def to_dataframe(self) -> Any:
         """Return a ``pandas.DataFrame``, one row for each impact, units in ``.attrs["units"]``.

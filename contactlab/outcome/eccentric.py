@@ -40,6 +40,8 @@ class EccentricResult(RunResult):
         Names of the three laws with their versions.
     history : EccentricHistory or NoHistory
         Only on request.
+    psi2_error_estimate : float, array or None
+        Estimate of the numerical error of psi2, only on request; in space the length of a vector.
     """
 
     scene: EccentricScene
@@ -48,6 +50,7 @@ class EccentricResult(RunResult):
     run_time: float = attrs.field(metadata={"unit": "s"})
     laws: Mapping[str, str]
     history: EccentricHistory | NoHistory = NO_HISTORY
+    psi2_error_estimate: Real | None = None
 
     def _told(self) -> str:
         if self.scene.shape:

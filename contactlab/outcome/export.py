@@ -25,7 +25,7 @@ def to_dict(result: Result) -> dict[str, Any]:
     numbers = {name: json_value(values) for name, _, values in columns(result)}
     return numbers | {
         "detail": json_value(result.motion.detail),
-        "psi2_error_estimate": json_value(getattr(result, "psi2_error_estimate", None)),
+        "psi2_error_estimate": json_value(result.psi2_error_estimate),
         "run_time_s": result.run_time,
         "energy": result.energy.to_dict(),
         "counters": dict(result.counters),

@@ -18,7 +18,6 @@ from contactlab.outcome.answer import RunResult
 from contactlab.outcome.energy import EnergyLedger, ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.numerical_error import error_cautions, error_words
 from contactlab.outcome.plan import Plan
 
 if TYPE_CHECKING:
@@ -68,17 +67,9 @@ class ImpactResult(RunResult):
         ends = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size else " unknown"
         return f"{psi2.size} impacts, psi2{ends}"
 
-    def _first_lines(self) -> list[str]:
-        return [repr(self), f"numerical error of psi2: {error_words(self)}"]
-
     def _repr_html_(self) -> str:
         """Return ``str(self)`` as HTML for a notebook."""
         return f"<pre>{html.escape(str(self))}</pre>"
-
-    @property
-    def cautions(self) -> list[str]:
-        """Cautions that ``str`` shows: about the numerical error, then those of the plan."""
-        return [*error_cautions(self), *super().cautions]
 
     @property
     def psi1(self) -> Real:

@@ -49,7 +49,7 @@ def time(seconds: float) -> str:
     return f"{seconds / 1e-9:.3g} ns"
 
 
-def answer(result: ImpactResult) -> list[tuple[str, str]]:
+def answer(result: ImpactResult | EccentricResult) -> list[tuple[str, str]]:
     """Return psi2 of one impact, its numerical error and the run time, as (name, words)."""
     return [
         ("psi2", number(result.psi2, digits=10)),
