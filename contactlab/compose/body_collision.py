@@ -13,6 +13,7 @@ from contactlab.compose.rebound import damped
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
 from contactlab.impact.body_contact import arms, frame, turned
+from contactlab.impact.cautions import contact_vectors
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
@@ -75,18 +76,18 @@ class BodyCollision(Answer):
             e that the laws stand for, which the plan tells.
         """
         met: Any = encounter.approaching
-        if np.all(met):
-            impulse = _impulse(encounter, result)
-        else:
-            impulse = np.zeros((*encounter.shape, 3))
-            impulse[met] = _impulse(encounter.take(met), result)
+        collided = encounter if np.all(met) else encounter.take(met)
+        impulse = _impulse(collided, result)
+        if collided is not encounter:
+            pushed, impulse = impulse, np.zeros((*encounter.shape, 3))
+            impulse[met] = pushed
         return cls(
             encounter=encounter,
             **_pushed(encounter, impulse),
             impulse=-impulse,
             collided=met,
             result=result,
-            plan=_plan(result, restitution),
+            plan=_plan(collided, result, restitution),
         )
 
     def __repr__(self) -> str:
@@ -167,13 +168,17 @@ def _simulation(scene: Scene | EccentricScene, restitution: float) -> Simulation
     return Simulation(normal=damped(restitution).normal, **composition.IN_SPACE)
 
 
-def _plan(result: EccentricResult | ImpactResult, restitution: float) -> Plan:
-    """Return the plan of the impacts, with what a restitution stands for."""
-    if restitution == 1.0 or isinstance(result, ImpactResult):
-        return result.plan
-    said = f"restitution {restitution:g}: of a frictionless impact on the mass 1/W_nn, Tsuji's law"
-    everywhere = np.ones(result.scene.shape, dtype=bool)
-    return result.plan.changed(computed=(*result.plan.computed, Clause(said, everywhere)))
+def _plan(encounter: Encounter, result: EccentricResult | ImpactResult, restitution: float) -> Plan:
+    """Return the plan of the impacts, with what a restitution stands for and doubtful contacts."""
+    plan, everywhere = result.plan, np.ones(result.scene.shape, dtype=bool)
+    if restitution != 1.0 and isinstance(result, EccentricResult):
+        said = f"restitution {restitution:g}: of a frictionless impact on the mass 1/W_nn, "
+        said += "Tsuji's law"
+        plan = plan.changed(computed=(*plan.computed, Clause(said, everywhere)))
+    if doubts := contact_vectors(encounter):
+        clauses = (Clause(text, everywhere) for text in doubts)
+        plan = plan.changed(cautions=(*plan.cautions, *clauses))
+    return plan
 
 
 def _impulse(encounter: Encounter, result: EccentricResult | ImpactResult) -> Array:

@@ -11,7 +11,7 @@ from contactlab.compose import composition, sweep
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.pieces import Chunk, Piece
-from contactlab.compose.solve import WORK_ACCURACY
+from contactlab.compose.solve import WORK_ACCURACY, normal_or_failed
 from contactlab.contracts import faults
 from contactlab.contracts.eccentric import (
     EccentricIntegrator,
@@ -21,9 +21,9 @@ from contactlab.contracts.eccentric import (
     IncrementalTangentialLaw,
     VectorTangentialLaw,
 )
-from contactlab.impact.cautions import large_contact
+from contactlab.contracts.normal import NormalLaw
+from contactlab.impact.cautions import rigid_bodies, unit_slips, unlikely
 from contactlab.impact.eccentric import EccentricScene
-from contactlab.impact.hertz import hertz_scales
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.eccentric import (
     EccentricResult,
@@ -161,11 +161,10 @@ def plan(laws: Laws, scene: EccentricScene) -> Plan:
 
 def _cautions(laws: Laws, scene: EccentricScene) -> list[str]:
     """Return a sentence for each doubt about the model."""
-    cautions: list[str] = []
-    scales = hertz_scales(scene.central)
-    largest = float(np.max(np.asarray(scales.radius) / scene.pair.radius))
-    if scene.bodies:
-        cautions += large_contact(largest)
+    central = scene.central
+    cautions = [*unit_slips(central), *unlikely(central), *rigid_bodies(central)]
+    # those of a law may have sizes that were measured for spheres
+    cautions += NormalLaw.cautions(laws.normal, central, normal_or_failed(laws, central))
     if np.any(np.asarray(scene.pair.dundurs_beta) != 0.0):
         cautions.append(
             "unlike materials: pressure also shears the surfaces, which is left out (model)"
@@ -178,8 +177,6 @@ def _cautions(laws: Laws, scene: EccentricScene) -> list[str]:
         )
     if isinstance(laws.tangential, IncrementalTangentialLaw):
         cautions += _near_singular(scene)
-    for body in scene.bodies:
-        cautions += getattr(body, "cautions", lambda _: ())(float(np.min(scales.duration)))
     return cautions
 
 

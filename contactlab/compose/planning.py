@@ -19,7 +19,7 @@ from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
-from contactlab.impact.cautions import three_numbers, unit_slips, unlikely
+from contactlab.impact.cautions import rigid_bodies, three_numbers, unit_slips, unlikely
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, spread, taken
 from contactlab.outcome.energy import ledger
@@ -135,7 +135,7 @@ def _cautions(laws: Laws, scene: Scene, motion: NormalMotion | Motion, masks: _M
 
     known = masks.known
     whole = scene if every(known) else scene.take(known)
-    said = [*unit_slips(whole), *unlikely(whole)]
+    said = [*unit_slips(whole), *unlikely(whole), *rigid_bodies(whole)]
     if some(masks.ended):
         ends = of(known)
         for law in (laws.normal, laws.tangential):

@@ -11,7 +11,7 @@ import numpy as np
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import ClosedFormMotion, NormalMotion
-from contactlab.impact.cautions import large_contact, yielding
+from contactlab.impact.cautions import large_contact, named, yielding
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 
@@ -78,7 +78,7 @@ class NormalLaw(Law):
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
         """Return one sentence for each doubt about the model."""
-        if scene.sphere is None:
+        if not named(scene):
             return ()
         cautions = () if self.plastic else yielding(scene)
         largest = float(np.max(motion.maximum_radius / scene.pair.radius))

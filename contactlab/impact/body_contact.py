@@ -165,11 +165,11 @@ def scene_of_bodies(encounter: Any) -> Scene | EccentricScene:
     uneven = turning | (np.abs(W[..., 1, 1] - W[..., 2, 2]) > ROUNDING * W[..., 1, 1])
     across = np.abs(slip[..., 1]) > ROUNDING * (np.abs(speed) + np.abs(slip[..., 0]))
     number: Any = np.asarray if encounter.shape else float
+    bodies = encounter.body, encounter.target
     if not (coupled | uneven).any():
         tangential = number(np.hypot(slip[..., 0], slip[..., 1]))
-        return Scene(
-            None, None, encounter.friction_coefficient, number(speed), tangential, pair=pair
-        )
+        numbers = encounter.friction_coefficient, number(speed), tangential
+        return Scene(None, None, *numbers, pair=pair, bodies=bodies)
     planar = not (turning | across).any()
     if planar:
         slip[..., 1] = 0.0
@@ -180,7 +180,7 @@ def scene_of_bodies(encounter: Any) -> Scene | EccentricScene:
         normal_speed=number(speed),
         slip_velocity=slip,
         planar=planar,
-        bodies=(encounter.body, encounter.target),
+        bodies=bodies,
     )
 
 

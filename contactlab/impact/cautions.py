@@ -8,7 +8,10 @@ from typing import Any
 import numpy as np
 
 from contactlab.impact.bodies import Sphere
-from contactlab.impact.hertz import peak_pressure
+from contactlab.impact.body_contact import arms
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.hertz import hertz_scales, peak_pressure
+from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import for_share
 from contactlab.numeric.checks import Real
@@ -32,6 +35,9 @@ LEAST_SPIN, MOST_RIM = 50.0, 8.0
 #: Friction coefficient above which it is doubtful; speed over that of sound, sqrt(E/rho), above
 #: which waves carry off energy and Hertz's law is doubtful.
 MOST_FRICTION, SOUND_PART = 2.0, 0.1
+#: Distance of a contact from the centre of mass, over the radius of gyration, above which a unit is
+#: suspect; the end of a slender rod has 2.1.
+LONG_ARM = 20.0
 #: An angle that is a multiple of STEP_DEG degrees, to NEAR_DEG, when read in radians is suspect.
 STEP_DEG, NEAR_DEG = 5.0, 0.003
 
@@ -48,12 +54,47 @@ def large_contact(ratio: float) -> tuple[str, ...]:
 
 def path_cautions(scene: Scene, deepest: float, *, plastic: bool) -> tuple[str, ...]:
     """Return the cautions of bodies that are pressed together by ``deepest`` m."""
-    if scene.sphere is None or not deepest > 0.0:
+    if not (named(scene) and deepest > 0.0):
         return ()
     ratio: Any = np.sqrt(deepest / scene.pair.radius)
     pressure = (2.0 / math.pi) * scene.pair.effective_modulus * ratio
     cautions = () if plastic else yielding(scene, pressure)
     return (*cautions, *large_contact(float(np.max(ratio))))
+
+
+def rigid_bodies(scene: Scene) -> tuple[str, ...]:
+    """Return the cautions of bodies that are no spheres: elliptic contacts, and ringing."""
+    if not scene.bodies:
+        return ()
+    shortest = _least(hertz_scales(scene).duration)
+    bodies = (body for body in scene.bodies if isinstance(body, RigidBody))
+    return tuple(text for body in bodies for text in body.cautions(shortest))
+
+
+def contact_vectors(encounter: Encounter) -> tuple[str, ...]:
+    """Return the cautions of contacts of rigid bodies on the wrong side, or very far off."""
+    normal = encounter.normal / np.linalg.norm(encounter.normal, axis=-1)[..., None]
+    said = []
+    sides = (("contact", encounter.body, 1.0), ("target_contact", encounter.target, -1.0))
+    for (name, body, sense), arm in zip(sides, arms(encounter, normal), strict=True):
+        if not isinstance(body, RigidBody):
+            continue
+        behind = np.asarray(sense * np.sum(arm * normal, axis=-1) < 0.0)
+        if behind.any():
+            said.append(
+                f"{name} lies behind the centre of mass{for_share(behind)}: a convex body touches "
+                "on the other side; it leads from the centre of mass to the contact"
+            )
+        gyration = np.sqrt(
+            np.trace(body.inertia, axis1=-2, axis2=-1) / (3.0 * np.asarray(body.mass))
+        )
+        ratio = _most(np.linalg.norm(arm, axis=-1) / gyration)
+        if ratio > LONG_ARM:
+            said.append(
+                f"unit: {name} is {ratio:.3g} radii of gyration long: are lengths in m, and is the "
+                "inertia in kg m²?"
+            )
+    return tuple(said)
 
 
 def yielding(scene: Scene, peak: Real | None = None) -> tuple[str, ...]:
@@ -65,11 +106,10 @@ def yielding(scene: Scene, peak: Real | None = None) -> tuple[str, ...]:
     peak : float or array, optional
         Greatest pressure in Pa; that of the elastic impact by default.
     """
-    bodies = {"sphere": scene.sphere, "target": scene.target}
     stresses: dict[str, Any] = {
         name: body.material.yield_stress
-        for name, body in bodies.items()
-        if body is not None and body.material.yield_stress is not None
+        for name, body in named(scene).items()
+        if body.material.yield_stress is not None
     }
     if not stresses:
         return ()
@@ -119,12 +159,19 @@ def tabor_caution(
     )
 
 
+def named(scene: Scene) -> dict[str, Any]:
+    """Return the bodies of a scene by the name of their argument; none of a scene of numbers."""
+    if scene.bodies:
+        return dict(zip(("body", "target"), scene.bodies, strict=True))
+    if scene.sphere is None:
+        return {}
+    return {"sphere": scene.sphere, "target": scene.target}
+
+
 def unit_slips(scene: Scene) -> list[str]:
     """Return one sentence for each number of ``scene`` that is probably in another unit."""
-    if scene.sphere is None or scene.target is None:
-        return []
     slips = []
-    for name, body in (("sphere", scene.sphere), ("target", scene.target)):
+    for name, body in named(scene).items():
         density, modulus = body.material.density, _least(body.material.shear_modulus)
         radius = _most(body.radius) if isinstance(body, Sphere) else 0.0
         if radius >= LARGE_RADIUS:
@@ -136,6 +183,8 @@ def unit_slips(scene: Scene) -> list[str]:
             young = 2.0 * (1.0 + _least(body.material.poisson_ratio)) * modulus
             number = f"{name}.material.shear_modulus = {modulus:.4g} Pa (Young's {young:.4g} Pa)"
             slips.append(f"unit: {number}: is it in GPa?")
+    if scene.sphere is None:
+        return slips
     speed = math.hypot(_most(scene.normal_speed), _most(abs(scene.tangential_velocity)))
     spin = _most(abs(scene.spin))
     rim = _most(scene.sphere.radius) * spin
@@ -155,7 +204,8 @@ def unit_slips(scene: Scene) -> list[str]:
 
 def unlikely(scene: Scene) -> list[str]:
     """Return one sentence for each number of ``scene`` that few contacts have."""
-    if scene.sphere is None or scene.target is None:
+    bodies = named(scene)
+    if not bodies:
         return []
     slips, speed = [], _most(scene.normal_speed)
     if (friction := _most(scene.friction_coefficient)) > MOST_FRICTION:
@@ -163,7 +213,7 @@ def unlikely(scene: Scene) -> list[str]:
             f"friction_coefficient = {friction:.4g}: above {MOST_FRICTION:g} surfaces stick like "
             "soft rubber; is it in per cent, or an angle?"
         )
-    for name, body in (("sphere", scene.sphere), ("target", scene.target)):
+    for name, body in bodies.items():
         if (density := body.material.density) is not None:
             young = 2.0 * (1.0 + body.material.poisson_ratio) * body.material.shear_modulus
             sound = _least(np.sqrt(np.asarray(young) / density))

@@ -254,7 +254,8 @@ class EccentricScene:
         speed = self.normal_speed
         if self.shape and not np.ndim(speed):
             speed = np.full(self.shape, speed)
-        return Scene(None, None, self.friction_coefficient, speed, slip, pair=self.pair)
+        numbers = self.friction_coefficient, speed, slip
+        return Scene(None, None, *numbers, pair=self.pair, bodies=self.bodies)
 
     def take(self, part: Any) -> EccentricScene:
         """Return the impacts that ``part`` indexes.

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from contactlab.impact.material import Material
 from contactlab.numeric.arrays import taken
 from contactlab.numeric.checks import POSITIVE, Real, Rule, instance, key, quantity, real, refuse
+from contactlab.numeric.names import arguments_told
 
 Array = NDArray[np.float64]
 
@@ -56,6 +57,7 @@ def _curvature(value: Any) -> Real:
     return np.where(flat, np.inf, checked) if np.ndim(checked) else (np.inf if flat else checked)
 
 
+@arguments_told
 @attrs.frozen(kw_only=True)
 class RigidBody:
     """A body of any shape that is elastic at its contact only.

@@ -67,6 +67,8 @@ class Scene:
     unit_friction : bool
         True if the friction coefficient is 1 by choice of units, as in ``nondimensional`` without a
         friction coefficient. A law that needs mu itself refuses such a scene.
+    bodies : tuple
+        Bodies of an encounter that are no spheres, which cautions look at; empty without.
 
     Raises
     ------
@@ -85,6 +87,7 @@ class Scene:
         Pair, remedy="or leave it out", optional=True, default=None, kw_only=True, repr=False
     )
     unit_friction: bool = instance(bool, default=False, kw_only=True, repr=False)
+    bodies: tuple[Any, ...] = attrs.field(default=(), eq=False, repr=False, kw_only=True)
     #: Batch shape: () for one impact.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
     #: Index of each impact in the whole batch, integers of the batch shape; 0 for one impact.

@@ -179,7 +179,7 @@ def components(name: str, values: Any, shape: tuple[int, ...]) -> list[tuple[str
 
 def unit_in(unit: str, scene: Scene | EccentricScene) -> str:
     """Return the unit of a column in ``scene``; without bodies only angles have one."""
-    bodies = scene.bodies if isinstance(scene, EccentricScene) else scene.sphere is not None
+    bodies = scene.bodies or (isinstance(scene, Scene) and scene.sphere is not None)
     return unit if bodies or unit in ("rad", "deg") else "1"
 
 

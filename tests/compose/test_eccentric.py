@@ -669,3 +669,54 @@ REFUSED = [
 def test_refusals(act, words):
     with pytest.raises(ValueError, match=words):
         act()
+
+
+def test_an_estimated_error_is_the_distance_from_the_exact_answer():
+    """In nine of ten impacts within a factor of three; in space beside the springs' own limit."""
+    scene = random_planar(60, 15)
+    exact, rough = EXACT.run(scene).check(), springs(50, 200)
+    estimate = rough.run(scene, estimate_error=True).check().psi2_error_estimate
+    ratio = estimate / np.abs(rough.run(scene).psi2 - exact.psi2)
+    assert np.mean((ratio > 1 / 3) & (ratio < 3.0)) > 0.9
+    turning = rod(-35.0, slip=0.3, across=0.6).scene
+    found = rough.run(turning, estimate_error=True)
+    limit = springs(400, 1000).run(turning).psi2
+    assert found.psi2_error_estimate == pytest.approx(np.linalg.norm(found.psi2 - limit), rel=0.5)
+    assert f"about {found.psi2_error_estimate:.1g}, estimated" in str(found)
+    assert EXACT.run(rod(30.0).scene, estimate_error=True).psi2_error_estimate < 1e-9
+    assert np.isnan(RIGID.run(turning, estimate_error=True).psi2_error_estimate)
+
+
+SOFT = Material(young_modulus=3e3, poisson_ratio=0.3, density=0.2)
+MILD = Material(young_modulus=2e11, poisson_ratio=0.3, density=7850.0, yield_stress=3e8)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, ()),
+        ({"friction_coefficient": 30.0}, ("friction_coefficient = 30",)),
+        ({"contact": (0.02, 0.0, 0.1)}, ("contact lies behind the centre of mass",)),
+        ({"contact": (50.0, 0.0, -900.0)}, ("radii of gyration",)),
+        ({"velocity": (0.2, 0.0, -700.0)}, ("speed of sound",)),
+        ({"material": SOFT}, ("density", "shear_modulus")),
+        ({"material": MILD}, ("yield",)),
+        ({"contact": (0, 0, -0.1), "material": MILD, "bending_period": 1.0}, ("yield", "rings")),
+    ],
+)  # fmt: skip
+def test_cautions_of_any_two_bodies(changes, words):
+    """Of eccentric impacts and, in the last row, where friction does not change the approach."""
+    material, period = changes.pop("material", STEEL), changes.pop("bending_period", None)
+    body = RigidBody(
+        mass=1.0, principal=(4e-3, 4e-3, 4e-3), material=material, curvature_radius=0.05,
+        bending_period=period,
+    )  # fmt: skip
+    met = Encounter(
+        body, HalfSpace(material),
+        **{"friction_coefficient": 0.3, "normal": (0.0, 0.0, -1.0), "velocity": (0.2, 0.0, -1.0),
+           "contact": (0.02, 0.0, -0.1)} | changes,
+    )  # fmt: skip
+    found = collide(met).cautions
+    assert all(any(word in text for text in found) for word in words)
+    assert len(set(found)) == len(found)
+    assert words or not found
