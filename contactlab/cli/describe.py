@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from contactlab.compose.body_collision import BodyCollision
-from contactlab.compose.collision import VECTORS, Collision
+from contactlab.compose.collision import VECTORS_AFTER, Collision
 from contactlab.compose.planning import ADVICE
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome.numerical_error import error_cautions
@@ -45,7 +45,7 @@ def describe(
 def in_space(collision: Collision | BodyCollision) -> str:
     """Return a table with the vectors of both bodies and the impulse."""
     rows = []
-    for name, unit in VECTORS:
+    for name, unit in VECTORS_AFTER:
         if hasattr(collision, name):  # bodies that are no spheres have no contact velocities
             before = getattr(collision.encounter, name, None)
             shown = "" if before is None else _vector(before)

@@ -13,7 +13,7 @@ from contactlab.contracts import faults
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.integrator import Observer, Sample
-from contactlab.contracts.motion import NormalMotion, NormalSample
+from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
 from contactlab.contracts.whole_impact import WholeImpact
@@ -100,17 +100,20 @@ def show(normal: NormalMotion, known: Sequence[Answer], observer: Observer) -> N
     scene = normal.scene
     shape = (INSTANTS, *scene.shape)
     phases = np.linspace(0.0, np.pi, INSTANTS).reshape(-1, *(1 for _ in scene.shape))
-    sample = normal.at(phases)
+    columns = _columns(normal, phases)
     change, force = np.full((2, *shape), np.nan)
     for where, answer in known:
         if answer.normal is not None:
-            sample = _where(where, answer.normal.at(phases), sample)
+            pairs = zip(_columns(answer.normal, phases), columns, strict=True)
+            columns = [np.where(where, *pair) for pair in pairs]
         if answer.course is not None:
-            gained, acting = answer.course(sample.load_impulse, sample.contact.friction_load)
+            gained, acting = answer.course(columns[-1], columns[-2])
             change, force = np.where(where, gained, change), np.where(where, acting, force)
-    time, approach, rate, contact, impulse = sample
-    columns = (time, approach, rate, *contact, scene.slip_velocity + change, force, impulse)
-    lists = [np.broadcast_to(column, shape) for column in columns]
+    *columns, impulse = columns
+    lists = [
+        np.broadcast_to(column, shape)
+        for column in (*columns, scene.slip_velocity + change, force, impulse)
+    ]
     rows = lists if scene.shape else [column.tolist() for column in lists]
     for time, approach, rate, load, radius, overlap, friction_load, velocity, acting, passed in zip(
         *rows, strict=True
@@ -120,15 +123,10 @@ def show(normal: NormalMotion, known: Sequence[Answer], observer: Observer) -> N
         observer(Sample(time, approach, rate, touching, velocity, acting, fields))
 
 
-def _where(where: Mask, one: NormalSample, other: NormalSample) -> NormalSample:
-    """Return the samples ``one`` where the mask is True, else the samples ``other``."""
-    pairs = zip(one.contact, other.contact, strict=True)
-    contact = NormalContact(*(np.where(where, *pair) for pair in pairs))
-    columns = {
-        name: np.where(where, getattr(one, name), getattr(other, name))
-        for name in ("time", "approach", "rate", "load_impulse")
-    }
-    return NormalSample(contact=contact, **columns)
+def _columns(normal: NormalMotion, phases: Any) -> list[Any]:
+    """Return time, approach, rate, the entries of the contact, and load impulse."""
+    time, approach, rate, contact, impulse = normal.at(phases)
+    return [time, approach, rate, *contact, impulse]
 
 
 def _fields(known: Sequence[Answer], impulse: Any, shape: tuple[int, ...]) -> Mapping[str, Any]:

@@ -11,16 +11,13 @@ from numpy.typing import NDArray
 from contactlab.compose import composition, eccentric
 from contactlab.compose.rebound import damped
 from contactlab.compose.simulation import Simulation
-from contactlab.contracts.status import Status
 from contactlab.impact.body_contact import arms, frame, turned
 from contactlab.impact.cautions import contact_vectors
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.answer import Answer
-from contactlab.outcome.columns import json_value
+from contactlab.outcome.answer import TwoBodies
 from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.energy import EnergyLedger
 from contactlab.outcome.plan import Clause, Plan
@@ -28,11 +25,11 @@ from contactlab.outcome.result import ImpactResult
 
 Array = NDArray[np.float64]
 
-VECTORS = ("velocity", "spin", "target_velocity", "target_spin", "impulse")
+VECTORS_AFTER = ("velocity", "spin", "target_velocity", "target_spin", "impulse")
 
 
 @attrs.frozen(kw_only=True, eq=False, repr=False)
-class BodyCollision(Answer):
+class BodyCollision(TwoBodies):
     """Two bodies after an encounter; vectors have the shape ``(..., 3)``.
 
     Attributes
@@ -90,35 +87,11 @@ class BodyCollision(Answer):
             plan=_plan(collided, result, restitution),
         )
 
-    def __repr__(self) -> str:
-        """Return velocity and spin of a single collision, or the count in a batch, and statuses."""
-        statuses = sorted({each.name for each in np.ravel(np.array(self.status, dtype=object))})
-        outcome = ", ".join(statuses)
-        if not self.encounter.shape:
-            return f"BodyCollision(velocity={self.velocity}, spin={self.spin}; {outcome})"
-        count = int(np.sum(self.collided))
-        return f"BodyCollision({count} of {np.size(self.collided)} collided; {outcome})"
+    def _impacts(self) -> EccentricResult | ImpactResult:
+        return self.result
 
-    def _ends(self) -> tuple[Any, Any]:
-        return self.result.motion.status, self.result.motion.detail
-
-    @property
-    def cautions(self) -> list[str]:
-        """Cautions of the plan."""
-        return [*map(str, self.plan.cautions)]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the vectors of both bodies after the collision as plain lists."""
-        return {name: json_value(np.asarray(getattr(self, name))) for name in VECTORS}
-
-    @property
-    def status(self) -> Any:
-        """A ``Status``, or an array of statuses; ``SUCCESS`` if the bodies passed through."""
-        if np.all(self.collided):
-            return self.result.status
-        status = filled(Status.SUCCESS, self.encounter.shape)
-        status[self.collided] = self.result.status
-        return status
+    def _vectors(self) -> tuple[str, ...]:
+        return VECTORS_AFTER
 
     @property
     def energy(self) -> EnergyLedger:
@@ -129,18 +102,7 @@ class BodyCollision(Answer):
 def collide_bodies(
     encounter: Encounter, simulation: Simulation | None, restitution: Any, separating: str
 ) -> BodyCollision:
-    """Return both bodies after an encounter, under the laws that answer its scene best.
-
-    Parameters
-    ----------
-    encounter : Encounter
-        At least one body is a ``RigidBody``.
-    simulation : Simulation or None
-        The laws.
-    restitution : float
-        e of a frictionless impact, by Tsuji's law on the mass 1/W_nn, if there is no simulation.
-    separating : "refuse" or "pass"
-    """
+    """Return both bodies after an encounter, under the laws that answer its scene best."""
     met: Any = encounter.approaching
     if not np.all(met):
         if separating == "refuse" or not np.any(met):

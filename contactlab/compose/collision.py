@@ -15,16 +15,13 @@ from contactlab.compose.collision_plan import by_rebound, collision_plan
 from contactlab.compose.rebound import damped
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.restitution import RESTITUTIONS
-from contactlab.contracts.status import Status
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import Real, real, refuse
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.vectors import LEAST
-from contactlab.outcome.answer import Answer
-from contactlab.outcome.columns import json_value
+from contactlab.outcome.answer import TwoBodies
 from contactlab.outcome.energy import EnergyLedger, books
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Plan, PlanColumns
@@ -38,9 +35,9 @@ Array = NDArray[np.float64]
 SEPARATING = ("refuse", "pass")
 #: Different restitutions beyond which a plan has one statement, and the cautions of the least, for
 #: all damped impacts.
-MANY = 20
+MOST_STATEMENTS = 20
 #: Vectors after a collision, name and unit.
-VECTORS = (
+VECTORS_AFTER = (
     ("velocity", "m/s"), ("spin", "rad/s"), ("target_velocity", "m/s"), ("target_spin", "rad/s"),
     ("impulse", "N s"), ("contact_velocity", "m/s"), ("target_contact_velocity", "m/s"),
 )  # fmt: skip
@@ -48,7 +45,7 @@ VECTORS = (
 
 @attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
-class Collision(Answer):
+class Collision(TwoBodies):
     """Both bodies after an encounter; vectors have the shape ``(..., 3)``, numbers the batch's.
 
     Attributes
@@ -108,20 +105,11 @@ class Collision(Answer):
         moved = impulses.moved(encounter, _columns(encounter, result))
         return cls(encounter=encounter, **moved, known=result)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the vectors of both bodies after the collision as plain lists."""
-        return {name: json_value(np.asarray(getattr(self, name))) for name, _ in VECTORS}
+    def _impacts(self) -> ImpactResult | None:
+        return self.known
 
-    def __repr__(self) -> str:
-        """Return velocity and spin of a single collision, or the count in a batch, and statuses."""
-        statuses = {status.name for status in np.ravel(np.array(self.status, dtype=object))}
-        outcome = ", ".join(sorted(statuses))
-        if not self.encounter.shape and not self.collided:
-            outcome = "separate, passed through"
-        if not self.encounter.shape:
-            return f"Collision(velocity={self.velocity}, spin={self.spin}; {outcome})"
-        count = int(np.sum(self.collided))
-        return f"Collision({count} of {np.size(self.collided)} encounters collided; {outcome})"
+    def _vectors(self) -> list[str]:
+        return [name for name, _ in VECTORS_AFTER]
 
     @cached_property
     def result(self) -> ImpactResult:
@@ -161,7 +149,7 @@ class Collision(Answer):
         else:
             each = self._restitutions
             groups = _alike(each)
-            if len(groups) > MANY:
+            if len(groups) > MOST_STATEMENTS:
                 masks = [mask for mask in (each == 1.0, each < 1.0) if mask.any()]
                 groups = [(mask, float(each[mask].min())) for mask in masks]
             plans = [
@@ -177,27 +165,6 @@ class Collision(Answer):
         return np.asarray(each if np.all(self.collided) else each[self.collided])
 
     @property
-    def status(self) -> Any:
-        """A ``Status``, or an array of statuses; ``SUCCESS`` if the bodies passed through."""
-        if self.known is None:
-            return filled(Status.SUCCESS, self.encounter.shape)
-        if np.all(self.collided):
-            return self.known.status
-        status = filled(Status.SUCCESS, self.encounter.shape)
-        status[self.collided] = self.known.status
-        return status
-
-    def _ends(self) -> tuple[Any, Any]:
-        if self.known is None:
-            return Status.SUCCESS, ""
-        return self.known.motion.status, self.known.motion.detail
-
-    @property
-    def cautions(self) -> list[str]:
-        """Cautions of the plan."""
-        return [*map(str, self.plan.cautions)]
-
-    @property
     def energy(self) -> EnergyLedger:
         """The energy books of the relative motion, in J; its loss is the loss of both bodies."""
         contact = self.encounter.meeting()
@@ -210,14 +177,7 @@ class Collision(Answer):
             checked[self.collided] = self.known.energy.checked
             exchange = np.zeros(self.encounter.shape)
             exchange[self.collided] = self.known.motion.exchange
-        return books(
-            self.encounter.pair,
-            before,
-            after,
-            self.friction_work,
-            exchange=exchange,
-            checked=checked,
-        )
+        return books(self.encounter.pair, before, after, self.friction_work, exchange, checked)
 
     @property
     def impulse(self) -> Array:

@@ -22,14 +22,8 @@ TURNING = 1e-12
 def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
     """Return the plan with clauses on separating bodies and on spin about the normal.
 
-    Parameters
-    ----------
-    plan : Plan
-        Plan of the scenes of the bodies that collided.
-    met : Encounter or None
-        The encounters whose bodies collided; None if no bodies did.
-    passed : array of bool
-        Encounters of the whole batch whose bodies separate.
+    ``plan`` is that of the encounters that ``met``, None if no bodies did; ``passed`` marks the
+    encounters of the whole batch whose bodies separate.
     """
     left_out = list(plan.left_out)
     if met is not None:
@@ -42,17 +36,7 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
 
 
 def by_rebound(plan: Plan, chi: Any, restitution: Real) -> Plan:
-    """Return the plan with the answers of ``rebound`` in place of those of the laws.
-
-    Parameters
-    ----------
-    plan : Plan
-        Plan of the laws that give the same answers as ``rebound``.
-    chi : float or array
-        Inertia ratio of each impact.
-    restitution : float or array
-        Normal restitution that ``rebound`` was given.
-    """
+    """Return the plan of laws that answer as ``rebound`` does, with the words of ``rebound``."""
     unknown = np.isnan(plan.psi2_error)
     bound = np.broadcast_to(damped_error(chi, restitution), unknown.shape)
     error_words = "none was measured beyond chi = 10, of contactlab.rebound"

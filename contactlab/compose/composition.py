@@ -46,6 +46,8 @@ IN_SPACE = {"tangential": ON_A_PATH, "integrator": FIXED_STEPS}
 RESTITUTION = {"normal": "tsuji", "tangential": "annulus"}
 #: Contracts of tangential laws that can be run; every law must be derived from one of them.
 WAYS = (SteppedTangentialLaw, PathTangentialLaw, WholeImpactTangentialLaw)
+#: The contract of laws that answer to steps, and in no other way.
+STEPS = {SteppedTangentialLaw}
 
 
 class Laws(NamedTuple):
@@ -129,7 +131,7 @@ def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[st
     which = kind
     if kind == "tangential" and "elastic_hertz" in before[0].offers:
         which = "elastic"
-    elif kind == "integrator" and _only_stepped(before[-1]):
+    elif kind == "integrator" and {way for way in WAYS if isinstance(before[-1], way)} == STEPS:
         which = "steps"  # no other integrator is imported
     for name in PREFERRED[which]:
         try:
@@ -144,12 +146,6 @@ def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[st
         why = "must be given: none of the defaults is installed"
         raise refuse(kind, None, why, f"installed: {names}")
     return installed[0]
-
-
-def _only_stepped(tangential: Law) -> bool:
-    """Return whether a law answers to steps, and in no other way."""
-    others = (PathTangentialLaw, WholeImpactTangentialLaw)
-    return isinstance(tangential, SteppedTangentialLaw) and not isinstance(tangential, others)
 
 
 def _fits(*parts: Law) -> bool:

@@ -19,7 +19,7 @@ from contactlab.outcome.answer import RunResult
 #: A single count is multiplied by the first factor and by its square, several counts together, or
 #: one that a law accepts no further, by the second: the finest run costs about sixteen times the
 #: first.
-ALONE, TOGETHER = 4, 2
+SINGLE_COUNT, SEVERAL_COUNTS = 4, 2
 #: A tolerance is divided by this times the square of the factor of the counts, as for a method of
 #: second order. Steps are doubled until a tolerance is kept: a lesser change might change no step.
 TOLERANCE = 4.0
@@ -74,9 +74,9 @@ def _distance(laws: Laws, scene: Any, resolution: float | None, change: Any) -> 
     """Return the estimated error of psi2; 0 where no finer run is possible."""
     options = _options(laws, resolution)
     counts = {kind: value for kind, value in options.items() if isinstance(value, int)}
-    factor = ALONE if len(options) == len(counts) == 1 else TOGETHER
+    factor = SINGLE_COUNT if len(options) == len(counts) == 1 else SEVERAL_COUNTS
     if _finer(laws, options, factor**2) is None:  # a law may refuse what is much finer
-        factor = TOGETHER
+        factor = SEVERAL_COUNTS
     answers = []
     refined = {times: _finer(laws, options, times) for times in (factor, factor**2)}
     for times, finer in refined.items():

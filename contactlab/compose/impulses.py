@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 #: Beyond this psi1 the change of psi under a restitution equals its limit to 1e-4.
 END_OF_DAMPED = 1e4
 #: Velocities and spins of both bodies.
-VECTORS = ("velocity", "spin", "target_velocity", "target_spin")
+VELOCITIES = ("velocity", "spin", "target_velocity", "target_spin")
 #: Attributes of a ``Collision``, by name.
 Moved: TypeAlias = dict[str, Any]
 
@@ -77,7 +77,7 @@ def moved(
     shape = encounter.shape
     if not shape and answers is None:
         return _alone(encounter, restitution, strict)
-    vectors = [np.empty((*shape, 3)) for _ in VECTORS]
+    vectors = [np.empty((*shape, 3)) for _ in VELOCITIES]
     flat = [array.reshape(-1, 3) for array in vectors]
     numbers, collided = np.empty((3, *shape)), np.empty(shape, dtype=bool)
     columns, flags = numbers.reshape(3, -1), collided.reshape(-1)
@@ -102,7 +102,7 @@ def moved(
         _push([array[where] for array in flat], part, contact, push, drag)
     after, change, work = (locked(each) if shape else float(each) for each in numbers)
     return dict(
-        zip(VECTORS, map(locked, vectors), strict=True),
+        zip(VELOCITIES, map(locked, vectors), strict=True),
         normal_velocity=after,
         slip_velocity_change=change,
         friction_work=work,
@@ -142,7 +142,7 @@ def _alone(encounter: Encounter, restitution: Any, strict: bool) -> Moved:
 
 
 def _pushed(part: Encounter, contact: Contact, push: Any, drag: Any) -> list[Array]:
-    """Return ``VECTORS`` of a single encounter after both impulses, in N s."""
+    """Return ``VELOCITIES`` of a single encounter after both impulses, in N s."""
     (n1, n2, n3), (t1, t2, t3), _, _ = contact
     vectors = []
     for body, velocity, spin, sense in (
@@ -173,7 +173,7 @@ def _pushed(part: Encounter, contact: Contact, push: Any, drag: Any) -> list[Arr
 
 
 def _push(moved: list[Array], part: Encounter, contact: Contact, push: Any, drag: Any) -> None:
-    """Write ``VECTORS`` after the normal impulse ``push`` and the tangential ``drag``, in N s."""
+    """Write ``VELOCITIES`` after a normal impulse ``push`` and one along the slip, in N s."""
     (n1, n2, n3), (t1, t2, t3) = contact.normal, contact.along
     across = (n2 * t3 - n3 * t2, n3 * t1 - n1 * t3, n1 * t2 - n2 * t1)
     bodies: tuple[Any, ...] = (

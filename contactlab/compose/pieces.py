@@ -39,12 +39,8 @@ class Piece(NamedTuple):
 Solve: TypeAlias = Callable[[Any, Any, Chunk, int], Piece]
 
 
-def kind_of_motion(scene: Any) -> Any:
-    """Return the class of the motions of a scene."""
-    return Motion if isinstance(scene, Scene) else EccentricMotion
-
-
-def unsolved(chunk: Chunk, status: Status, detail: str = "", kind: Any = Motion) -> Piece:
-    """Return the piece of a chunk without answers: every impact has ``status``."""
+def unsolved(chunk: Chunk, scene: Any, status: Status, detail: str = "") -> Piece:
+    """Return the piece of a chunk of ``scene`` without answers: every impact has ``status``."""
+    kind: Any = Motion if isinstance(scene, Scene) else EccentricMotion
     shape = (chunk.size,)
     return Piece(chunk, PlanColumns.nothing(shape), kind.nothing(shape, status, detail))

@@ -43,13 +43,13 @@ CHI = Rule(
     "must be positive and at most 1e4, the range over which answers were checked",
 )
 #: From this psi1 on every impact with chi in range slips throughout, and psi falls by 4 chi.
-LARGEST = 1e5
+SLIPS_THROUGHOUT = 1e5
 
 
 #: Defaults of ``tolerance`` and ``restitution``, tested by identity: a comparison takes long.
 USUAL, ELASTIC = 1e-5, 1.0
 #: Arrays that are looked at number by number: NumPy takes longer to begin.
-FEW = 40
+FEW_NUMBERS = 40
 
 
 @overload
@@ -199,47 +199,59 @@ def _in_table(psi1: Any, chi: Any) -> bool:
         return False
     if not psi1.dtype == chi.dtype == np.float64 or not psi1.size:
         return False
-    if psi1.size > FEW:  # comparisons with NaN are False
+    if psi1.size > FEW_NUMBERS:  # comparisons with NaN are False
         inside = chi.min() > 0.0 and chi.max() <= TABULATED_CHI
         return bool(inside and -math.inf < psi1.min() and psi1.max() < math.inf)
     speeds, ratios = psi1.ravel().tolist(), chi.ravel().tolist()
     return all(map(math.isfinite, speeds)) and all(0.0 < one <= TABULATED_CHI for one in ratios)
 
 
+def _parted(
+    where: Any, inside: Callable[..., Any], outside: Callable[..., Any], *columns: Array
+) -> Array:
+    """Return psi2, shape (impacts,), by one function of the columns where a mask is True."""
+    if where.all():
+        return np.asarray(inside(*columns))
+    psi2 = np.empty_like(columns[0])
+    for mask, answer in ((where, inside), (~where, outside)):
+        if mask.any():
+            psi2[mask] = answer(*(column[mask] for column in columns))
+    return psi2
+
+
 def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
     """Return psi2, shape (impacts,), from the table where chi is in range, else solved."""
     tabulated = (chi <= TABULATED_CHI) & (tolerance > TABULATED)
-    if tabulated.all():
-        return np.asarray(_table("tangential")(psi1, chi))
-    psi2 = np.empty_like(psi1)
-    if tabulated.any():
-        psi2[tabulated] = _table("tangential")(psi1[tabulated], chi[tabulated])
-    if not tabulated.all():
-        psi2[~tabulated] = _exact(psi1[~tabulated], chi[~tabulated])
-    return psi2
+    return _parted(tabulated, _table("tangential"), _exact, psi1, chi)
 
 
 def _each(psi1: Array, chi: Array, restitution: Array, tolerance: float) -> Array:
     """Return psi2 of impacts with a restitution each, shape (impacts,)."""
-    psi2, elastic = np.empty_like(psi1), restitution == 1.0
-    if elastic.any():
-        psi2[elastic] = _solve(psi1[elastic], chi[elastic], tolerance)
-    if not elastic.all():
-        psi2[~elastic] = _damped(psi1[~elastic], chi[~elastic], restitution[~elastic])
-    return psi2
+
+    def elastic(psi1: Array, chi: Array, _: Array) -> Array:
+        return _solve(psi1, chi, tolerance)
+
+    return _parted(restitution == 1.0, elastic, _damped, psi1, chi, restitution)
 
 
 def _damped(psi1: Array, chi: Array, restitution: Real) -> Array:
     """Return psi2, shape (impacts,), under Tsuji's law; by annuli beyond the largest chi."""
-    beyond = chi > DAMPED_LARGEST_CHI
-    if not beyond.any():
-        return np.asarray(_table("normal")(psi1, chi, restitution=restitution))
-    psi2, each = np.empty_like(psi1), np.broadcast_to(restitution, psi1.shape)
-    if not beyond.all():
-        part = ~beyond
-        psi2[part] = _table("normal")(psi1[part], chi[part], restitution=each[part])
-    for value in np.unique(each[beyond]).tolist():
-        part = beyond & (each == value)
+    table = _table("normal")
+    if not (chi > DAMPED_LARGEST_CHI).any():
+        return np.asarray(table(psi1, chi, restitution=restitution))
+
+    def tabulated(psi1: Array, chi: Array, each: Array) -> Any:
+        return table(psi1, chi, restitution=each)
+
+    each = np.array(np.broadcast_to(restitution, psi1.shape))
+    return _parted(chi <= DAMPED_LARGEST_CHI, tabulated, _annuli, psi1, chi, each)
+
+
+def _annuli(psi1: Array, chi: Array, restitution: Array) -> Array:
+    """Return psi2, shape (impacts,), under Tsuji's law by annuli, for one e after another."""
+    psi2 = np.empty_like(psi1)
+    for value in np.unique(restitution).tolist():
+        part = restitution == value
         change = _change(damped(value), psi1[part], chi[part])
         psi2[part] = np.copysign(1.0, psi1[part]) * (np.abs(psi1[part]) + change)
     return psi2
@@ -298,6 +310,6 @@ def _change(simulation: Simulation, psi1: Array, chi: Array) -> Array:
     """Return psi2 - psi1 of impacts, shape (impacts,), for abs(psi1)."""
     from contactlab.impact.scene import Scene
 
-    # Beyond LARGEST the energy of slip may overflow.
-    scene = Scene.nondimensional(psi1=np.minimum(np.abs(psi1), LARGEST), chi=chi)
+    # Beyond SLIPS_THROUGHOUT the energy of slip may overflow.
+    scene = Scene.nondimensional(psi1=np.minimum(np.abs(psi1), SLIPS_THROUGHOUT), chi=chi)
     return np.asarray(simulation.sweep(scene).check().psi_change)

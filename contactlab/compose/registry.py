@@ -76,7 +76,10 @@ class Registry:
             for rivals in _by_name(infos).values()
             for info in rivals
         ]
-        return sorted(laws, key=lambda info: (_rank(info.kind), info.name, info.distribution))
+        rank = {kind: place for place, kind in enumerate(KINDS)}  # unknown kinds come last
+        return sorted(
+            laws, key=lambda each: (rank.get(each.kind, len(rank)), each.name, each.distribution)
+        )
 
     def _warn_of_unknown(self, infos: list[PluginInfo]) -> None:
         """Warn once of each blocked name that is not installed: a misspelt name blocks nothing."""
@@ -258,11 +261,6 @@ def _parameters(law: type[Law]) -> dict[str, bool]:
 
     parameters = inspect.signature(law).parameters
     return {name: each.default is each.empty for name, each in parameters.items()}
-
-
-def _rank(kind: str) -> int:
-    """Return the place of a kind in ``KINDS``; unknown kinds come last."""
-    return KINDS.index(kind) if kind in KINDS else len(KINDS)
 
 
 REGISTRY = Registry()

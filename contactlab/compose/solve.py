@@ -19,7 +19,7 @@ from contactlab.compose.solved_motion import FailedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.integrator import Observer, TangentialMotion
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.sampled_motion import NormalMotions
+from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status, succeeded
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import consecutive, every, some
@@ -32,7 +32,7 @@ from contactlab.outcome.plan import PlanColumns
 #: Friction work over the energy at the start is this many times less accurate than psi2.
 WORK_ACCURACY = 10.0
 #: A failed batch of at most so many impacts is marched one by one; a larger batch is halved first.
-FEW = 8
+ONE_BY_ONE = 8
 
 
 class Prepared(NamedTuple):
@@ -172,28 +172,20 @@ def _march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) -
     shape = normal.scene.shape
     if shape == (1,) and observer is None:  # one impact is faster as plain numbers
         return TangentialMotion.joined([part(0)], shape)
-    motion, raised = _attempt(laws, normal, observer)
-    if not shape or observer is not None or succeeded(motion.status):
-        return motion
-    if laws.integrator.own_statuses and not raised:
-        return motion
-    return TangentialMotion.joined([part(each) for each in _parts(*shape, most=FEW)], shape)
-
-
-def _attempt(
-    laws: Laws, normal: NormalMotion, observer: Observer | None
-) -> tuple[TangentialMotion, bool]:
-    """Return the motion, and True if the integrator raised instead of returning a motion."""
-    scene = normal.scene
     try:
-        # Underflow is harmless here, even if the user has numpy raise for it.
-        with np.errstate(under="ignore"):
-            return laws.integrator.integrate(normal, laws.tangential, scene, observer), False
+        with np.errstate(under="ignore"):  # harmless here, even if the user has numpy raise for it
+            motion = laws.integrator.integrate(normal, laws.tangential, normal.scene, observer)
+        raised = False
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # a plug-in may not end the process
         sentence = faults.sentence(laws.integrator, faults.raised(error), 1)
-        return TangentialMotion.nothing(scene.shape, Status.LAW_RAISED, sentence), True
+        motion, raised = TangentialMotion.nothing(shape, Status.LAW_RAISED, sentence), True
+    if not shape or observer is not None or succeeded(motion.status):
+        return motion
+    if laws.integrator.own_statuses and not raised:
+        return motion
+    return TangentialMotion.joined([part(each) for each in _parts(*shape, most=ONE_BY_ONE)], shape)
 
 
 def _answered(normal: NormalMotion, known: list[Answer]) -> TangentialMotion:
@@ -218,7 +210,7 @@ def _answered(normal: NormalMotion, known: list[Answer]) -> TangentialMotion:
     own = None
     if any(answer.normal is not None for _, answer in known):
         parts = [(where, each.normal and each.normal.take(where)) for where, each in known]
-        own = NormalMotions(shape, ((np.ones(shape, dtype=bool), None), *parts))
+        own = Ends.merged([(np.ones(shape, dtype=bool), None), *parts], shape)
     return TangentialMotion(
         slip_velocity_change=change,
         friction_work=work,

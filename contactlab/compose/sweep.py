@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from contactlab.compose.composition import Laws
-from contactlab.compose.pieces import Chunk, Piece, Solve, kind_of_motion, unsolved
+from contactlab.compose.pieces import Chunk, Piece, Solve, unsolved
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import WholeImpactTangentialLaw
@@ -51,7 +51,7 @@ def swept(
 
     ``solve`` returns the piece of a chunk, here or in a worker.
     """
-    size, block, kind = scene.shape[0], block_of(laws), kind_of_motion(scene)
+    size, block = scene.shape[0], block_of(laws)
     if isinstance(scene, EccentricScene):
         block = ECCENTRIC_IMPACTS
     elif laws.tangential.needs_no_march(scene, laws.integrator.accuracy):
@@ -83,12 +83,13 @@ def swept(
         if kept is not None and finished:
             kept.keep(finished[-1])  # which may have been on its way to the disk
         gaps = _gaps(finished, size)
-        finished += [unsolved(gap, Status.INTERRUPTED, kind=kind) for gap in gaps]
+        finished += [unsolved(gap, scene, Status.INTERRUPTED) for gap in gaps]
     finally:
         pieces.close()
     finished.sort(key=lambda piece: piece.chunk)
     columns = PlanColumns.joined([piece.columns for piece in finished], (size,))
-    return columns, kind.joined([piece.motion for piece in finished], (size,))
+    motions = [piece.motion for piece in finished]
+    return columns, type(motions[0]).joined(motions, (size,))
 
 
 def one_axis(shape: tuple[int, ...]) -> None:

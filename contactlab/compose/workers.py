@@ -20,14 +20,14 @@ import numpy as np
 
 from contactlab.compose.composition import Laws, versions
 from contactlab.compose.loading import short
-from contactlab.compose.pieces import Chunk, Piece, Solve, kind_of_motion, unsolved
+from contactlab.compose.pieces import Chunk, Piece, Solve, unsolved
 from contactlab.compose.solve import solved
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import refuse, whole
 
 #: Most processes: more than any machine has processors.
-MOST = 1024
+MOST_PROCESSES = 1024
 MAIN_REMEDY = 'in a script, call sweep under if __name__ == "__main__":'
 MODULE_REMEDY = "define its class at the top of a module that can be imported"
 
@@ -58,8 +58,7 @@ def pieces_of(
                 answer = future.result()
             except Exception as error:  # the executor failed: ``reply`` returns errors of the laws
                 remedy = "" if answered else f"; {MAIN_REMEDY}"
-                sentence, kind = short(error) + remedy, kind_of_motion(scene)
-                yield unsolved(chunk, Status.WORKER_DIED, sentence, kind)
+                yield unsolved(chunk, scene, Status.WORKER_DIED, short(error) + remedy)
                 continue
             answered = True
             if answer.raised is not None:
@@ -127,7 +126,7 @@ def processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     The processes end with the ``with`` block, and with this program, however the program ends.
     Laws that print there write to stderr.
     """
-    workers = whole("workers", workers, most=MOST)
+    workers = whole("workers", workers, most=MOST_PROCESSES)
     pool = ProcessPoolExecutor(workers, mp_context=_Spawn(), initializer=_begin)
     try:
         yield pool

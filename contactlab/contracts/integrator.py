@@ -14,7 +14,7 @@ from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
-from contactlab.contracts.sampled_motion import NormalMotions
+from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
@@ -74,7 +74,7 @@ class TangentialMotion(BatchMotion):
         sentence for a batch, which goes to the impacts that failed.
     counters : mapping of str to int
         Operations counted: ``steps``, ``evaluations``, ``rejected``, ...
-    normal : NormalMotion, NormalMotions or None
+    normal : NormalMotion, Ends or None
         The normal motion that came of the friction, if the friction changes it. Restitution,
         duration and maxima of the result are then those of this motion, and the energy books take
         the dissipation that the normal law declares.
@@ -82,11 +82,11 @@ class TangentialMotion(BatchMotion):
 
     slip_velocity_change: Real
     friction_work: Real
-    normal: NormalMotion | NormalMotions | None = None
+    normal: NormalMotion | Ends | None = None
 
     @classmethod
     def merged(cls, parts: Sequence[tuple[Any, Self]], shape: tuple[int, ...]) -> Self:
-        """Return one motion of ``shape``, with the normal motions of the parts.
+        """Return one motion of ``shape``, with the ends of the normal motions of the parts.
 
         Parameters
         ----------
@@ -97,7 +97,7 @@ class TangentialMotion(BatchMotion):
         normals = [(where, part.normal) for where, part in parts]
         if all(normal is None for _, normal in normals):
             return motion
-        return attrs.evolve(motion, normal=NormalMotions(shape, tuple(normals)))
+        return attrs.evolve(motion, normal=Ends.merged(normals, shape))
 
 
 class Integrator(Law):

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
-import attrs
 import numpy as np
 from numpy.typing import NDArray
 
@@ -104,34 +103,35 @@ class SampledMotion(NormalMotion):
         )
 
 
-@attrs.frozen(eq=False, repr=False)
-class NormalMotions:
-    """The normal motions of parts of a batch, as ``TangentialMotion.merged`` makes them.
+class Ends(NamedTuple):
+    """Ends of the normal motions that friction changed, and the energy that the law took, in J.
 
-    Attributes
-    ----------
-    shape : tuple of int
-        Shape of the whole batch.
-    parts : tuple of (array of bool or slice, NormalMotion or None)
-        Masks or slices of the batch, each with the motion of its impacts; None for impacts whose
-        normal motion friction does not change.
+    Each entry has the batch shape; NaN for impacts whose normal motion friction does not change.
     """
 
-    shape: tuple[int, ...]
-    parts: tuple[tuple[Any, NormalMotion | NormalMotions | None], ...]
+    duration: Any
+    final_rate: Any
+    maximum_radius: Any
+    maximum_approach: Any
+    maximum_force: Any
+    dissipation: Any
 
+    @classmethod
+    def of(cls, normal: NormalMotion | Ends | None) -> Ends:
+        """Return the ends of a motion; None is one that friction does not change."""
+        if isinstance(normal, Ends):
+            return normal
+        if normal is None:
+            return cls._make([math.nan] * len(cls._fields))
+        law: Any = normal.law
+        ends = (getattr(normal, name) for name in cls._fields[:-1])
+        return cls._make((*ends, law.dissipation(normal)))
 
-def gathered(
-    normal: NormalMotion | NormalMotions | None, of: Callable[[NormalMotion], Any], shape: Any
-) -> Any:
-    """Return a number of each motion, of the batch shape; NaN where there is no motion."""
-    if normal is None:
-        return spread(math.nan, shape)
-    if isinstance(normal, NormalMotion):
-        return of(normal)
-    each = []
-    for place, part in normal.parts:
-        slices = isinstance(place, slice)
-        size = place.stop - place.start if slices else int(np.count_nonzero(place))
-        each.append((place, gathered(part, of, (size,))))
-    return merged(each, normal.shape)
+    @classmethod
+    def merged(
+        cls, parts: Sequence[tuple[Any, NormalMotion | Ends | None]], shape: tuple[int, ...]
+    ) -> Ends:
+        """Return the ends of a batch of ``shape`` from places and the motions of parts."""
+        ends = [(where, cls.of(normal)) for where, normal in parts]
+        columns = ([(where, getattr(each, name)) for where, each in ends] for name in cls._fields)
+        return cls._make(merged(column, shape) for column in columns)

@@ -137,13 +137,12 @@ class EccentricScene:
         if not np.all(coupling * pressure < 2.0 * inertia):
             worst = np.max(coupling * pressure / (2.0 * inertia))
             raise refuse("lam eta / (2 chi)", float(worst), "must be below 1: W has an inverse")
-        mu = np.sqrt(squared)
-        matrix = np.zeros((*slip.shape, 3, 3))
-        matrix[..., 0, 0] = 1.0
-        matrix[..., 0, 1] = matrix[..., 1, 0] = coupling / mu
-        matrix[..., 1, 1] = matrix[..., 2, 2] = 2.0 * inertia
-        velocity = np.stack((slip * mu, 0.0 * slip), axis=-1)
-        return cls._scaled(mu, matrix, velocity, planar=True)
+        slip, coupling = (
+            np.stack((each, other), axis=-1)
+            for each, other in ((slip, 0.0 * slip), (coupling, np.zeros(slip.shape)))
+        )
+        tensor = inertia[..., None, None] * np.eye(2)
+        return cls._scaled(np.sqrt(squared), slip, tensor, coupling, planar=True)
 
     @classmethod
     def _in_space(cls, psi1: Any, chi: Any, lam: Any, rho: Any) -> EccentricScene:
@@ -165,16 +164,17 @@ class EccentricScene:
             slip.shape[:-1], coupling.shape[:-1], inertia.shape[:-2], squared.shape
         )
         mu = np.broadcast_to(np.sqrt(squared), shape)
-        matrix = np.zeros((*shape, 3, 3))
+        return cls._scaled(mu, slip, inertia, coupling, planar=False)
+
+    @classmethod
+    def _scaled(
+        cls, mu: Array, slip: Array, inertia: Array, coupling: Array, *, planar: bool
+    ) -> EccentricScene:
+        """Return a scene of vectors and tensors, in units with v1 = R = C = 1/W_nn = kappa = 1."""
+        matrix = np.zeros((*mu.shape, 3, 3))
         matrix[..., 0, 0] = 1.0
         matrix[..., 0, 1:] = matrix[..., 1:, 0] = coupling / mu[..., None]
         matrix[..., 1:, 1:] = 2.0 * inertia
-        velocity = np.broadcast_to(slip * mu[..., None], (*shape, 2))
-        return cls._scaled(mu, matrix, velocity, planar=False)
-
-    @classmethod
-    def _scaled(cls, mu: Any, matrix: Array, velocity: Array, *, planar: bool) -> EccentricScene:
-        """Return a scene in units with v1 = R = C = 1/W_nn = kappa = 1."""
         modulus = 15.0 / 16.0  # makes C = 1 in eq. (9)
         pair = Pair(
             radius=1.0,
@@ -188,7 +188,7 @@ class EccentricScene:
             friction_coefficient=_number(mu),
             inverse_mass=matrix,
             normal_speed=1.0,
-            slip_velocity=velocity,
+            slip_velocity=np.broadcast_to(slip * mu[..., None], (*mu.shape, 2)),
             planar=planar,
         )
 

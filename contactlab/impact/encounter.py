@@ -33,14 +33,14 @@ from contactlab.numeric.vectors import (
 Array = NDArray[np.float64]
 
 #: Encounters computed at a time: arrays of this length stay in the processor's cache.
-TOGETHER = 1 << 14
+ENCOUNTERS_AT_A_TIME = 1 << 14
 
 
 #: Fields of an encounter that are vectors.
-VECTORS = (
+GIVEN = (
     "normal", "velocity", "spin", "target_velocity", "target_spin", "contact", "target_contact",
 )  # fmt: skip
-_DIMENSIONS = attrgetter(*(f"{name}.ndim" for name in VECTORS))
+_DIMENSIONS = attrgetter(*(f"{name}.ndim" for name in GIVEN))
 #: The bodies of the last single encounter, and their pair.
 _last: Any = (None, None, None)
 
@@ -105,7 +105,7 @@ class Encounter:
         paths, numbers = _numbers(*map(type, (self.body, self.target)))
         values, shape = numbers(self), ()
         if np.ndarray in map(type, values) or max(_DIMENSIONS(self)) > 1:
-            shapes = {name: getattr(self, name).shape[:-1] for name in VECTORS}
+            shapes = {name: getattr(self, name).shape[:-1] for name in GIVEN}
             shapes |= {
                 path.replace(".material", ""): value.shape
                 for path, value in zip(paths, values, strict=True)
@@ -170,7 +170,7 @@ class Encounter:
             else:
                 value = batch.taken(value, self.shape, part)
             object.__setattr__(taken, name, value)
-        for name in VECTORS:
+        for name in GIVEN:
             vectors = getattr(self, name)
             if vectors.ndim > 1:
                 vectors = np.broadcast_to(vectors, (*self.shape, 3))[part]
@@ -186,17 +186,13 @@ class Encounter:
         body, target, last = _last
         pair: Pair = last
         if body is not self.body or target is not self.target:
-            pair = self._pair_of_spheres()
+            body, target = self.body, self.target
+            if isinstance(body, RigidBody) or isinstance(target, RigidBody):
+                raise refuse("pair", type(body).__name__, "is that of spheres", "take scene.pair")
+            pair = Pair.of(body, target)
             if not self.shape:
-                _last = self.body, self.target, pair
+                _last = body, target, pair
         return pair
-
-    def _pair_of_spheres(self) -> Pair:
-        """Return the pair, or refuse bodies that have one only with their contact."""
-        body, target = self.body, self.target
-        if isinstance(body, RigidBody) or isinstance(target, RigidBody):
-            raise refuse("pair", type(body).__name__, "is that of spheres", "take scene.pair")
-        return Pair.of(body, target)
 
     @property
     def approaching(self) -> Any:
@@ -211,9 +207,9 @@ class Encounter:
         """Yield (slice, encounters): one-dimensional parts and their places in the flat batch."""
         size = math.prod(self.shape)
         flat = self.take(np.full(self.shape, True)) if len(self.shape) > 1 else self
-        for first in range(0, size, TOGETHER):
-            where = slice(first, min(first + TOGETHER, size))
-            yield where, flat.take(where) if size > TOGETHER else flat
+        for first in range(0, size, ENCOUNTERS_AT_A_TIME):
+            where = slice(first, min(first + ENCOUNTERS_AT_A_TIME, size))
+            yield where, flat.take(where) if size > ENCOUNTERS_AT_A_TIME else flat
 
     def meeting(self) -> Contact:
         """Return directions and speeds at the contact before the impact.

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Self
 
 import attrs
 import numpy as np
 
 from contactlab.contracts.status import Status
-from contactlab.numeric.arrays import taken
+from contactlab.numeric.arrays import filled, taken
 from contactlab.numeric.checks import Real
+from contactlab.outcome.columns import json_value
 from contactlab.outcome.numerical_error import error_cautions, error_words
 from contactlab.outcome.plan import Plan
 
@@ -191,3 +192,61 @@ class RunResult(Answer):
     def __iter__(self) -> Iterator[Self]:
         """Iterate over the impacts of a batch."""
         return (self[index] for index in range(len(self)))
+
+
+class TwoBodies(Answer):
+    """Base of collisions: both bodies after an encounter, with the impacts of those that met."""
+
+    __slots__ = ()
+
+    encounter: Any
+    velocity: Any
+    spin: Any
+    collided: Any
+
+    @property
+    @abstractmethod
+    def plan(self) -> Plan:
+        """The plan of the collision."""
+
+    @abstractmethod
+    def _impacts(self) -> Any:
+        """Return the result of the impacts; None if none were run."""
+
+    @abstractmethod
+    def _vectors(self) -> Iterable[str]:
+        """Return the names of the vectors after the collision."""
+
+    def __repr__(self) -> str:
+        """Return velocity and spin of a single collision, or the count in a batch, and statuses."""
+        name, statuses = type(self).__name__, np.ravel(np.array(self.status, dtype=object))
+        outcome = ", ".join(sorted({status.name for status in statuses}))
+        if self.encounter.shape:
+            count = f"{int(np.sum(self.collided))} of {np.size(self.collided)}"
+            return f"{name}({count} encounters collided; {outcome})"
+        outcome = outcome if self.collided else "separate, passed through"
+        return f"{name}(velocity={self.velocity}, spin={self.spin}; {outcome})"
+
+    def _ends(self) -> tuple[Any, Any]:
+        impacts = self._impacts()
+        return (Status.SUCCESS, "") if impacts is None else impacts._ends()
+
+    @property
+    def status(self) -> Any:
+        """A ``Status``, or an array of statuses; ``SUCCESS`` if the bodies passed through."""
+        impacts = self._impacts()
+        if impacts is not None and np.all(self.collided):
+            return impacts.status
+        status = filled(Status.SUCCESS, self.encounter.shape)
+        if impacts is not None:
+            status[self.collided] = impacts.status
+        return status
+
+    @property
+    def cautions(self) -> list[str]:
+        """Cautions of the plan."""
+        return [*map(str, self.plan.cautions)]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the vectors of both bodies after the collision as plain lists."""
+        return {name: json_value(np.asarray(getattr(self, name))) for name in self._vectors()}

@@ -6,7 +6,7 @@ for reading show the columns in ``SWEEP_TABLE`` and ``COMPARISON_TABLE``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -118,20 +118,17 @@ COMPARISON_TABLE = (
 )  # fmt: skip
 
 
-def numeric_columns() -> dict[str, Column]:
-    """Return the columns of numbers by name, with angles in degrees and the rebound speed added."""
-    numeric = {}
+def _numeric_columns() -> Iterator[Column]:
     for column in COLUMNS:
         if column.unit:
-            numeric[column.name] = column
+            yield column
         if column.unit == "rad":
-            name = f"{column.name}_deg"
-            numeric[name] = Column(name, "deg", column.path, 180.0 / np.pi)
-    numeric["rebound_speed"] = Column("rebound_speed", "m/s", "rebound_speed")
-    return numeric
+            yield Column(f"{column.name}_deg", "deg", column.path, 180.0 / np.pi)
+    yield Column("rebound_speed", "m/s", "rebound_speed")
 
 
-QUANTITIES = numeric_columns()
+#: The columns of numbers by name, with angles in degrees and the rebound speed added.
+QUANTITIES = {column.name: column for column in _numeric_columns()}
 
 
 def quantity_named(name: str, *, where: str = "quantity") -> Column:

@@ -80,14 +80,7 @@ def ledger(scene: Scene, motion: Motion, checked: Mask = True) -> EnergyLedger:
     """Return the energy books of ``motion``, in J, from its velocities and its friction work."""
     before = (scene.normal_speed, scene.slip_velocity)
     after = (motion.normal_velocity, motion.slip_velocity_change)
-    return books(
-        scene.pair,
-        before,
-        after,
-        motion.friction_work,
-        exchange=motion.exchange,
-        checked=checked,
-    )
+    return books(scene.pair, before, after, motion.friction_work, motion.exchange, checked)
 
 
 def books(
@@ -95,9 +88,8 @@ def books(
     before: tuple[Real, Real],
     after: tuple[Real, Real],
     friction_work: Real,
-    *,
-    exchange: Real = 0.0,
-    checked: Mask = True,
+    exchange: Real,
+    checked: Mask,
 ) -> EnergyLedger:
     """Return the energy books from (rate, slip velocity) and (rate, change of slip velocity).
 

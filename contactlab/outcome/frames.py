@@ -3,30 +3,12 @@
 from __future__ import annotations
 
 import importlib
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from contactlab.outcome.columns import columns as all_columns
 from contactlab.outcome.columns import unit_in
-
-
-class Labelled(NamedTuple):
-    """The columns that the scene of a result defines, and their axes.
-
-    Attributes
-    ----------
-    columns : dict of str to array, shape of the scene
-        The columns that are no axes; statuses by name.
-    axes : dict of str to array, shape (n_i,)
-        Axes of a grid; empty for any other batch, and for one impact.
-    units : dict of str to str
-        Units of columns and axes; empty for words.
-    """
-
-    columns: dict[str, Any]
-    axes: dict[str, Any]
-    units: dict[str, str]
 
 
 def to_dataframe(result: Any) -> Any:
@@ -65,8 +47,8 @@ def to_xarray(result: Any) -> Any:
     )
 
 
-def _labelled(result: Any) -> Labelled:
-    """Return columns, axes and units of a result."""
+def _labelled(result: Any) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
+    """Return the columns that a scene defines, of its shape, the axes of a grid, and all units."""
     scene = result.scene
     axes = dict(getattr(scene, "axes", {}))  # an eccentric scene has none
     columns, units = {}, {}
@@ -79,7 +61,7 @@ def _labelled(result: Any) -> Labelled:
         if name == "status":
             values = np.reshape([status.name for status in np.ravel(np.array(values))], scene.shape)
         columns[name] = np.broadcast_to(values, scene.shape)
-    return Labelled(columns, axes, units)
+    return columns, axes, units
 
 
 def _needed(module: str, method: str) -> Any:

@@ -11,8 +11,7 @@ import numpy as np
 
 from contactlab.contracts.integrator import TangentialMotion
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.normal import NormalLaw
-from contactlab.contracts.sampled_motion import gathered
+from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import locked, spread
 from contactlab.numeric.checks import Real
@@ -91,17 +90,14 @@ def _coupled(
     normal: NormalMotion, tangential: TangentialMotion, entries: dict[str, Any]
 ) -> dict[str, Any]:
     """Return the entries of the normal motion that came of the friction, and the exchange."""
-    scene, own, law = normal.scene, tangential.normal, normal.law
-    assert isinstance(law, NormalLaw)
-    alone = np.isnan(gathered(own, lambda motion: motion.duration, scene.shape))
+    scene, own = normal.scene, Ends.of(tangential.normal)
+    alone = np.isnan(own.duration)
     coupled = {
-        name: np.where(alone, entries[name], gathered(own, attrgetter(source), scene.shape))
-        for name, source in ENDS.items()
+        name: np.where(alone, entries[name], getattr(own, source)) for name, source in ENDS.items()
     }
     speed: Any = scene.normal_speed
     lost = 0.5 * scene.pair.normal_mass * (speed * speed - coupled["normal_velocity"] ** 2)
-    dissipated = gathered(own, law.dissipation, scene.shape)
-    return coupled | {"exchange": np.where(alone, 0.0, lost - dissipated)}
+    return coupled | {"exchange": np.where(alone, 0.0, lost - own.dissipation)}
 
 
 #: The numbers of a motion but the exchange, which may be undeclared.

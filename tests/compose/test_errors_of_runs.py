@@ -8,7 +8,7 @@ import pytest
 
 import contactlab
 from contactlab import Encounter, Material, Scene, Simulation, Sphere, collide
-from contactlab.compose.collision import VECTORS
+from contactlab.compose.collision import VECTORS_AFTER
 from contactlab.contracts import (
     SteppedTangentialLaw,
     TangentialResponse,
@@ -179,7 +179,7 @@ def test_no_number_of_a_failed_impact_can_be_taken_for_an_answer(fault, status, 
     good, bad = (line.count("nan") for line in (tmp_path / "both.csv").read_text().split()[-2:])
     assert (good, bad) == (0, len(COLUMNS) - len(GIVEN))
     for found, last in ((collide(met, simulation), ...), (collide(both_met, simulation), 1)):
-        vectors = np.array([getattr(found, name)[last] for name, _ in VECTORS])
+        vectors = np.array([getattr(found, name)[last] for name, _ in VECTORS_AFTER])
         assert np.isnan(vectors[:, 0]).all()
 
 

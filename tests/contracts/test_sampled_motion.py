@@ -1,4 +1,4 @@
-"""Normal motions through samples: linear between them, and gathered from parts of a batch."""
+"""Normal motions through samples: linear between them, and merged from parts of a batch."""
 
 import math
 
@@ -9,7 +9,7 @@ import contactlab
 from contactlab import Scene
 from contactlab.contracts import NormalContact, SampledMotion
 from contactlab.contracts.motion import MOST_SHARED
-from contactlab.contracts.sampled_motion import NormalMotions, gathered
+from contactlab.contracts.sampled_motion import Ends
 
 LAW = contactlab.create("normal.hertz")
 ONE = Scene.nondimensional(psi1=1.2, chi=1.44)
@@ -116,23 +116,17 @@ def test_some_impacts_may_be_taken(part):
     assert np.shape(sample.time) == taken.scene.shape
 
 
-def test_numbers_are_gathered_from_the_motions_of_parts():
+def test_ends_are_merged_from_the_motions_of_parts():
     first = np.array([True, False, False])
     middle, last = np.array([False, True, False]), np.array([False, False, True])
-    inner = NormalMotions(
-        (2,), ((np.array([True, False]), None), (np.array([False, True]), sampled()))
+    inner = Ends.merged(
+        [(np.array([True, False]), None), (np.array([False, True]), sampled())], (2,)
     )
-    parts = NormalMotions((3,), ((first, sampled()), (middle | last, inner)))
-
-    def duration(motion):
-        return motion.duration
-
-    assert gathered(parts, duration, (3,)) == pytest.approx([4.0, math.nan, 4.0], nan_ok=True)
-    assert gathered(both(), duration, (2,)).tolist() == [4.0, 8.0]
-    assert math.isnan(gathered(None, duration, ()))
-    assert np.isnan(gathered(None, duration, (2, 2))).tolist() == [[True, True], [True, True]]
-    some = NormalMotions((3,), ((first, None), (middle | last, both())))
-    assert gathered(some, duration, (3,)) == pytest.approx([math.nan, 4.0, 8.0], nan_ok=True)
+    ends = Ends.merged([(first, sampled()), (middle | last, inner)], (3,))
+    assert ends.duration == pytest.approx([4.0, math.nan, 4.0], nan_ok=True)
+    some = Ends.merged([(first, None), (middle | last, both())], (3,))
+    assert some.duration == pytest.approx([math.nan, 4.0, 8.0], nan_ok=True)
+    assert np.isnan(Ends.of(None).final_rate)
 
 
 def test_what_equal_motions_share_is_made_once_and_stays_bounded():
