@@ -8,12 +8,12 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.contracts import NormalContact, NormalLaw, NormalMotion, without_tension
+from contactlab.contracts import NormalContact, without_tension
 from contactlab.contracts.restitution import one_of_two, restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
-from contactlab_laws.differences.table import choice
+from contactlab_laws.differences.table import OfRestitution
 
 #: Default restitution, for laws with no relaxation time of their own.
 DEFAULT_RESTITUTION = 0.9
@@ -70,7 +70,7 @@ class Parts(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class KuwabaraKono(NormalLaw):
+class KuwabaraKono(OfRestitution):
     """Hertz contact of viscoelastic spheres, to first order in the viscosity.
 
     P = k z^0.5 (z + 1.5 A z'), k = (4/3) E* sqrt(R), P in N, positive in compression, z' positive
@@ -115,7 +115,3 @@ class KuwabaraKono(NormalLaw):
         inside: Any = approach * (approach > 0.0)
         force = state.stiffness * inside**0.5 * (inside + state.time * rate)
         return without_tension(force, (state.radius * inside) ** 0.5, approach), state
-
-    def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return the cautions of every law, and how far psi2 moves with other laws of equal e."""
-        return (*super().cautions(scene, motion), *choice(scene, motion))

@@ -7,12 +7,12 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
+from contactlab.contracts import NormalContact
 from contactlab.contracts.restitution import restitution
 from contactlab.impact.hertz import linear_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, Real, quantity
-from contactlab_laws.differences.table import choice
+from contactlab_laws.differences.table import OfRestitution
 
 
 class State(NamedTuple):
@@ -24,7 +24,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class WaltonBraun(NormalLaw):
+class WaltonBraun(OfRestitution):
     """Plastic loading P = k1 z and elastic unloading P = k2 (z - z_p), with e = sqrt(k1/k2).
 
     P is in N, positive in compression; the remaining indentation is z_p = (1 - e²) z_max. In
@@ -70,7 +70,3 @@ class WaltonBraun(NormalLaw):
             overlap=compression,
         )
         return contact, state._replace(deepest=deepest)
-
-    def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return the cautions of every law, and how far psi2 moves with other laws of equal e."""
-        return (*super().cautions(scene, motion), *choice(scene, motion))

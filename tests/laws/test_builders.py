@@ -27,11 +27,11 @@ from contactlab_laws.tables.regions import (
 from table_builders import __main__ as command
 from table_builders.coupling import build as unlike
 from table_builders.damped import build
-from table_builders.damped.coordinates import coefficients, incidence, restitution, smooth
-from table_builders.damped.coordinates import nodes as damped_nodes
-from table_builders.elastic import exact, start
+from table_builders.damped.build import coefficients, incidence, restitution, smooth
+from table_builders.damped.build import nodes as damped_nodes
+from table_builders.elastic import exact
 from table_builders.elastic.coordinates import impact, measure
-from table_builders.elastic.fit import Cell
+from table_builders.elastic.fit import Cell, slope_at_one
 
 #: Cuts at chi = 1.5 + psi1/10 and chi = 2 + t^5.
 CUTS = Cuts(np.array([1.5, 0.1]), np.array([2.0, 0, 0, 0, 0, 1.0]))
@@ -64,7 +64,7 @@ def test_the_impact_of_a_place(region, a, b, psi1, chi):
 def test_the_slope_along_a_cut_that_climbs():
     """With psi2 = chi² + 3 (psi1 - 1) at psi1 = 1: at constant chi, and then along the cut."""
     for region, up in ((SLIP_BACK, False), (SLIP_ON, True)):
-        found = start.slope(
+        found = slope_at_one(
             Cell(region, 0, 1, 0, 1), CUTS, lambda psi1, chi: chi**2 + 3.0 * (psi1 - 1.0)
         )
         b = (1.0 + nodes(NODES)) / 2.0

@@ -11,8 +11,7 @@ from contactlab_laws.halfspace.axisymmetric import rebound as by_rings_of
 from contactlab_laws.tables.damped import BORDERS, by_rings, depth, inner, rebound, section, tsuji
 from contactlab_laws.tables.damped import CHI as RANGE_OF_CHI
 from table_builders.damped import build
-from table_builders.damped.build import by_half_space
-from table_builders.damped.coordinates import restitution
+from table_builders.damped.build import by_half_space, restitution
 from tests.laws.other_march import limit
 from tests.laws.test_rings import REFERENCES
 

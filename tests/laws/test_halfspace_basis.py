@@ -14,8 +14,8 @@ from contactlab_laws.halfspace.hemispheres import displacement
 from contactlab_laws.halfspace.instants import instants
 from contactlab_laws.halfspace.march import follow
 from contactlab_laws.halfspace.modes import modes
-from contactlab_laws.halfspace.pressure import Answering, Prescribed
-from contactlab_laws.halfspace.splitting import TOLERANCE, Step, settle
+from contactlab_laws.halfspace.pressure import Answering, Contact, Prescribed
+from contactlab_laws.halfspace.splitting import TOLERANCE, settle
 
 HERTZ = contactlab.create("normal.hertz")
 MOTION = normal_motion(HERTZ, Scene.nondimensional(psi1=1.0, chi=1.0))
@@ -99,8 +99,8 @@ def test_cattaneo_and_mindlin(front):
     """F/(mu P) = 1 - c³ at the displacement 1 - c², wherever the front is."""
     table = modes(32, 8, 0.0, 0.0, None)
     aim = (1.0 - front**2) * np.broadcast_to(table.along, (2, 8, 32))
-    step = Step(aim, np.sqrt(1.0 - table.points**2), 1.0, 0.0)
-    found = settle(table, step, np.zeros(aim.shape))
+    contact = Contact(32, np.sqrt(1.0 - table.points**2), 1.0)
+    found = settle(table, contact, aim, 0.0, np.zeros(aim.shape))
     assert found.share == pytest.approx(1.0 - front**3, abs=1e-3)
     assert found.residual < TOLERANCE
 

@@ -14,10 +14,10 @@ from contactlab_laws.tables.elastic import NODES, SHIPPED, shipped
 from contactlab_laws.tables.file import read
 from contactlab_laws.tables.patches import nodes, polynomial
 from contactlab_laws.tables.regions import CUT_END, FIRST_POWER, LARGEST_CHI, places
-from table_builders.elastic import cuts, start
+from table_builders.elastic import cuts
 from table_builders.elastic.coordinates import NAMES, impact
 from table_builders.elastic.exact import exact
-from table_builders.elastic.fit import Cell, begins_at_one, fit
+from table_builders.elastic.fit import Cell, begins_at_one, fit, slope_at_one
 from table_builders.elastic.verify import draw, verify
 from tests.laws.reference import TABLE
 
@@ -229,7 +229,7 @@ def test_a_patch_is_made_again_from_exact_impacts(row):
     psi1, chi = cell.nodes(made.cuts)
     slope = None
     if begins_at_one(cell):
-        slope = start.slope(cell, made.cuts, exact)
+        slope = slope_at_one(cell, made.cuts, exact)
         width = CUT_END * 0.5**cell.level_a
         of_table = polyval(nodes(NODES), known[FIRST_POWER]) / width**FIRST_POWER
         assert slope == pytest.approx(of_table, abs=1e-7)

@@ -22,8 +22,7 @@ from contactlab.numeric.checks import Real, choice, count
 from contactlab_laws.annulus import all_steps, step
 from contactlab_laws.annulus.tables import Tables, hertz_pressure, tables
 from contactlab_laws.jaeger.all_steps import ScaledSteps
-from contactlab_laws.jaeger.partial_slip import PartialSlip, Scales
-from contactlab_laws.jaeger.pressure import hemisphere
+from contactlab_laws.jaeger.partial_slip import PartialSlip, Scales, hemisphere
 
 
 class State(NamedTuple):

@@ -54,10 +54,7 @@ def _rim(radius: Any, circle: Any) -> Any:
     return (radius - circle) * (2.0 * radius + circle) / (3.0 * (radius + circle))
 
 
-@lru_cache(maxsize=32)
-def circles(annuli: int) -> Circles:
-    """Return the circles of ``annuli`` annuli, cached."""
-    return Circles(annuli)
+circles = lru_cache(maxsize=32)(Circles)
 
 
 @attrs.frozen(kw_only=True)

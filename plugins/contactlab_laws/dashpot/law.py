@@ -10,7 +10,6 @@ from contactlab.contracts import (
     ClosedFormMotion,
     ClosedFormNormalLaw,
     NormalContact,
-    NormalMotion,
     Tabulated,
     without_tension,
 )
@@ -20,7 +19,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, Real, quantity
 from contactlab_laws.dashpot.motion import DashpotMotion, ScaledMotion
 from contactlab_laws.dashpot.oscillator import damping_of
-from contactlab_laws.differences.table import choice
+from contactlab_laws.differences.table import OfRestitution
 from contactlab_laws.hertz.motion import HertzMotion
 
 
@@ -42,7 +41,7 @@ def pressed(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float
 
 
 @attrs.frozen(kw_only=True)
-class Tsuji(ClosedFormNormalLaw, Tabulated):
+class Tsuji(OfRestitution, ClosedFormNormalLaw, Tabulated):
     """Hertz's spring with a dashpot that gives the same restitution at any speed.
 
     P = k z^1.5 + 2 beta sqrt(1.25 M k) z^0.25 z', k = (4/3) E* sqrt(R), in N, positive in
@@ -91,13 +90,9 @@ class Tsuji(ClosedFormNormalLaw, Tabulated):
 
         return damped.rebound(*impact, **options)
 
-    def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return the cautions of every law, and how far psi2 moves with other laws of equal e."""
-        return (*super().cautions(scene, motion), *choice(scene, motion))
-
 
 @attrs.frozen(kw_only=True)
-class Linear(ClosedFormNormalLaw):
+class Linear(OfRestitution, ClosedFormNormalLaw):
     """A linear spring and dashpot.
 
     P = k z + 2 beta sqrt(M k) z', in N, positive in compression; contact ends where P returns to
@@ -143,7 +138,3 @@ class Linear(ClosedFormNormalLaw):
         return DashpotMotion.of(
             self, scene, ScaledMotion(damping_of(self.restitution), 1.0), deepest
         )
-
-    def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return the cautions of every law, and how far psi2 moves with other laws of equal e."""
-        return (*super().cautions(scene, motion), *choice(scene, motion))

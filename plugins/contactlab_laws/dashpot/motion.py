@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.contracts import (
     ClosedFormMotion,
@@ -19,10 +18,8 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
-from contactlab.numeric.lobatto import lobatto, rows
+from contactlab.numeric.lobatto import Array, lobatto, rows
 from contactlab_laws.dashpot.oscillator import Oscillator
-
-Array = NDArray[np.float64]
 
 #: Edges of the panels over which time is summed, and nodes in each panel. Panels are even, then
 #: halved towards the end, where x^-0.2 is nearly singular under little damping.

@@ -20,7 +20,7 @@ from contactlab.contracts import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab_laws.deresiewicz.branches import ContactState, Step, followed
-from contactlab_laws.jaeger.pressure import hemisphere
+from contactlab_laws.jaeger.partial_slip import hemisphere
 
 #: Bound of the imbalance of the energy books, over the energy at the start: from the short memory.
 LARGEST_IMBALANCE = 0.1

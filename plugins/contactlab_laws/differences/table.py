@@ -12,6 +12,7 @@ import numpy as np
 
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
 
 FILE = Path(__file__).with_name("differences.csv")
@@ -127,6 +128,14 @@ def choice(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         "the restitution alone does not decide psi2: under partial slip other normal laws of the "
         f"same restitution move psi2 by up to {size_text} ({MEASURED}; model, not numerical error)",
     )
+
+
+class OfRestitution(NormalLaw):
+    """Base of laws whose restitution is an option: another law of equal e moves psi2."""
+
+    def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
+        """Return the cautions of every law, and how far psi2 moves with other laws of equal e."""
+        return (*super().cautions(scene, motion), *choice(scene, motion))
 
 
 def _above(size: float, factor: float = BETWEEN) -> str:

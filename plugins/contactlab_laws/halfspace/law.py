@@ -14,7 +14,7 @@ from contactlab.numeric.checks import Real, choice, count, flag, refuse
 from contactlab_laws.halfspace.groups import Options
 from contactlab_laws.halfspace.whole_impacts import own_answers
 from contactlab_laws.jaeger.gross_slip import gross_slip
-from contactlab_laws.jaeger.pressure import hemisphere
+from contactlab_laws.jaeger.partial_slip import hemisphere
 
 #: Energy that one-way coupling loses by nature, over that at the start and Lambda²; at most at the
 #: largest Lambda that was measured.

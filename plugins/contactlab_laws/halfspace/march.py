@@ -14,7 +14,7 @@ import numpy as np
 from contactlab_laws.halfspace.hemispheres import Array
 from contactlab_laws.halfspace.pressure import Answering, Prescribed
 from contactlab_laws.halfspace.slips import begun, moved, rest
-from contactlab_laws.halfspace.splitting import Step, settle
+from contactlab_laws.halfspace.splitting import settle
 
 
 class Followed(NamedTuple):
@@ -91,8 +91,7 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
             start = np.zeros(target.shape)
             known = min(number, memory.shape[2])
             start[:, :, :known] = memory[:, :, :known]
-            step = Step(target, contact.limit, contact.load, slowing, contact.yielding)
-            solution = settle(table, step, start)
+            solution = settle(table, contact, target, slowing, start)
             new[:, :, :number], memory = solution.traction, solution.memory
             share, force = solution.share, solution.force
             residual = max(residual, solution.residual)
@@ -111,7 +110,10 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
         change[k] = change[k - 1] - chi * passed * (shares[k - 1] + share)
         shares[k], traction = share, new
         if fields:
-            kept.append((new, slip, new[2] if table.parts == 3 else pressure.limit(k)))
+            pressed = new[2] if table.parts == 3 else np.zeros(table.count)
+            if contact is not None and contact.limit is not None:
+                pressed[: contact.rings] = contact.limit
+            kept.append((new, slip, pressed))
     departures: Any = None
     if isinstance(pressure, Answering):
         departures = np.stack((pressure.approach, pressure.rate, pressure.excess))[..., None]

@@ -96,10 +96,7 @@ class Modes:
         return float(total)
 
 
-@lru_cache(maxsize=6)
-def modes(rings: int, angles: int, poisson: float, drag: float, lift: float | None) -> Modes:
-    """Return the matrices of ``Modes``, cached."""
-    return Modes(rings, angles, poisson, drag, lift)
+modes = lru_cache(maxsize=6)(Modes)
 
 
 def _transforms(theta: Array, parts: int) -> tuple[Array, Array]:

@@ -76,13 +76,6 @@ class Prescribed:
             dragged = dragged + inner * self.table.drags[number - 2]
         return Contact(number, limit[:number], float(load), dragged)
 
-    def limit(self, k: int) -> Array:
-        """Return the pressure after step ``k``, shape (all rings,)."""
-        contact, pressure = self.contact(k), np.zeros(self.table.count)
-        if contact is not None and contact.limit is not None:
-            pressure[: contact.rings] = contact.limit
-        return pressure
-
     def advance(self, k: int, force: float) -> float:
         """Take step ``k``, which ends with this force; return its impulse."""
         return self.impulse(k)

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab_laws.annulus.tables import factors
 from contactlab_laws.halfspace.hemispheres import Array
 
 Mask = NDArray[np.bool_]
@@ -68,17 +69,8 @@ def rings(edges: Array) -> Rings:
     displaced = (2.0 / np.pi) * ((ends**2 - 0.5 * points**2) * angle + 0.5 * ends * points * rest)
     inverse = np.linalg.inv(traction)
     compliance = displaced @ inverse
-    lower, upper = (np.asarray(np.linalg.inv(each), float) for each in _factors(compliance))
+    lower, upper = (np.asarray(np.linalg.inv(each), float) for each in factors(compliance))
     return Rings(edges[:-1], compliance, lower, upper, edges[1:] ** 3 @ inverse)
-
-
-def _factors(matrix: Array) -> tuple[Array, Array]:
-    """Return the triangular factors of a matrix, without pivoting."""
-    upper, lower = matrix.copy(), np.eye(len(matrix))
-    for k in range(len(matrix) - 1):
-        lower[k + 1 :, k] = upper[k + 1 :, k] / upper[k, k]
-        upper[k + 1 :] -= np.outer(lower[k + 1 :, k], upper[k])
-    return lower, np.triu(upper)
 
 
 def settle(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) -> Array:

@@ -20,6 +20,7 @@ from scipy.linalg.lapack import dposv
 
 from contactlab_laws.halfspace.hemispheres import Array
 from contactlab_laws.halfspace.modes import Modes
+from contactlab_laws.halfspace.pressure import Contact
 
 #: Residual, over the largest pressure, at which a step is solved.
 TOLERANCE = 1e-7
@@ -30,30 +31,6 @@ MIXED, MOST = 60, 1500
 #: Ridge of the least squares of the mixing, over the trace.
 RIDGE = 1e-13
 TINY = 1e-300
-
-
-class Step(NamedTuple):
-    """The equations of a step: targets, limit and compliances.
-
-    Attributes
-    ----------
-    target : array, shape (parts, angles, rings)
-        Displacement at which the surfaces stick, and at which they touch.
-    limit : array, shape (rings,), or None
-        Coulomb's limit, or None if pressure is a part of the answer.
-    load : float
-        Friction load of the step, if pressure is prescribed.
-    slowing : float
-        Displacement along x that a share of 1 takes away.
-    yielding : float
-        Approach that a force of 1 takes away.
-    """
-
-    target: Array
-    limit: Array | None
-    load: float
-    slowing: float
-    yielding: float = 0.0
 
 
 class Settled(NamedTuple):
@@ -77,15 +54,28 @@ class Settled(NamedTuple):
     residual: float
 
 
-def settle(table: Modes, step: Step, start: Array) -> Settled:
-    """Return the tractions that obey Coulomb's law at the end of a step."""
+def settle(table: Modes, contact: Contact, target: Array, slowing: float, start: Array) -> Settled:
+    """Return the tractions that obey Coulomb's law at the end of a step.
+
+    Parameters
+    ----------
+    table : Modes
+    contact : Contact
+        Limit, load and yielding of the step.
+    target : array, shape (parts, angles, rings)
+        Displacement at which the surfaces stick, and at which they touch.
+    slowing : float
+        Displacement along x that a share of 1 takes away.
+    start : array, shape (parts, angles, rings)
+        Memory of the step before, 0 in new rings.
+    """
     parts, angles, number = start.shape
     resolvent, metric = table.resolvent(number), table.metric(number)
-    aim, along = metric * step.target, metric * table.along
+    aim, along = metric * target, metric * table.along
     weights, normal = table.force(number), table.basis.force[:number] / angles
     to, back, size = table.to, table.back, angles + 1
     now, mixing = start, _Mixing(start.size)
-    joint, limit = step.limit is None, step.limit
+    joint, limit = contact.limit is None, contact.limit
     residual, applied = np.inf, 0
     x = np.empty(start.shape)
     share = force = 0.0
@@ -96,12 +86,12 @@ def settle(table: Modes, step: Step, start: Array) -> Settled:
         length = np.sqrt(now[0] * now[0] + now[1] * now[1])
         np.multiply(now[:2], np.minimum(1.0, limit / np.maximum(length, TINY)), out=x[:2])
         pull = float(np.vdot(weights, x[:2]))
-        force = float((x[2] @ normal).sum()) if joint else step.load
+        force = float((x[2] @ normal).sum()) if joint else contact.load
         share = pull / force if force > 0.0 else 0.0
         wanted = 2.0 * x - now + aim
-        wanted[:2] -= (step.slowing * share) * along
+        wanted[:2] -= (slowing * share) * along
         if joint:
-            wanted[2] -= (step.yielding * force) * metric
+            wanted[2] -= (contact.yielding * force) * metric
         columns = (to @ wanted).transpose(1, 0, 2).reshape(size, parts * number, 1)
         resolved = (resolvent @ columns).reshape(size, parts, number).transpose(1, 0, 2)
         change = back @ resolved

@@ -9,7 +9,6 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.contracts import (
     ClosedFormMotion,
@@ -21,8 +20,7 @@ from contactlab.contracts import (
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
-
-Array = NDArray[np.float64]
+from contactlab.numeric.lobatto import Array
 
 #: Longer tables are not cached: 64 tables of three columns of 8 bytes are 6 MB at most.
 LONGEST_KEPT = 4000

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from bisect import bisect_left
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,3 +101,15 @@ def of_each(bundle: Bundle, before: Real, after: Array, pressure: Real) -> Geome
     weights = np.where(compression > 0.0, bundle.weights(after)[:touching], outside)
     limit = (pressure * bundle.limit_factor(after)) * np.maximum(compression, 0.0)
     return Geometry(throughout, np.where(grows, part, 1.0), limit, weights)
+
+
+def spring_fields(radius: Any, deflection: Any, limit: Any, *, metres: Any = 1.0) -> dict[str, Any]:
+    """Return the fields of springs, w and l in units of ``metres``, all of one shape."""
+    slips = (limit > 0.0) & (np.abs(deflection) >= limit)
+    return {
+        "radius": radius,
+        "displacement": metres * deflection,
+        "limit": metres * limit,
+        "stuck": (limit > 0.0) & ~slips,
+        "slipping": (slips * np.sign(deflection)).astype(np.int8),
+    }

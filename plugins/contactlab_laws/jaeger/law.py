@@ -19,12 +19,12 @@ from contactlab.contracts import (
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import flat
 from contactlab.numeric.checks import Real
 from contactlab_laws.differences.table import springs
 from contactlab_laws.jaeger import all_steps, step
-from contactlab_laws.jaeger.bundle import Array, Bundle
-from contactlab_laws.jaeger.partial_slip import PartialSlip, Scales
-from contactlab_laws.jaeger.pressure import hemisphere
+from contactlab_laws.jaeger.bundle import Array, Bundle, spring_fields
+from contactlab_laws.jaeger.partial_slip import PartialSlip, Scales, hemisphere
 
 #: Most numbers in a table of a whole run (16 MB); longer runs go step by step.
 LARGEST_RUN = 2_000_000
@@ -76,11 +76,8 @@ class ProfileLaw(PartialSlip):
             force, work, memory = step.advance(self.bundle(), memory, moved, radius, pressure, 1)
             response = TangentialResponse(force.item() * scales.force, work.item() * scales.work)
             return response, State(shape, scales, memory)
-        if len(shape) > 1 or np.shape(moved) != shape:
-            moved = np.broadcast_to(moved, shape).reshape(-1)
-        force, work, memory = step.advance(
-            self.bundle(), memory, moved, radius, pressure, math.prod(shape)
-        )
+        items, moved = math.prod(shape), flat(moved, shape)
+        force, work, memory = step.advance(self.bundle(), memory, moved, radius, pressure, items)
         force, work = force.reshape(shape) * scales.force, work.reshape(shape) * scales.work
         return TangentialResponse(force, work), State(shape, scales, memory)
 
@@ -130,14 +127,8 @@ class ProfileLaw(PartialSlip):
             return np.asarray(value)[..., None]
 
         deflection, limit = of_all(memory.deflection), of_all(memory.limit)
-        slips = (limit > 0.0) & (np.abs(deflection) >= limit)
-        return {
-            "radius": np.broadcast_to(column(scales.radius) * np.sqrt(squares), deflection.shape),
-            "displacement": column(scales.metres) * deflection,
-            "limit": column(scales.metres) * limit,
-            "stuck": (limit > 0.0) & ~slips,
-            "slipping": (slips * np.sign(deflection)).astype(np.int8),
-        }
+        radius = np.broadcast_to(column(scales.radius) * np.sqrt(squares), deflection.shape)
+        return spring_fields(radius, deflection, limit, metres=column(scales.metres))
 
 
 def _alike(rows: Array) -> bool:

@@ -28,7 +28,6 @@ from contactlab.numeric.checks import Rule, quantity
 from contactlab_laws.march import eccentric
 from contactlab_laws.march.division import midpoints
 from contactlab_laws.march.fixed import (
-    LARGEST_PHASE_STEP,
     MOST_STEPS,
     in_groups,
     needed_steps,
@@ -121,7 +120,7 @@ class Adaptive(EccentricIntegrator):
 
         The tolerance is that of the velocities over the greatest of them at first touch.
         """
-        needed = eccentric.needed_steps(scene, normal, tangential, LARGEST_PHASE_STEP)
+        needed = eccentric.needed_steps(scene, normal, tangential)
         count = np.where(needed <= MOST_STEPS, np.maximum(needed, FIRST), np.inf)
         refused = Status.TOO_FEW_STEPS, refusals(FIRST, needed)
         before = eccentric.march_eccentric(scene, normal, tangential, count, None, refused)

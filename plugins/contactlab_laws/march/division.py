@@ -7,8 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.contracts import NormalContact, NormalMotion, NormalSample, Steps
+from contactlab.contracts import NormalContact, NormalMotion, NormalSample, Steps, TangentialLaw
 
+#: Largest omega dt of the fastest tangential oscillation. From 2 on the leapfrog is unstable
+#: (theory §4) and wrong by any amount. Below 2 it is stable, but at 1/2 the phase is off by 1 % a
+#: radian already.
+LARGEST_PHASE_STEP = 0.5
+#: Largest phase error over an impact, in radians, for laws without microslip: an error of up to a
+#: third of this over the range of psi2, at any chi. The leapfrog's phase runs ahead by
+#: (omega dt)²/24 a radian; microslip damps the oscillation and the phase error with it.
+LARGEST_LEAD = 0.05
 #: Largest stretch of the steps, over their number squared: it keeps the second order. All steps are
 #: stretched alike so that the samples of the load add up to its exact impulse: gross slip
 #: throughout is then exact, and the energy books of the scheme close as before. Smooth loads need
@@ -22,6 +30,14 @@ VANISHES = 1e-6
 BLOCK = 4096
 #: More steps are made anew for each impact: these take half a megabyte.
 LONGEST_KEPT = 4000
+
+
+def resolving(radians: Any, law: TangentialLaw) -> Any:
+    """Return the least steps that resolve a tangential oscillation through ``radians``."""
+    steps = radians / LARGEST_PHASE_STEP
+    if "partial_slip" not in law.offers:
+        steps = np.maximum(steps, radians * np.sqrt(radians / (24.0 * LARGEST_LEAD)))
+    return np.ceil(steps)
 
 
 def midpoints(normal: NormalMotion, count: int) -> Steps:

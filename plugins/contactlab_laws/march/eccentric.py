@@ -28,6 +28,7 @@ from contactlab.contracts import (
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import shown
+from contactlab_laws.march.division import resolving
 
 #: A contact that lasts longer than so many times the approach without friction is given up.
 LONGEST = 100
@@ -35,7 +36,7 @@ LONGEST = 100
 DEEPEST = 1e10
 
 
-def needed_steps(scene: EccentricScene, normal: NormalMotion, law: Any, phase_step: float) -> Any:
+def needed_steps(scene: EccentricScene, normal: NormalMotion, law: Any) -> Any:
     """Return the least steps in the approach without friction that resolve every oscillation."""
     # omega² <= k_n W_nn + k_t tr W_tt; both stiffnesses grow as the contact radius, and the energy
     # bounds the radius.
@@ -44,11 +45,7 @@ def needed_steps(scene: EccentricScene, normal: NormalMotion, law: Any, phase_st
     tangential = law.stiffness(normal.scene, normal)
     inertia = W[..., 1, 1] if scene.planar else W[..., 1, 1] + W[..., 2, 2]
     omega = np.sqrt(normal_stiffness * W[..., 0, 0] + tangential * inertia)
-    radians = omega * normal.duration * deepest(scene) ** 0.1
-    steps = radians / phase_step
-    if "partial_slip" not in law.offers:
-        steps = np.maximum(steps, radians * np.sqrt(radians / 1.2))
-    return np.ceil(steps)
+    return resolving(omega * normal.duration * deepest(scene) ** 0.1, law)
 
 
 def deepest(scene: EccentricScene) -> Any:
@@ -79,7 +76,9 @@ def march_eccentric(
         return EccentricMotion.nothing(scene.shape, *refused)
     march = _March(scene, normal, law, count)
     if not np.all(possible):
-        march.leave(~np.broadcast_to(possible, scene.shape), *refused)
+        left_out = ~np.broadcast_to(possible, scene.shape)
+        march.fail(refused[0], np.broadcast_to(refused[1], scene.shape)[left_out], left_out)
+        march.alive &= ~left_out
     return march.run(observer)
 
 
@@ -127,27 +126,21 @@ class _March:
         self.status: Any = filled(Status.SUCCESS, scene.shape)
         self.detail: Any = filled("", scene.shape)
 
-    def leave(self, where: Any, status: Status, detail: Any) -> None:
-        """Leave impacts of a batch out."""
-        self.status[where], self.detail[where] = status, np.broadcast_to(detail, where.shape)[where]
-        self.alive &= ~where
-
     def run(self, observer: EccentricObserver | None) -> EccentricMotion:
         """Return the motion to the end of contact of all impacts."""
         try:
             self._follow(observer)
             jammed = self.greatest[1] > DEEPEST**0.4 * np.asarray(self.normal.maximum_approach)
             if np.any(jammed):
-                self.alive = jammed
                 sentence = "Friction presses the contact deeper than the steps resolve."
-                self._fail(Status.UNRESOLVED, sentence)
+                self.fail(Status.UNRESOLVED, sentence, jammed)
         except KeyboardInterrupt:
             raise
         except faults.LawFaultError as fault:
-            self._fail(fault.status, fault.detail)
+            self.fail(fault.status, fault.detail, self.alive)
         except BaseException as error:  # a plug-in may not end the process
             sentence = faults.sentence(self.law, faults.raised(error), self.steps)
-            self._fail(Status.LAW_RAISED, sentence)
+            self.fail(Status.LAW_RAISED, sentence, self.alive)
         return self._motion()
 
     def _follow(self, observer: EccentricObserver | None) -> None:
@@ -171,7 +164,8 @@ class _March:
             rate, before = velocity[0], contact
             with faults.blaming(alone) as blamed:
                 blamed.step = self.steps
-                contact, new = self._respond(alone, memory, approach, rate)
+                contact, new = alone.respond(memory, approach, rate)
+                contact = contact.complete
             moved = [each * drift for each in velocity[1:]]
             load = contact.friction_load
             increment = Increment(
@@ -182,7 +176,8 @@ class _March:
             if not self.elastic:  # a viscous force acts on the rate in the middle of its kick
                 rate = velocity[0] - 0.5 * self._kick(contact.force, force)[0]
                 with faults.blaming(alone):
-                    contact, new = self._respond(alone, memory, approach, rate)
+                    contact, new = alone.respond(memory, approach, rate)
+                    contact = contact.complete
             memory = new
             touching = contact.overlap > 0.0
             going = touching & self.alive if self.shape else touching
@@ -213,25 +208,16 @@ class _March:
             self.alive = going
             drift = self.step
             if not (self.alive.any() if self.shape else self.alive):
-                return
+                return None
             if not np.isfinite(sum(velocity)).all():
-                self._fail(
-                    Status.NON_FINITE, faults.sentence(law, "velocity is not finite", self.steps)
-                )
-                return
+                sentence = faults.sentence(law, "velocity is not finite", self.steps)
+                return self.fail(Status.NON_FINITE, sentence, self.alive)
             if self.steps >= self.most:
-                times = np.max(self.compressions)
-                self._fail(
-                    Status.NOT_SEPARATED,
-                    f"After {LONGEST} durations of the approach without friction and {times} "
-                    "compressions.",
+                sentence = (
+                    f"After {LONGEST} durations of the approach without friction and "
+                    f"{np.max(self.compressions)} compressions."
                 )
-                return
-
-    def _respond(self, law: NormalLaw, state: Any, approach: Any, rate: Any) -> Any:
-        """Return the complete contact and the new state of the normal law."""
-        contact, new = law.respond(state, approach, rate)
-        return contact.complete, new
+                return self.fail(Status.NOT_SEPARATED, sentence, self.alive)
 
     def _joined(self, components: list[Any]) -> Any:
         """Return a displacement or velocity as the law takes it."""
@@ -259,13 +245,12 @@ class _March:
         each = [pressure, *force]
         return [self.step * sum(w * f for w, f in zip(row, each, strict=True)) for row in self.W]
 
-    def _fail(self, status: Status, detail: str) -> None:
-        """Mark impacts that have not ended as failed."""
-        if not self.shape:
+    def fail(self, status: Status, detail: Any, where: Any) -> None:
+        """Mark impacts as failed."""
+        if self.shape:
+            self.status[where], self.detail[where] = status, detail
+        else:
             self.status, self.detail = status, detail
-            return
-        self.status[self.alive] = status
-        self.detail[self.alive] = detail
 
     def _motion(self) -> EccentricMotion:
         columns = [*self.change] + [0.0 * self.change[0]] * (2 - self.axes)

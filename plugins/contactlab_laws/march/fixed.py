@@ -29,16 +29,9 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import for_share
 from contactlab.numeric.checks import Real, count, flag
 from contactlab_laws.march import eccentric
+from contactlab_laws.march.division import LARGEST_LEAD, LARGEST_PHASE_STEP, resolving
 from contactlab_laws.march.march import march
 
-#: Largest omega dt of the fastest tangential oscillation. From 2 on the leapfrog is unstable
-#: (theory §4) and wrong by any amount. Below 2 it is stable, but at 1/2 the phase is off by 1 % a
-#: radian already.
-LARGEST_PHASE_STEP = 0.5
-#: Largest phase error over an impact, in radians, for laws without microslip: an error of up to a
-#: third of this over the range of psi2, at any chi. The leapfrog's phase runs ahead by
-#: (omega dt)²/24 a radian; microslip damps the oscillation and the phase error with it.
-LARGEST_LEAD = 0.05
 #: Least steps under any tangential law: they resolve the normal load, half an oscillation.
 LEAST_STEPS = math.ceil(math.pi / LARGEST_PHASE_STEP)
 #: More steps than this are refused.
@@ -62,11 +55,7 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw) -> Any:
             least = max(least, single * math.sqrt(single / (24.0 * LARGEST_LEAD)))
         return float(max(math.ceil(least), LEAST_STEPS)) if math.isfinite(least) else least
     omega = np.sqrt(stiffness / scene.pair.tangential_mass)
-    radians = omega * normal.duration
-    steps = radians / LARGEST_PHASE_STEP
-    if "partial_slip" not in law.offers:
-        steps = np.maximum(steps, radians * np.sqrt(radians / (24.0 * LARGEST_LEAD)))
-    return np.maximum(np.ceil(steps), float(LEAST_STEPS))
+    return np.maximum(resolving(omega * normal.duration, law), float(LEAST_STEPS))
 
 
 def refined(steps: int, needed: Any) -> Any:
@@ -87,15 +76,10 @@ def _most(needed: Any) -> float:
     return needed if isinstance(needed, float) else float(np.fmax.reduce(needed, axis=None))
 
 
-def refusal(steps: int, needed: float) -> str:
-    """Return the detail of ``TOO_FEW_STEPS``."""
-    return f"steps = {steps}; this scene needs at least {needed:.6g}."
-
-
 def refusals(steps: int, needed: Any) -> Any:
     """Return the detail of ``TOO_FEW_STEPS`` for each impact."""
-    details = np.vectorize(lambda each: refusal(steps, each), otypes=[object])(needed)
-    return details if np.ndim(needed) else details.item()
+    told = [f"steps = {steps}; this scene needs at least {each:.6g}." for each in np.ravel(needed)]
+    return np.array(told, dtype=object).reshape(np.shape(needed)) if np.ndim(needed) else told[0]
 
 
 def in_groups(
@@ -109,7 +93,7 @@ def in_groups(
     if np.all(possible) and np.min(taken) == np.max(taken):
         return even(normal, int(np.max(taken)))
     if not shape:
-        return TangentialMotion.nothing(shape, Status.TOO_FEW_STEPS, refusal(steps, needed))
+        return TangentialMotion.nothing(shape, Status.TOO_FEW_STEPS, refusals(steps, needed))
     taken = np.broadcast_to(np.where(possible, taken, 0), shape)
     needed = np.broadcast_to(needed, shape)
     parts = []
@@ -118,24 +102,15 @@ def in_groups(
         if number:
             motion = even(normal.take(where), int(number))
         else:
-            detail = [refusal(steps, least) for least in needed[where].tolist()]
-            motion = TangentialMotion.nothing((len(detail),), Status.TOO_FEW_STEPS, detail)
+            detail = refusals(steps, needed[where])
+            motion = TangentialMotion.nothing(detail.shape, Status.TOO_FEW_STEPS, detail)
         parts.append((where, motion))
     return TangentialMotion.merged(parts, shape)
 
 
 @attrs.frozen(kw_only=True)
 class FixedSteps(EccentricIntegrator):
-    """Even steps over the contact's duration, under any normal law; a subclass samples them.
-
-    Parameters
-    ----------
-    steps : int
-        Steps from first touch to separation.
-    refine : bool
-        Where ``steps`` are too few for the stiffness of the law: take more (the default),
-        or refuse with the status ``TOO_FEW_STEPS`` and the number needed.
-    """
+    """Even steps over the contact's duration, under any normal law; a subclass samples them."""
 
     resolution: ClassVar[str | None] = "steps"
     order: ClassVar[int | None] = 2
@@ -213,7 +188,7 @@ class FixedSteps(EccentricIntegrator):
         observer: EccentricObserver | None = None,
     ) -> EccentricMotion:
         """Return the motion, ``steps`` counted on the approach without friction."""
-        needed = eccentric.needed_steps(scene, normal, tangential, LARGEST_PHASE_STEP)
+        needed = eccentric.needed_steps(scene, normal, tangential)
         most = MOST_STEPS if self.refine else self.steps
         taken = np.where(needed <= most, np.maximum(self.steps, needed), np.inf)
         refused = Status.TOO_FEW_STEPS, refusals(self.steps, needed)

@@ -20,7 +20,7 @@ from contactlab.contracts import Increment, NormalContact, TangentialResponse
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
 from contactlab.numeric.checks import Real
-from contactlab_laws.jaeger.bundle import Array
+from contactlab_laws.jaeger.bundle import Array, spring_fields
 from contactlab_laws.springs.turning import turned
 
 #: Contacts whose radius is below this times that of the pair just touch: no friction. The cells of
@@ -214,18 +214,8 @@ def fields(state: State) -> dict[str, Any]:
     size, _, deflection, limit, _ = state.memory
     springs = len(deflection)
     places = np.multiply.outer(np.arange(springs) + 0.5, size / springs)
-    slips = (limit > 0.0) & (np.abs(deflection) >= limit)
-
-    def of_all(rows: Any) -> Any:
-        return rows.T.reshape(*state.shape, springs)
-
-    return {
-        "radius": of_all(places),
-        "displacement": of_all(deflection),
-        "limit": of_all(limit),
-        "stuck": of_all((limit > 0.0) & ~slips),
-        "slipping": of_all((slips * np.sign(deflection)).astype(np.int8)),
-    }
+    rows = (each.T.reshape(*state.shape, springs) for each in (places, deflection, limit))
+    return spring_fields(*rows)
 
 
 def _least_size(radius: Array, unit: Array) -> Array:

@@ -69,10 +69,7 @@ class Midpoints(Bundle):
         return square**1.5 / full if touching else 0.0
 
 
-@lru_cache(maxsize=32)
-def midpoints(springs: int) -> Midpoints:
-    """Return the bundle of ``springs`` springs, cached."""
-    return Midpoints(springs)
+midpoints = lru_cache(maxsize=32)(Midpoints)
 
 
 @attrs.frozen(kw_only=True)

@@ -17,20 +17,18 @@ from typing import Any
 import attrs
 import numpy as np
 from numpy.polynomial.chebyshev import chebval, chebvander
-from numpy.typing import NDArray
 
 from contactlab.compose.rebound import DAMPED_CHI, DAMPED_RESTITUTION
 from contactlab.contracts import NormalMotion, Scene
 from contactlab.numeric.checks import Real
 from contactlab_laws.tables.file import Stored, read
 from contactlab_laws.tables.patches import (
+    Array,
     Patches,
     compiled_polynomial,
     polynomial,
     powers_of_chebyshev,
 )
-
-Array = NDArray[np.float64]
 
 SHIPPED = Path(__file__).with_name("damped.npz")
 CHI = DAMPED_CHI

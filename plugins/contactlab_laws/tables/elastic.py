@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from contactlab_laws.tables.file import Stored, read
 from contactlab_laws.tables.patches import (
+    Array,
     Patches,
     chebyshev_of_values,
     compiled_polynomial,
@@ -28,8 +29,6 @@ from contactlab_laws.tables.regions import (
     place,
     places,
 )
-
-Array = NDArray[np.float64]
 
 SHIPPED = Path(__file__).with_name("elastic.npz")
 #: Error of psi2 over max(1, |psi1|): what the builder's ``verify`` holds the table to.

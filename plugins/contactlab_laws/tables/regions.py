@@ -19,9 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.rebound import TABULATED_CHI
-from contactlab_laws.tables.patches import polynomial
+from contactlab_laws.tables.patches import Array, polynomial
 
-Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 (

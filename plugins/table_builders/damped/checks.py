@@ -5,14 +5,11 @@ from __future__ import annotations
 import time
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.rebound import DAMPED_ERROR, DAMPED_RESTITUTION
 from contactlab_laws.tables.damped import CHI, SHIPPED, rebound, tsuji
 from contactlab_laws.tables.file import read
 from table_builders.damped.build import by_half_space
-
-Array = NDArray[np.float64]
 
 #: Rings in the comparison, more than those of the table.
 RINGS = 128

@@ -20,7 +20,8 @@ from contactlab.compose.simulation import Simulation
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
 from contactlab_laws.differences.table import FILE, NODES, key
-from table_builders.damped.build import Array, by_half_space
+from contactlab_laws.tables.patches import Array
+from table_builders.damped.build import by_half_space
 
 #: The impacts of the choice of a law: least and number of psi1, up to slip throughout and 1 more,
 #: at each chi; as many again in ``NARROW``.

@@ -11,12 +11,10 @@ from functools import partial
 from time import process_time
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab import Encounter, Material, Scene, Simulation, Sphere, collide, rebound
+from contactlab_laws.tables.patches import Array
 from contactlab_laws.tables.regions import LARGEST_CHI
-
-Array = NDArray[np.float64]
 
 #: The least time of these is taken: other work on the machine disturbs the rest.
 REPEATS, FEW_REPEATS = 15, 4

@@ -12,17 +12,15 @@ from pathlib import Path
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab_laws.tables.elastic import DEEPEST, NODES
 from contactlab_laws.tables.file import Stored, write
+from contactlab_laws.tables.patches import Array
 from contactlab_laws.tables.regions import REGIONS, Cuts
 from table_builders.elastic import cuts as curves
-from table_builders.elastic import start
 from table_builders.elastic.exact import exact
-from table_builders.elastic.fit import Cell, begins_at_one, fit
+from table_builders.elastic.fit import Cell, begins_at_one, fit, slope_at_one
 
-Array = NDArray[np.float64]
 Solve = Callable[[Array, Array], Array]
 
 #: Error of psi2/psi1 that a cell may show; what it hides is a few times more.
@@ -123,7 +121,7 @@ def _batch(progress: Progress, tolerance: float, solve: Solve) -> None:
     chi = np.stack([place[1] for place in places])
     psi2 = solve(psi1.ravel(), chi.ravel()).reshape(psi1.shape)
     for cell, p, x, answers in zip(cells, psi1, chi, psi2, strict=True):
-        slope = start.slope(cell, progress.cuts, solve) if begins_at_one(cell) else None
+        slope = slope_at_one(cell, progress.cuts, solve) if begins_at_one(cell) else None
         patch = fit(cell, p, x, answers, slope)
         most = max(patch.error_a, patch.error_b)
         along_a = patch.error_a > max(tolerance, MINOR * most) and cell.level_a < DEEPEST
@@ -138,22 +136,7 @@ def _batch(progress: Progress, tolerance: float, solve: Solve) -> None:
 
 
 def _shared(share: Callable[..., Iterable[Array]], workers: int, psi1: Array, chi: Array) -> Array:
-    """Return exact answers, computed by several processes.
-
-    Parameters
-    ----------
-    share : callable
-        Maps a function over sequences of arrays, as ``Executor.map`` does.
-    workers : int
-        Processes behind it.
-    psi1, chi : array, shape (impacts,)
-        No units.
-
-    Returns
-    -------
-    array
-        Answers of ``exact``, in the order of ``psi1``.
-    """
+    """Return answers of ``exact``, computed by as many processes behind the mapping ``share``."""
     parts = 8 * workers
     return np.concatenate(
         list(share(exact, np.array_split(psi1, parts), np.array_split(chi, parts)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlab_laws.tables.patches import polynomial
+from contactlab_laws.tables.patches import Array, polynomial
 from contactlab_laws.tables.regions import (
     CUT_END,
     CUT_TOP,
@@ -16,7 +16,6 @@ from contactlab_laws.tables.regions import (
     SMALL_NEAR,
     STUCK_BACK,
     STUCK_ON,
-    Array,
     Cuts,
     slip_cut,
 )

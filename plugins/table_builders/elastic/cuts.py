@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactlab_laws.tables.patches import Array
 from contactlab_laws.tables.regions import CUT_END, Cuts
 from table_builders.elastic.coordinates import SLIP_POWERS, STUCK_POWERS
 from table_builders.elastic.exact import last_slip
-
-Array = NDArray[np.float64]
 
 POINTS = 20
 #: chi is found to 2^-HALVINGS; g is wrong by some (error of the cut)^(5/2) only.
@@ -33,19 +31,7 @@ def _fit(
     within: tuple[float, float],
     powers: Sequence[int],
 ) -> Array:
-    """Return the terms of a cut.
-
-    Parameters
-    ----------
-    psi1 : callable
-        psi1 as a function of the cut's argument and of chi.
-    end : float
-        Largest argument.
-    within : tuple of float
-        chi between which the cut lies.
-    powers : sequence of int
-        Powers of the argument that the cut has.
-    """
+    """Return the terms of a cut: psi1 of argument (up to ``end``) and chi (``within``), powers."""
     nodes = 0.5 - 0.5 * np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS)
     arguments = (end * nodes).tolist()
     chi = np.array([_bisect(psi1, argument, within) for argument in arguments])

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 import contactlab
-
-Array = NDArray[np.float64]
+from contactlab_laws.tables.patches import Array
 
 #: Solved alone at this tolerance, neighbouring answers agree to some 1e-14, and all to 1e-13.
 ALONE = 1e-11

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.polynomial import Chebyshev
 
 from contactlab_laws.tables.elastic import NODES
-from contactlab_laws.tables.patches import chebyshev_of_values, nodes
+from contactlab_laws.tables.patches import Array, chebyshev_of_values, nodes
 from contactlab_laws.tables.regions import (
     CUT_END,
+    CUT_TOP,
     FIRST_POWER,
     SLIP_BACK,
     SLIP_LONG,
@@ -22,8 +24,9 @@ from contactlab_laws.tables.regions import (
 )
 from table_builders.elastic.coordinates import impact, measure
 
-Array = NDArray[np.float64]
-
+#: Exact impacts with psi1 from FROM to 1 give the slope at 1 to 1e-9; so near to 1 the cut, which
+#: some of them cross, does no harm.
+FROM, POINTS = 0.995, 7
 #: d psi2/d psi1 = g_t/(5 t^4): its error may be this many times that of psi2.
 SLOPE_PER_VALUE = 2000.0
 #: The slope of a polynomial's last terms is some SLOPE times their size, over the cell's width.
@@ -157,3 +160,43 @@ def _steepness(cell: Cell) -> float:
     width = scale * 0.5**cell.level_a
     t = start + cell.i * width
     return SLOPE / (5.0 * t**4 * width) if t > 0.0 else 0.0
+
+
+def slope_at_one(cell: Cell, cuts: Cuts, solve: Callable[[Array, Array], Array]) -> Array:
+    """Return the coefficient of t^5 in g at psi1 = 1, shape (NODES,) over the nodes of b.
+
+    With g = g0 + g5 t^5 at constant chi, d psi2/d psi1 = -1 + epsilon g0 + g5 there, with -g5
+    for chi < 1/2, where psi2 = 1 - 4 chi and its slope is 1.
+
+    Parameters
+    ----------
+    cell : Cell
+        A cell of the table that begins at psi1 = 1.
+    cuts : Cuts
+    solve : callable
+        Exact psi2 of (psi1, chi).
+    """
+    b = (cell.j + nodes(NODES)) * 0.5**cell.level_b
+    _, chi = impact(cell.region, np.zeros_like(b), b, cuts)
+    if cell.region == SMALL_NEAR:
+        return np.asarray(-4.0 * chi)
+    z = np.cos(np.linspace(np.pi, 0.0, POINTS))
+    psi1 = FROM + (1.0 - FROM) * 0.5 * (1.0 + z)
+    grid = np.meshgrid(psi1, chi, indexing="ij")
+    psi2 = solve(grid[0].ravel(), grid[1].ravel()).reshape(grid[0].shape)
+    slopes = [
+        Chebyshev.fit(psi1, column, POINTS - 1, domain=[FROM, 1.0]).deriv()(1.0)
+        for column in psi2.T
+    ]
+    return np.asarray(np.array(slopes) - psi2[-1] + _along_cut(cell, cuts, b, chi, psi2[-1]))
+
+
+def _along_cut(cell: Cell, cuts: Cuts, b: Array, chi: Array, psi2: Array) -> Array:
+    """Return what g gains with t^5 at psi1 = 1 because chi follows the cut while b is kept."""
+    g = (psi2 + 1.0) / (2.0 * chi - 1.0)
+    domain = [cell.j * 0.5**cell.level_b, (cell.j + 1) * 0.5**cell.level_b]
+    by_b = Chebyshev.fit(b, g, NODES - 1, domain=domain).deriv()(b)
+    cut, climb = cuts.slip[0], cuts.slip[FIRST_POWER]
+    if cell.region == SLIP_ON:
+        return np.asarray(by_b / (2.0 * b * (CUT_TOP - cut)) * climb * (1.0 - b * b))
+    return np.asarray(by_b / (cut - 0.5) * climb * b)

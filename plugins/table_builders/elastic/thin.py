@@ -11,11 +11,9 @@ from numpy.typing import NDArray
 
 from contactlab_laws.tables.elastic import NODES, SHIPPED
 from contactlab_laws.tables.file import read
-from contactlab_laws.tables.patches import chebyshev_of_values, nodes
+from contactlab_laws.tables.patches import Array, chebyshev_of_values, nodes
 from contactlab_laws.tables.regions import STUCK_BACK, Cuts
 from table_builders.elastic.coordinates import SLIP_POWERS, impact, measure
-
-Array = NDArray[np.float64]
 
 #: The kernels, and how the table begins in each.
 FILES = {"contactlab_bounce.mjs": "const TABLE = [", "contactlab_bounce.h": "_table[] = {"}

@@ -12,12 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab_laws.tables.elastic import Table, values
-from contactlab_laws.tables.patches import polynomial
+from contactlab_laws.tables.patches import Array, polynomial
 from contactlab_laws.tables.regions import CUT_END, LARGEST_CHI, Cuts, places
 from table_builders.elastic.coordinates import NAMES
 from table_builders.elastic.exact import exact, together
-
-Array = NDArray[np.float64]
 
 #: Impacts between two reports of progress.
 BATCH = 2000
@@ -143,19 +141,7 @@ def judge(table: Table, draws: Draws, truth: Array) -> list[Errors]:
 
 
 def _errors(name: str, error: Array, draws: Draws, chosen: NDArray[np.bool_]) -> Errors:
-    """Return the largest and the rms error of the draws chosen, and where the largest is.
-
-    Parameters
-    ----------
-    name : str
-        Name of the region or of the curve, or "all".
-    error : array, shape (draws,)
-        Absolute error of psi2, over the greater of 1 and psi1.
-    draws : Draws
-        psi1 and chi of each.
-    chosen : array of bool, shape (draws,)
-        Which draws count.
-    """
+    """Return the largest and the rms error of the draws chosen, and where the largest is."""
     worst = int(np.flatnonzero(chosen)[error[chosen].argmax()])
     return Errors(
         name,
