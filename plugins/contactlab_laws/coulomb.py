@@ -22,7 +22,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import spread
+from contactlab.numeric.arrays import filled, spread
 from contactlab.numeric.checks import Real
 
 #: Bound of the imbalance of the energy books, over the energy at the start.
@@ -133,8 +133,7 @@ class Frictionless(WholeImpactTangentialLaw, EccentricTangentialLaw):
         impulse = (speed - rate) / scene.inverse_mass[..., 0, 0]
         loss = 0.5 * impulse * (speed + rate)
         of: Any = partial(spread, shape=scene.shape)
-        return attrs.evolve(
-            EccentricMotion.nothing(scene.shape, Status.SUCCESS),
+        return EccentricMotion(
             velocity_change=-scene.inverse_mass[..., 0] * impulse[..., None],
             friction_work=of(0.0),
             normal_loss=of(loss),
@@ -143,4 +142,6 @@ class Frictionless(WholeImpactTangentialLaw, EccentricTangentialLaw):
             maximum_approach=of(normal.maximum_approach),
             maximum_force=of(normal.maximum_force),
             compressions=np.ones(scene.shape, dtype=int) if scene.shape else 1,
+            status=filled(Status.SUCCESS, scene.shape),
+            detail=filled("", scene.shape),
         )

@@ -10,12 +10,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts import EccentricMotion, EccentricScene, NormalMotion
 from contactlab.contracts.status import Status
-from contactlab.numeric.lobatto import Array
+from contactlab.numeric.arrays import filled
+
+Array = NDArray[np.float64]
 
 #: Tolerance of Keller's equations; slip below this part of the speed has stopped.
 TOLERANCE, STOPPED = 1e-11, 1e-10
@@ -34,12 +36,18 @@ def rigid_impacts(scene: EccentricScene, normal: NormalMotion) -> EccentricMotio
     work = np.array([row[1] for row in rows]).reshape(shape)
     loss = np.array([row[2] for row in rows]).reshape(shape)
     number: Any = np.asarray if shape else float
-    return attrs.evolve(
-        EccentricMotion.nothing(shape, Status.SUCCESS),  # they happen in no time
+    unknown = number(np.full(shape, math.nan))
+    return EccentricMotion(
         velocity_change=(after - before).reshape(*shape, 3),
         friction_work=number(work),
         normal_loss=number(loss),
+        duration=unknown,
+        maximum_radius=unknown,
+        maximum_approach=unknown,
+        maximum_force=unknown,
         compressions=np.ones(shape, dtype=int) if shape else 1,
+        status=filled(Status.SUCCESS, shape),
+        detail=filled("", shape),
     )
 
 
