@@ -39,13 +39,9 @@ def _normal_law() -> type:
 
 def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
     """Return the impacts of a batch by the table of psi2; friction work is NaN."""
-    shape = scene.shape
-    if simulation is None:
-        psi2, course = rebound(scene.psi1, scene.chi), Simulation().normal_motion(scene)
-    else:
-        law: Any = simulation.normal
-        psi2 = rebound(scene.psi1, scene.chi, restitution=law.restitution)
-        course = simulation.normal_motion(scene)
+    shape, laws = scene.shape, simulation or Simulation()
+    damping: Any = {} if simulation is None else {"restitution": laws.normal.restitution}  # type: ignore[attr-defined]
+    psi2, course = rebound(scene.psi1, scene.chi, **damping), laws.normal_motion(scene)
     change: Any = (psi2 - scene.psi1) / np.asarray(scene.psi_scale)
     motion = Motion(
         slip_velocity_change=change,
@@ -57,7 +53,6 @@ def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
         maximum_approach=np.broadcast_to(course.maximum_approach, shape),
         maximum_force=np.broadcast_to(course.maximum_force, shape),
     )
-    laws = simulation or Simulation()
     everywhere = np.ones(shape, dtype=bool)
 
     def clauses() -> Words:

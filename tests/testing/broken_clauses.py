@@ -11,9 +11,9 @@ import contactlab
 from contactlab import Status
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import TangentialMotion, faults, quantity
-from tests.testing.broken_impacts import AllAtOnce, Knowing, OtherwiseAtOnce, Whole
+from tests.testing.broken_impacts import AllAtOnce, Knowing, OtherwiseAtOnce, Whole, by_course
 from tests.testing.broken_integrators import AsksTillItGives
-from tests.testing.broken_laws import Answering, Sound
+from tests.testing.broken_laws import Answering, Misstating, Sound
 from tests.testing.broken_normal import Altered, Moving, Stepwise
 from tests.testing.fresh_faults import HERTZ, MOTION, STEPS, Steps
 from tests.testing.fresh_sound import Brush, HardSphere, Press
@@ -54,17 +54,6 @@ class CopiesOtherwise(Sound):
 # Stepped laws.
 
 
-@attrs.frozen(kw_only=True)
-class ChangesItself(Sound):
-    """Counts its calls in a dictionary of its own."""
-
-    calls: Any = attrs.field(factory=dict, eq=False)
-
-    def advance(self, state, increment, before, after):
-        self.calls["made"] = self.calls.get("made", 0) + 1
-        return super().advance(state, increment, before, after)
-
-
 class WritesIntoItsState(Sound):
     """Notes the step in a list that came in; the answer does not depend on it."""
 
@@ -84,23 +73,6 @@ class WearsByTheRun(Sound):
         NUMBERS["calls"] += 1
         state = super().start(scene, normal)
         return state._replace(stiffness=state.stiffness * (1.0 + 1e-9 * NUMBERS["calls"]))
-
-
-class ChangesTheScene(Sound):
-    """Rounds the speed of the scene that it is given."""
-
-    def start(self, scene, normal):
-        state = super().start(scene, normal)
-        object.__setattr__(scene, "normal_speed", np.round(scene.normal_speed, 1))
-        return state
-
-
-class InfinitelyStiff(Sound):
-    def stiffness(self, scene, normal):
-        return np.inf * super().stiffness(scene, normal)
-
-    def start(self, scene, normal):
-        return super().start(scene, normal)._replace(stiffness=super().stiffness(scene, normal))
 
 
 class RemembersAClosedLoop(Sound):
@@ -126,49 +98,7 @@ class WeakerInABatch(AllAtOnce):
         return response._replace(force=share * response.force)
 
 
-class HurriedForce(Knowing):
-    """The right change along the course, by twice the force."""
-
-    def told(self, known, scene):
-        def course(impulse, load):
-            change, force = known.course(impulse, load)
-            return change, 2.0 * force
-
-        return attrs.evolve(known, course=course)
-
-
-class CourseOfTheEnd(Whole):
-    """Its course has the end only."""
-
-    def told(self, known, scene):
-        def course(impulse, load):
-            change, force = known.course(impulse, load)
-            return np.ravel(change)[-1:], np.ravel(force)[-1:]
-
-        return attrs.evolve(known, course=course)
-
-
-@attrs.frozen(kw_only=True)
-class CountsItsImpacts(Whole):
-    """Counts the impacts in a dictionary of its own."""
-
-    calls: Any = attrs.field(factory=dict, eq=False)
-
-    def told(self, known, scene):
-        self.calls["made"] = self.calls.get("made", 0) + 1
-        return known
-
-
 # Normal laws.
-
-
-@attrs.frozen(kw_only=True)
-class CountsItsCalls(Press):
-    calls: Any = attrs.field(factory=dict, eq=False)
-
-    def respond(self, state, approach, rate):
-        self.calls["made"] = self.calls.get("made", 0) + 1
-        return super().respond(state, approach, rate)
 
 
 class HeedsTheCallBefore(Press):
@@ -179,13 +109,6 @@ class HeedsTheCallBefore(Press):
         force = contact.force * (1.0 + 1e-3 * (NUMBERS["force"] > 1.2 * np.max(approach)))
         NUMBERS["force"] = float(np.max(approach))
         return contact._replace(force=force), state
-
-
-class ChangesTheSceneToo(Press):
-    def start(self, scene):
-        state = super().start(scene)
-        object.__setattr__(scene, "normal_speed", np.round(scene.normal_speed, 1))
-        return state
 
 
 class StartsApart(MOTION):
@@ -240,15 +163,6 @@ class ShowsTheFirstHalf(STEPS):
 
         watched = early if observer is not None else None
         return super().integrate(normal, tangential, scene, watched)
-
-
-@attrs.frozen(kw_only=True)
-class CountsItsRuns(Steps):
-    calls: Any = attrs.field(factory=dict, eq=False)
-
-    def alter(self, motion, scene):
-        self.calls["made"] = self.calls.get("made", 0) + 1
-        return motion
 
 
 class FailsInABatch(Steps):
@@ -340,16 +254,6 @@ class ThrowsAtTheEnd(Sound):
         return response._replace(force=response.force + thrown), new
 
 
-class StatesTooStiff(Sound):
-    """A stiffness that no number of steps follows, and a force of a softer spring."""
-
-    def stiffness(self, scene, normal):
-        return 1e8 * super().stiffness(scene, normal)
-
-    def start(self, scene, normal):
-        return super().start(scene, normal)._replace(stiffness=super().stiffness(scene, normal))
-
-
 class EqualToItselfOnly(Sound):
     """No copy is equal to it."""
 
@@ -384,29 +288,43 @@ class RunsItsOwnLawsOnly(STEPS):
     tangential_contract: ClassVar[type] = InFurlongs
 
 
+def counting(base, member, name):
+    """Return a law that counts the calls of a method in a dictionary of its own."""
+
+    def method(law, *given, **named):
+        law.calls["made"] = law.calls.get("made", 0) + 1
+        return getattr(base, member)(law, *given, **named)
+
+    calls = attrs.field(factory=dict, eq=False)
+    content = {"__annotations__": {"calls": Any}, "calls": calls, member: method}
+    return attrs.frozen(kw_only=True)(type(name, (base,), content))
+
+
+def rounded(state, scene, *_):
+    """Round the speed of the scene that a law was given, and return the state."""
+    object.__setattr__(scene, "normal_speed", np.round(scene.normal_speed, 1))
+    return state
+
+
+class ChangesTheSceneToo(Press):
+    def start(self, scene):
+        return rounded(super().start(scene), scene)
+
+
 #: Each with the check meant for it, and words of what the check says of it.
 BROKEN = [
     (ClaimsAndExpects, "expected_failures", "It offers 'partial_slip' and expects to fail"),
     (RefusesNamelessly, "parameters", "extra = nan: refused without its name: must be 1"),
     (CopiesOtherwise, "copies", "A copy differs: "),
-    (ChangesItself, "pure", "The law itself was changed by a run"),
     (WritesIntoItsState, "pure", "The state that went in was changed at step 1."),
     (WearsByTheRun, "repeatable", "gives other forces"),
-    (InfinitelyStiff, "stiffness", "stiffness = inf"),
     (RemembersAClosedLoop, "turning_points", "A closed loop at slip 0.3 is not forgotten"),
     (MassOfTheSphere, "unlike_bodies", "Balls unlike in mass, psi1 = 0.5: exchanged, psi2"),
     (WeakerInABatch, "all_steps", "A batch of shape (8,): differs by"),
-    (HurriedForce, "whole_impacts", "along the course the force is"),
-    (CourseOfTheEnd, "whole_impact_form", "its course answers shapes (1,), (1,) to (20001,)"),
-    (CountsItsImpacts, "impact_repeatable", "A run changed the law (as whole impacts)"),
-    (CountsItsCalls, "contacts_pure", "The law itself was changed by a run"),
     (HeedsTheCallBefore, "contacts_pure", "A step tried and thrown away changed the next one"),
     (ShowsInstantsTwice, "observer_changes_nothing", "called at times that do not increase"),
     (ShowsTheFirstHalf, "observer_changes_nothing", "The last instant seen is at 0.4"),
-    (CountsItsRuns, "impact_repeatable", "A run changed the law"),
     (FailsInABatch, "impact_batch", "A batch of shape (2, 3): UNRESOLVED"),
-    (ChangesTheScene, "read_only", "The law changed the scene"),
-    (ChangesTheSceneToo, "contacts_read_only", "The law changed the scene"),
     (ReportsItsEndlessness, "bounded", "Unyielding is asked without end"),
     (EndsTheEndless, "bounded", "A run with endless events is reported as a success"),
     (WorkOfOneSense, "odd_in_slip", "Reversed slip gives a friction work that differs by"),
@@ -414,7 +332,6 @@ BROKEN = [
     (StiffensUnderLoad, "normal_load_alone", "Pressing on a contact that is sheared adds"),
     (SpoilsTheOthers, "non_finite", "of one contact of a batch changes the force of the others"),
     (ThrowsAtTheEnd, "last_step", "mu P_max as the load falls to zeta = 1e-06"),
-    (StatesTooStiff, "impact_central", "the stiffness that it states, "),
     (EqualToItselfOnly, "copies", "A copy is not equal to the law"),
     (InFurlongs, "units", "The unit 'furlong' is not understood"),
     (ShowsSuccessesOnly, "faults_reported", "0 instants of the history are left"),
@@ -545,5 +462,29 @@ BROKEN = [
          "motion_scaled", "phase_at_rate is 1.0e-06 off"),
         ("WithLaterAtAFraction", motion("phase", lambda phase, _: phase * (1.0 + 1e-5)),
          "motion_scaled", "off the inverse of time"),
+    ),
+    (counting(Sound, "advance", "ChangesItself"), "pure", "The law itself was changed by a run"),
+    (counting(Whole, "told", "CountsItsImpacts"),
+     "impact_repeatable", "A run changed the law (as whole impacts)"),
+    (counting(Press, "respond", "CountsItsCalls"),
+     "contacts_pure", "The law itself was changed by a run"),
+    (counting(Steps, "alter", "CountsItsRuns"), "impact_repeatable", "A run changed the law"),
+    *altered(Sound, "start",
+        ("ChangesTheScene", rounded, "read_only", "The law changed the scene"),
+    ),
+    (ChangesTheSceneToo, "contacts_read_only", "The law changed the scene"),
+    *broken(Misstating, "stated",
+        ("InfinitelyStiff", lambda true, _: np.inf * true, "stiffness", "stiffness = inf"),
+        ("StatesTooStiff", lambda true, _: 1e8 * true,
+         "impact_central", "the stiffness that it states, "),
+    ),
+    *broken(Knowing, "told",
+        ("HurriedForce", by_course(lambda _, change, force: (change, 2.0 * force)),
+         "whole_impacts", "along the course the force is"),
+    ),
+    *broken(Whole, "told",
+        ("CourseOfTheEnd", by_course(
+            lambda _, change, force: (np.ravel(change)[-1:], np.ravel(force)[-1:])),
+         "whole_impact_form", "its course answers shapes (1,), (1,) to (20001,)"),
     ),
 ]  # fmt: skip

@@ -61,22 +61,23 @@ class Knowing(Sound):
         return known
 
 
+def by_course(change):
+    """Return a change of an answer: another change of velocity and force along its course."""
+
+    def told(known, scene):
+        def course(impulse, load):
+            return change(known, *known.course(impulse, load))
+
+        return attrs.evolve(known, course=course)
+
+    return told
+
+
 class KnowsTooMuch(Knowing):
     """Says that every impact grazes."""
 
     def told(self, known, scene):
         return attrs.evolve(known, where=True)
-
-
-class KnowsAnotherCourse(Knowing):
-    """The right end, by a course that hurries."""
-
-    def told(self, known, scene):
-        def course(impulse, load):
-            change, force = known.course(impulse, load)
-            return known.slip_velocity_change * (change / known.slip_velocity_change) ** 0.5, force
-
-        return attrs.evolve(known, course=course)
 
 
 @attrs.frozen(kw_only=True)
@@ -93,33 +94,14 @@ class Whole(WholeImpactTangentialLaw):
         return known
 
 
-class WholeNotOdd(Whole):
-    def told(self, known, scene):
-        change = known.slip_velocity_change * np.where(scene.slip_velocity > 0.0, 1.0, 0.9)
-        return attrs.evolve(known, slip_velocity_change=change)
+class Changed(Whole):
+    """Another change of the slip velocity."""
 
-
-class WholeInMetres(Whole):
-    """Weaker for large bodies, by a constant with a unit."""
+    def change(self, known, scene):
+        raise NotImplementedError
 
     def told(self, known, scene):
-        share = 1.0 / (1.0 + 10.0 * scene.pair.radius)
-        return attrs.evolve(known, slip_velocity_change=share * known.slip_velocity_change)
-
-
-class WholeTooStrong(Whole):
-    """Throws back what it should stop, a little faster."""
-
-    def told(self, known, scene):
-        change = -2.04 * scene.slip_velocity * np.ones(scene.shape)
-        return attrs.evolve(known, slip_velocity_change=change)
-
-
-class WholeStopsAnything(Whole):
-    """Brings to rest what friction cannot."""
-
-    def told(self, known, scene):
-        change = -1.0 * scene.slip_velocity * np.ones(scene.shape)
+        change = self.change(known.slip_velocity_change, scene)
         return attrs.evolve(known, slip_velocity_change=change)
 
 
@@ -131,17 +113,6 @@ class WholeTooLong(Whole):
         return attrs.evolve(known, slip_velocity_change=change, course=None)
 
 
-class WholeBeyondCoulomb(Whole):
-    """Twice the friction along its course."""
-
-    def told(self, known, scene):
-        def course(impulse, load):
-            change, force = known.course(impulse, load)
-            return change, 2.0 * force
-
-        return attrs.evolve(known, course=course)
-
-
 class MovesTheCentral(WholeImpactTangentialLaw):
     """Makes a force of normal load alone."""
 
@@ -151,15 +122,6 @@ class MovesTheCentral(WholeImpactTangentialLaw):
         known = sliding(scene, normal, where=True, reason="rigid", stops=True)
         change = known.slip_velocity_change + 1e-3 * scene.normal_speed
         return (attrs.evolve(known, slip_velocity_change=change),)
-
-
-class WholeOfTheFirst(Whole):
-    """Of a batch the first mass for all."""
-
-    def told(self, known, scene):
-        mass = np.asarray(scene.pair.tangential_mass)
-        share = mass / np.ravel(mass)[0]
-        return attrs.evolve(known, slip_velocity_change=share * known.slip_velocity_change)
 
 
 COUNT = {"impacts": 0}
@@ -231,16 +193,8 @@ class Wears(Paths):
 BROKEN = [
     (OtherwiseAtOnce, "all_steps", "differs by"),
     (KnowsTooMuch, "whole_impacts", "off the law's own run (KnowsTooMuch by Symplectic)"),
-    (KnowsAnotherCourse, "whole_impacts", "along the course psi is"),
-    (WholeNotOdd, "impact_odd", "(as whole impacts)"),
-    (WholeInMetres, "impact_units", "(as whole impacts)"),
-    (WholeTooStrong, "impact_bounds", "energy from nothing (as whole impacts)"),
-    (WholeStopsAnything, "impact_bounds", "psi changes by -2, more than mu P can"),
     (WholeTooLong, "impact_bounds", "psi changes by -1.68, more than mu P can"),
-    (WholeBeyondCoulomb, "impact_coulomb_limit", "abs(F) exceeds mu P by 0.74 of mu P_max"),
-    (WholeBeyondCoulomb, "whole_impact_form", "the force along its course gives an impulse of"),
     (MovesTheCentral, "impact_central", "psi1 = 0, chi = 0.4: UNBALANCED The contact slips inf"),
-    (WholeOfTheFirst, "impact_batch", "(as whole impacts)"),
     (WholeWears, "impact_repeatable", "run twice, ends differently (as whole impacts)"),
     (PushesAlong, "impact_bounds", "energy from nothing (PushesAlong by Events)"),
     (SlipsWhateverItClaims, "impact_reference", "off (SlipsWhateverItClaims by Events)"),
@@ -288,5 +242,29 @@ BROKEN = [
     *broken(Paths, "factor",
         ("PathInMetres", lambda motion: 1.0 / (1.0 + 100.0 * motion.maximum_radius),
          "impact_units", "differs by"),
+    ),
+    *broken(Knowing, "told",  # the right end, by a course that hurries
+        ("KnowsAnotherCourse", by_course(lambda known, change, force: (
+            known.slip_velocity_change * (change / known.slip_velocity_change) ** 0.5, force)),
+         "whole_impacts", "along the course psi is"),
+    ),
+    *broken(Whole, "told",
+        ("WholeBeyondCoulomb", by_course(lambda _, change, force: (change, 2.0 * force)),
+         "impact_coulomb_limit", "abs(F) exceeds mu P by 0.74 of mu P_max",
+         "whole_impact_form", "the force along its course gives an impulse of"),
+    ),
+    *broken(Changed, "change",
+        ("WholeNotOdd",
+         lambda known, scene: known * np.where(scene.slip_velocity > 0.0, 1.0, 0.9),
+         "impact_odd", "(as whole impacts)"),
+        ("WholeInMetres", lambda known, scene: 1.0 / (1.0 + 10.0 * scene.pair.radius) * known,
+         "impact_units", "(as whole impacts)"),
+        ("WholeTooStrong", lambda _, scene: -2.04 * scene.slip_velocity * np.ones(scene.shape),
+         "impact_bounds", "energy from nothing (as whole impacts)"),
+        ("WholeStopsAnything", lambda _, scene: -1.0 * scene.slip_velocity * np.ones(scene.shape),
+         "impact_bounds", "psi changes by -2, more than mu P can"),
+        ("WholeOfTheFirst", lambda known, scene: known * scene.pair.tangential_mass / (
+            np.ravel(scene.pair.tangential_mass)[0]),
+         "impact_batch", "(as whole impacts)"),
     ),
 ]  # fmt: skip

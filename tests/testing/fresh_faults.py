@@ -46,35 +46,6 @@ class LimitRadiusOfOneBody(Brush):
         )
 
 
-class NormalModulusOfOneBody(Press):
-    """E* = G/(1 - nu): right of two bodies of one material."""
-
-    def modulus(self, scene):
-        if scene.sphere is None:
-            return scene.pair.effective_modulus
-        material = scene.sphere.material
-        return material.shear_modulus / (1.0 - material.poisson_ratio)
-
-
-class ShearModulusOfOneBody(Brush):
-    """G* = 2 G/(2 - nu): right of two bodies of one material."""
-
-    def modulus(self, scene):
-        if scene.sphere is None:
-            return scene.pair.effective_shear_modulus
-        material = scene.sphere.material
-        return 2.0 * material.shear_modulus / (2.0 - material.poisson_ratio)
-
-
-class MassOfOneBody(HardSphere):
-    """2 m/7 of the sphere, as if it met a wall."""
-
-    def mass(self, scene):
-        if scene.sphere is None:
-            return scene.pair.tangential_mass
-        return scene.sphere.mass / (1.0 + 1.0 / scene.sphere.gyration_ratio**2)
-
-
 class NormalRadiusOverRootTwo(Press):
     """b² = R z/2; it claims no hemisphere of pressure."""
 
@@ -230,26 +201,6 @@ class UniformLimits(Brush):
 # Batches, NaN, units, chance.
 
 
-class TransposedBatch(Slider):
-    """Of a batch of two axes the friction coefficients in the order of the other axis."""
-
-    def friction(self, scene):
-        friction = np.asarray(scene.friction_coefficient)
-        if friction.ndim < 2:
-            return scene.friction_coefficient
-        return np.ravel(friction, order="F").reshape(friction.shape)
-
-
-class TransposedNormalBatch(Press):
-    """Of a batch of two axes the radii in the order of the other axis."""
-
-    def radius(self, scene):
-        radius = np.asarray(scene.pair.radius)
-        if radius.ndim < 2:
-            return scene.pair.radius
-        return np.ravel(radius, order="F").reshape(radius.shape)
-
-
 class HidesNanInABatch(Slider):
     """Of a batch NaN is cleaned away."""
 
@@ -297,25 +248,21 @@ class IntegratorIgnoresSpin(STEPS):
         return super().integrate(normal, tangential, scene, observer)
 
 
-class HidesUnsettled(Steps):
-    """A law that found no answer reads as success."""
+def alone(pair, body):
+    """Return a function of a scene: of the first body, or of the pair where no body is known."""
+    return lambda scene: pair(scene.pair) if scene.sphere is None else body(scene.sphere)
 
-    def alter(self, motion, scene):
-        if scene.shape or motion.status is not Status.UNSETTLED:
-            return motion
-        return attrs.evolve(motion, status=Status.SUCCESS, detail="")
+
+def transposed(numbers):
+    """Return the numbers of a batch of two axes in the order of the other axis."""
+    shape = np.shape(numbers)
+    return numbers if len(shape) < 2 else np.ravel(numbers, order="F").reshape(shape)
 
 
 #: Each with the check that catches it, and words by which its sentence names the fault.
 FAULTS = [
     (LimitRadiusOfOneBody, "unlike_bodies",
      "Balls unlike in radius, psi1 = 0.5: exchanged, psi2 differs by"),
-    (NormalModulusOfOneBody, "contacts_unlike",
-     "unlike in shear_modulus: exchanged, the force differs"),
-    (ShearModulusOfOneBody, "unlike_bodies",
-     "unlike in shear_modulus, psi1 = 0.5: exchanged, psi2"),
-    (MassOfOneBody, "unlike_bodies",
-     "Balls unlike in mass, psi1 = 9.0: exchanged, psi2 differs by"),
     (NormalRadiusOverRootTwo, "radius", "b² is 0.5 R z at greatest compression"),
     (WorkOfThePreviousStep, "work_in_its_step", "that of the step before, of 0.1, 0.059"),
     (NotOddAtLargeD, "odd_in_slip", "Reversed slip, as far as 10000 units, gives a force that"),
@@ -328,14 +275,11 @@ FAULTS = [
     (StateInPlaceInABatch, "pure", "changed the next one, at step 1 of a batch of shape (3,)"),
     (CachedByShape, "impact_after_another", "An impact of other bodies, run after another scene"),
     (UniformLimits, "coulomb_at_a_point", "The traction exceeds mu p by 1"),
-    (TransposedBatch, "batch", "Contact (0, 1) of a batch of shape (2, 3) is off"),
-    (TransposedNormalBatch, "contacts_batch", "Contact (0, 1) of a batch of shape (2, 3) is off"),
     (HidesNanInABatch, "non_finite",
      "NaN as the slip of one contact of a batch gives F = 0 N there"),
     (RegularisedInMillimetres, "impact_units", "in other units psi2 differs by"),
     (DrawsFromTheGlobalGenerator, "impact_repeatable", "An impact that slips, run twice, ends"),
     (IntegratorIgnoresSpin, "spin", "of which spin is 1: psi2 differs by"),
-    (HidesUnsettled, "faults_reported", "A fault in Hertz and UnsettledSpring reads as success"),
     *broken(HardSphere, "slip",
         ("IgnoresSpin", lambda scene: scene.tangential_velocity,
          "spin", "of which spin is 1: psi2 differs by"),
@@ -410,5 +354,37 @@ FAULTS = [
          lambda response, new, state, _, _before, after: (response, new._replace(
              force=np.where(after.friction_load > 0.0, new.force, state.force)[()])),
          "contact_again", "contact is made again: pressing alone gives F = 0.01"),
+    ),
+    *broken(Press, "radius",
+        ("TransposedNormalBatch", lambda scene: transposed(scene.pair.radius),
+         "contacts_batch", "Contact (0, 1) of a batch of shape (2, 3) is off"),
+    ),
+    *broken(Press, "modulus",  # right of two bodies of one material, as the next
+        ("NormalModulusOfOneBody", alone(
+            lambda pair: pair.effective_modulus,
+            lambda body: body.material.shear_modulus / (1.0 - body.material.poisson_ratio)),
+         "contacts_unlike", "unlike in shear_modulus: exchanged, the force differs"),
+    ),
+    *broken(Brush, "modulus",
+        ("ShearModulusOfOneBody", alone(
+            lambda pair: pair.effective_shear_modulus,
+            lambda body: 2.0 * body.material.shear_modulus / (2.0 - body.material.poisson_ratio)),
+         "unlike_bodies", "unlike in shear_modulus, psi1 = 0.5: exchanged, psi2"),
+    ),
+    *broken(HardSphere, "mass",  # as if it met a wall
+        ("MassOfOneBody", alone(
+            lambda pair: pair.tangential_mass,
+            lambda body: body.mass / (1.0 + 1.0 / body.gyration_ratio**2)),
+         "unlike_bodies", "Balls unlike in mass, psi1 = 9.0: exchanged, psi2 differs by"),
+    ),
+    *broken(Slider, "friction",
+        ("TransposedBatch", lambda scene: transposed(scene.friction_coefficient),
+         "batch", "Contact (0, 1) of a batch of shape (2, 3) is off"),
+    ),
+    *broken(Steps, "alter",
+        ("HidesUnsettled", lambda motion, scene: (
+            motion if scene.shape or motion.status is not Status.UNSETTLED
+            else attrs.evolve(motion, status=Status.SUCCESS, detail="")),
+         "faults_reported", "A fault in Hertz and UnsettledSpring reads as success"),
     ),
 ]  # fmt: skip
