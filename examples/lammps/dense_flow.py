@@ -22,6 +22,7 @@ SHEAR_RATE = 5.0
 #: Coefficient of LAMMPS's ``tsuji`` for which a head-on impact keeps 0.9 of its speed.
 TSUJI = 0.8621
 LAWS = ("mindlin/force", "mindlin_rescale/force", "springs8")
+SHOWN = (*LAWS[:2], "8 springs")
 TIME_STEP = 2e-5  # a fiftieth of a contact at 0.3 m/s, three times shear rate times diameter
 #: Strain before the mean, and within it.
 BEGUN, SHEARED = 2.0, 8.0
@@ -123,11 +124,11 @@ def draw(found: dict[float, dict[str, Array]], path: Path) -> None:
     with styled("print", "two"):
         figure, panels = plt.subplots(1, 2, figsize=(7.0, 2.8))
         for column, (axes, name) in enumerate(zip(panels, names, strict=True)):
-            for number, law in enumerate(LAWS):
+            for number, (law, shown) in enumerate(zip(LAWS, SHOWN, strict=True)):
                 means, errors = np.array([rows[law][:, column] for rows in found.values()]).T
                 place = np.arange(len(found)) + 0.18 * (number - 1)
                 look = {"color": law_style(number)["color"], "marker": "os^"[number]}
-                axes.errorbar(place, means, errors, ls="", ms=4, capsize=3, label=law, **look)
+                axes.errorbar(place, means, errors, ls="", ms=4, capsize=3, label=shown, **look)
             axes.set(xlabel=r"friction coefficient $\mu$", ylabel=name)
             axes.set_xticks(range(len(found)), [f"{mu:g}" for mu in found])
         panels[1].set_yscale("log")

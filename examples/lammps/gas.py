@@ -25,6 +25,7 @@ FILLED, RESTITUTION = 0.1, 0.9
 #: Coefficient of LAMMPS's ``tsuji`` for which a head-on impact keeps 0.9 of its speed.
 TSUJI = 0.8621
 LAWS = ("mindlin/force", "mindlin_rescale/force", "springs8")
+SHOWN = (*LAWS[:2], "8 springs")
 #: Logarithms of the first energy over the energy between which the ratio is averaged.
 COOLED = (1.0, 3.5)
 TIME_STEP = 4e-6  # a fiftieth of a contact at 0.5 m/s
@@ -167,7 +168,7 @@ def draw(found: dict[float, dict[str, tuple[float, float]]], path: Path) -> None
             for place, name in enumerate(LAWS):
                 look = {"color": law_style(place)["color"], "marker": "os^"[place]}
                 axes.errorbar(rows[name][0], place, xerr=rows[name][1], ms=5, capsize=3, **look)
-            axes.set_yticks(range(len(LAWS)), LAWS if axes is panels[0, 0] else [""] * len(LAWS))
+            axes.set_yticks(range(len(LAWS)), SHOWN if axes is panels[0, 0] else [""] * len(LAWS))
             axes.set_ylim(len(LAWS) - 0.5, -0.8)
             axes.set_xlabel("rotational over translational temperature")
             axes.set_title(rf"$\mu$ = {mu:g}", fontsize="medium")
