@@ -10,7 +10,6 @@ from contactlab.study import validation
 from contactlab.study.comparison import Agreement, Comparison
 from contactlab.study.stability_eccentric import rod
 from contactlab.study.validation import (
-    SOURCES,
     Evidence,
     Finding,
     Source,
@@ -80,20 +79,6 @@ def test_a_rod_of_the_stiff_contacts_is_that_of_the_theory():
     assert numbers == pytest.approx((1.372549, 0.764706, 0.222692, 2.037707), abs=1e-6)
 
 
-def hertz(case):
-    """Force, approach and duration by the closed forms of two spheres, or a sphere on a plane."""
-    sphere = case.scene.sphere
-    young, nu = sphere.material.young_modulus, sphere.material.poisson_ratio
-    mass = sphere.material.density * 4.0 / 3.0 * np.pi * sphere.radius**3
-    alike = case.name.startswith("test 1")
-    modulus = young / (1.0 - nu**2) / (2.0 if alike else 1.0)
-    radius, reduced = (sphere.radius / 2.0, mass / 2.0) if alike else (sphere.radius, mass)
-    speed = 20.0 if alike else 0.2
-    stiffness = 4.0 / 3.0 * modulus * radius**0.5
-    approach = (1.25 * reduced * speed**2 / stiffness) ** 0.4
-    return stiffness * approach**1.5, approach, 2.9432751843247 * approach / speed
-
-
 def test_laws_are_named_with_a_normal_law_that_is_not_the_default():
     found, left_out = simulations_over({"hertz": {}, "tsuji": {"restitution": 0.98}})
     assert {"fronts", "springs", "walton, tsuji restitution=0.98"} <= set(found)
@@ -102,16 +87,3 @@ def test_laws_are_named_with_a_normal_law_that_is_not_the_default():
     assert "elastic_hertz" in left_out["fronts, tsuji restitution=0.98"]
     plain, _ = simulations_over({"jkr": {}})
     assert "springs, jkr" in plain
-
-
-def test_sources_have_the_normal_laws_and_bounds_that_are_told():
-    assert [(source.name, source.kind) for source in SOURCES] == [
-        ("kharaz2001", "experiment"), ("finite-elements", "finite elements"),
-        ("codes-test4-oxide", "other codes"), ("codes-test4-alloy", "other codes"),
-        ("codes-mfix", "other codes"),
-    ]  # fmt: skip
-    assert SOURCES[0].normals == {"hertz": {}, "tsuji": {"restitution": 0.98}}
-    assert all(source.normals == {"hertz": {}} for source in SOURCES[1:])
-    assert [sorted(set(source.bounds.values())) for source in SOURCES] == [
-        [0.015], [0.06], [0.006], [0.006], [0.006]
-    ]  # fmt: skip
