@@ -2,10 +2,22 @@
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
 from contactlab.figures import animation
+from contactlab.figures.animation_panels import Forces, Frame
 from tests.figures.animated import impact
+
+
+def test_forces_are_drawn_from_first_touch_up_to_the_instant():
+    axes = Figure().subplots()
+    forces = Forces(axes, impact())
+    found = []
+    for flight, instant in ((-1.0, 0), (0.0, 0), (0.0, 1), (0.0, 3), (1.0, 3)):
+        forces.show(Frame("", flight, instant))
+        found.append([len(line.get_xdata()) for line in axes.lines[-2:]])
+    assert found == [[0, 0], [2, 1], [3, 1], [5, 1], [5, 1]]
 
 
 @pytest.fixture
