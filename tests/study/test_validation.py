@@ -4,7 +4,7 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation
+from contactlab import Scene, Simulation, rebound
 from contactlab.scene_file import read_scene
 from contactlab.study import validation
 from contactlab.study.comparison import Agreement, Comparison
@@ -70,6 +70,11 @@ def test_eccentric_impacts_have_closed_forms_and_a_rigid_limit(check, most):
     found = getattr(validation, check)()
     assert found.what.startswith("fronts, two bodies: ")
     assert (found.bound, found.ok) == (pytest.approx(most), True)
+
+
+def test_psi2_that_laws_are_checked_against_is_that_of_the_table():
+    for chi, values in validation.REFERENCE_PSI2.items():
+        assert rebound(validation.REFERENCE_PSI1, chi) == pytest.approx(values, abs=2e-10)
 
 
 def test_a_rod_of_the_stiff_contacts_is_that_of_the_theory():
