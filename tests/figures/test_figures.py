@@ -203,17 +203,6 @@ def test_long_legends_stand_clear_of_the_axes(tmp_path, monkeypatch, width):
         assert not box.overlaps(axes.xaxis.label.get_window_extent(renderer))
 
 
-@pytest.mark.parametrize("share", [0.9, 1.1])
-def test_error_bands_are_shown_from_one_threshold_on(share, monkeypatch, simulation):
-    x, y = np.linspace(0.0, 1.0, 5), np.linspace(0.0, 1.0, 5)
-    axes = Figure().subplots()
-    axes.set_ylim(-1.0, 1.0)
-    half = np.full(5, share * style.VISIBLE * 2.0)
-    half[0] = np.nan
-    style.error_band(axes, x, y, half, {"color": "red"})
-    assert bool(axes.collections) == (share > 1.0)
-
-
 def test_laws_within_the_line_of_the_reference_are_named_with_it():
     file = read_scene(EXAMPLES / "kharaz2001.toml")
     laws = {"exact": Simulation(), "springs": Simulation(tangential="springs"),
