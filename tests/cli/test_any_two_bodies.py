@@ -6,9 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import contactlab
 from contactlab import EccentricScene, Simulation, read_scene
+from contactlab.figures import body_animation
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FOOT = EXAMPLES / "foot.toml"
@@ -119,9 +121,17 @@ def test_what_is_for_spheres_says_so(run, tmp_path, monkeypatch, command, word):
     assert ran.err.count("\n") == 1
 
 
-def test_animate_draws_the_body_and_the_ghost_of_rigid_theory(run, tmp_path):
+@pytest.mark.parametrize(
+    ("frames", "least"), [(8, 5_000), pytest.param(108, 50_000, marks=pytest.mark.slow)]
+)
+def test_animate_draws_the_body_and_the_ghost(frames, least, run, tmp_path, monkeypatch):
+    if frames == 8:
+        for name, count in (("ARRIVING", 2), ("IN_CONTACT", 4), ("LEAVING", 2)):
+            monkeypatch.setattr(body_animation, name, count)
     out = tmp_path / "foot.gif"
     ran = run("animate", FOOT, "--ghost", "coulomb", "--out", out)
     assert ran.status == 0
     assert out.read_bytes()[:6] == b"GIF89a"
-    assert out.stat().st_size > 50_000
+    assert out.stat().st_size > least
+    with Image.open(out) as picture:
+        assert frames // 2 < picture.n_frames <= frames  # like ones are joined

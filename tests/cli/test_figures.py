@@ -45,6 +45,7 @@ def test_every_figure_as_png_and_csv(run, tmp_path):
         text = picture.with_suffix(".csv").read_text(encoding="utf-8")
         rows = list(csv.DictReader(text.splitlines()))
         assert len(rows) > 100
+        assert "nan" not in text
         assert all(np.isfinite(float(list(row.values())[-1])) for row in rows)
 
 

@@ -6,6 +6,7 @@ import math
 import re
 import subprocess
 import sys
+import unicodedata
 
 import pytest
 
@@ -69,6 +70,15 @@ def test_printed_formulas_have_the_values_that_the_code_has(run):
     assert 2 * value(found[1], ν=steel.poisson_ratio) == pytest.approx(pair.stiffness_ratio)
     found = re.search(r"ψ₂ = (ψ₁ - 4 χ) sign", regimes)
     assert value(found[1], χ=1.2, ψ1=6.0) == pytest.approx(float(contactlab.rebound(6.0, 1.2)))
+
+
+def test_columns_of_printed_formulas_stand_in_line(run):
+    """A hat stands on the letter before it."""
+    out = run("guide", "theory", "5").out
+    lines = "".join(one for one in out if not unicodedata.combining(one)).splitlines()
+    rows = [row for line in lines if (row := re.match(r" {4}(\w) = \S.*? {4,}(\S)", line))]
+    assert [row[1] for row in rows] == ["k", "J", "m"]
+    assert len({row.start(2) for row in rows}) == 1
 
 
 def test_an_unknown_topic_is_refused_with_the_nearest(run):

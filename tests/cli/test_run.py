@@ -47,7 +47,8 @@ def test_table_says_it_in_words(run, ball):
     ran = run("run", ball, *RIGID)
     assert ran.status == 0
     for words in ("A steel ball", "m/s", "rad/s", "local angle psi", "friction work", "left out:",
-                  "run time", "from first touch to separation", "coulomb"):  # fmt: skip
+                  "run time", "from first touch to separation", "coulomb",
+                  "largest normal force"):  # fmt: skip
         assert words in ran.out
 
 
@@ -55,6 +56,7 @@ def test_table_of_a_nondimensional_scene_claims_no_units(run):
     out = run("run", *PSI).out
     assert "m/s" not in out
     assert " J" not in out
+    assert " N" not in out
 
 
 def test_nobody_is_told_to_estimate_what_was_estimated(run):

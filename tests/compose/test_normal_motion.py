@@ -131,6 +131,14 @@ def test_what_stands_beside_an_impact_changes_no_bit(law):
                 assert found == pytest.approx(expected, rel=rel, abs=0.0), name
 
 
+@pytest.mark.parametrize("normal", [name for name in NAMES if name not in ("jkr", "dmt")])
+def test_the_load_impulse_is_the_momentum_that_is_lost(normal):
+    motion = Simulation(normal=normal, tangential="coulomb").normal_motion(scene(speed=0.3))
+    sample = motion.at(np.linspace(0.0, np.pi, 23))
+    lost = motion.scene.pair.normal_mass * (0.3 - sample.rate)
+    assert sample.load_impulse == pytest.approx(lost, abs=1e-7 * motion.total_load_impulse)
+
+
 @pytest.mark.parametrize("normal", ["dmt", "hunt_crossley", "jkr", "thornton"])
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_a_batch_of_linear_springs_is_what_they_are_alone(normal, integrator):

@@ -2,32 +2,22 @@
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
 from contactlab.figures import animation
+from contactlab.figures.animation_panels import Forces, Frame
 from tests.figures.animated import impact
 
 
-def test_frames_come_touch_and_leave():
-    """14 frames of flight, 72 in contact, 22 of flight; the rows are the first at their time."""
-    found = animation._sequence(impact())
-    before, touching, after = found[:14], found[14:86], found[86:]
-    assert len(after) == 22
-    assert {frame.words for frame in before} == {"arrives, spin \N{MINUS SIGN}1 rad/s"}
-    assert [frame.flight for frame in before] == pytest.approx(np.linspace(-2.2, 0.0, 14))
-    assert {frame.instant for frame in before} == {0}
-    assert {frame.words for frame in after} == {"leaves, spin 1 rad/s"}
-    assert [frame.flight for frame in after] == pytest.approx(np.linspace(0.0, 2.2, 22))
-    assert {frame.instant for frame in after} == {3}
-    assert {frame.flight for frame in touching} == {0.0}
-    times = np.linspace(0.0, 4.0, 72)
-    rows = [0 if t == 0.0 else 1 if t <= 1.0 else 2 if t <= 2.0 else 3 for t in times]
-    assert [frame.instant for frame in touching] == rows
-    assert touching[0].words == "in contact: 0.00 of 4.00 s"
-    assert touching[-1].words == "in contact: 4.00 of 4.00 s"
-    late = animation._sequence(impact(duration=4.5))  # beyond the last row
-    assert late[85].instant == 3
-    assert len(animation._sequence(impact(sphere=False))) == 72
+def test_forces_are_drawn_from_first_touch_up_to_the_instant():
+    axes = Figure().subplots()
+    forces = Forces(axes, impact())
+    found = []
+    for flight, instant in ((-1.0, 0), (0.0, 0), (0.0, 1), (0.0, 3), (1.0, 3)):
+        forces.show(Frame("", flight, instant))
+        found.append([len(line.get_xdata()) for line in axes.lines[-2:]])
+    assert found == [[0, 0], [2, 1], [3, 1], [5, 1], [5, 1]]
 
 
 @pytest.fixture

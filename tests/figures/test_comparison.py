@@ -99,14 +99,6 @@ def named():
     return upper, lower
 
 
-def test_bands_are_as_wide_as_the_error(drawn):
-    for axes, shift in zip(drawn, (REFERENCE, 0.0 * X), strict=True):
-        assert len(axes.collections) == 4
-        corners = axes.collections[1].get_paths()[0].vertices
-        assert corners[:, 1].max() == pytest.approx((shift + 1.1).max())
-        assert corners[:, 1].min() == pytest.approx((shift + 0.9).min())
-
-
 def test_other_codes_are_points_without_lines(drawn, named):
     points = [line for line in drawn[0].lines if line.get_marker() != "None"]
     assert [(line.get_marker(), line.get_label()) for line in points] == [("o", "code"), ("s", "b")]

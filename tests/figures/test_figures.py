@@ -19,8 +19,8 @@ from matplotlib.text import Text
 
 import contactlab.figures
 from contactlab import Scene, Simulation, create
-from contactlab.figures import paper, results, style
-from contactlab.figures.comparison import all_laws, laws_over_sweep
+from contactlab.figures import paper, style
+from contactlab.figures.comparison import all_laws
 from contactlab.figures.files import save, save_figure
 from contactlab.scene_file import read_scene
 from contactlab.study import paper_figures
@@ -201,28 +201,6 @@ def test_long_legends_stand_clear_of_the_axes(tmp_path, monkeypatch, width):
     for axes in figure.axes:
         assert not box.overlaps(axes.get_window_extent(renderer))
         assert not box.overlaps(axes.xaxis.label.get_window_extent(renderer))
-
-
-@pytest.mark.parametrize("share", [0.9, 1.1])
-def test_error_bands_are_shown_from_one_threshold_on(share, monkeypatch, simulation):
-    """The same band of the same curve, in the plot of a result and in that of a comparison."""
-    x, y = np.linspace(0.0, 1.0, 5), np.linspace(0.0, 1.0, 5)
-    for module in (results, contactlab.figures.comparison):
-        assert module.error_band is style.error_band
-    axes = Figure().subplots()
-    axes.set_ylim(-1.0, 1.0)
-    half = np.full(5, share * style.VISIBLE * 2.0)
-    half[0] = np.nan
-    style.error_band(axes, x, y, half, {"color": "red"})
-    assert bool(axes.collections) == (share > 1.0)
-
-
-def test_laws_are_compared_on_axes():
-    file = read_scene(EXAMPLES / "kharaz2001.toml")
-    comparison = compare(file, {"coulomb": Simulation(tangential="coulomb")})
-    axes = Figure().subplots()
-    assert laws_over_sweep(axes, comparison, "psi2") is axes
-    assert len(axes.lines) == 1
 
 
 def test_laws_within_the_line_of_the_reference_are_named_with_it():

@@ -83,6 +83,11 @@ def test_without_an_angle_the_abscissa_is_what_varies():
     assert "rad/s" in axes.get_xlabel()
 
 
-def test_each_quantity_has_a_column_and_a_picture_is_written(tmp_path):
+def test_each_quantity_has_a_column_under_one_legend(tmp_path, monkeypatch):
     draw_fits(tmp_path / "fit.png", {"a": fitted()}, width="two")
     assert (tmp_path / "fit.png").read_bytes()[1:4] == b"PNG"
+    kept = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: kept.append(figure))
+    draw_fits(tmp_path / "fit.png", {"a": fitted()})
+    assert {axes.get_legend() for axes in kept[0].axes} == {None}
+    assert len(kept[0].legends) == 1

@@ -19,13 +19,6 @@ def axes():
 
 
 @pytest.mark.parametrize(
-    ("width", "size"), [(None, (5.6, 3.9)), ("one", (3.4, 3.4 * 3.9 / 5.6)), ("two", (7.0, 3.9))]
-)
-def test_a_figure_keeps_its_shape_but_for_a_whole_page(width, size):
-    assert style.figure_size(width) == pytest.approx(size)
-
-
-@pytest.mark.parametrize(
     ("name", "known"), [("a.png", True), ("a.PNG", True), ("a.jpg", False), ("a", False)]
 )
 def test_the_suffix_selects_the_format(name, known, tmp_path, monkeypatch):
@@ -66,15 +59,6 @@ def test_a_label_has_words_and_a_unit(arguments, words):
 
 def test_dollars_are_no_formula():
     assert style.verbatim("a $b$") == r"a \$b\$"
-
-
-def test_laws_have_colours_and_dashes_of_their_own_in_turn():
-    looks = [style.law_style(number) for number in range(7)]
-    assert [look["color"] for look in looks] == [*style.LAW_COLOURS, style.LAW_COLOURS[0]]
-    assert [look["linestyle"] for look in looks[:4]] == list(style.LAW_DASHES[:4])
-    assert looks[6] == looks[0]
-    assert len(set(style.LAW_COLOURS)) == len(style.LAW_COLOURS) == len(style.LAW_DASHES) == 6
-    assert len(set(map(str, style.LAW_DASHES[:4]))) == 4
 
 
 def test_colours_of_ones_own_take_the_place_of_the_palette_and_stay_on_a_slide(tmp_path):

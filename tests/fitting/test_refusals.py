@@ -34,11 +34,12 @@ def refused(measurements, *parameters, **options):
     ("angles", "parameters", "missing"),
     [
         (GRAZING, ["stiffness_ratio"], "stiffness_ratio"),
-        (GRAZING, ["friction_coefficient", "stiffness_ratio"], "stiffness_ratio"),
+        pytest.param(GRAZING, ["friction_coefficient", "stiffness_ratio"], "stiffness_ratio",
+                     marks=pytest.mark.slow),
         (STEEP, ["friction_coefficient"], "friction_coefficient"),
         (STEEP, ["stiffness_ratio", "friction_coefficient"], "friction_coefficient"),
     ],
-)
+)  # fmt: skip
 def test_the_measurement_that_is_advised_determines_what_was_not(angles, parameters, missing):
     """Gross slip says nothing of stiffness, and impacts that stick next to nothing of friction."""
     told = refused(table(scattered(angles), angles), *parameters)

@@ -1,5 +1,6 @@
 """``bounce`` in C and JavaScript against ``contactlab.collide``, on random encounters."""
 
+import functools
 import json
 import shutil
 import subprocess
@@ -48,6 +49,7 @@ def bounced(request, tmp_path_factory):
     return run
 
 
+@functools.cache
 def rows_and_laws(seed, wall, gyration):
     """Return rows of random encounters, and what contactlab answers."""
     random = np.random.default_rng(seed)

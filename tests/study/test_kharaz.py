@@ -118,14 +118,6 @@ def test_mfix_has_the_whole_stiffness_of_mindlin():
         assert told in MFIX.notes
 
 
-def test_no_page_says_that_mfix_has_two_thirds():
-    from contactlab_laws.mindlin import MindlinCap
-
-    told = " ".join((MindlinCap.__doc__ or "").split())
-    assert "Kratos and MFiX have 1" in told
-    assert "2005; MFiX" not in told
-
-
 def test_the_table_of_the_theory_page_is_that_of_the_figures():
     page = Path(contactlab.__file__).parent / "guide" / "theory-coupling.md"
     pattern = r"^\| ([\d.]+)° \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$"

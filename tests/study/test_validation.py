@@ -4,7 +4,7 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation
+from contactlab import Scene, Simulation, rebound
 from contactlab.scene_file import read_scene
 from contactlab.study import evidence, validation
 from contactlab.study.comparison import Agreement, Comparison
@@ -68,25 +68,16 @@ def test_eccentric_impacts_have_closed_forms_and_a_rigid_limit(check, most):
     assert (found.bound, found.ok) == (pytest.approx(most), True)
 
 
+def test_psi2_that_laws_are_checked_against_is_that_of_the_table():
+    for chi, values in validation.REFERENCE_PSI2.items():
+        assert rebound(validation.REFERENCE_PSI1, chi) == pytest.approx(values, abs=2e-10)
+
+
 def test_a_rod_of_the_stiff_contacts_is_that_of_the_theory():
     """Theory §14: 30 degrees, mu .3, slip .5, kappa .8235294."""
     scene = rod(30.0, 0.3, 0.5, kappa=0.8235294)
     numbers = (scene.psi1, scene.chi, scene.lam, scene.eta)
     assert numbers == pytest.approx((1.372549, 0.764706, 0.222692, 2.037707), abs=1e-6)
-
-
-def hertz(case):
-    """Force, approach and duration by the closed forms of two spheres, or a sphere on a plane."""
-    sphere = case.scene.sphere
-    young, nu = sphere.material.young_modulus, sphere.material.poisson_ratio
-    mass = sphere.material.density * 4.0 / 3.0 * np.pi * sphere.radius**3
-    alike = case.name.startswith("test 1")
-    modulus = young / (1.0 - nu**2) / (2.0 if alike else 1.0)
-    radius, reduced = (sphere.radius / 2.0, mass / 2.0) if alike else (sphere.radius, mass)
-    speed = 20.0 if alike else 0.2
-    stiffness = 4.0 / 3.0 * modulus * radius**0.5
-    approach = (1.25 * reduced * speed**2 / stiffness) ** 0.4
-    return stiffness * approach**1.5, approach, 2.9432751843247 * approach / speed
 
 
 def test_laws_are_named_with_a_normal_law_that_is_not_the_default():
@@ -97,16 +88,3 @@ def test_laws_are_named_with_a_normal_law_that_is_not_the_default():
     assert "elastic_hertz" in left_out["fronts, tsuji restitution=0.98"]
     plain, _ = simulations_over({"jkr": {}})
     assert "springs, jkr" in plain
-
-
-def test_sources_have_the_normal_laws_and_bounds_that_are_told():
-    assert [(source.name, source.kind) for source in SOURCES] == [
-        ("kharaz2001", "experiment"), ("finite-elements", "finite elements"),
-        ("codes-test4-oxide", "other codes"), ("codes-test4-alloy", "other codes"),
-        ("codes-mfix", "other codes"),
-    ]  # fmt: skip
-    assert SOURCES[0].normals == {"hertz": {}, "tsuji": {"restitution": 0.98}}
-    assert all(source.normals == {"hertz": {}} for source in SOURCES[1:])
-    assert [sorted(set(source.bounds.values())) for source in SOURCES] == [
-        [0.015], [0.06], [0.006], [0.006], [0.006]
-    ]  # fmt: skip

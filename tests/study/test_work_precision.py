@@ -124,18 +124,8 @@ def test_budget_ends_it_and_says_so(capsys):
 
 def test_command_writes_table_csv_and_picture(tmp_path, capsys):
     files = [str(tmp_path / name) for name in ("b.png", "b.csv")]
-    arguments = [
-        "bench",
-        "--quick",
-        "--law",
-        "coulomb",
-        "--json",
-        "--figure",
-        files[0],
-        "--csv",
-        files[1],
-    ]
-    assert main(arguments) == 0
+    words = ["bench", "--quick", "--law", "coulomb", "--json", "--figure"]
+    assert main([*words, files[0], "--csv", files[1]]) == 0
     content = json.loads(capsys.readouterr().out)
     assert content["complete"] is True
     assert len((tmp_path / "b.csv").read_text().splitlines()) == len(content["rows"]) + 1

@@ -26,6 +26,8 @@ AT = 7
 NORMAL_AT = 4
 SCENE = Scene.nondimensional(psi1=1.2, chi=1.44)
 BATCH = Scene.nondimensional(psi1=np.array([0.5, 1.2, 3.0]), chi=1.44)
+#: Faults that every friction law meets by default.
+FEW = ("raises", "nan")
 STEPPING = ("paper", "symplectic", "adaptive")
 
 
@@ -152,8 +154,14 @@ def test_a_tangential_law_is_named_with_step_and_time(fault, integrator, scene):
 
 @pytest.mark.parametrize("scene", [SCENE, BATCH], ids=["one", "batch"])
 @pytest.mark.parametrize("integrator", STEPPING)
-@pytest.mark.parametrize("tangential", ["coulomb", "springs", "frictionless"])
-@pytest.mark.parametrize("fault", NORMAL)
+@pytest.mark.parametrize(
+    ("fault", "tangential"),
+    [
+        pytest.param(fault, law, marks=[pytest.mark.slow] * (fault not in often))
+        for law, often in (("coulomb", NORMAL), ("springs", FEW), ("frictionless", FEW))
+        for fault in NORMAL
+    ],
+)
 def test_a_normal_law_is_named(fault, tangential, integrator, scene):
     answer, status, words = NORMAL[fault]
     simulation = Simulation(

@@ -124,13 +124,13 @@ def test_a_refusal_names_law_check_and_fault():
         check_law(laws.WrongSign())
 
 
-@pytest.mark.parametrize("name", ["books", "impact_books", "normal_load_alone"])
-def test_a_failure_that_may_be_the_nature_of_a_law_says_so(name):
+def test_a_failure_that_may_be_the_nature_of_a_law_says_so():
     """A stiffness that changes with the load keeps no books: Mindlin's spring, without a word."""
     law = type("Silent", (MindlinCap,), {"expected_failures": {}, "api_version": 2})()
     told = {each.check: each.sentence for each in examine(law) if not each.verdict.good}
-    assert "with the load" in told[name]
-    assert "named in expected_failures" in told[name]
+    for name in ("books", "impact_books", "normal_load_alone"):
+        assert "with the load" in told[name]
+        assert "named in expected_failures" in told[name]
 
 
 def test_an_unexpected_pass_is_reported():
