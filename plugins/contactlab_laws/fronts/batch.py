@@ -13,7 +13,9 @@ from contactlab_laws.fronts.steps import (
     CAREFUL,
     LONGEST,
     LOOKS,
+    PLACES,
     ROUNDING,
+    SHARES,
     alone,
     failure,
     fall,
@@ -28,6 +30,8 @@ MOVES, NEAR = 50, 1e-8
 #: Powers of the places at which events are looked for, and of which slopes are multiples.
 LOOK_POWERS = (np.arange(LOOKS + 1)[:, None] / LOOKS) ** np.arange(ORDER + 1)
 POWERS = np.arange(1.0, ORDER + 1)[:, None]
+#: Powers of the places at which friction work is added up, and their weights.
+PLACE_POWERS, WEIGHTS = np.array(PLACES)[:, None] ** np.arange(ORDER + 1), np.array(SHARES)
 
 
 def follow(impacts: list[Impact], tolerance: float, most: int) -> list[str]:
@@ -117,7 +121,10 @@ def _step(group: Group, form: int, tolerance: float) -> tuple[Any, Any]:
     rows, falls = phase.course(Laws(*table[HEAD:LAWS]), state, table[end:], form)
     length, finite = _lengths(rows, tolerance)
     t, events = _first_falls(falls, length)
-    last = _values(rows, t)
+    terms = rows * _powers(t)
+    last = terms.sum(axis=1)
+    if phase.slips:
+        table[end - 1] += t * (WEIGHTS @ phase.power(form, *(PLACE_POWERS @ terms[[*phase.slips]])))
     table[0] = np.maximum(table[0], np.maximum(state[0], last[0]))
     tops = np.flatnonzero((state[1] > 0.0) & (last[1] <= 0.0))
     if tops.size:
@@ -125,7 +132,7 @@ def _step(group: Group, form: int, tolerance: float) -> tuple[Any, Any]:
         table[0, tops] = np.maximum(table[0, tops], _values(rows[:1, :, tops], top)[0])
     table[1] += (state[1] <= 0.0) & (last[1] > 0.0)
     table[2] += 1.0
-    table[LAWS:end] = last
+    table[LAWS : end - 1] = last
     return events, finite
 
 
@@ -133,7 +140,7 @@ def _lengths(rows: Rows, tolerance: float) -> tuple[Any, Any]:
     """Return how far all series of a step hold but that of time, and which are finite."""
     allowed = np.maximum(tolerance, ROUNDING * np.abs(rows[:, :1]))
     ends = np.abs(rows[:, ORDER - 1 :]) / allowed
-    ends[-2] = 0.0
+    ends[-1] = 0.0
     before, last = ends.max(axis=0)
     length = np.minimum(last ** (-1.0 / ORDER), before ** (-1.0 / (ORDER - 1)))
     return CAREFUL * np.minimum(LONGEST, length), np.isfinite(before + last)

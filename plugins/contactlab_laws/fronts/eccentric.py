@@ -118,7 +118,7 @@ def _watch(
     def watch(_phase: Phase, rows: Rows, length: float, _last: tuple[float, ...]) -> None:
         for part in (0.25, 0.5, 0.75, 1.0):
             u, rate, margin, lack = (value(row, part * length) for row in rows[:4])
-            time = value(rows[-2], part * length)
+            time = value(rows[-1], part * length)
             psi, force = impact.sign * (rate - margin), impact.sign * (u**3 - 1.5 * lack)
             contact = NormalContact(u**3 * scales.force, u * scales.radius, u * u * scales.approach)
             observer(

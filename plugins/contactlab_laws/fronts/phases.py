@@ -38,12 +38,15 @@ Events: TypeAlias = list[tuple[Series, Any]]
 class Phase(NamedTuple):
     """The length of a phase's state, its series and events, and the form in which they are found.
 
-    ``course`` takes laws, state, constants and the form.
+    ``course`` takes laws, state, constants and the form. ``power`` is the friction work over the
+    variable, from the form and the values of the series ``slips``; where none slips these are none.
     """
 
     size: int
     form: Callable[[Any, Any], Any]
     course: Callable[[Laws, Any, Any, int], tuple[Rows, Events]]
+    slips: tuple[int, ...] = ()
+    power: Callable[..., Any] = float
 
 
 def _stick(laws: Laws, state: Any, _constants: Any, _form: int) -> tuple[Rows, Events]:
@@ -65,6 +68,11 @@ def _drawn_form(state: Any, _constants: Any) -> Any:
     return (abs(u * k) > abs(c * k1)) + 2 * ((k == 0.0) & (k1 == 0.0))
 
 
+def _drawn_power(form: int, u: Any, k: Any, c: Any, k1: Any) -> Any:
+    """Return -u k x' (u - c)² (2u + c), where u k x' = c k_1 x_1'."""
+    return (c * k1 if form == 1 else -u * k) * (u - c) ** 2 * (2.0 * u + c)
+
+
 def _locked(laws: Laws, state: Any, constants: Any, form: int) -> tuple[Rows, Events]:
     """Slip eats a locked zone until slip stops, the zone is spent, or the edge meets the front."""
     rows = along_locked(laws, state, inmost=form == 1)
@@ -76,6 +84,11 @@ def _locked(laws: Laws, state: Any, constants: Any, form: int) -> tuple[Rows, Ev
 def _locked_form(state: Any, _constants: Any) -> Any:
     """Return 1 where the front is about to reach the centre."""
     return state[4] * state[4] < INMOST * abs(state[0] * state[2])
+
+
+def _locked_power(form: int, u: Any, k: Any, c: Any) -> Any:
+    """Return -u k x' (u - c)² (2u + c), where x' is 1 or, near the centre, 2c."""
+    return -u * k * (u - c) ** 2 * (2.0 * u + c) * (2.0 * c if form == 1 else 1.0)
 
 
 def _slip_stops(rows: Rows, state: Any) -> tuple[Series, Any]:
@@ -101,7 +114,7 @@ def _gross(laws: Laws, state: Any, constants: Any, form: int) -> tuple[Rows, Eve
 
 
 STICK = Phase(7, lambda state, _constants: 0 * state[0], _stick)
-DRAWN = Phase(10, _drawn_form, _drawn)
-LOCKED = Phase(7, _locked_form, _locked)
+DRAWN = Phase(10, _drawn_form, _drawn, (0, 2, 4, 6), _drawn_power)
+LOCKED = Phase(7, _locked_form, _locked, (0, 2, 4), _locked_power)
 #: The second constant is the form: 0, or the sign in which V falls to the first, or rises.
 GROSS = Phase(6, lambda _state, constants: constants[1], _gross)

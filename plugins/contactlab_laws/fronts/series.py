@@ -126,28 +126,11 @@ class Forces:
         return rate, margin
 
 
-class Friction:
-    """The friction work while the edge slips, order by order; ``gone`` is u k per variable."""
-
-    def __init__(self, u: Series, front: Series, gone: Series, numbers: Arithmetic) -> None:
-        self.u, self.front, self.gone, self.product = u, front, gone, numbers.product
-        self.width, self.square, self.length, self.lost = numbers.blank(4)
-
-    def next(self, n: int) -> Number:
-        """Return the coefficient n of -u k (u - c)² (2u + c)."""
-        u, c, product = self.u[n], self.front[n], self.product
-        self.width[n] = u - c
-        self.length[n] = 2.0 * u + c
-        self.square[n] = product(self.width, self.width, n)
-        self.lost[n] = product(self.square, self.length, n)
-        return -product(self.lost, self.gone, n)
-
-
 def along_stick(laws: Laws, state: Sequence[Number]) -> Rows:
-    """Return u, V, k, J, x, T and work while all sticks, from their values."""
+    """Return u, V, k, J, x and T while all sticks, from their values."""
     numbers = arithmetic(state[0])
-    U, V, K, J, X, T, _ = rows = numbers.blank(7)
-    for row, begin in zip(rows, state, strict=True):
+    U, V, K, J, X, T = rows = numbers.blank(6)
+    for row, begin in zip(rows, state, strict=False):
         row[0] = begin
     X[1] += 1.0
     forces = Forces(laws, U, J, numbers)
@@ -162,10 +145,10 @@ def along_stick(laws: Laws, state: Sequence[Number]) -> Rows:
 
 
 def along_gross(laws: Laws, state: Sequence[Number]) -> Rows:
-    """Return u, V, k, J = 0, T and work, which stays, while all slips."""
+    """Return u, V, k, J = 0 and T while all slips."""
     numbers = arithmetic(state[0])
-    U, V, K, J, T, _ = rows = numbers.blank(6)
-    for row, begin in zip(rows, state, strict=True):
+    U, V, K, J, T = rows = numbers.blank(5)
+    for row, begin in zip(rows, state, strict=False):
         row[0] = begin
     forces = Forces(laws, U, J, numbers)
     for n, share in enumerate(SHARES):
@@ -178,7 +161,7 @@ def along_gross(laws: Laws, state: Sequence[Number]) -> Rows:
 
 
 def along_drawn(laws: Laws, state: Sequence[Number], *, fresh: bool, back: bool) -> Rows:
-    """Return u, V, k, J; c, V_1, k_1 on the memory, what is left of it in x_1; T and work.
+    """Return u, V, k, J; c, V_1, k_1 on the memory, what is left of it in x_1; and T.
 
     Parameters
     ----------
@@ -192,15 +175,14 @@ def along_drawn(laws: Laws, state: Sequence[Number], *, fresh: bool, back: bool)
     """
     numbers = arithmetic(state[0])
     blank, product, lower = numbers
-    U, V, K, J, C, V1, K1, X1, T, W = rows = blank(10)
-    for row, begin in zip(rows, state, strict=True):
+    U, V, K, J, C, V1, K1, X1, T = rows = blank(9)
+    for row, begin in zip(rows, state, strict=False):
         row[0] = begin
     way = -1.0 if back else 1.0
     (u, v, k), (u1, v1, k1) = ((C, V1, K1), (U, V, K)) if back else ((U, V, K), (C, V1, K1))
     lead, trail = Forces(laws, u, J, numbers), Forces(laws, u1, J, numbers)
     # u k of both, the pace of the other, and its k over x where slip begins
     gone, other, run, slope = blank(4)
-    friction = Friction(U, C, gone, numbers)
     for n, share in enumerate(SHARES):
         ahead = way * share
         rate, margin = lead.next(n)
@@ -221,7 +203,6 @@ def along_drawn(laws: Laws, state: Sequence[Number], *, fresh: bool, back: bool)
         u1[n + 1] = share * product(v1, run, n)
         v1[n + 1] = share * product(trail.rate, run, n)
         J[n + 1] = 2.0 * share * product(C, gone, n)
-        W[n + 1] = share * friction.next(n)
         T[n + 1] = 2.0 * share * (product(U, run, n) if back else U[n])
         X1[n + 1] = (0.0 if n else -1.0) if back else share * run[n]
     return rows
@@ -257,19 +238,18 @@ def _fresh(
 
 
 def along_locked(laws: Laws, state: Sequence[Number], *, inmost: bool) -> Rows:
-    """Return u, V, k, J, c, T and work while a zone slips that was locked out of the other sign.
+    """Return u, V, k, J, c and T while a zone slips that was locked out of the other sign.
 
     There m + 2c² and J - (4/3) c³ are constant, and 2 c dc = u k dx. The variable is x or, for
     ``inmost`` fronts, one in which dx = 2 c and dc = u k: as c² goes through zero, c ends.
     """
     numbers = arithmetic(state[0])
     product = numbers.product
-    U, V, K, J, C, T, W = rows = numbers.blank(7)
-    for row, begin in zip(rows, state, strict=True):
+    U, V, K, J, C, T = rows = numbers.blank(6)
+    for row, begin in zip(rows, state, strict=False):
         row[0] = begin
     gone, run = numbers.blank(2)
     forces = Forces(laws, U, J, numbers)
-    friction = Friction(U, C, run if inmost else gone, numbers)
     for n, share in enumerate(SHARES):
         rate, margin = forces.next(n)
         gone[n] = product(U, K, n)
@@ -282,7 +262,6 @@ def along_locked(laws: Laws, state: Sequence[Number], *, inmost: bool) -> Rows:
             C[n + 1] = share * gone[n]
             run[n] = 2.0 * product(C, gone, n)
             J[n + 1] = twice * product(C, run, n)
-            W[n + 1] = share * friction.next(n)
         else:
             U[n + 1] = share * V[n]
             V[n + 1] = share * rate
@@ -291,5 +270,4 @@ def along_locked(laws: Laws, state: Sequence[Number], *, inmost: bool) -> Rows:
             run[n] = (0.5 * gone[n] - numbers.lower(run, C, n)) / C[0]
             C[n + 1] = share * run[n]
             J[n + 1] = 2.0 * share * product(C, gone, n)
-            W[n + 1] = share * friction.next(n)
     return rows

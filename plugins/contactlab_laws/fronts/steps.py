@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
+
 from contactlab_laws.fronts.path import Answer, Impact, Request
 from contactlab_laws.fronts.phases import HEAD, LAWS, Events, Numbers, Phase
 from contactlab_laws.fronts.series import ORDER, Laws, Rows, value
@@ -21,6 +23,10 @@ ROUNDING = 1e-14
 LOOKS, ROOT_VALUE, ROOT_WIDTH, ROOT_CAP = 8, 1e-17, 1e-16, 80
 #: Moves of Newton's method to where a dip is lowest.
 MOVES = 8
+
+#: Places and weights of Gauss's rule on [0, 1], which adds up the friction work of a step.
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+PLACES, SHARES = (0.5 + 0.5 * _NODES).tolist(), (0.5 * _WEIGHTS).tolist()
 
 #: Called with the phase and the series of a step, how far they are followed, and the state there.
 Watch = Callable[[Phase, Rows, float, tuple[float, ...]], object]
@@ -69,12 +75,19 @@ def one(
     state, constants = numbers[LAWS:end], numbers[end:]
     event = -1
     while event < 0 and steps < most:
-        rows, events = phase.course(laws, state, constants, int(phase.form(state, constants)))
+        form = int(phase.form(state, constants))
+        rows, events = phase.course(laws, state, constants, form)
         length = _length(rows, tolerance)
         if length is None:
             return None
         t, event = first_fall(events, length)
-        last = tuple([value(row, t) for row in rows])
+        work = state[-1]
+        if phase.slips:
+            seen = [rows[index] for index in phase.slips]
+            for place, share in zip(PLACES, SHARES, strict=True):
+                values = [value(row, t * place) for row in seen]
+                work += t * share * phase.power(form, *values)
+        last = (*[value(row, t) for row in rows], work)
         if watch is not None:
             watch(phase, rows, t, last)
         deepest = max(deepest, state[0], last[0])
@@ -89,7 +102,7 @@ def one(
 def _length(rows: Rows, tolerance: float) -> float | None:
     """Return how far all series of a step hold but that of time; None if they are not finite."""
     last = before = total = 0.0
-    for row in (*rows[:-2], rows[-1]):
+    for row in rows[:-1]:
         allowed = max(tolerance, ROUNDING * abs(row[0]))
         size, larger = abs(row[ORDER]) / allowed, abs(row[ORDER - 1]) / allowed
         last, before, total = max(last, size), max(before, larger), total + size + larger
