@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from contactlab.contracts import ClosedFormMotion, LostPathError, ScaledContact, Stretch
 from contactlab_laws.fronts.path import Impact, Part
 from contactlab_laws.fronts.phases import STICK, Phase
-from contactlab_laws.fronts.series import Rows, value
+from contactlab_laws.fronts.series import Rows
 from contactlab_laws.fronts.steps import alone, error_of_step
 from contactlab_laws.hertz.motion import velocity_factor
 
@@ -22,8 +22,9 @@ Array = NDArray[np.float64]
 
 #: Rings in which stick and slip are shown; the solution itself knows no rings.
 RINGS = 200
-#: Moves of Newton's method, kept between bounds, from the phase to the variable of a series.
-INVERSIONS = 50
+#: From the phase to the variable of a series: moves of Newton's method, kept between bounds, at
+#: most; how far the phase may then be off; and where in a step it is known for a first guess.
+INVERSIONS, ON_PHASE, GUESSES = 50, 2e-15, np.linspace(0.0, 1.0, 17)
 #: Steps of an impact, about half a second; below OFTEN in chi it is not oscillation that takes so
 #: many.
 MOST_STEPS, OFTEN = 3000, 1e3
@@ -70,39 +71,47 @@ class SeriesStretch(FrontStretch):
     ``before`` is the change of velocity where it begins, ``least`` the most negative possible.
     """
 
-    rows: Array
+    rows: list[list[float]]
     length: float
     before: float
     least: float
 
     def _at(self, phase: Array) -> Array:
         """Return u, V, k, J and the front at each phase, by Newton's method for the variable."""
-        u, V = self.rows[:2]
-        slopes = self.rows[:2, 1:] * np.arange(1.0, self.rows.shape[1])
-        low, high = np.zeros_like(phase), np.full_like(phase, self.length)
-        t = 0.5 * high
+        rows = np.array(self.rows)
+        slopes = np.zeros((2, rows.shape[1]))
+        slopes[:, :-1] = rows[:2, 1:] * np.arange(1.0, rows.shape[1])
+        table = np.vstack([rows, slopes])
+
+        def look(t: Array) -> tuple[Array, Array]:
+            """Return the series and the slopes of u and V, and the phase."""
+            values = table @ np.vander(t, rows.shape[1], increasing=True).T
+            u = np.maximum(values[0], 0.0)
+            return values, np.arctan2(u, values[1] / velocity_factor(u))
+
+        known = self.length * GUESSES
+        t = np.interp(phase, look(known)[1], known)
+        low, high = np.zeros_like(t), np.full_like(t, self.length)
         for _ in range(INVERSIONS):
-            radius, rate = np.maximum(value(u, t), 0.0), value(V, t)
-            factor = velocity_factor(radius)
-            over = np.arctan2(radius, rate / factor) - phase
-            # u' = V x' and V' = -2.5 u⁴ x', where the phase grows by the factor times x
+            values, here = look(t)
+            over = here - phase
+            if np.abs(over).max() < ON_PHASE:
+                break
+            u, rate = np.maximum(values[0], 0.0), values[1]
+            # u' = V x' and V' = -2.5 u⁴ x', where the phase grows by g(u) times x (theory §3)
             steep = np.abs(rate) > 0.5
-            pace = np.where(
-                steep,
-                value(slopes[0], t) / np.where(steep, rate, 1.0),
-                value(slopes[1], t) / np.where(steep, 1.0, -2.5 * radius**4),
-            )
+            slope, pace = np.where(steep, values[5], values[6]), np.where(steep, rate, -2.5 * u**4)
             low, high = np.where(over > 0.0, low, t), np.where(over > 0.0, t, high)
             with np.errstate(all="ignore"):
-                new = t - over / (factor * pace)
+                new = t - over * pace / (velocity_factor(u) * slope)
             t = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
-        return np.array([value(row, t) for row in self.rows])
+        return values[:5]
 
     def states(self, contact: ScaledContact) -> tuple[Array, Array]:
         """Return (change of velocity since first touch, force)."""
         _, rate, margin, lack, _ = self._at(contact.phase)
-        _, first, begin, *_ = self.rows[:, 0]
-        change = self.before + self.sign * (rate - margin - (first - begin))
+        first = self.rows[1][0] - self.rows[2][0]
+        change = self.before + self.sign * (rate - margin - first)
         return np.clip(change, self.least, 0.0), self.sign * (contact.force - 1.5 * lack)
 
     def front(self, contact: ScaledContact) -> float:
@@ -139,19 +148,14 @@ class CentralImpact(Impact):
         self.psi1, self.phase = psi1, 0.0
         self.stretches: list[FrontStretch] = []
 
-    def _known(self, change: float, work: float, u: float, rate: float) -> dict[str, Any]:
+    def _known(
+        self, sign: int, change: float, work: float, u: float, rate: float
+    ) -> tuple[int, float, float, float, float, int]:
         """Return what stretches have in common, and go on to the end of one."""
         start, self.phase = self.phase, math.atan2(u, rate / velocity_factor(u))
         # The energy of slip never exceeds that at first touch, rounding of a small psi1 apart.
         change = min(max(change, -2.0 * self.psi1), 0.0)
-        return {
-            "sign": self.sign,
-            "start": start,
-            "stop": max(start, self.phase),
-            "change": change,
-            "work": work,
-            "solves": len(self.stretches) + 1,
-        }
+        return sign, start, max(start, self.phase), change, work, len(self.stretches) + 1
 
     def keep(self, phase: Phase, rows: Rows, length: float, last: tuple[float, ...]) -> None:
         """Keep a step."""
@@ -159,19 +163,15 @@ class CentralImpact(Impact):
         psi = rows[1][0] - rows[2][0]
         before = self.change + self.sign * (psi - (self.rate - self.margin))
         change = before + self.sign * (rate - margin - psi)
-        known = self._known(change, last[-1], max(u, 0.0), rate)
-        columns = np.array([*rows[:4], rows[0] if phase is STICK else rows[4]])
-        least = -2.0 * self.psi1
-        shown = SeriesStretch(**known, rows=columns, length=length, before=before, least=least)
-        self.stretches.append(shown)
+        known = self._known(self.sign, change, last[-1], max(u, 0.0), rate)
+        shown = [*rows[:4], rows[0] if phase is STICK else rows[4]]
+        self.stretches.append(SeriesStretch(*known, shown, length, before, -2.0 * self.psi1))
 
     def _gross(self) -> Part:
         sign, before, rate = self.sign, self.change, self.rate
         after = yield from super()._gross()
-        known = self._known(self.change, self.work, self.radius, self.rate)
-        known["sign"] = sign
-        ratio = 2.0 * self.numbers[0]
-        self.stretches.append(GrossStretch(**known, before=before, rate=rate, ratio=ratio))
+        known = self._known(sign, self.change, self.work, self.radius, self.rate)
+        self.stretches.append(GrossStretch(*known, before, rate, 2.0 * self.numbers[0]))
         return after
 
 
