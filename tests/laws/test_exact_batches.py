@@ -54,11 +54,11 @@ def corner(name, count):
 
 
 def compared(monkeypatch, psi1, chi):
-    """Compare with panels of another length, and with the bounds of theory §7."""
+    """Compare with steps of another length, and with the bounds of theory §7."""
     batch = together(psi1, chi).check()
     with monkeypatch.context() as patch:
-        patch.setattr("contactlab_laws.fronts.path.LONGEST", 0.7)
-        patch.setattr("contactlab_laws.fronts.path.SWING", 5.0)
+        patch.setattr("contactlab_laws.fronts.steps.LONGEST", 0.15)
+        patch.setattr("contactlab_laws.fronts.steps.CAREFUL", 0.7)
         other = together(psi1, chi, 1e-12).check()
     error = np.abs(batch.psi_change - other.psi_change) / np.maximum(1.0, np.abs(psi1))
     assert error.max() < 1e-11

@@ -17,10 +17,17 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
-from contactlab_laws.fronts.planar import Impact, Watch, follow
+from contactlab_laws.fronts.batch import follow
+from contactlab_laws.fronts.path import Impact
+from contactlab_laws.fronts.phases import Phase
+from contactlab_laws.fronts.series import Rows, value
+from contactlab_laws.fronts.steps import Watch, alone, error_of_step
+from contactlab_laws.hertz.motion import scaled_motion, velocity_factor
 
-#: Error of a step over the accuracy asked for; and the accuracy if none is asked for.
-STEP_PART, USUAL = 1e-2, 1e-9
+#: The accuracy if none is asked for.
+USUAL = 1e-9
+#: Steps of an impact before it is given up; a hard one takes 30, one of kappa = 1e6 some 10,000.
+MOST_STEPS = 20_000
 #: V, psi's change, work, T, u and compressions of an impact without friction (theory §1).
 SMOOTH = (-1.0, 0.0, 0.0, DURATION_CONSTANT, 1.0, 1.0)
 
@@ -32,7 +39,7 @@ def motion(
     observer: EccentricObserver | None,
 ) -> EccentricMotion:
     """Return the motion of planar impacts."""
-    shape, tolerance = scene.shape, STEP_PART * (accuracy or USUAL)
+    shape, tolerance = scene.shape, error_of_step(accuracy or USUAL)
     scales = hertz_scales(normal.scene)
     W, mu = scene.inverse_mass, np.asarray(scene.friction_coefficient)
     speed, kappa = np.asarray(scene.normal_speed), np.asarray(scene.kappa)
@@ -40,20 +47,25 @@ def motion(
     # without friction nothing slips: psi is infinite, and V and the slip are closed forms
     smooth = np.broadcast_to(mu == 0.0, shape)
     numbers = np.array([np.broadcast_to(column, shape) for column in columns], dtype=float)
-    watch = None if observer is None else _watch(scene, scales, observer)
     moving = np.flatnonzero(~smooth)
     places = numbers.reshape(4, -1).T[moving].tolist()
-    impacts = [Impact(psi1, chi, lam, eta, watch) for psi1, chi, lam, eta in places]
-    lost = follow(impacts, tolerance)
+    impacts = [Impact(*place, stepped=observer is not None) for place in places]
+    if observer is None or not impacts:
+        lost = follow(impacts, tolerance, MOST_STEPS)
+    else:
+        watch = _watch(scene, scales, observer, impacts[0])
+        lost = [alone(impacts[0], tolerance, MOST_STEPS, watch)]
+    times = _times(impacts)
     rows = np.full((smooth.size, 6), SMOOTH)
     statuses = np.full(len(rows), Status.SUCCESS, dtype=object)
     details = np.full(len(rows), "", dtype=object)
-    for place, impact, reason in zip(moving.tolist(), impacts, lost, strict=True):
+    for place, impact, time, reason in zip(moving.tolist(), impacts, times, lost, strict=True):
         if reason:
             rows[place], statuses[place] = math.nan, Status.UNRESOLVED
             details[place] = f"{reason}, from Fronts."
         else:
-            rows[place] = impact.outcome
+            moved = impact.rate, impact.change, impact.work
+            rows[place] = *moved, time, impact.deepest, impact.compressions
     rate, psi, work, time, radius, times = rows.T.reshape(6, *shape)
     unit = mu * speed / kappa
     dragged = -2.0 * speed * W[..., 0, 1] / W[..., 0, 0]
@@ -75,26 +87,49 @@ def motion(
         compressions=np.nan_to_num(times).astype(int) if shape else int(np.nan_to_num(times)),
         status=statuses.reshape(shape) if shape else statuses[0],
         detail=details.reshape(shape) if shape else details[0],
-        counters={"steps": sum(impact.steps for impact in impacts)},
+        counters={"steps": sum(int(impact.steps) for impact in impacts)},
     )
 
 
-def _watch(scene: EccentricScene, scales: Any, observer: EccentricObserver) -> Watch:
-    """Return what shows scaled instants to an observer in SI."""
+def _times(impacts: list[Impact]) -> list[float]:
+    """Return T at separation, with Hertz's in gross slip, where V² + ``press`` u⁵ is ``left``."""
+    times = np.array([impact.time for impact in impacts])
+    counts = [len(impact.slides) for impact in impacts]
+    slides = np.array([slide for impact in impacts for slide in impact.slides])
+    if slides.size:
+        press, left, *ends = slides.T
+        top, speed = (left / press) ** 0.2, np.sqrt(left)
+        radius, rate = np.array(ends[::2]) / top, np.array(ends[1::2]) / speed
+        phases = np.arctan2(radius, rate / velocity_factor(radius))
+        begin, end = scaled_motion(phases)[2]
+        owner = np.repeat(np.arange(len(impacts)), counts)
+        np.add.at(times, owner, top * top / speed * (end - begin))
+    known: list[float] = times.tolist()
+    return known
+
+
+def _watch(
+    scene: EccentricScene, scales: Any, observer: EccentricObserver, impact: Impact
+) -> Watch:
+    """Return what shows instants of an impact to an observer in SI."""
     speed, mu = scene.normal_speed, scene.friction_coefficient
     unit = mu * speed / scene.kappa
 
-    def watch(time: float, u: float, rate: float, psi: float, force: float) -> None:
-        contact = NormalContact(u**3 * scales.force, u * scales.radius, u * u * scales.approach)
-        observer(
-            EccentricSample(
-                time * scales.approach / speed,
-                u * u * scales.approach,
-                rate * speed,
-                contact.complete,
-                np.array([psi * unit, scene.slip_velocity[1]]),
-                np.array([force * mu * scales.force, 0.0]),
+    def watch(_phase: Phase, rows: Rows, length: float, _last: tuple[float, ...]) -> None:
+        for part in (0.25, 0.5, 0.75, 1.0):
+            u, rate, margin, lack = (value(row, part * length) for row in rows[:4])
+            time = value(rows[-1], part * length)
+            psi, force = impact.sign * (rate - margin), impact.sign * (u**3 - 1.5 * lack)
+            contact = NormalContact(u**3 * scales.force, u * scales.radius, u * u * scales.approach)
+            observer(
+                EccentricSample(
+                    time * scales.approach / speed,
+                    u * u * scales.approach,
+                    rate * speed,
+                    contact.complete,
+                    np.array([psi * unit, scene.slip_velocity[1]]),
+                    np.array([force * mu * scales.force, 0.0]),
+                )
             )
-        )
 
     return watch

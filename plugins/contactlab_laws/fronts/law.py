@@ -94,9 +94,9 @@ class Fronts(PathTangentialLaw, EccentricTangentialLaw, Tabulated):
         self, velocity: float, inertia: float, motion: ClosedFormMotion, tolerance: float
     ) -> Iterator[Stretch]:
         """Yield stretches of stick, edge slip and gross slip."""
-        from contactlab_laws.fronts.path import Impact  # not for impacts that the table answers
+        from contactlab_laws.fronts.central import stretches  # not for those the table answers
 
-        return Impact(velocity, inertia, motion, tolerance).follow()
+        return stretches(velocity, inertia, motion, tolerance)
 
     def refuses_eccentric(self, scene: EccentricScene) -> str | None:
         """Return why a scene in space has no answer: the front is that of slip along a line."""

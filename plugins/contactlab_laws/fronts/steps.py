@@ -1,191 +1,174 @@
-"""Steps of planar impacts, of one in plain numbers or of many side by side in arrays.
-
-An impact asks for a step by its phase and by numbers. The answer is how far the series
-hold or the first event within, which event, u, V, k, J, T and what the phase has beside there, and
-the greatest u on the way.
-"""
+"""Steps of one impact along the series of a phase, in plain numbers."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple, TypeAlias
+from collections.abc import Callable
 
 import numpy as np
 
-from contactlab_laws.fronts.series import (
-    ORDER,
-    Laws,
-    Number,
-    Series,
-    along_drawn,
-    along_gross,
-    along_locked,
-    along_stick,
-    difference,
-    negative,
-    value,
-)
+from contactlab_laws.fronts.path import Answer, Impact, Request
+from contactlab_laws.fronts.phases import HEAD, LAWS, Events, Numbers, Phase
+from contactlab_laws.fronts.series import ORDER, Laws, Rows, value
 
+#: Error of a step over the accuracy asked for, and the least.
+STEP_PART, LEAST_ERROR = 1e-3, 5e-13
 #: A series is followed as far as its last two terms stay below the tolerance, times this.
 CAREFUL = 0.9
 #: Longest step: beyond it forces turn more than events are looked for.
 LONGEST = 1.0
 #: Error of a step over its velocity that is rounding: a jam may multiply velocities by 1e8.
 ROUNDING = 1e-14
-#: Places in a step at which events are looked for, and where a root has been found.
+#: Parts of a step at whose ends events are looked for, and where a root has been found.
 LOOKS, ROOT_VALUE, ROOT_WIDTH, ROOT_CAP = 8, 1e-17, 1e-16, 80
-#: Places in a step at which the greatest u is looked for.
-PEAKS = 16
+#: Moves of Newton's method to where a dip is lowest.
+MOVES = 8
+
+#: Places and weights of Gauss's rule on [0, 1], which adds up the friction work of a step.
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+PLACES, SHARES = (0.5 + 0.5 * _NODES).tolist(), (0.5 * _WEIGHTS).tolist()
+
+#: Called with the phase and the series of a step, how far they are followed, and the state there.
+Watch = Callable[[Phase, Rows, float, tuple[float, ...]], object]
 
 
-class Course(NamedTuple):
-    """The series of a step, those that bound the step, and those whose fall below zero ends it.
-
-    A series marked True begins at zero: the fall of the series over x is looked for.
-    """
-
-    rows: list[Series]
-    bounds: list[Series]
-    events: list[tuple[Series, Any]]
+def error_of_step(accuracy: float) -> float:
+    """Return the error that a step may have for an accuracy of the answer."""
+    return max(LEAST_ERROR, STEP_PART * accuracy)
 
 
-def stick(numbers: tuple[Number, ...]) -> Course:
-    """All sticks until k, or its like of the other sign, is zero."""
-    rows = along_stick(Laws(*numbers[:4]), *numbers[4:8])
-    rate, margin = rows[1:3]
-    other = difference(rate, difference(margin, rate))
-    return Course(rows, rows[:4], [(margin, numbers[8]), (other, False)])
+def alone(impact: Impact, tolerance: float, most: int, watch: Watch | None = None) -> str:
+    """Follow one impact to separation; return why it has no answer, "" if it has one."""
+    path, answer = impact.path(), None
+    try:
+        while True:
+            request: Request = path.send(answer)  # type: ignore[arg-type]
+            answer = one(*request, tolerance, most, watch)
+            if reason := failure(answer, most):
+                return reason
+    except StopIteration:
+        return ""
+    except ArithmeticError as error:
+        return str(error)
 
 
-def drawn(numbers: tuple[Number, ...], fresh: bool) -> Course:
-    """Slip eats drawn memory until slip stops, the memory is spent, or the edge meets the front."""
-    rows = along_drawn(Laws(*numbers[:4]), numbers[4:7], numbers[7:11], numbers[11], fresh=fresh)
-    u, rate, margin, lack, _, front, *then, left, _ = rows
-    gap = (difference(u, front), numbers[13])
-    bounds = [u, rate, margin, lack, front, *then, left]
-    return Course(rows, bounds, [(negative(margin), numbers[12]), (left, False), gap])
-
-
-def locked(numbers: tuple[Number, ...]) -> Course:
-    """Slip eats a locked zone until slip stops, the zone is spent, or the edge meets the front."""
-    inner = numbers[9]
-    rows = along_locked(Laws(*numbers[:4]), numbers[4:7], numbers[7], numbers[8])
-    u, rate, margin, _, _, front, _ = rows
-    rest = front.copy()
-    rest[0] = front[0] - inner
-    gap = (difference(u, front), numbers[11])
-    return Course(
-        rows, [u, rate, margin, front], [(negative(margin), numbers[10]), (rest, False), gap]
-    )
-
-
-def gross(numbers: tuple[Number, ...], stops: bool, falls: bool) -> Course:
-    """All slips until V is ``last`` if slip stops, else until u is zero."""
-    rows = along_gross(Laws(*numbers[:4]), *numbers[4:7])
-    u, rate = rows[:2]
-    ahead = rate.copy() if falls else negative(rate)
-    ahead[0] = ahead[0] - numbers[7] if falls else ahead[0] + numbers[7]
-    return Course(rows, rows[:2], [(ahead, False)] if stops else [(u, numbers[8])])
-
-
-#: A phase with its kind, and the numbers of one impact in it.
-Request: TypeAlias = tuple[tuple[Any, ...], tuple[float, ...]]
-#: How far, which event, the series' values there, and the greatest u.
-Answer: TypeAlias = tuple[float, int, list[float], float]
+def failure(answer: Answer | None, most: int) -> str:
+    """Return why a phase has not come to its end, "" if it has."""
+    if answer is None:
+        return "The velocities of a jam outgrow the numbers"
+    return "" if answer[0] >= 0 else f"The contact neither ends nor settles in {most} steps"
 
 
 def one(
-    request: Request, tolerance: float, watch: Callable[[list[Series], float], object]
-) -> Answer | None:
-    """Return the answer for one impact, whose steps are shown; None if it is lost."""
-    (phase, *kind), numbers = request
-    rows, bounds, events = phase(numbers, *kind)
-    length = LONGEST
-    for row in bounds:
+    phase: Phase,
+    numbers: Numbers,
+    tolerance: float,
+    most: int,
+    watch: Watch | None = None,
+) -> tuple[int, Numbers] | None:
+    """Return the event that ends a phase of one impact, and its numbers there.
+
+    None if the numbers grow without bound; the event is -1 after ``most`` steps.
+    """
+    deepest, compressions, steps = numbers[:HEAD]
+    laws, end = Laws(*numbers[HEAD:LAWS]), LAWS + phase.size
+    state, constants = numbers[LAWS:end], numbers[end:]
+    event = -1
+    while event < 0 and steps < most:
+        form = int(phase.form(state, constants))
+        rows, events = phase.course(laws, state, constants, form)
+        length = _length(rows, tolerance)
+        if length is None:
+            return None
+        t, event = first_fall(events, length)
+        work = state[-1]
+        if phase.slips:
+            seen = [rows[index] for index in phase.slips]
+            for place, share in zip(PLACES, SHARES, strict=True):
+                values = [value(row, t * place) for row in seen]
+                work += t * share * phase.power(form, *values)
+        last = (*[value(row, t) for row in rows], work)
+        if watch is not None:
+            watch(phase, rows, t, last)
+        deepest = max(deepest, state[0], last[0])
+        if state[1] > 0.0 >= last[1]:
+            top, _ = first_fall([(rows[1], False)], t)
+            deepest = max(deepest, value(rows[0], top))
+        compressions += state[1] <= 0.0 < last[1]
+        steps, state = steps + 1, last
+    return event, (deepest, compressions, steps, *numbers[HEAD:LAWS], *state, *constants)
+
+
+def _length(rows: Rows, tolerance: float) -> float | None:
+    """Return how far all series of a step hold but that of time; None if they are not finite."""
+    last = before = total = 0.0
+    for row in rows[:-1]:
         allowed = max(tolerance, ROUNDING * abs(row[0]))
-        for order in (ORDER, ORDER - 1):
-            size = abs(row[order])
-            if not size < math.inf:
-                return None
-            if size > 0.0:
-                length = min(length, (allowed / size) ** (1.0 / order))
-    t, event = first_fall(events, CAREFUL * length)
-    watch(rows, t)
-    values = [value(row, t) for row in rows]
-    peak = max(rows[0][0], values[0])
-    if rows[1][0] > 0.0 >= values[1]:
-        peak = max(peak, *(value(rows[0], t * j / PEAKS) for j in range(1, PEAKS)))
-    return t, event, values, peak
+        size, larger = abs(row[ORDER]) / allowed, abs(row[ORDER - 1]) / allowed
+        last, before, total = max(last, size), max(before, larger), total + size + larger
+    if not total < math.inf:
+        return None
+    length = LONGEST
+    if last > 0.0:
+        length = min(length, last ** (-1.0 / ORDER))
+    if before > 0.0:
+        length = min(length, before ** (-1.0 / (ORDER - 1)))
+    return CAREFUL * length
 
 
-def many(requests: Sequence[Request], tolerance: float) -> list[Answer | None]:
-    """Return the answers for impacts in one phase; None for one that is lost."""
-    phase, *kind = requests[0][0]
-    numbers = tuple(np.array([request[1] for request in requests]).T.copy())
-    with np.errstate(all="ignore"):
-        rows, bounds, events = phase(numbers, *kind)
-        ends = np.array([[row[ORDER], row[ORDER - 1]] for row in bounds])
-        allowed = np.maximum(tolerance, ROUNDING * np.abs([row[0] for row in bounds]))
-        powers = np.array([[1.0 / ORDER], [1.0 / (ORDER - 1)]])
-        lengths = (allowed[:, None] / np.abs(ends)) ** powers
-        length = CAREFUL * np.minimum(LONGEST, lengths.min(axis=(0, 1)))
-        found = np.isfinite(ends).all(axis=(0, 1))
-        t, which = length.copy(), np.full(length.shape, -1)
-        for event, (series, flag) in enumerate(events):
-            fresh = np.broadcast_to(np.asarray(flag, dtype=bool), t.shape)
-            for place in np.flatnonzero(_may_fall(series, fresh, length) & found).tolist():
-                own = series[int(fresh[place]) :, place].tolist()
-                fall = _fall(own, t[place].item())
-                if fall is not None:
-                    t[place], which[place] = fall, event
-        values = value(np.stack(rows, axis=1), t)
-        peak = np.maximum(rows[0][0], values[0])
-        for place in np.flatnonzero((rows[1][0] > 0.0) & (values[1] <= 0.0)).tolist():
-            u, end = rows[0][:, place].tolist(), t[place].item()
-            inside = max(value(u, end * j / PEAKS) for j in range(1, PEAKS))
-            peak[place] = max(peak[place], inside)
-    answers = zip(t.tolist(), which.tolist(), values.T.tolist(), peak.tolist(), strict=True)
-    return [answer if here else None for answer, here in zip(answers, found.tolist(), strict=True)]
-
-
-def _may_fall(series: Series, fresh: Number, end: Number) -> Number:
-    """Return which series are negative, or dip, at one of the places that ``_fall`` looks at."""
-    if fresh.any():
-        series = np.where(fresh, np.append(series[1:], 0.0 * series[:1], axis=0), series)
-    seen = value(series, end / LOOKS * np.arange(LOOKS + 1.0)[:, None])
-    dips = (seen[1:-1] < seen[:-2]) & (seen[1:-1] < seen[2:])
-    return (seen[1:] < 0.0).any(axis=0) | dips.any(axis=0)
-
-
-def first_fall(events: list[tuple[Series, bool]], end: float) -> tuple[float, int]:
+def first_fall(events: Events, end: float) -> tuple[float, int]:
     """Return where the first of some series falls below zero in (0, end], and which; (end, -1)."""
     where, which = end, -1
     for index, (series, fresh) in enumerate(events):
-        found = _fall(series[1:] if fresh else series, where)
+        found = fall(series[1:] if fresh else series, where)
         if found is not None:
             where, which = found, index
     return where, which
 
 
-def _fall(series: list[float], end: float) -> float | None:
+def fall(series: list[float], end: float) -> float | None:
     """Return the first place at which a series is negative, seen at ``LOOKS`` places."""
-    step = end / LOOKS
-    seen = [series[0]]
+    most = 0.0
+    for coefficient in reversed(series):
+        most = most * end + abs(coefficient)
+    if 2.0 * series[0] > most:  # the first term is more than all others together
+        return None
+    step, before, falls = end / LOOKS, series[0], series[1] < 0.0
     for look in range(1, LOOKS + 1):
         t = step * look
         here = value(series, t)
-        seen.append(here)
-        before = seen[look - 1]
         if here < 0.0:
             return _root(series, t - step, t, before, here)
-        if look > 1 and before < seen[look - 2] and before < here:  # a dip, perhaps below zero
-            slope, bend = 0.5 * (here - seen[look - 2]), here + seen[look - 2] - 2.0 * before
-            t = step * (look - 1 - slope / bend)
-            lowest = value(series, t)
-            if lowest < 0.0:
-                return _root(series, step * (look - 2), t, seen[look - 2], lowest)
+        fell, falls = falls, here < before if look < LOOKS else slope_at(series, t)[0] < 0.0
+        if (fell and not falls) or (look == LOOKS and here < before and not falls):
+            # a dip, perhaps below zero, in this part or the one before
+            start = max(t - 2.0 * step, 0.0)
+            lowest = _lowest(series, start, t)
+            least = value(series, lowest)
+            if least < 0.0:
+                return _root(series, start, lowest, value(series, start), least)
+        before = here
     return None
+
+
+def slope_at(series: list[float], t: float) -> tuple[float, float]:
+    """Return the first and the second derivative at t."""
+    slope = bend = 0.0
+    for n in range(len(series) - 1, 0, -1):
+        bend = bend * t + slope
+        slope = slope * t + n * series[n]
+    return slope, bend
+
+
+def _lowest(series: list[float], low: float, high: float) -> float:
+    """Return where a dip between two places is lowest, by Newton's method kept within them."""
+    t = 0.5 * (low + high)
+    for _ in range(MOVES):
+        slope, bend = slope_at(series, t)
+        low, high = (t, high) if slope < 0.0 else (low, t)
+        new = t - slope / bend if bend > 0.0 else low
+        t = new if low < new < high else 0.5 * (low + high)
+    return t
 
 
 def _root(series: list[float], a: float, b: float, at_a: float, at_b: float) -> float:
