@@ -142,8 +142,13 @@ def look(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def check_outputs(arguments: argparse.Namespace) -> None:
-    """Refuse an output that is the same file as another output or the scene."""
+    """Refuse an output that is the same file as another or the scene, and a look of no figure."""
     values = vars(arguments)
+    drawn = any(values.get(name) for name in ("figure", "loops", "stick_slip"))
+    if "figure" in values and not drawn:
+        for name in ("style", "width"):
+            if values[name] not in (None, "print"):
+                raise ValueError(f"--{name}: is that of a figure; add --figure FILE")
     outputs = {f"--{name}": path for name, path in values.items() if isinstance(path, Path)}
     distinct({"SCENE.toml": values.get("scene"), **outputs})
 

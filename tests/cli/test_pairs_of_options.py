@@ -1,0 +1,77 @@
+"""Every command with every pair of its options: an answer, or one sentence that refuses."""
+
+import itertools
+import json
+
+import pytest
+
+#: Options with a value that serves; ``{}`` is a folder of the test.
+LAWS = (
+    "--normal hertz", "--tangential springs", "--integrator symplectic",
+    "--set tangential.springs=12",
+)  # fmt: skip
+LOOKS = ("--style slides", "--width one", "--no-progress")
+NUMBERS = ("--psi1 1.2", "--chi 1.44")
+GRID = ("--psi1 0:4:3", "--chi 1")
+COMMANDS = {
+    "run": (
+        "{ball}", "{foot}", *NUMBERS, *LAWS, *LOOKS, "--json", "--out {}/out.json",
+        "--history {}/history.csv", "--figure {}/figure.svg", "--stick-slip {}/map.svg",
+        "--no-estimate",
+    ),
+    "sweep": (
+        "{short}", "{foot}", *GRID, *LAWS, *LOOKS, "--json", "--csv", "--out {}/out.csv",
+        "--resume", "--figure {}/figure.svg",
+    ),
+    "compare": (
+        "{short}", *GRID, *LAWS, *LOOKS, "--quantity psi2", "--json", "--csv",
+        "--figure {}/figure.svg", "--loops {}/loops.svg", "--column psi1=psi1",
+    ),
+    "explore": (
+        "--angle 20", "--speed 3", "--spin 0", "--friction 0.2", "--radius 0.02", "--inertia 0.4",
+        "--restitution 0.8", "--material steel", "--block brass", "--predict", "--out {}/page.html",
+    ),
+    "cite": ("--normal jkr,hertz", "--tangential springs", "--integrator symplectic"),
+    "kernel": ("--out {}/kernel",),
+    "materials": ("--json",),
+    "plugins": (),
+    "guide": ("laws",),
+}  # fmt: skip
+PAIRS = [
+    (command, pair)
+    for command, options in COMMANDS.items()
+    for count in range(3)
+    for pair in itertools.combinations(options, count)
+]
+#: Pairs that draw take the longest; all of them run among the longer tests.
+CASES = [
+    pytest.param(*each, marks=[pytest.mark.slow] if ".svg" in str(each) else [], id=" ".join(
+        [each[0], *each[1]]
+    ))
+    for each in PAIRS
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("command", "pair"), CASES)
+def test_a_pair_is_answered_or_refused(
+    run, ball, short_sweep, tmp_path, monkeypatch, command, pair
+):
+    monkeypatch.chdir(tmp_path)
+    places = {"{}": tmp_path, "{ball}": ball, "{foot}": ball.with_name("foot.toml")}
+    words = " ".join(pair).replace("{short}", str(short_sweep))
+    for mark, place in places.items():
+        words = words.replace(mark, str(place))
+    ran = run(command, *words.split())
+    if ran.status == 2:
+        assert ran.out == ""
+        assert len(ran.err.splitlines()) == 1
+        assert ran.err.startswith(f"contactlab {command}: error: ")
+        return
+    assert ran.status == 0
+    assert ran.out or ran.err
+    for option in pair:
+        if "{}" in option:
+            written = tmp_path / option.rpartition("/")[2]
+            assert written.is_dir() or written.stat().st_size > 0
+    if "--json" in pair:
+        json.loads(ran.out)
