@@ -11,8 +11,9 @@ from contactlab_laws.fronts.path import Answer, Impact, Request
 from contactlab_laws.fronts.phases import HEAD, LAWS, Events, Numbers, Phase
 from contactlab_laws.fronts.series import ORDER, Laws, Rows, value
 
-#: Error of a step over the accuracy asked for, and the least.
-STEP_PART, LEAST_ERROR = 1e-3, 5e-13
+#: Error of a step over the accuracy asked for, the least, and the most: forces within a coarse
+#: series err by more than what it leads to.
+STEP_PART, LEAST_ERROR, MOST_ERROR = 1e-3, 5e-13, 1e-8
 #: A series is followed as far as its last two terms stay below the tolerance, times this.
 CAREFUL = 0.9
 #: Longest step: beyond it forces turn more than events are looked for.
@@ -34,7 +35,7 @@ Watch = Callable[[Phase, Rows, float, tuple[float, ...]], object]
 
 def error_of_step(accuracy: float) -> float:
     """Return the error that a step may have for an accuracy of the answer."""
-    return max(LEAST_ERROR, STEP_PART * accuracy)
+    return min(max(LEAST_ERROR, STEP_PART * accuracy), MOST_ERROR)
 
 
 def alone(impact: Impact, tolerance: float, most: int, watch: Watch | None = None) -> str:
