@@ -91,7 +91,7 @@ def animate_bodies(
     ----------
     path : str or Path
     collision : BodyCollision
-        Of one encounter; its result has a history.
+        The collision of one encounter, whose result has a history.
     axes : array, shape (3, 3)
         n, t1 and t2 as rows, in the frame of the encounter.
     ghosts : mapping of str to BodyCollision

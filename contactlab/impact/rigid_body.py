@@ -155,7 +155,7 @@ class RigidBody:
         Parameters
         ----------
         duration : float
-            Of the shortest contact, in s.
+            Duration of the shortest contact, in s.
         """
         cautions = []
         ratio = float(np.max(self.curvature_ratio))

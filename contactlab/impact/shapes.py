@@ -43,7 +43,7 @@ def rod(
     length : float
         From tip to tip, in m.
     radius : float
-        Of the cross-section, in m.
+        Radius of the cross-section, in m.
     material : Material
         Its density is needed if no mass is given.
     normal : array, shape (3,)

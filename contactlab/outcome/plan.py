@@ -125,8 +125,8 @@ class Clause(NamedTuple):
     where : array of bool
         Impacts that the statement is about; an array of the batch shape.
     values : tuple of float or array, or None
-        Of an array of the batch shape the largest entry among the impacts is formatted into
-        ``text``. None if ``text`` is not a format string.
+        Numbers to format into ``text``; an array of the batch shape stands for its largest entry
+        among the impacts. None if ``text`` is not a format string.
     code : str
         Subject of the statement, for programs: a constant of this module, or empty.
     """
@@ -173,8 +173,8 @@ class Plan:
     ----------
     columns : PlanColumns
     words : tuple of tuples of Clause, or callable
-        What is computed, what is left out, and cautions; or a function that returns them, which
-        is called when they are first read.
+        Statements on what is computed, what is left out, and cautions; or a function that returns
+        them, which is called when they are first read.
     """
 
     columns: PlanColumns
