@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Generator, Iterator, Mapping
+from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import ClosedFormMotion, LostPathError, ScaledContact, Stretch
-from contactlab_laws.fronts.path import Impact, Part
+from contactlab_laws.fronts.path import Answer, Impact, Part, Request
 from contactlab_laws.fronts.phases import STICK, Phase
 from contactlab_laws.fronts.series import Rows
 from contactlab_laws.fronts.steps import alone, error_of_step
@@ -64,20 +64,20 @@ class FrontStretch(Stretch):
         }
 
 
-@attrs.frozen(eq=False)
-class SeriesStretch(FrontStretch):
-    """A step of stick or of slip at the edge: series of u, V, k, J and the front, to ``length``.
+class Step(NamedTuple):
+    """Series of u, V, k, J and the front to ``length``, where the phase is ``stop``.
 
-    ``before`` is the change of velocity where it begins, ``least`` the most negative possible.
+    ``before`` is the change of velocity where they begin.
     """
 
+    stop: float
+    sign: int
     rows: list[list[float]]
     length: float
     before: float
-    least: float
 
-    def _at(self, phase: Array) -> Array:
-        """Return u, V, k, J and the front at each phase, by Newton's method for the variable."""
+    def at(self, phase: Array) -> Array:
+        """Return change, J and the front at each phase, by Newton's method for the variable."""
         rows = np.array(self.rows)
         slopes = np.zeros((2, rows.shape[1]))
         slopes[:, :-1] = rows[:2, 1:] * np.arange(1.0, rows.shape[1])
@@ -105,18 +105,33 @@ class SeriesStretch(FrontStretch):
             with np.errstate(all="ignore"):
                 new = t - over * pace / (velocity_factor(u) * slope)
             t = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
-        return values[:5]
+        change = self.before + self.sign * (values[1] - values[2] - (rows[1, 0] - rows[2, 0]))
+        return np.vstack([change, values[3:5]])
+
+
+@attrs.frozen(eq=False)
+class SeriesStretch(FrontStretch):
+    """Stick, or slip at the edge, in steps; ``least`` is the most negative change possible."""
+
+    steps: list[Step]
+    least: float
+
+    def _at(self, phase: Array) -> Array:
+        """Return change, J and the front at each phase."""
+        which = np.searchsorted([step.stop for step in self.steps[:-1]], phase)
+        columns = np.empty((3, phase.size))
+        for index in np.unique(which).tolist():
+            columns[:, which == index] = self.steps[index].at(phase[which == index])
+        return columns
 
     def states(self, contact: ScaledContact) -> tuple[Array, Array]:
         """Return (change of velocity since first touch, force)."""
-        _, rate, margin, lack, _ = self._at(contact.phase)
-        first = self.rows[1][0] - self.rows[2][0]
-        change = self.before + self.sign * (rate - margin - first)
+        change, lack, _ = self._at(contact.phase)
         return np.clip(change, self.least, 0.0), self.sign * (contact.force - 1.5 * lack)
 
     def front(self, contact: ScaledContact) -> float:
         """Return the radius of the front at one instant."""
-        return max(0.0, float(self._at(np.array([contact.phase]))[4, 0]))
+        return max(0.0, float(self._at(np.array([contact.phase]))[2, 0]))
 
 
 @attrs.frozen(eq=False)
@@ -141,36 +156,43 @@ class GrossStretch(FrontStretch):
 
 
 class CentralImpact(Impact):
-    """An impact of spheres that keeps its stretches."""
+    """An impact of spheres that keeps its stretches, one for each part of its path."""
 
     def __init__(self, psi1: float, chi: float) -> None:
         super().__init__(psi1, chi)
-        self.psi1, self.phase = psi1, 0.0
+        self.psi1, self.phase, self.solves = psi1, 0.0, 0
+        self.kept: list[Step] = []
         self.stretches: list[FrontStretch] = []
-
-    def _known(
-        self, sign: int, change: float, work: float, u: float, rate: float
-    ) -> tuple[int, float, float, float, float, int]:
-        """Return what stretches have in common, and go on to the end of one."""
-        start, self.phase = self.phase, math.atan2(u, rate / velocity_factor(u))
-        # The energy of slip never exceeds that at first touch, rounding of a small psi1 apart.
-        change = min(max(change, -2.0 * self.psi1), 0.0)
-        return sign, start, max(start, self.phase), change, work, len(self.stretches) + 1
 
     def keep(self, phase: Phase, rows: Rows, length: float, last: tuple[float, ...]) -> None:
         """Keep a step."""
-        u, rate, margin = last[:3]
-        psi = rows[1][0] - rows[2][0]
-        before = self.change + self.sign * (psi - (self.rate - self.margin))
-        change = before + self.sign * (rate - margin - psi)
-        known = self._known(self.sign, change, last[-1], max(u, 0.0), rate)
+        psi = rows[1][0] - rows[2][0] - (self.rate - self.margin)
+        stop = math.atan2(max(last[0], 0.0), last[1] / velocity_factor(max(last[0], 0.0)))
         shown = [*rows[:4], rows[0] if phase is STICK else rows[4]]
-        self.stretches.append(SeriesStretch(*known, shown, length, before, -2.0 * self.psi1))
+        before = self.change + self.sign * psi
+        self.kept.append(Step(stop, self.sign, shown, length, before))
+
+    def _known(self, sign: int, stop: float) -> tuple[int, float, float, float, float, int]:
+        """Return what stretches have in common, and go on to the end of one."""
+        start, self.phase = self.phase, max(self.phase, stop)
+        # The energy of slip never exceeds that at first touch, rounding of a small psi1 apart.
+        change = min(max(self.change, -2.0 * self.psi1), 0.0)
+        self.solves += max(len(self.kept), 1)
+        return sign, start, self.phase, change, self.work, self.solves
+
+    def _along(
+        self, phase: Phase, own: tuple[float, ...] = (), constants: tuple[float, ...] = ()
+    ) -> Generator[Request, Answer, tuple[int, tuple[float, ...]]]:
+        ended = yield from super()._along(phase, own, constants)
+        known = self._known(self.sign, self.kept[-1].stop)
+        self.stretches.append(SeriesStretch(*known, self.kept, -2.0 * self.psi1))
+        self.kept = []
+        return ended
 
     def _gross(self) -> Part:
         sign, before, rate = self.sign, self.change, self.rate
         after = yield from super()._gross()
-        known = self._known(sign, self.change, self.work, self.radius, self.rate)
+        known = self._known(sign, math.atan2(self.radius, self.rate / velocity_factor(self.radius)))
         self.stretches.append(GrossStretch(*known, before, rate, 2.0 * self.numbers[0]))
         return after
 
