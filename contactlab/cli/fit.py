@@ -26,6 +26,7 @@ from contactlab.scene_file import LawChoice, SceneFile, read_scene
 
 #: Name of the exact elastic laws, computed from a table; no installed law has this name.
 EXACT = "exact"
+#: Samples of the bootstrap, unless another number is given.
 SAMPLES = 200
 
 
