@@ -148,7 +148,7 @@ def test_an_integrator_alone_gets_a_law_that_it_runs(capsys):
 
 #: Files of the core and the studies that may name laws of ours: the table of defaults, and what the
 #: validation of this installation expects of which law.
-TABLES = {"compose/composition.py", "study/evidence.py"}
+TABLES = {"compose/composition.py", "study/validation.py", "study/evidence.py"}
 
 
 def test_no_law_of_ours_is_named_in_the_core_or_the_studies():
