@@ -141,7 +141,7 @@ def test_any_incidence_and_inertia(psi1, chi):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("chi", [1e6, 1e9, 1e12])
+@pytest.mark.parametrize("chi", [1e7, 1e9, 1e12])
 @pytest.mark.parametrize("psi1", [1e-3, 1.2, 100.0, "chi"])
 def test_what_cannot_be_solved_is_given_up(psi1, chi):
     scene = Scene.nondimensional(psi1=chi if psi1 == "chi" else psi1, chi=chi)

@@ -177,17 +177,22 @@ class CentralImpact(Impact):
         start, self.phase = self.phase, max(self.phase, stop)
         # The energy of slip never exceeds that at first touch, rounding of a small psi1 apart.
         change = min(max(self.change, -2.0 * self.psi1), 0.0)
-        self.solves += max(len(self.kept), 1)
+        self.solves += len(self.kept)
         return sign, start, self.phase, change, self.work, self.solves
 
     def _along(
         self, phase: Phase, own: tuple[float, ...] = (), constants: tuple[float, ...] = ()
     ) -> Generator[Request, Answer, tuple[int, tuple[float, ...]]]:
         ended = yield from super()._along(phase, own, constants)
-        known = self._known(self.sign, self.kept[-1].stop)
-        self.stretches.append(SeriesStretch(*known, self.kept, -2.0 * self.psi1))
-        self.kept = []
+        self.end_stretch()
         return ended
+
+    def end_stretch(self) -> None:
+        """Make a stretch of the steps kept so far, if there are any."""
+        if self.kept:
+            known = self._known(self.sign, self.kept[-1].stop)
+            self.stretches.append(SeriesStretch(*known, self.kept, -2.0 * self.psi1))
+            self.kept = []
 
     def _gross(self) -> Part:
         sign, before, rate = self.sign, self.change, self.rate
@@ -205,6 +210,7 @@ def stretches(
     impact = CentralImpact(velocity, chi)
     error = error_of_step(tolerance) * min(1.0, velocity)
     reason = alone(impact, error, MOST_STEPS, impact.keep)
+    impact.end_stretch()  # of an impact that is lost, for its history so far
     yield from impact.stretches
     if reason:
         why = f"at chi = {chi:.3g} the contact oscillates about sqrt(chi) times"
