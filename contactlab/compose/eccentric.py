@@ -163,8 +163,8 @@ def _cautions(laws: Laws, scene: EccentricScene) -> list[str]:
     """Return a sentence for each doubt about the model."""
     central = scene.central
     cautions = [*unit_slips(central), *unlikely(central), *rigid_bodies(central)]
-    # those of a law may have sizes that were measured for spheres
-    cautions += NormalLaw.cautions(laws.normal, central, normal_or_failed(laws, central))
+    if scene.bodies:  # those of a law itself may have sizes that were measured for spheres
+        cautions += NormalLaw.cautions(laws.normal, central, normal_or_failed(laws, central))
     if np.any(np.asarray(scene.pair.dundurs_beta) != 0.0):
         cautions.append(
             "unlike materials: pressure also shears the surfaces, which is left out (model)"
