@@ -19,6 +19,9 @@ from contactlab.numeric.checks import shown
 
 Array = NDArray[np.float64]
 
+#: Types of an entry of a contact that are always well formed.
+PLAIN = (float, np.float64, type(None))
+
 
 class ScaledNormalLaw:
     """A normal law and its state for the impacts of a scene, as (3, items) scaled equations.
@@ -66,19 +69,21 @@ class ScaledNormalLaw:
     def slope(self, scaled: Array) -> Array:
         """Return the derivatives of scaled approach, rate and impulse, shape (3, items)."""
         if not self.shape:  # as floats: several times faster
-            contact = self._respond(scaled)[0].complete
-            force, load = float(contact.force), float(contact.friction_load)
+            force, _, _, load = self._respond(scaled)[0].complete
             self.finite = math.isfinite(force) and math.isfinite(load)
             response = self.response.item()
-            return np.array([scaled[1], [-force * response], [load * response]])
+            return np.array([[scaled.item(1)], [-force * response], [load * response]])
         forces, _, _, loads = self.contact(scaled)
         self.finite = bool(np.isfinite(np.where(self.active, forces + loads, 0.0)).all())
         slope = np.stack([scaled[1], -forces * self.response, loads * self.response])
         return np.where(self.active, slope, 0.0)
 
-    def contact(self, scaled: Array) -> tuple[Array, Array, Array, Array]:
-        """Return force (N), radius (m), overlap (m) and friction load (N), shape (items,) each."""
-        return tuple(self._per_item(entry) for entry in self._respond(scaled)[0].complete)
+    def contact(self, scaled: Array) -> Array:
+        """Return force (N), radius (m), overlap (m) and friction load (N), shape (4, items)."""
+        rows = np.empty((4, *self.shape))
+        for row, entry in enumerate(self._respond(scaled)[0].complete):
+            rows[row] = entry
+        return rows.reshape(4, self.items)
 
     def remember(self, scaled: Array) -> None:
         """Store the state that the law returns at these scaled values."""
@@ -91,14 +96,16 @@ class ScaledNormalLaw:
 
     def _respond(self, scaled: Array) -> tuple[NormalContact, Any]:
         """Return contact and new state, or raise LawFaultError if the law does anything else."""
-        approach, rate = self.in_si(scaled)
+        approach: Any
+        rate: Any
+        if self.shape:
+            approach, rate = (locked(each.reshape(self.shape)) for each in self.in_si(scaled))
+        else:
+            approach = scaled.item(0) * self.length.item()
+            rate = scaled.item(1) * self.speed.item()
         try:
             with np.errstate(all="ignore"):  # restores the settings if the law changes them
-                if self.shape:
-                    arrays = (locked(each.reshape(self.shape)) for each in (approach, rate))
-                    contact, state = self.law.respond(self.state, *arrays)
-                else:
-                    contact, state = self.law.respond(self.state, approach.item(), rate.item())
+                contact, state = self.law.respond(self.state, approach, rate)
             if not isinstance(contact, NormalContact):
                 raise TypeError(f"respond gave {shown(contact)}, not a NormalContact")
         except KeyboardInterrupt:
@@ -106,8 +113,7 @@ class ScaledNormalLaw:
         except BaseException as error:  # a plug-in may not end the process
             raise self.fault(Status.LAW_RAISED, faults.raised(error)) from error
         for entry in contact:
-            usual = type(entry) is float or entry is None
-            if not usual and faults.malformed(entry, self.shape):
+            if type(entry) not in PLAIN and faults.malformed(entry, self.shape):
                 raise self.fault(Status.MALFORMED, f"the answer {shown(entry)}")
         return contact, state
 

@@ -37,13 +37,15 @@ class NormalContact(NamedTuple):
     @property
     def complete(self) -> NormalContact:
         """The same contact, with max(P, 0) as friction load if it had none."""
-        if self.friction_load is not None:
-            return self
         force: Any = self.force
-        # Multiplying by the comparison keeps NaN, for floats and arrays alike.
-        return self._replace(friction_load=force * (force > 0.0) + 0.0 if np.ndim(force) else (
-            0.0 if force <= 0.0 else force
-        ))  # fmt: skip
+        load = self.friction_load
+        if load is not None:
+            return self
+        if isinstance(force, np.ndarray):
+            load = force * (force > 0.0) + 0.0  # keeps NaN
+        else:
+            load = 0.0 if force <= 0.0 else force
+        return NormalContact(force, self.radius, self.overlap, load)
 
 
 def without_tension(force: Real, radius: Real, approach: Real) -> NormalContact:
