@@ -98,10 +98,9 @@ class LawChoice:
         if not isinstance(scene, EccentricScene) or self.tangential is not None:
             return self
         elastic = self.normal in (None, composition.DEFAULT_NORMAL)
-        best = eccentric.preferred(scene) if elastic else composition.IN_SPACE
-        return self.choose(
-            **best if self.integrator is None else {"tangential": best["tangential"]}
-        )
+        if self.integrator is None:
+            return self.choose(**eccentric.preferred(scene) if elastic else composition.IN_SPACE)
+        return self if elastic else self.choose(tangential=composition.ON_A_PATH)
 
     def suited(self) -> LawChoice:
         """Return the choice, without its integrator if that does not run the tangential law."""

@@ -99,6 +99,13 @@ def test_a_law_that_has_no_answer_is_refused_with_one_that_has(run, file):
     assert json.loads(damped.out)["psi2"] == pytest.approx(expected.psi2)
 
 
+@pytest.mark.parametrize("integrator", ["symplectic", "events"])
+def test_an_integrator_alone_has_the_friction_law_that_it_marches(run, file, integrator):
+    psi1, _, psi2 = ROWS[1]
+    ran = run("run", file(PLANE.format(psi1=psi1)), "--integrator", integrator, "--json")
+    assert json.loads(ran.out)["psi2"] == pytest.approx(psi2, abs=1e-3)
+
+
 @pytest.mark.parametrize(
     ("command", "word"),
     [
