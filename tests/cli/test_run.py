@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import errno
+import itertools
 import json
+import time
 
 import numpy as np
 import pytest
@@ -50,6 +52,18 @@ def test_table_says_it_in_words(run, ball):
                   "run time", "from first touch to separation", "coulomb",
                   "largest normal force"):  # fmt: skip
         assert words in ran.out
+
+
+@pytest.mark.parametrize(
+    ("tick", "words"), [(2.5, "2.5 s"), (1e-3, "1 ms"), (4e-6, "4 µs"), (3e-8, "30 ns")]
+)
+def test_the_run_time_is_told_in_the_unit_that_suits(run, monkeypatch, tick, words):
+    clock = itertools.count()
+    monkeypatch.setattr(time, "perf_counter", lambda: next(clock) * tick)
+    (line,) = (
+        line for line in run("run", *PSI, "--no-estimate").out.splitlines() if "run time" in line
+    )
+    assert line.split(maxsplit=2)[2] == words
 
 
 def test_table_of_a_nondimensional_scene_claims_no_units(run):
