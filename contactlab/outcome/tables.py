@@ -10,14 +10,16 @@ import numpy as np
 
 from contactlab.contracts.status import Status
 from contactlab.impact.bodies import HalfSpace, Sphere
-from contactlab.impact.scene import Scene
-from contactlab.outcome.columns import QUANTITIES, SWEEP_TABLE
+from contactlab.impact.scene import Scene, entry_unit
+from contactlab.outcome.columns import QUANTITIES, SWEEP_TABLE, unit_in
 from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.numerical_error import error_words
 from contactlab.outcome.result import ImpactResult
 
 #: Most sentences on failed impacts that are shown.
 SENTENCES = 3
+#: Entries of a scene that are shown beside its bodies.
+SCENE = ("friction_coefficient", "normal_speed", "tangential_velocity", "spin", "psi1", "chi")
 #: In place of an imbalance, where the friction work is what the velocities lose.
 CLOSED = "closed by construction, not checked"
 
@@ -61,22 +63,14 @@ def answer(result: ImpactResult | EccentricResult) -> list[tuple[str, str]]:
 def scene_section(scene: Scene) -> Section:
     """Return bodies, friction and velocities of a scene, as ranges for a batch."""
     rows: list[Row] = []
-    has_bodies = scene.sphere is not None
     if scene.sphere is not None:
         assert scene.target is not None
         sphere_target = isinstance(scene.target, Sphere)
         rows += _body("sphere", scene.sphere)
         rows += _body("struck sphere" if sphere_target else "half-space", scene.target)
-    for name, unit in (
-        ("friction_coefficient", "1"),
-        ("normal_speed", "m/s"),
-        ("tangential_velocity", "m/s"),
-        ("spin", "rad/s"),
-    ):
-        rows.append(
-            [name.replace("_", " "), _range(getattr(scene, name)), unit if has_bodies else "1"]
-        )
-    rows += [["psi1", _range(scene.psi1), "1"], ["chi", _range(scene.chi), "1"]]
+    for name in SCENE:
+        unit = unit_in(entry_unit(name), scene)
+        rows.append([name.replace("_", " "), _range(getattr(scene, name)), unit])
     return Section(["", "value", "unit"], rows)
 
 

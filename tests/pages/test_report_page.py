@@ -67,6 +67,19 @@ def test_one_impact_in_one_file(reported, ball):
     assert "estimated" in text
 
 
+@pytest.mark.parametrize(
+    ("file", "speed"), [(EXAMPLES / "steel_ball.toml", "m/s"), ("damped", "1")]
+)
+def test_a_scene_has_units_if_it_has_bodies(reported, damped, file, speed):
+    text = reported(damped if file == "damped" else file)
+    rows = [re.findall("<td[^>]*>([^<]*)</td>", row) for row in re.findall("<tr>.*?</tr>", text)]
+    units = {row[0]: row[-1] for row in rows if row}
+    assert units["normal speed"] == units["tangential velocity"] == speed
+    assert units["spin"] == ("rad/s" if speed == "m/s" else "1")
+    assert units["friction coefficient"] == units["chi"] == "1"
+    assert ("sphere: radius" in units) is (speed == "m/s")
+
+
 def test_arrows_of_the_drawing_point_along_the_motion_of_the_sphere(reported, ball):
     """It comes down on the surface, to the right, and leaves upwards; 1.9 radii of 60 at most."""
     pattern = (
