@@ -37,7 +37,8 @@ def refused(measurements, *parameters, **options):
         pytest.param(GRAZING, ["friction_coefficient", "stiffness_ratio"], "stiffness_ratio",
                      marks=pytest.mark.slow),
         (STEEP, ["friction_coefficient"], "friction_coefficient"),
-        (STEEP, ["stiffness_ratio", "friction_coefficient"], "friction_coefficient"),
+        pytest.param(STEEP, ["stiffness_ratio", "friction_coefficient"], "friction_coefficient",
+                     marks=pytest.mark.slow),
     ],
 )  # fmt: skip
 def test_the_measurement_that_is_advised_determines_what_was_not(angles, parameters, missing):
