@@ -105,7 +105,9 @@ def test_option_goes_to_the_laws_that_know_it(run, short_sweep):
     assert "did you mean 'tangential.springs'? known:" in misspelt.err
 
 
-@pytest.mark.parametrize("scene", ["measured", "short_sweep", "ball"])
+@pytest.mark.parametrize(
+    "scene", ["measured", pytest.param("short_sweep", marks=pytest.mark.slow), "ball"]
+)
 def test_figure(run, request, tmp_path, scene):
     path = tmp_path / "figure.png"
     file = request.getfixturevalue(scene)

@@ -88,6 +88,7 @@ def test_a_bootstrap_keeps_its_samples_if_they_are_enough(run, monkeypatch, afte
 
 
 def test_an_animation_keeps_its_frames(run, monkeypatch, ball, tmp_path):
+    monkeypatch.setattr(animation, "SAMPLES", (0.0, 1.0))
     shown = 3 + len(animation.SAMPLES)  # the palette is of some frames, before all are drawn
     monkeypatch.setattr(animation.Forces, "show", interrupting(animation.Forces.show, shown))
     picture = tmp_path / "a.gif"

@@ -49,7 +49,7 @@ def test_check_of_a_law_that_keeps_its_contract(run):
 
 
 def test_check_as_json_names_expected_failures_and_reasons(run):
-    ran = run("plugins", "check", "tangential.coulomb", "--json")
+    ran = run("plugins", "check", "tangential.walton", "--json")
     found = json.loads(ran.out)
     assert ran.status == 0
     assert found["good"]
