@@ -81,7 +81,7 @@ def test_only_the_named_law_is_imported():
 
 def test_a_long_march_makes_plain_numbers_of_a_part_at_a_time():
     """Of two million steps they were 700 MB."""
-    steps = midpoints(Simulation().normal_motion(Scene.nondimensional(psi1=1.2, chi=1.44)), 40_000)
+    steps = midpoints(Simulation().normal_motion(Scene.nondimensional(psi1=1.2, chi=1.44)), 20_000)
     tracemalloc.start()
     deque(one_by_one(steps), maxlen=0)
     _, most = tracemalloc.get_traced_memory()

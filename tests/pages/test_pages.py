@@ -86,6 +86,7 @@ def few_frames(monkeypatch):
     monkeypatch.setattr(animation, "ARRIVING", 2)
     monkeypatch.setattr(animation, "IN_CONTACT", 4)
     monkeypatch.setattr(animation, "LEAVING", 2)
+    monkeypatch.setattr(animation, "SAMPLES", (0.0, 1.0))
 
 
 @pytest.mark.slow
@@ -176,7 +177,8 @@ def test_a_result_without_history_cannot_be_animated(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("end", "begins"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")]
+    ("end", "begins"),
+    [("png", b"\x89PNG"), ("svg", b"<?xml"), pytest.param("pdf", b"%PDF", marks=pytest.mark.slow)],
 )
 def test_pictures_of_any_form_are_the_same_twice(run, ball, tmp_path, end, begins):
     one, other = (tmp_path / f"{name}.{end}" for name in ("one", "other"))

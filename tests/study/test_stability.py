@@ -131,7 +131,9 @@ def test_a_law_that_is_right_is_let_pass(psi1):
     assert outcome.error < outcome.bound < 0.02
 
 
-@pytest.mark.parametrize("factor", [-1.0, 0.0, 0.6, 1.6])
+@pytest.mark.parametrize(
+    "factor", [*(pytest.param(n, marks=pytest.mark.slow) for n in (-1.0, 0.0)), 0.6, 1.6]
+)
 def test_a_law_that_is_wrong_is_found(factor):
     outcome = judged(Spoiled(factor=factor))
     assert outcome.outcome == WRONG
@@ -154,7 +156,8 @@ def test_a_wrong_law_nobody_knows_is_found_by_the_invariants():
 
 
 def test_a_normal_law_that_makes_energy_is_found():
-    assert "e is off" in judged(Spoiled(), normal=Bouncy()).note
+    found = judged(Spoiled(), normal=Bouncy(), reference=lambda *_: None)
+    assert "e is off" in found.note
 
 
 @pytest.mark.parametrize("factor", [1.0, 0.6])
