@@ -41,6 +41,9 @@ from contactlab.study.stability_references import continuum, itself, reference_f
 from tests.laws.outside_laws import RescaledSpring
 
 CHI = 49 / 34
+HERTZ = contactlab.create("normal.hertz")
+ANNULUS = contactlab.create("tangential.annulus", annuli=40)
+SPRINGS = contactlab.create("tangential.springs")
 
 
 @pytest.mark.slow
@@ -63,7 +66,7 @@ class Spoiled(SteppedTangentialLaw):
 
     @property
     def law(self):
-        return contactlab.create("tangential.annulus", annuli=40)
+        return ANNULUS
 
     def start(self, scene, normal):
         return self.law.start(scene, normal)
@@ -91,7 +94,7 @@ class SpoiledSprings(Spoiled):
 
     @property
     def law(self):
-        return contactlab.create("tangential.springs")
+        return SPRINGS
 
 
 class Boastful(RescaledSpring):
@@ -108,10 +111,10 @@ class Bouncy(NormalLaw):
     offers: ClassVar[frozenset] = frozenset({"radius", "hertzian_pressure"})
 
     def start(self, scene):
-        return contactlab.create("normal.hertz").start(scene)
+        return HERTZ.start(scene)
 
     def respond(self, state, approach, rate):
-        contact, state = contactlab.create("normal.hertz").respond(state, approach, rate)
+        contact, state = HERTZ.respond(state, approach, rate)
         push = np.where(np.asarray(rate) < 0.0, 1.5, 1.0)
         return NormalContact(float(contact.force * push), contact.radius, contact.overlap), state
 
@@ -150,13 +153,13 @@ def test_a_law_that_says_its_books_are_open_is_not_held_to_them():
 
 def test_a_wrong_law_nobody_knows_is_found_by_the_invariants():
     """Judged by itself, which agrees: friction that speeds the slip up is still found."""
-    outcome = judged(Spoiled(factor=-1.0), reference=lambda *_: None)
+    outcome = judged(SpoiledSprings(factor=-1.0), reference=lambda *_: None)
     assert outcome.outcome == WRONG
     assert "speeds" in outcome.note
 
 
 def test_a_normal_law_that_makes_energy_is_found():
-    found = judged(Spoiled(), normal=Bouncy(), reference=lambda *_: None)
+    found = judged(SPRINGS, normal=Bouncy(), reference=lambda *_: None)
     assert "e is off" in found.note
 
 
