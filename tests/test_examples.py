@@ -49,11 +49,11 @@ SCRIPTS = {
     "signs": ("spin -90 rad/s, slip 0.00 m/s", "signs.png"),
     "law_in_five_minutes": ("0.1 of the normal speed", "law_in_five_minutes.png"),
 }
-#: Those that take longer than a second, but for one of each kind.
+#: Those that take long, but for one of each kind.
 SLOW = (
     *("sweep_on_a_cluster", "reproduce_the_paper", "fit_your_experiment", "billiards"),
     *("beyond_the_paper", "superball", "law_swap", "stick_slip_map", "granular_gas"),
-    *("hysteresis", "signs", "any_two_bodies", "egg", "toe_shot"),
+    *("hysteresis", "signs", "any_two_bodies", "egg", "toe_shot", "custom_law"),
 )
 #: Run by an interpreter of their own; the others in this one, which has matplotlib already.
 ALONE = ("one_impact", *SLOW)

@@ -32,17 +32,21 @@ def test_help_of_every_command_has_examples(run, command):
 
 
 def test_only_the_subcommand_that_is_named_is_imported():
+    """Nor is a law, scipy or matplotlib for the list of laws or the guide."""
     probe = (
         "import sys; from contactlab.cli.main import main\n"
-        "for words in (['--version'], ['plugins', 'list']):\n"
+        "for words in (['--version'], ['plugins', 'list'], ['guide', 'theory']):\n"
         "    main(words)\n"
-        "    print('of', *(name for name in sys.modules if name.startswith('contactlab.cli.')))"
+        "    print('modules:', *sys.modules)"
     )
-    done = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
-    told = [line.split() for line in done.stdout.splitlines() if line.startswith("of ")]
-    for names, needed in zip(told, (set(), {"plugins"}), strict=True):
-        modules = {name.rpartition(".")[2] for name in names}
-        assert modules & set(module.COMMANDS) == needed
+    command = [sys.executable, "-X", "utf8", "-c", probe]
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=True)
+    told = [line.split() for line in done.stdout.splitlines() if line.startswith("modules:")]
+    for names, needed in zip(told, (set(), {"plugins"}, {"plugins", "guide"}), strict=True):
+        commands = {name.rpartition(".")[2] for name in names if name.startswith("contactlab.cli.")}
+        assert commands & set(module.COMMANDS) == needed
+        heavy = [name for name in names if name.partition(".")[0] in ("scipy", "matplotlib")]
+        assert heavy + [name for name in names if name.startswith("contactlab_")] == []
 
 
 def test_help_lists_every_command_with_its_summary(run):

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import sys
 
 import pytest
 
@@ -131,16 +129,3 @@ def test_unknown_name(run):
     assert "did you mean 'tangential.annulus'" in ran.err
     assert run("plugins").status == 2
     assert run("plugins", "remove").status == 2
-
-
-def test_listing_imports_no_law_no_scipy_no_matplotlib():
-    probe = (
-        "import sys; from contactlab.cli.main import main; main(['plugins', 'list']);"
-        "heavy = [name for name in sys.modules if name.partition('.')[0] in"
-        "  ('scipy', 'matplotlib') or name.startswith('contactlab_')]; sys.exit(repr(heavy)"
-        "  if heavy else 0)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", probe], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr

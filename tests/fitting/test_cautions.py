@@ -69,7 +69,8 @@ def test_a_fit_cautions_as_a_run_does(laws):
 def test_a_shift_by_coupling_is_told_as_a_shift_of_the_parameter(ball, plate, friction):
     """Data by the half-space law with coupling: the friction that the elastic law finds is off."""
     scene = at_angles(ball, plate, friction)
-    coupled = Simulation(tangential=create("tangential.halfspace", coupling="one_way"))
+    law = create("tangential.halfspace", coupling="one_way", rings=8)
+    coupled = Simulation(tangential=law)
     data = measured(coupled.sweep(scene).check(), "rebound_spin", size=0.0)
     bodies = attrs.evolve(scene, normal_speed=1.0, tangential_velocity=1.0)
     found = fit(data, bodies)

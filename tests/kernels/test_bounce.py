@@ -24,7 +24,7 @@ from tests.kernels.test_kernels import (
 )
 
 #: Encounters of each test; few where contactlab answers without its table.
-COUNT, FEW = 2000, 200
+COUNT, FEW = 1000, 200
 #: Places in a row, as bounce.c reads them.
 BODIES, FRICTION, NORMAL, VECTORS = slice(0, 10), 10, slice(11, 14), slice(14, 26)
 
