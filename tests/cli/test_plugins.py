@@ -57,9 +57,9 @@ def test_check_as_json_names_expected_failures_and_reasons(run):
 
 
 def test_check_of_a_law_that_fails_exits_with_1(run, monkeypatch):
-    law = type(contactlab.create("normal.hertz"))
+    law = type(contactlab.create("tangential.walton"))
     monkeypatch.setattr(law, "api_version", 99)
-    ran = run("plugins", "check", "normal.hertz")
+    ran = run("plugins", "check", "tangential.walton")
     assert ran.status == 1
     assert "api_version = 99: contactlab has 2." in ran.out
     assert run("plugins", "check", "normal.herz").status == 2

@@ -219,10 +219,10 @@ def test_the_bootstrap_is_as_wide_as_the_covariance_and_the_same_each_time():
     angles = np.linspace(8.0, 60.0, 20)
     data = table(scattered(restitution(0.12, angles), 0.01), angles)
     calls = []
-    found = fit(data, BODIES, bootstrap=80, progress=lambda *done: calls.append(done))
+    found = fit(data, BODIES, bootstrap=40, progress=lambda *done: calls.append(done))
     one = found.parameters["friction_coefficient"]
     assert np.ptp(one.bootstrap) == pytest.approx(np.ptp(one.interval), rel=0.35)
-    assert calls == [(done, 80) for done in range(1, 81)]
+    assert calls == [(done, 40) for done in range(1, 41)]
     ends = [
         fit(data, BODIES, bootstrap=3, seed=seed).parameters["friction_coefficient"].bootstrap
         for seed in (1, 1, 2)

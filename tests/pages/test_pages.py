@@ -157,7 +157,8 @@ def test_what_sticks_and_what_slips_either_way_has_its_colour(superball):
     assert ever == {-1, 0, 1}
 
 
-def test_without_bodies_forces_and_contact_are_drawn(run, tmp_path, few_frames):
+def test_without_bodies_forces_and_contact_are_drawn(run, tmp_path, few_frames, monkeypatch):
+    monkeypatch.setattr(animation, "DOTS", 30)
     out = tmp_path / "contact.gif"
     assert run("animate", "--psi1", 1.2, "--chi", 1.4, "--out", out).status == 0
     with Image.open(out) as picture:
