@@ -27,7 +27,13 @@ def shown():
     )
 
 
-@pytest.mark.parametrize("name", SCRIPTS)
+#: Scripts of many grains, as ``gas`` is.
+LIKE_GAS = ("cost", "dense_flow", "drum")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] * (n in LIKE_GAS)) for n in SCRIPTS]
+)
 def test_every_option_that_is_shown_exists(name):
     done = subprocess.run(
         [sys.executable, FOLDER / f"{name}.py", "--help"],

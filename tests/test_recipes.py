@@ -211,7 +211,10 @@ COMPILED = {
 }
 
 
-@pytest.mark.parametrize("name", COMPILED)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.slow] * name.endswith(".rs")) for name in COMPILED],
+)
 def test_a_code_of_ones_own_in_single_precision(name, tmp_path):
     """Eight springs are within 0.024 in double precision."""
     commands = [command.format(recipes=RECIPES).split() for command in COMPILED[name]]

@@ -10,7 +10,7 @@ from PIL import Image
 
 import contactlab
 from contactlab import EccentricScene, Simulation, read_scene
-from contactlab.figures import body_animation
+from contactlab.figures import animation, body_animation
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FOOT = EXAMPLES / "foot.toml"
@@ -135,6 +135,7 @@ def test_animate_draws_the_body_and_the_ghost(frames, least, run, tmp_path, monk
     if frames == 8:
         for name, count in (("ARRIVING", 2), ("IN_CONTACT", 4), ("LEAVING", 2)):
             monkeypatch.setattr(body_animation, name, count)
+        monkeypatch.setattr(animation, "SAMPLES", (0.0, 1.0))
     out = tmp_path / "foot.gif"
     ran = run("animate", FOOT, "--ghost", "coulomb", "--out", out)
     assert ran.status == 0

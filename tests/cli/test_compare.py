@@ -105,7 +105,10 @@ def test_option_goes_to_the_laws_that_know_it(run, short_sweep):
     assert "did you mean 'tangential.springs'? known:" in misspelt.err
 
 
-@pytest.mark.parametrize("scene", ["measured", "short_sweep", "ball"])
+@pytest.mark.parametrize(
+    "scene",
+    [*(pytest.param(n, marks=pytest.mark.slow) for n in ("measured", "short_sweep")), "ball"],
+)
 def test_figure(run, request, tmp_path, scene):
     path = tmp_path / "figure.png"
     file = request.getfixturevalue(scene)
@@ -188,6 +191,7 @@ def test_cautions_of_the_plans_are_told_with_their_laws(run, tmp_path):
     assert len(told) == 1
 
 
+@pytest.mark.slow
 def test_the_look_of_a_figure(run, short_sweep, tmp_path):
     sizes = []
     for style in ("print", "slides"):

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import subprocess
-import sys
 import unicodedata
 
 import pytest
@@ -111,16 +109,3 @@ def test_an_unknown_section_is_refused(run, words):
     ran = run("guide", *words)
     assert (ran.status, ran.out) == (2, "")
     assert f"section = {words[1]!r}" in ran.err
-
-
-def test_the_guide_imports_no_law_no_scipy_no_matplotlib():
-    probe = (
-        "import sys; from contactlab.cli.main import main; main(['guide', 'theory']);"
-        "heavy = [name for name in sys.modules if name.partition('.')[0] in"
-        "  ('scipy', 'matplotlib') or name.startswith('contactlab_')]; sys.exit(repr(heavy)"
-        "  if heavy else 0)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-X", "utf8", "-c", probe], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr

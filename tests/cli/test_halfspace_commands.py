@@ -28,6 +28,7 @@ def test_bench(run, tmp_path):
     assert "halfspace,rings=8" in table.read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_report(run, tmp_path):
     page = tmp_path / "report.html"
     ran = run("report", BALL, "--tangential", "fronts,halfspace", "--out", page)
@@ -35,6 +36,7 @@ def test_report(run, tmp_path):
     assert "halfspace" in page.read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_fit(run):
     """The axisymmetric problem: the friction of the exact law."""
     laws = ("--laws", "halfspace", "--set", "tangential.angles=1", "--set", "tangential.rings=8")

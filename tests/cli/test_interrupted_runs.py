@@ -71,7 +71,9 @@ def test_a_fit_keeps_the_laws_that_are_done(run, monkeypatch, tmp_path):
     assert {row["law"] for row in rows} == {"exact", "coulomb"}
 
 
-@pytest.mark.parametrize(("after", "kept"), [(10, True), (9, False)])
+@pytest.mark.parametrize(
+    ("after", "kept"), [(10, True), pytest.param(9, False, marks=pytest.mark.slow)]
+)
 def test_a_bootstrap_keeps_its_samples_if_they_are_enough(run, monkeypatch, after, kept):
     monkeypatch.setattr(estimation, "FEWEST", 10)
     again = interrupting(estimation._solved_again, after)
@@ -88,6 +90,8 @@ def test_a_bootstrap_keeps_its_samples_if_they_are_enough(run, monkeypatch, afte
 
 
 def test_an_animation_keeps_its_frames(run, monkeypatch, ball, tmp_path):
+    monkeypatch.setattr(animation, "SAMPLES", (0.0, 1.0))
+    monkeypatch.setattr(animation, "DOTS", 30)
     shown = 3 + len(animation.SAMPLES)  # the palette is of some frames, before all are drawn
     monkeypatch.setattr(animation.Forces, "show", interrupting(animation.Forces.show, shown))
     picture = tmp_path / "a.gif"

@@ -43,9 +43,18 @@ PAIRS = [
     for count in range(3)
     for pair in itertools.combinations(options, count)
 ]
-#: Pairs that draw take the longest; all of them run among the longer tests.
+#: What makes a comparison short: scenes of few impacts, or laws without an annulus.
+SHORT = {"{short}", "--psi1 0:4:3", "--tangential springs"}
+
+
+def long(command, pair):
+    """Return whether a pair takes long: what draws, and comparisons of the impacts of default."""
+    default = command == "compare" and pair and not SHORT & set(pair)
+    return default or ".svg" in str(pair)
+
+
 CASES = [
-    pytest.param(*each, marks=[pytest.mark.slow] if ".svg" in str(each) else [], id=" ".join(
+    pytest.param(*each, marks=[pytest.mark.slow] if long(*each) else [], id=" ".join(
         [each[0], *each[1]]
     ))
     for each in PAIRS

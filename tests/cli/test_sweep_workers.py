@@ -9,7 +9,7 @@ import pytest
 
 from contactlab.compose import solve
 
-SWEEP = ("sweep", "--psi1", "0:9:3000", "--chi", "1.4412", "--tangential", "springs")
+SWEEP = ("sweep", "--psi1", "0:9:3000", "--chi", "1.4412", "--tangential", "linear_spring")
 
 
 def test_workers_print_what_one_process_prints(run):
@@ -55,7 +55,7 @@ main(sys.argv[1:])
 """
 
 
-@pytest.mark.parametrize("workers", [(), ("--workers", "2")])
+@pytest.mark.parametrize("workers", [(), pytest.param(("--workers", "2"), marks=pytest.mark.slow)])
 def test_killed_and_resumed_it_writes_the_same_file(run, tmp_path, workers):
     whole, killed, kept = tmp_path / "a.npz", tmp_path / "b.npz", tmp_path / "b.npz.kept"
     assert run(*SWEEP, "--out", whole).status == 0
@@ -66,7 +66,7 @@ def test_killed_and_resumed_it_writes_the_same_file(run, tmp_path, workers):
     assert not killed.exists()
     ran = run(*SWEEP, "--tangential", "coulomb", "--out", killed, "--resume")
     assert ran.status == 2
-    assert "holds another sweep: tangential was springs" in ran.err
+    assert "holds another sweep: tangential was linear_spring" in ran.err
     assert sorted(path.name for path in kept.iterdir()) == names
     ran = run(*SWEEP, "--out", killed, "--resume", "--workers", "2")
     assert (ran.status, ran.err) == (0, "contactlab sweep: 1000 impacts were done before\n")

@@ -24,6 +24,7 @@ def test_forces_are_drawn_from_first_touch_up_to_the_instant():
 def small(monkeypatch):
     for name, value in (
         ("SIZE", (2.0, 1.0)), ("DOTS", 20), ("ARRIVING", 2), ("IN_CONTACT", 3), ("LEAVING", 2),
+        ("SAMPLES", (0.0, 1.0)),
     ):  # fmt: skip
         monkeypatch.setattr(animation, name, value)
 

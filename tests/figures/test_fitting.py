@@ -17,12 +17,14 @@ TABLE = {
 }
 
 
-def fitted(simulation=None, **columns):
-    return fit(TABLE | columns, BODIES, simulation=simulation)
+@pytest.fixture(scope="module")
+def exact():
+    return fit(TABLE, BODIES)
 
 
-def test_each_law_has_a_smooth_curve_and_its_points():
-    laws = {"exact": fitted(), "$rigid": fitted(Simulation(tangential="coulomb"))}
+def test_each_law_has_a_smooth_curve_and_its_points(exact):
+    rigid = fit(TABLE, BODIES, simulation=Simulation(tangential="coulomb"))
+    laws = {"exact": exact, "$rigid": rigid}
     axes = measured_and_laws(Figure().subplots(), laws, "tangential_restitution")
     curve, points, other, others, *_ = axes.lines
     assert list(points.get_xdata()) == [10.0, 10.0, 30.0, 50.0]  # where it is measured
@@ -42,7 +44,7 @@ def test_each_law_has_a_smooth_curve_and_its_points():
 
 def test_errors_are_bars_and_residuals_are_measured_less_predicted():
     errors = np.full(5, 0.05)
-    found = fitted(tangential_restitution_error=errors)
+    found = fit(TABLE | {"tangential_restitution_error": errors}, BODIES)
     above = measured_and_laws(Figure().subplots(), {"a": found}, "tangential_restitution")
     below = residuals(Figure().subplots(), {"a": found}, "tangential_restitution")
     ((line, _, bars),) = below.containers
@@ -53,16 +55,15 @@ def test_errors_are_bars_and_residuals_are_measured_less_predicted():
     assert "rad/s" in residuals(Figure().subplots(), {"a": found}, "rebound_spin").get_ylabel()
 
 
-def test_a_fit_predicts_other_impacts():
-    found = fitted()
-    made = found.predict(angle_deg=[10.0, 30.0])
-    kept = found.predicted["tangential_restitution"][[0, 3]]
+def test_a_fit_predicts_other_impacts(exact):
+    made = exact.predict(angle_deg=[10.0, 30.0])
+    kept = exact.predicted["tangential_restitution"][[0, 3]]
     np.testing.assert_allclose(made.tangential_restitution, kept, rtol=1e-9)
-    assert found.predict(angle_deg=10.0, speed=2.0).scene.normal_speed > 1.9
+    assert exact.predict(angle_deg=10.0, speed=2.0).scene.normal_speed > 1.9
     with pytest.raises(ValueError, match="radius"):
-        found.predict(radius=0.1)
+        exact.predict(radius=0.1)
     with pytest.raises(ValueError, match="lengths"):
-        found.predict(angle_deg=[1.0, 2.0], speed=[1.0, 2.0, 3.0])
+        exact.predict(angle_deg=[1.0, 2.0], speed=[1.0, 2.0, 3.0])
 
 
 def test_without_an_angle_the_abscissa_is_what_varies():
@@ -83,11 +84,11 @@ def test_without_an_angle_the_abscissa_is_what_varies():
     assert "rad/s" in axes.get_xlabel()
 
 
-def test_each_quantity_has_a_column_under_one_legend(tmp_path, monkeypatch):
-    draw_fits(tmp_path / "fit.png", {"a": fitted()}, width="two")
+def test_each_quantity_has_a_column_under_one_legend(exact, tmp_path, monkeypatch):
+    draw_fits(tmp_path / "fit.png", {"a": exact}, width="two")
     assert (tmp_path / "fit.png").read_bytes()[1:4] == b"PNG"
     kept = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: kept.append(figure))
-    draw_fits(tmp_path / "fit.png", {"a": fitted()})
+    draw_fits(tmp_path / "fit.png", {"a": exact})
     assert {axes.get_legend() for axes in kept[0].axes} == {None}
     assert len(kept[0].legends) == 1

@@ -97,7 +97,9 @@ def test_errors_in_another_unit_are_told():
     assert "look at the unit of tangential_restitution_error" in note
 
 
-@pytest.mark.parametrize("count", [8, 12, 40])
+@pytest.mark.parametrize(
+    "count", [8, *(pytest.param(count, marks=pytest.mark.slow) for count in (12, 40))]
+)
 def test_sound_measurements_are_not_accused(count):
     rng = np.random.default_rng(count)
     angles = np.linspace(5.0, 65.0, count)
@@ -106,7 +108,7 @@ def test_sound_measurements_are_not_accused(count):
         assert fit(table(true + 0.01 * rng.standard_normal(count), angles), BODIES).notes == ()
 
 
-@pytest.mark.parametrize("e", [0.6, 0.9, 1.0])
+@pytest.mark.parametrize("e", [0.6, pytest.param(0.9, marks=pytest.mark.slow), 1.0])
 def test_tsuji_s_law_is_fitted_by_its_table(e):
     """Data by the closed form of gross slip, psi2 = psi1 - 2 chi (1 + e), and e itself."""
     laws = Simulation(normal="tsuji")

@@ -49,7 +49,10 @@ def test_errors_and_correlation_of_two_parameters(stated):
     assert found.reduced_chi_square == (pytest.approx(squares / 10.0) if stated else None)
 
 
-@pytest.mark.parametrize(("after", "kept"), [(99, False), (100, True), (101, True)])
+@pytest.mark.parametrize(
+    ("after", "kept"),
+    [(99, False), (100, True), pytest.param(101, True, marks=pytest.mark.slow)],
+)
 def test_an_interruption_keeps_a_hundred_samples_or_none(after, kept):
     def progress(done, total):
         assert total == 150

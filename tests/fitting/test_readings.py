@@ -103,6 +103,20 @@ def test_the_numbers_of_a_quantity_read_another_way(heading, way, factor, offset
     assert dict(reading.factors) == pytest.approx(expected)
 
 
+def test_quantities_exchanged_and_taken_for_each_other():
+    one, other = E_T["tangential_restitution"], np.linspace(0.7, 0.6, COUNT)
+    found = read(POLAR | E_T | {"normal_restitution": other})
+    exchanged = found["tangential_restitution and normal_restitution look as if exchanged"]
+    assert list(exchanged.problem.measured) == ["normal_restitution", "tangential_restitution"]
+    np.testing.assert_array_equal([*exchanged.problem.measured.values()], [one, other])
+    words = "{} looks as if its numbers were those of {}".format
+    for names in (("tangential_restitution", "slip_restitution"),
+                  ("slip_restitution", "tangential_restitution")):  # fmt: skip
+        taken = read(POLAR | {names[0]: one})[words(*names)].problem.measured
+        assert list(taken) == [names[1]]
+        np.testing.assert_array_equal(taken[names[1]], one)
+
+
 def test_both_angles_read_another_way():
     out = np.linspace(0.1, 1.0, COUNT)
     found = read(POLAR | {"rebound_angle_deg": out})

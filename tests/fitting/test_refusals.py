@@ -37,7 +37,8 @@ def refused(measurements, *parameters, **options):
         pytest.param(GRAZING, ["friction_coefficient", "stiffness_ratio"], "stiffness_ratio",
                      marks=pytest.mark.slow),
         (STEEP, ["friction_coefficient"], "friction_coefficient"),
-        (STEEP, ["stiffness_ratio", "friction_coefficient"], "friction_coefficient"),
+        pytest.param(STEEP, ["stiffness_ratio", "friction_coefficient"], "friction_coefficient",
+                     marks=pytest.mark.slow),
     ],
 )  # fmt: skip
 def test_the_measurement_that_is_advised_determines_what_was_not(angles, parameters, missing):
@@ -112,12 +113,12 @@ def test_effects_that_are_alike_are_not_told_apart():
 
 def test_a_single_number_of_a_quantity_needs_its_error():
     """It would be met to the last digit, whatever the others say."""
-    one = np.where(np.arange(4) == 2, -120.0, np.nan)
-    data = table(scattered(GRAZING), GRAZING) | {"rebound_spin (rad/s)": one}
+    one, three = np.array([np.nan, -120.0, np.nan]), GRAZING[:3]
+    data = table(scattered(three), three) | {"rebound_spin (rad/s)": one}
     with pytest.raises(ValueError, match="rebound_spin: 1 measured, too few"):
         fit(data, BODIES)
-    known = {"rebound_spin_error (rad/s)": np.full(4, 100.0)}
-    known["tangential_restitution_error"] = np.full(4, 0.004)
+    known = {"rebound_spin_error (rad/s)": np.full(3, 100.0)}
+    known["tangential_restitution_error"] = np.full(3, 0.004)
     assert fit(data | known, BODIES)["friction_coefficient"] == pytest.approx(0.1, abs=0.01)
 
 

@@ -36,7 +36,17 @@ CAUSES = {
 }
 
 
-@pytest.mark.parametrize("name", SLIPS)
+#: One of each kind; the words of every reading are among the tests of readings.
+QUICK = (
+    *("incidence in degrees, heading says radians", "errors in percent", "spin before in rpm"),
+    *("decimal comma moves a column", "rebounds a row too low", "protractor off by six degrees"),
+    *("one gross outlier at the end", "the plate was oiled half way"),
+)
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name not in QUICK)) for name in SLIPS]
+)
 def test_a_slip_is_told(name, tmp_path):
     file, words = SLIPS[name]
     found = answer(file, tmp_path)

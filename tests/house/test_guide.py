@@ -31,7 +31,7 @@ CITATION = re.compile(r"\btheory(?:\.md`?)?\s+(?:#:?\s*)?(§§?\s*\d+(?:(?:,| an
 DOI = re.compile(r"10\.\d{4,9}/[^\s,;]+")
 LAWS = ("Viscoelastic", "Brush", "HardSphere", "RoughSphere", "SlipThenRoll", "Leapfrog")
 #: Laws whose checks take longer than a second.
-HEAVY = ("Brush", "Leapfrog")
+HEAVY = ("Viscoelastic", "Brush", "Leapfrog")
 #: Where names in the tables of the guide are looked for.
 NAMESPACES = (
     contactlab, contracts, bodies, plan, history, motion, energy, normal_motion, result,

@@ -71,7 +71,7 @@ DOORS = {
     "rebound psi1": (lambda x: rebound(x, 1.44), "psi1"),
     "rebound chi": (lambda x: rebound(1.2, x), "chi"),
     "rebound both": (lambda x: rebound(x, x), "psi1"),
-    "rebound restitution": (lambda x: rebound(1.2, 1.44, restitution=np.divide(x, 4.0))
+    "rebound restitution": (lambda x: rebound(1.2, 1.44, restitution=np.subtract(8, x) / 8)
                             if not isinstance(x, str) else rebound(1.2, 1.44, restitution=x),
                             "restitution"),
     "scene psi1": (lambda x: Scene.nondimensional(psi1=x, chi=1.44).psi1, "psi1"),

@@ -6,6 +6,8 @@ import sys
 import tracemalloc
 from collections import deque
 
+import pytest
+
 from contactlab import Scene, Simulation
 from contactlab_laws.march.division import midpoints, one_by_one
 
@@ -24,11 +26,26 @@ def loaded(code):
     return json.loads(done.stdout)
 
 
-def test_import_is_lean():
-    names = "from contactlab import Encounter, Scene, Simulation, collide, load_path, rebound\n"
-    heavy, laws = loaded(PROBE.replace("import contactlab\n", names))
-    assert heavy == []
-    assert laws == []
+#: What is imported at first, what lists the laws, and what makes one.
+STAGES = (
+    "from contactlab import Encounter, Scene, Simulation, collide, load_path, rebound\n",
+    "from contactlab.compose.registry import REGISTRY\nassert REGISTRY.names()\n",
+    "contactlab.create('tangential.coulomb')\n",
+)
+
+
+@pytest.fixture(scope="module")
+def stages():
+    """Return what one interpreter has loaded after each stage: modules that are slow, and laws."""
+    probe = PROBE.replace("print(", "told.append(")
+    code = "told = []\n" + "".join(stage + probe for stage in STAGES)
+    return loaded(
+        code.replace("json.dumps([heavy, laws])", "[heavy, laws]") + "print(json.dumps(told))"
+    )
+
+
+def test_import_is_lean(stages):
+    assert stages[0] == [[], []]
 
 
 def test_a_public_name_is_imported_on_its_first_use():
@@ -47,15 +64,8 @@ def test_a_public_name_is_imported_on_its_first_use():
     subprocess.run([sys.executable, "-c", "\n".join(lines)], check=True)
 
 
-def test_listing_the_laws_imports_none():
-    heavy, laws = loaded(
-        PROBE.replace(
-            "import contactlab\n",
-            "from contactlab.compose.registry import REGISTRY\nassert REGISTRY.names()\n",
-        )
-    )
-    assert heavy == []
-    assert laws == []
+def test_listing_the_laws_imports_none(stages):
+    assert stages[1] == [[], []]
 
 
 def test_running_a_law_imports_no_other_law():
@@ -70,18 +80,14 @@ def test_running_a_law_imports_no_other_law():
     assert {name.split(".")[1] for name in laws if "." in name} == needed
 
 
-def test_only_the_named_law_is_imported():
-    _, laws = loaded(
-        PROBE.replace(
-            "import contactlab\n", "import contactlab\ncontactlab.create('tangential.coulomb')\n"
-        )
-    )
+def test_only_the_named_law_is_imported(stages):
+    _, laws = stages[2]
     assert {name.split(".")[1] for name in laws if "." in name} == {"coulomb"}
 
 
 def test_a_long_march_makes_plain_numbers_of_a_part_at_a_time():
     """Of two million steps they were 700 MB."""
-    steps = midpoints(Simulation().normal_motion(Scene.nondimensional(psi1=1.2, chi=1.44)), 40_000)
+    steps = midpoints(Simulation().normal_motion(Scene.nondimensional(psi1=1.2, chi=1.44)), 20_000)
     tracemalloc.start()
     deque(one_by_one(steps), maxlen=0)
     _, most = tracemalloc.get_traced_memory()

@@ -1,5 +1,7 @@
 """The kernels in C and JavaScript answer as the law in Python does, along the same motions."""
 
+import functools
+import itertools
 import json
 import shutil
 import subprocess
@@ -45,6 +47,16 @@ def driven(words, folder, springs, rows, **lengths):
     return np.fromfile(folder / "out").reshape(-1, 4)
 
 
+def driven_each(words, folder, springs, motions):
+    """Return the answers along several motions, which a row without contact parts, in one call."""
+    apart = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]])
+    found = driven(
+        words, folder, springs, np.vstack([x for each in motions for x in (each, apart)])
+    )
+    ends = itertools.accumulate(len(each) + 1 for each in motions)
+    return [found[end - 1 - len(each) : end - 1] for each, end in zip(motions, ends, strict=True)]
+
+
 @pytest.fixture(params=[pytest.param("c", marks=needs_c), pytest.param("js", marks=needs_node)])
 def words(request, built):
     """Return the command of each driver."""
@@ -53,13 +65,29 @@ def words(request, built):
     return [NODE, HERE / "drive.mjs", KERNELS / "contactlab_springs.mjs"]
 
 
-@pytest.mark.parametrize("springs", [2, 4, 8, 16])
+@functools.cache
+def along_lines(springs):
+    """Return four motions along a line, their directions, and what the law in Python answers."""
+    motions, directions, sizes = zip(*map(sliding, range(4)), strict=True)
+    laws = [by_the_law(springs, *each) for each in zip(motions, sizes, strict=True)]
+    return motions, directions, laws
+
+
+@functools.cache
+def in_space(springs):
+    """Return four motions with turning normals, and the forces by the rules for vectors."""
+    motions = [wandering(seed) for seed in range(4)]
+    return motions, [by_vectors(springs, rows) for rows in motions]
+
+
+@pytest.mark.parametrize(
+    "springs", [pytest.param(n, marks=[pytest.mark.slow] * (n in (4, 8))) for n in (2, 4, 8, 16)]
+)
 def test_along_a_line_it_is_the_law_in_python(words, springs, tmp_path):
     """Through doublings, zero normal force, separation and contact again: 1e-12."""
-    for seed in range(4):
-        rows, along, sizes = sliding(seed)
-        law = by_the_law(springs, rows, sizes)
-        found = driven(words, tmp_path, springs, rows)
+    motions, directions, laws = along_lines(springs)
+    answers = driven_each(words, tmp_path, springs, motions)
+    for rows, along, law, found in zip(motions, directions, laws, answers, strict=True):
         largest = np.abs(law).max(axis=0)
         assert (law[rows[:, 6] > 0.0, 0] != 0.0).mean() > 0.9
         assert np.abs(found[:, :3] @ along + law[:, 0]).max() <= 1e-12 * largest[0]
@@ -70,10 +98,9 @@ def test_along_a_line_it_is_the_law_in_python(words, springs, tmp_path):
 
 @pytest.mark.parametrize("springs", [4, 8])
 def test_with_turning_normals_it_is_the_rules_for_vectors(words, springs, tmp_path):
-    for seed in range(4):
-        rows = wandering(seed)
-        expected = by_vectors(springs, rows)
-        found = driven(words, tmp_path, springs, rows)
+    motions, forces = in_space(springs)
+    answers = driven_each(words, tmp_path, springs, motions)
+    for rows, expected, found in zip(motions, forces, answers, strict=True):
         assert np.abs(found[:, :3] - expected).max() <= 1e-12 * np.abs(expected).max()
         length = np.linalg.norm(found[:, :3], axis=1)
         assert (length <= rows[:, 7] * (1.0 + 1e-12)).all()
@@ -87,23 +114,25 @@ def test_a_turned_frame_turns_the_force(words, tmp_path):
     turn, _ = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))
     turned = rows.copy()
     turned[:, :3], turned[:, 3:6] = rows[:, :3] @ turn, -rows[:, 3:6] @ turn  # either sense
-    first, second = (driven(words, tmp_path, 8, each)[:, :3] for each in (rows, turned))
+    first, second = (each[:, :3] for each in driven_each(words, tmp_path, 8, [rows, turned]))
     assert np.abs(first @ turn - second).max() <= 1e-12 * np.abs(first).max()
 
 
-@pytest.mark.parametrize("spoilt", [0, 2, 4, 6, 7])
-@pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_what_is_not_finite_is_nan_until_the_contact_ends(words, spoilt, value, tmp_path):
+def test_what_is_not_finite_is_nan_until_the_contact_ends(words, tmp_path):
+    """A displacement, a normal, a radius or a limit; each in a motion of its own."""
     rows, _, _ = sliding(1)
     rows[90:100, 6] = rows[89, 6]  # in contact; it ends at 100
-    clean = driven(words, tmp_path, 8, rows)
-    rows[95, spoilt] = value
-    found = driven(words, tmp_path, 8, rows)
-    assert (found[:95] == clean[:95]).all()
-    assert np.isnan(found[95:100]).all()
-    assert (found[101:] == clean[101:]).all()
+    motions = [rows]
+    for spoilt, value in itertools.product((0, 2, 4, 6, 7), (np.nan, np.inf)):
+        motions.append(rows.copy())
+        motions[-1][95, spoilt] = value
+    clean, *answers = driven_each(words, tmp_path, 8, motions)
     assert np.isfinite(clean).all()
-    assert (found[100, :3] == 0.0).all()
+    for found in answers:
+        assert (found[:95] == clean[:95]).all()
+        assert np.isnan(found[95:100]).all()
+        assert (found[101:] == clean[101:]).all()
+        assert (found[100, :3] == 0.0).all()
 
 
 @pytest.mark.parametrize("across", [0.0, np.pi / 2.0])
@@ -123,9 +152,10 @@ def test_a_turn_of_the_normal_keeps_the_force(words, across, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("column", "value"), [("unit", 0.0), ("unit", -0.7), ("unit", np.nan), ("unit", np.inf),
-                          ("unit", 5e-324), ("modulus", 0.0), ("modulus", -1.0),
-                          ("modulus", np.nan), ("limit", -1e-3), ("springs", 7)]
+    ("column", "value"), [("unit", 0.0), ("unit", -0.7), ("unit", np.inf), ("unit", 5e-324),
+                          ("modulus", 0.0), ("modulus", -1.0), ("limit", -1e-3), ("springs", 7),
+                          pytest.param("unit", np.nan, marks=pytest.mark.slow),
+                          pytest.param("modulus", np.nan, marks=pytest.mark.slow)]
 )  # fmt: skip
 def test_what_is_no_contact_is_nan_or_refused(words, column, value, tmp_path):
     rows, _, _ = sliding(1, 101)
@@ -251,8 +281,9 @@ def test_it_is_c_plus_plus_too(tmp_path):
 
 @needs_node
 @pytest.mark.parametrize(
-    ("psi1", "chi"), [(0.5, 1.18), (1.2, 49.0 / 34.0), (3.0, 1.75), (8.0, 1.44)]
-)
+    ("psi1", "chi"), [(0.5, 1.18), pytest.param(1.2, 49.0 / 34.0, marks=pytest.mark.slow),
+                      pytest.param(3.0, 1.75, marks=pytest.mark.slow), (8.0, 1.44)]
+)  # fmt: skip
 def test_one_impact_in_javascript(psi1, chi):
     words = [NODE, HERE / "drive.mjs", KERNELS / "contactlab_bounce.mjs", "impact"]
     numbers = [str(number) for number in (psi1, chi, 120, 600)]

@@ -86,6 +86,7 @@ def few_frames(monkeypatch):
     monkeypatch.setattr(animation, "ARRIVING", 2)
     monkeypatch.setattr(animation, "IN_CONTACT", 4)
     monkeypatch.setattr(animation, "LEAVING", 2)
+    monkeypatch.setattr(animation, "SAMPLES", (0.0, 1.0))
 
 
 @pytest.mark.slow
@@ -156,7 +157,8 @@ def test_what_sticks_and_what_slips_either_way_has_its_colour(superball):
     assert ever == {-1, 0, 1}
 
 
-def test_without_bodies_forces_and_contact_are_drawn(run, tmp_path, few_frames):
+def test_without_bodies_forces_and_contact_are_drawn(run, tmp_path, few_frames, monkeypatch):
+    monkeypatch.setattr(animation, "DOTS", 30)
     out = tmp_path / "contact.gif"
     assert run("animate", "--psi1", 1.2, "--chi", 1.4, "--out", out).status == 0
     with Image.open(out) as picture:
@@ -176,7 +178,8 @@ def test_a_result_without_history_cannot_be_animated(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("end", "begins"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")]
+    ("end", "begins"),
+    [("png", b"\x89PNG"), ("svg", b"<?xml"), pytest.param("pdf", b"%PDF", marks=pytest.mark.slow)],
 )
 def test_pictures_of_any_form_are_the_same_twice(run, ball, tmp_path, end, begins):
     one, other = (tmp_path / f"{name}.{end}" for name in ("one", "other"))

@@ -13,6 +13,11 @@ from contactlab.study.loops import CYCLES, QUARTER, REACH, loops
 SCENE = Scene.nondimensional(psi1=1.0, chi=1.4412)
 
 
+@pytest.fixture(scope="module")
+def found():
+    return loops(SCENE, {"springs": Simulation(tangential="springs"), "exact": Simulation()})
+
+
 def forms():
     """Return springs, and each form of the capped spring."""
     names = ("displacement", "displacement_rescaled", "increment", "increment_rescaled")
@@ -20,8 +25,7 @@ def forms():
     return {"springs": "springs", **caps}
 
 
-def test_loops_at_constant_load_close_and_have_the_area_of_theory():
-    found = loops(SCENE, {"springs": Simulation(tangential="springs"), "exact": Simulation()})
+def test_loops_at_constant_load_close_and_have_the_area_of_theory(found):
     assert list(found.constant) == ["springs"]
     assert "steps" in found.left_out["exact"]
     moved, force = found.constant["springs"]
@@ -44,16 +48,13 @@ def test_forms_of_the_capped_spring_part_where_the_load_oscillates():
     assert np.abs(swinging[0]).max() <= 1.0
 
 
-def test_a_batch_has_the_loops_of_its_first_impact():
+def test_a_batch_has_the_loops_of_its_first_impact(found):
     batch = Scene.nondimensional(psi1=np.array([1.0, 2.0]), chi=1.4412)
     law = {"springs": Simulation(tangential="springs")}
-    assert np.array_equal(
-        loops(batch, law).constant["springs"], loops(SCENE, law).constant["springs"]
-    )
+    assert np.array_equal(loops(batch, law).constant["springs"], found.constant["springs"])
 
 
-def test_loops_are_drawn_by_name_over_the_displacement():
-    found = loops(SCENE, {"springs": Simulation(tangential="springs")})
+def test_loops_are_drawn_by_name_over_the_displacement(found):
     axes = draw_loops(Figure().subplots(), found.constant, title="constant load")
     curve = next(line for line in axes.lines if line.get_label() == "springs")
     assert len(curve.get_xdata()) == 4 * QUARTER * CYCLES + 1
@@ -67,8 +68,7 @@ def test_loops_need_friction():
         loops(smooth, {"springs": Simulation(tangential="springs")})
 
 
-def test_loops_without_a_title_have_none():
-    found = loops(SCENE, {"springs": Simulation(tangential="springs")})
+def test_loops_without_a_title_have_none(found):
     axes = draw_loops(Figure().subplots(), found.oscillating)
     assert axes.get_title() == ""
     assert axes.get_xlabel() == r"displacement over that of gross slip $D/D_{\mathrm{s}}$"
