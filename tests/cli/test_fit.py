@@ -13,18 +13,6 @@ HALF = "options = { normal = { restitution = 0.5 } }"
 E_T = ("--quantity", "tangential_restitution")
 
 
-@pytest.fixture
-def impacts(tmp_path):
-    """Gross slip of steel on steel, mu = 0.1: e_t = 1 - 0.2/tan(angle), read to 0.002."""
-    path = tmp_path / "impacts.csv"
-    path.write_text(
-        "# made up\nangle (deg),speed (m/s),tangential restitution,# remark\n"
-        "45,2,0.802,first\n55,2,0.858,\n65,2,0.909,\n70,2,0.925,\n",
-        encoding="utf-8",
-    )
-    return path
-
-
 def test_kharaz_gives_the_friction_that_was_found_by_hand(run):
     ran = run("fit", KHARAZ, *E_T, "--json", "--bootstrap", 40)
     one = json.loads(ran.out)["parameters"]["friction_coefficient"]

@@ -31,12 +31,43 @@ COMMANDS = {
         "--angle 20", "--speed 3", "--spin 0", "--friction 0.2", "--radius 0.02", "--inertia 0.4",
         "--restitution 0.8", "--material steel", "--block brass", "--predict", "--out {}/page.html",
     ),
+    "bench": (
+        "--law integrator.symplectic", "--budget 0.2", *LOOKS, "--figure {}/figure.svg",
+        "--csv {}/table.csv", "--json", "--markdown",
+    ),
+    "stability": (
+        "--law integrator.symplectic", "--budget 0.2", *LOOKS, "--csv {}/table.csv", "--json",
+    ),
+    "figures": (*LAWS, *LOOKS, "--only 4", "--format pdf"),
+    "fit": (
+        "--fit friction_coefficient", "--laws coulomb,mindlin_cap", "--normal hertz",
+        "--integrator symplectic", "--set tangential.springs=12",
+        "--quantity tangential_restitution", "--bootstrap 0", "--column angle=incidence_angle",
+        *LOOKS, "--figure {}/figure.svg", "--csv {}/table.csv", "--json",
+    ),
+    "report": (
+        "{ball}", "{short}", "{foot}", "--tangential coulomb,frictionless", "--normal hertz",
+        "--integrator symplectic", "--measured {impacts}", "--column angle=incidence_angle",
+        "--no-progress",
+    ),
+    "animate": (
+        "{ball}", "{foot}", *NUMBERS, "--tangential springs", "--ghost coulomb", "--no-progress",
+    ),
     "cite": ("--normal jkr,hertz", "--tangential springs", "--integrator symplectic"),
     "kernel": ("--out {}/kernel",),
     "materials": ("--json",),
     "plugins": (),
     "guide": ("laws",),
 }  # fmt: skip
+#: Options that stand before each pair, so that a command is short, or has what it needs.
+ALWAYS = {
+    "bench": "--quick --law tangential.coulomb",
+    "stability": "--quick --law tangential.coulomb",
+    "figures": "--out {} --only 2",
+    "fit": "{impacts} {ball}",
+    "report": "--out {}/page.html",
+    "animate": "--out {}/impact.gif",
+}
 PAIRS = [
     (command, pair)
     for command, options in COMMANDS.items()
@@ -48,9 +79,10 @@ SHORT = {"{short}", "--psi1 0:4:3", "--tangential springs"}
 
 
 def long(command, pair):
-    """Return whether a pair takes long: what draws, and comparisons of the impacts of default."""
+    """Return whether a pair takes long: what draws or fits, and comparisons by default."""
     default = command == "compare" and pair and not SHORT & set(pair)
-    return default or ".svg" in str(pair)
+    several = command in {"bench", "stability", "figures", "fit", "animate"}
+    return several or default or ".svg" in str(pair)
 
 
 CASES = [
@@ -63,11 +95,14 @@ CASES = [
 
 @pytest.mark.parametrize(("command", "pair"), CASES)
 def test_a_pair_is_answered_or_refused(
-    run, ball, short_sweep, tmp_path, monkeypatch, command, pair
+    run, ball, short_sweep, impacts, tmp_path, monkeypatch, command, pair
 ):
     monkeypatch.chdir(tmp_path)
-    places = {"{}": tmp_path, "{ball}": ball, "{foot}": ball.with_name("foot.toml")}
-    words = " ".join(pair).replace("{short}", str(short_sweep))
+    places = {
+        "{}": tmp_path, "{ball}": ball, "{foot}": ball.with_name("foot.toml"),
+        "{short}": short_sweep, "{impacts}": impacts,
+    }  # fmt: skip
+    words = " ".join((ALWAYS.get(command, ""), *pair))
     for mark, place in places.items():
         words = words.replace(mark, str(place))
     ran = run(command, *words.split())
