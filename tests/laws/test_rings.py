@@ -25,7 +25,7 @@ REFERENCES = {
     ("hunt_crossley", 0.8, 1.4412): {2: -0.8977},
 }
 #: Those that are looked at by default.
-FEW = (("tsuji", 0.5, CHI), ("tsuji", 0.323, 2.708), ("hunt_crossley", 0.8, 1.4412))
+FEW = (("tsuji", 0.5, CHI), ("tsuji", 0.323, 2.708))
 
 
 def half_space(psi1, chi, normal):

@@ -43,7 +43,7 @@ LONGER = {
     "stiffness turning_points units whole_impact_form whole_impacts",
     "SharpAnnulus": "all_steps answers closed_cycles whole_impact_form whole_impacts",
     "Springs": "vectors_on_a_line vectors_rotate whole_impacts",
-    "MindlinCap": "impact_units vectors_on_a_line vectors_rotate whole_impact_form",
+    "MindlinCap": "impact_units vectors_on_a_line vectors_rotate whole_impact_form whole_impacts",
     "MindlinDeresiewicz": "begin_is_start impact_odd impact_units",
     "Coulomb": "whole_impact_form",
     "Frictionless": "whole_impact_form",
@@ -54,7 +54,7 @@ LONGER = {
     "KuwabaraKono": "ends_unloaded motion_batch rebounds",
     "Thornton": "ends_unloaded motion_batch rebounds",
     "JohnsonKendallRoberts": "ends_unloaded motion_batch rebounds",
-    "DerjaguinMullerToporov": "motion_batch rebounds",
+    "DerjaguinMullerToporov": "ends_unloaded motion_batch rebounds",
 }
 
 
