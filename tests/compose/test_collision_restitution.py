@@ -52,7 +52,7 @@ def slower_is_bouncier(speed):
 def test_a_restitution_of_each_pair_is_that_of_the_pair_alone():
     """By value, and by the speed of approach; out of the table too, and of bodies that separate."""
     rng = np.random.default_rng(3)
-    count = 60
+    count = 30
     met = meeting(
         target=BALL,
         velocity=rng.normal((0, 0, -3), 2, size=(count, 3)),

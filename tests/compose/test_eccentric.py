@@ -169,12 +169,12 @@ def test_without_friction_pressure_alone_drags_the_surfaces(scene):
 
 
 def test_no_impact_gains_energy_and_the_books_close():
-    scene = random_planar(300, 5)
+    scene = random_planar(50, 5)
     exact = EXACT.run(scene).check()
     assert (exact.energy.end <= exact.energy.start).all()
     assert np.abs(exact.energy.relative_imbalance).max() < 1e-9
     # fifty steps leave the energy of the approach at 1e-4
-    rough = springs(12, 50).run(random_planar(3000, 6)).check()
+    rough = springs(12, 50).run(random_planar(1000, 6)).check()
     assert (rough.energy.end <= rough.energy.start * (1.0 + 1e-4)).all()
     assert (rough.energy.end > rough.energy.start).mean() < 2e-3
     fine = springs(100, 400).run(scene).check()
@@ -198,9 +198,9 @@ def random_in_space(count, seed):
 
 
 def test_in_space_no_impact_gains_energy():
-    rough = springs(12, 50).run(random_in_space(2000, 7)).check()
+    rough = springs(12, 50).run(random_in_space(600, 7)).check()
     assert (rough.energy.end <= rough.energy.start).all()
-    fine = springs(50, 200).run(random_in_space(100, 8)).check()
+    fine = springs(50, 200).run(random_in_space(30, 8)).check()
     assert np.abs(fine.energy.relative_imbalance).max() < 1e-3
 
 
@@ -216,11 +216,11 @@ def test_in_space_the_steps_are_of_second_order_where_slip_turns():
     assert not scene.planar
     answers = {
         steps: np.append(result.psi2, result.normal_velocity)
-        for steps in (250, 500, 1000, 2000)
+        for steps in (125, 250, 500, 1000)
         for result in [springs(60, steps).run(scene).check()]
     }
-    steps = np.log([250, 500, 1000])
-    errors = [np.abs(answers[each] - answers[2000]).max() for each in (250, 500, 1000)]
+    steps = np.log([125, 250, 500])
+    errors = [np.abs(answers[each] - answers[1000]).max() for each in (125, 250, 500)]
     assert -np.polyfit(steps, np.log(errors), 1)[0] > 1.8
     # the springs' own limit, theory §14; there r = (sin 35°, 0, -cos 35°)/2 and lam < 0
     fine = springs(100, 1000).run(scene).check()
@@ -330,8 +330,12 @@ def as_bodies(met):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("shape", [(6,), (2, 3), (1, 2, 3)])
-@pytest.mark.parametrize("separating", ["pass", "refuse"])
+@pytest.mark.parametrize(
+    ("separating", "shape"),
+    [("pass", (6,)), ("pass", (1, 2, 3)), ("refuse", (2, 3)),
+     *(pytest.param(*each, marks=pytest.mark.slow)
+       for each in (("pass", (2, 3)), ("refuse", (6,)), ("refuse", (1, 2, 3))))],
+)  # fmt: skip
 def test_batches_of_every_shape_collide_as_their_pairs(shape, separating):
     pairs = two_bodies(6, 14)
     if separating == "refuse":
@@ -366,12 +370,12 @@ def test_spheres_as_bodies_collide_as_spheres():
 def test_spheres_down_the_path_of_bodies_answer_as_spheres():
     """In space, by springs; the scene is told that its motion need not stay in a plane."""
     rng = np.random.default_rng(12)
-    psi1, chi = rng.uniform(0.0, 5.0, 300), rng.uniform(0.8, 1.8, 300)
-    turn = rng.uniform(0.0, 2.0 * np.pi, 300)
+    psi1, chi = rng.uniform(0.0, 5.0, 60), rng.uniform(0.8, 1.8, 60)
+    turn = rng.uniform(0.0, 2.0 * np.pi, 60)
     slip = psi1[:, None] * np.stack((np.cos(turn), np.sin(turn)), axis=-1)
     mu = 0.3
     scene = EccentricScene.nondimensional(
-        psi1=slip, chi=chi[:, None, None] * np.eye(2), lam=np.zeros((300, 2)), rho=mu * mu
+        psi1=slip, chi=chi[:, None, None] * np.eye(2), lam=np.zeros((60, 2)), rho=mu * mu
     )
     result = springs(100, 400).run(scene).check()
     from contactlab import rebound
@@ -489,8 +493,9 @@ def test_an_impact_that_needs_too_many_steps_costs_its_batch_nothing(integrator)
 
 @pytest.mark.parametrize(
     ("lam", "left", "told"),
-    [(0.9, 1e-5, None), (3.0, 0.2, None), (3.0, 0.05, 0.07), (-2.0, 0.004, 0.4),
-     pytest.param(8.0, 5e-4, 1.2, marks=pytest.mark.slow)],
+    [(0.9, 1e-5, None), (3.0, 0.2, None), (3.0, 0.05, 0.07),
+     *(pytest.param(*each, marks=pytest.mark.slow) for each in ((-2.0, 0.004, 0.4),
+                                                                (8.0, 5e-4, 1.2)))],
 )  # fmt: skip
 def test_steps_caution_where_friction_jams_and_the_mass_is_nearly_singular(lam, left, told):
     """``left`` is 1 - W_nt²/(W_nn W_tt); the exact law has no such caution."""
@@ -542,7 +547,8 @@ def test_exact_impacts_side_by_side_answer_as_alone(count):
 
 HARD = [
     # psi1, chi, lam, lam eta over 2 chi
-    (1e6, 0.5, -1000.0, 0.99), (1e6, 3.0, -1000.0, 0.99), (1e6, 3.0, -30.0, 0.9999),
+    (1e6, 0.5, -1000.0, 0.99), (1e6, 3.0, -1000.0, 0.99),
+    pytest.param(1e6, 3.0, -30.0, 0.9999, marks=pytest.mark.slow),
     (20.0, 0.5, -1000.0, 0.99), (1e6, 0.5, 2.0, 1.0 - 1e-6), (1e-12, 0.5, 1000.0, 0.99),
 ]  # fmt: skip
 
@@ -675,14 +681,14 @@ def test_refusals(act, words):
 
 def test_an_estimated_error_is_the_distance_from_the_exact_answer():
     """In nine of ten impacts within a factor of three; in space beside the springs' own limit."""
-    scene = random_planar(60, 15)
-    exact, rough = EXACT.run(scene).check(), springs(50, 200)
+    scene = random_planar(30, 15)
+    exact, rough = EXACT.run(scene).check(), springs(30, 120)
     estimate = rough.run(scene, estimate_error=True).check().psi2_error_estimate
     ratio = estimate / np.abs(rough.run(scene).psi2 - exact.psi2)
     assert np.mean((ratio > 1 / 3) & (ratio < 3.0)) > 0.9
     turning = rod(-35.0, slip=0.3, across=0.6).scene
     found = rough.run(turning, estimate_error=True)
-    limit = springs(400, 1000).run(turning).psi2
+    limit = springs(200, 500).run(turning).psi2
     assert found.psi2_error_estimate == pytest.approx(np.linalg.norm(found.psi2 - limit), rel=0.5)
     assert f"about {found.psi2_error_estimate:.1g}, estimated" in str(found)
     assert EXACT.run(rod(30.0).scene, estimate_error=True).psi2_error_estimate < 1e-9
@@ -699,7 +705,7 @@ MILD = Material(young_modulus=2e11, poisson_ratio=0.3, density=7850.0, yield_str
         ({}, ()),
         ({"friction_coefficient": 30.0}, ("friction_coefficient = 30",)),
         ({"contact": (0.02, 0.0, 0.1)}, ("contact lies behind the centre of mass",)),
-        ({"contact": (50.0, 0.0, -900.0)}, ("radii of gyration",)),
+        ({"contact": (0.05, 0.0, -2.0)}, ("radii of gyration",)),
         ({"velocity": (0.2, 0.0, -700.0)}, ("speed of sound",)),
         ({"material": SOFT}, ("density", "shear_modulus")),
         ({"material": MILD}, ("yield",)),

@@ -115,7 +115,7 @@ def test_the_tolerance_of_the_adaptive_integrator_is_no_bound():
     assert np.isnan(result.plan.psi2_error[result.plan.marched]).all()
 
 
-@pytest.mark.parametrize("name", ["springs", "sharp_annulus"])
+@pytest.mark.parametrize("name", ["springs", pytest.param("sharp_annulus", marks=pytest.mark.slow)])
 def test_estimates_of_240_runs(name):
     """A part of the set; laws without an exact limit and annuli take longer."""
     found = figures(name, "symplectic", 240)

@@ -1,5 +1,7 @@
 """Users who ask NumPy to raise get the same answers as the others, everywhere."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,8 @@ from contactlab.compose.normal_motion import normal_motion
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
 PSI1 = np.array([0.0, 1e-320, 1e-300, 1e-160, 1e-12, 0.4, 1.0, 2.5, 1e5, 1e15, 1e300])
 NORMALS = ("hertz", "tsuji", "linear", "jkr", "dmt", "thornton", "hunt_crossley", "walton_braun")
+#: Normal motions that take longer than those of the same law or kind of scene.
+LONGER = (("jkr", "nano"), ("jkr", "unlike"), ("thornton", "unlike"), ("hunt_crossley", "unlike"))
 
 
 def scene(slip, *, speed=1.0, mu=0.2, radius=0.005):
@@ -29,8 +33,15 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("chi", [1e-300, 1e-12, 0.02, 0.5, 0.8, 1.44, 2.5])
-@pytest.mark.parametrize("options", [{}, {"derivatives": True}, {"restitution": 0.9}])
+@pytest.mark.parametrize(
+    ("options", "chi"),
+    [
+        *product(({}, {"derivatives": True}), (1e-300, 1e-12, 0.02, 0.5, 0.8, 1.44, 2.5)),
+        *product(({"restitution": 0.9},), (1e-300, 1e-12, 0.5, 0.8, 1.44)),
+        # out of the table of damped impacts, as 0.5
+        *(pytest.param({"restitution": 0.9}, chi, marks=pytest.mark.slow) for chi in (0.02, 2.5)),
+    ],
+)
 def test_rebound(chi, options):
     if options.get("restitution") and chi < 0.02:
         options = {}
@@ -43,8 +54,16 @@ def test_rebound(chi, options):
     assert np.isfinite(strict).all()
 
 
-@pytest.mark.parametrize("given", SCENES.values(), ids=SCENES)
-@pytest.mark.parametrize("normal", NORMALS)
+@pytest.mark.parametrize(
+    ("normal", "given"),
+    [
+        pytest.param(
+            normal, SCENES[name], id=f"{normal}-{name}",
+            marks=[pytest.mark.slow] * ((normal, name) in LONGER),
+        )
+        for normal, name in product(NORMALS, SCENES)
+    ],
+)  # fmt: skip
 def test_normal_motions(normal, given):
     law, phases = contactlab.create(f"normal.{normal}"), np.linspace(0.0, np.pi, 33)
     plain = normal_motion(law, given())
@@ -58,19 +77,27 @@ def test_normal_motions(normal, given):
     assert np.all(np.isfinite(sample.approach) | (np.array(motion.status) != 0))
 
 
-@pytest.mark.parametrize("given", SCENES.values(), ids=SCENES)
 @pytest.mark.parametrize(
-    ("normal", "tangential"),
+    ("normal", "tangential", "given"),
     [
-        ("tsuji", "coulomb"),
-        ("tsuji", "springs"),
-        ("linear", "linear_spring"),
-        ("jkr", "stronge"),
-        ("hunt_crossley", "mindlin_deresiewicz"),
-        ("walton_braun", "walton"),
-        ("hertz", "fronts"),
+        pytest.param(
+            *laws, SCENES[name], id=f"{'-'.join(laws)}-{name}",
+            marks=[pytest.mark.slow] * ((laws[0], name) in LONGER),
+        )
+        for laws, name in product(
+            (
+                ("tsuji", "coulomb"),
+                ("tsuji", "springs"),
+                ("linear", "linear_spring"),
+                ("jkr", "stronge"),
+                ("hunt_crossley", "mindlin_deresiewicz"),
+                ("walton_braun", "walton"),
+                ("hertz", "fronts"),
+            ),
+            SCENES,
+        )
     ],
-)
+)  # fmt: skip
 def test_runs_with_their_history(normal, tangential, given):
     simulation = Simulation(normal=normal, tangential=tangential)
     history = not given().shape

@@ -18,6 +18,11 @@ STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
 INTEGRATORS = ("symplectic", "paper", "adaptive")
 
 
+def longer(*cases):
+    """Return cases as parameters for the longer tests."""
+    return [pytest.param(case, marks=pytest.mark.slow) for case in cases]
+
+
 def scene(slip=2.0, *, speed=1.0, mu=0.2):
     """Return a steel sphere of 10 mm on steel."""
     return Scene(Sphere(0.005, STEEL), HalfSpace(STEEL), mu, speed, slip)
@@ -76,8 +81,14 @@ def test_contacts_however_long_or_short(integrator, stiffness):
     assert result.normal_restitution == pytest.approx(1.0, rel=1e-8)
 
 
-@pytest.mark.parametrize("damping", [0.01, 0.1, 0.3])
-@pytest.mark.parametrize("law", [LinearDashpot, Tsuji])
+@pytest.mark.parametrize(
+    ("law", "damping"),
+    [
+        *((LinearDashpot, damping) for damping in (0.01, 0.1, 0.3)),
+        (Tsuji, 0.1),
+        *(pytest.param(Tsuji, damping, marks=pytest.mark.slow) for damping in (0.01, 0.3)),
+    ],
+)
 def test_restitution_is_the_closed_form(law, damping):
     """Theory §11: one constant of damping, one restitution, at any speed."""
     for speed in (1e-3, 1.0, 20.0):
@@ -87,7 +98,7 @@ def test_restitution_is_the_closed_form(law, damping):
 
 
 @pytest.mark.parametrize("law", [Plastic, WidePlastic])
-@pytest.mark.parametrize("restitution", [0.3, 0.8, 1.0])
+@pytest.mark.parametrize("restitution", [0.3, *longer(0.8, 1.0)])
 def test_plastic_restitution_alone_and_in_a_batch(law, restitution):
     """E of Walton and Braun's law is the root of the ratio of stiffnesses."""
     speeds = np.array([0.01, 0.3, 1.0, 5.0])
@@ -107,12 +118,10 @@ NAMES = ("jkr", "dmt", "thornton", "hunt_crossley", "kuwabara_kono", "walton_bra
 @pytest.mark.parametrize(
     "law",
     [
-        Plastic(restitution=0.3),
         WidePlastic(),
-        Adhesive(pull=20.0),
         LinearDashpot(),
-        Tsuji(),
-        *NAMES,
+        *longer(Plastic(restitution=0.3), Adhesive(pull=20.0), Tsuji()),
+        *longer(*NAMES),
     ],
 )
 def test_what_stands_beside_an_impact_changes_no_bit(law):
@@ -139,7 +148,7 @@ def test_the_load_impulse_is_the_momentum_that_is_lost(normal):
     assert sample.load_impulse == pytest.approx(lost, abs=1e-7 * motion.total_load_impulse)
 
 
-@pytest.mark.parametrize("normal", ["dmt", "hunt_crossley", "jkr", "thornton"])
+@pytest.mark.parametrize("normal", ["dmt", *longer("hunt_crossley", "jkr", "thornton")])
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_a_batch_of_linear_springs_is_what_they_are_alone(normal, integrator):
     """Its stiffness is that of the greatest approach, which differed: psi2 by 7e-7 (1.6e-6)."""
@@ -214,8 +223,14 @@ def test_one_nan_is_not_out_of_contact(bad):
     assert "Blind" in result.motion.detail
 
 
-@pytest.mark.parametrize("slip", [0.02, 0.3, 2.0])
-@pytest.mark.parametrize("law", [Plastic(), WidePlastic()])
+@pytest.mark.parametrize(
+    ("law", "slip"),
+    [
+        *((WidePlastic(), slip) for slip in (0.02, 0.3, 2.0)),
+        *((Plastic(), slip) for slip in (0.02, 2.0)),
+        pytest.param(Plastic(), 0.3, marks=pytest.mark.slow),
+    ],
+)
 def test_laws_of_partial_slip_agree_under_a_plastic_contact(law, slip):
     """Each finds the radius and the load of its own way; the answers differ by their parts."""
     found = []
@@ -269,7 +284,13 @@ def test_second_order_in_steps_under_any_normal_law(normal, integrator):
     assert order(steps, off) == pytest.approx(2.0, abs=0.3)
 
 
-@pytest.mark.parametrize("normal", SMOOTH.values(), ids=SMOOTH)
+@pytest.mark.parametrize(
+    "normal",
+    [
+        pytest.param(law, id=name, marks=[pytest.mark.slow] * (name != "damped"))
+        for name, law in SMOOTH.items()
+    ],
+)
 @pytest.mark.parametrize(
     ("law", "tolerances"),
     [

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from contactlab import Encounter, HalfSpace, Material, Simulation, Sphere, collide
 
 #: Encounters of a batch.
-COUNT = 50
+COUNT = 20
 #: Largest radius, in m.
 RADIUS = 0.1
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)

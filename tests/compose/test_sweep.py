@@ -192,7 +192,9 @@ def ending(folder, **options):
     return Simulation(tangential=Ending(folder=str(folder), **options), integrator="symplectic")
 
 
-@pytest.mark.parametrize("status", [None, 0, 3])
+@pytest.mark.parametrize(
+    "status", [0, *(pytest.param(each, marks=pytest.mark.slow) for each in (None, 3))]
+)
 def test_a_worker_that_dies_has_a_status_and_the_kept_sweep_resumes(monkeypatch, tmp_path, status):
     """``os._exit(0)`` runs nobody's handlers, and looks like a process that ended well."""
     blocks_of(monkeypatch, 50)

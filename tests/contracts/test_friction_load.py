@@ -96,7 +96,7 @@ def by_hand(law, mass, speed):
     return duration, -final, mass * (speed + swing * second)
 
 
-@pytest.mark.parametrize("own_load", [False, True])
+@pytest.mark.parametrize("own_load", [False, pytest.param(True, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     ("unloading", "cohesion"),
     [

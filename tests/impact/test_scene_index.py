@@ -78,8 +78,8 @@ def test_draws_of_a_batch_are_those_of_its_impacts(name):
     """The rest of the answers differs by rounding, a solved normal motion by its tolerance."""
     simulation, batch = SIMULATIONS[name], scene()
     whole = answers(simulation.run(batch))
-    alone = [answers(simulation.run(batch.take(i))) for i in range(SIZE)]
-    np.testing.assert_allclose(whole, np.transpose(alone), rtol=1e-8)
+    alone = [answers(simulation.run(batch.take(i))) for i in range(0, SIZE, 3)]
+    np.testing.assert_allclose(whole[:, ::3], np.transpose(alone), rtol=1e-8)
     row = 0 if name == "normal" else 1
     assert len(set(whole[row].round(6))) == SIZE
     some = np.array([11, 3, 4])

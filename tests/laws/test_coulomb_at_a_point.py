@@ -28,6 +28,14 @@ def figures():
             yield row["normal"], options, row["tangential"], float(row["after"])
 
 
+#: Options of normal laws between the first and the last that were recorded.
+BETWEEN = [
+    options
+    for law in {name: None for name, _ in NORMAL}
+    for options in [given for name, given in NORMAL if name == law][1:-1]
+]
+
+
 def caution(normal, tangential, scene=OBLIQUE):
     """The caution of springs that are not Coulomb's law, with its size; None if there is none."""
     plan = Simulation(normal=normal, tangential=tangential).plan(scene)
@@ -46,7 +54,10 @@ def test_every_pair_that_fits_is_recorded():
     assert pairs == expected
 
 
-@pytest.mark.parametrize(("name", "options", "tangential", "size"), list(figures()))
+@pytest.mark.parametrize(
+    ("name", "options", "tangential", "size"),
+    [pytest.param(*row, marks=[pytest.mark.slow] * (row[1] in BETWEEN)) for row in figures()],
+)
 def test_a_plan_says_what_was_recorded(name, options, tangential, size):
     """Annuli are Coulomb's law; of springs the caution is no smaller than what they are off by."""
     told = caution(contactlab.create(f"normal.{name}", **options), tangential)

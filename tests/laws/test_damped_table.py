@@ -18,7 +18,12 @@ from tests.laws.test_rings import REFERENCES
 CHI = 49 / 34
 
 
-@pytest.mark.parametrize("e", [0.5, 0.9, 0.9999])
+def longer(*cases):
+    """Return cases as parameters for the longer tests."""
+    return [pytest.param(case, marks=pytest.mark.slow) for case in cases]
+
+
+@pytest.mark.parametrize("e", [0.9, *longer(0.5, 0.9999)])
 def test_table_is_rings_to_its_error(e):
     """At random impacts; ``python -m table_builders damped verify`` draws more."""
     draw = np.random.default_rng(round(1e4 * e))
@@ -65,7 +70,13 @@ def test_references_of_another_program(name, e, chi):
     assert found == pytest.approx(expected, abs=2e-4)
 
 
-@pytest.mark.parametrize(("largest", "e"), [(0.8, 0.3), (4.0, 0.05), (10.0, 0.95)])
+BEYOND = [
+    (0.8, 0.3),
+    *(pytest.param(*each, marks=pytest.mark.slow) for each in ((4.0, 0.05), (10.0, 0.95))),
+]
+
+
+@pytest.mark.parametrize(("largest", "e"), BEYOND)
 def test_beyond_the_table_rings_answer_to_their_error(largest, e):
     draw = np.random.default_rng(5)
     psi1, chi = draw.uniform(0.0, 9.0, 8), draw.uniform(0.5 * largest, largest, 8)
@@ -140,7 +151,7 @@ def test_beyond_the_table_random_impacts_are_those_of_more_rings():
         assert found == pytest.approx(finer, abs=BEYOND_ERROR)
 
 
-@pytest.mark.parametrize("chi", [0.001, 0.5, 9.0])
+@pytest.mark.parametrize("chi", [0.001, *longer(0.5, 9.0)])
 def test_no_impact_gains_slip_velocity(chi):
     """By rings psi1 = 1e-19 came back as -1.17 at e = 0.3, chi = 0.001."""
     psi1 = np.array([1e-31, 1e-19, 1e-7, 1e-3])
@@ -188,7 +199,7 @@ def test_a_restitution_is_that_of_its_coordinate():
     assert restitution(depth(values)) == pytest.approx(values, abs=1e-15)
 
 
-@pytest.mark.parametrize("e", [0.55, 0.8, 0.97])
+@pytest.mark.parametrize("e", [0.8, *longer(0.55, 0.97)])
 def test_the_cuts_are_found_again(e, monkeypatch):
     """By other numbers of rings and of impacts than the table's."""
     monkeypatch.setattr(build, "LOOKED", 29)

@@ -53,7 +53,9 @@ def test_damping_is_that_of_the_literature(beta):
     assert damping_of(float(schwager_poeschel(beta))) == pytest.approx(beta, rel=1e-10)
 
 
-@pytest.mark.parametrize("e", [0.05, 0.135, 0.5, 0.9, 0.9999, 1.0])
+@pytest.mark.parametrize(
+    "e", [0.05, 0.5, 1.0, *(pytest.param(e, marks=pytest.mark.slow) for e in (0.135, 0.9, 0.9999))]
+)
 @pytest.mark.parametrize("name", POWERS)
 def test_closed_form_is_what_respond_gives(name, e):
     """Everything that a motion says, against the solver of any normal law."""

@@ -73,7 +73,9 @@ def errors(chi, steps):
     return [rms(psi2(psi1, chi, count) - limit) for count in steps]
 
 
-@pytest.mark.parametrize("chi", [0.4, 1.0, CHI])
+@pytest.mark.parametrize(
+    "chi", [0.4, *(pytest.param(each, marks=pytest.mark.slow) for each in (1.0, CHI))]
+)
 def test_second_order_in_steps(chi):
     steps = (50, 100, 200, 400)
     assert order(steps, errors(chi, steps)) == pytest.approx(2.0, abs=0.35)

@@ -47,10 +47,13 @@ def through(knots):
     return np.concatenate(legs)
 
 
-@pytest.mark.parametrize("springs", [4, pytest.param(8, marks=pytest.mark.slow)])
-def test_no_random_path_gains_energy(springs):
-    """10,000 paths through random slips and loads, many of them light, from rest."""
-    random, items = np.random.default_rng(1), 10_000
+@pytest.mark.parametrize(
+    ("springs", "items"),
+    [(4, 3_000), *(pytest.param(each, 10_000, marks=pytest.mark.slow) for each in (4, 8))],
+)
+def test_no_random_path_gains_energy(springs, items):
+    """Of paths through random slips and loads, many of them light, from rest."""
+    random = np.random.default_rng(1)
     slips = random.normal(0.0, 0.8, (8, items))
     slips[0] = 0.0
     levels = random.uniform(5e-4, 1.0, (8, items)) ** random.choice([1, 4], (1, items))
@@ -75,7 +78,7 @@ def gains_of_cycles(springs, weight=None):
     return -np.diff(ends, axis=0)[2:].min(axis=0)
 
 
-@pytest.mark.parametrize("springs", [4, 8, 16])
+@pytest.mark.parametrize("springs", [4, 8, pytest.param(16, marks=pytest.mark.slow)])
 def test_no_cyclic_path_gains_energy(springs):
     assert gains_of_cycles(springs).max() <= 1e-12
 

@@ -57,7 +57,7 @@ def _differences(count, seed):
 
 def test_velocities_and_work_are_those_of_impacts_that_are_followed():
     """The work is added up independently there."""
-    psi2, work = _differences(200, 30)
+    psi2, work = _differences(80, 30)
     assert psi2 < 2e-10
     assert work < 2e-10
 

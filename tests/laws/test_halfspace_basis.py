@@ -105,7 +105,9 @@ def test_cattaneo_and_mindlin(front):
     assert found.residual < TOLERANCE
 
 
-@pytest.mark.parametrize("strength", [0.6, 1.0, 1.5, 2.5])
+@pytest.mark.parametrize(
+    "strength", [0.6, 2.5, *(pytest.param(each, marks=pytest.mark.slow) for each in (1.0, 1.5))]
+)
 @pytest.mark.parametrize("lift", [None, 0.01])
 def test_spence(strength, lift):
     """(a/2c) ln((a+c)/(a-c)) beta/mu = K'(c/a) in normal loading of unlike bodies, to one ring."""

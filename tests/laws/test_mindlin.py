@@ -61,7 +61,13 @@ def test_second_order_in_steps(form, damping):
     assert order(steps, errors) == pytest.approx(2.0, abs=0.35)
 
 
-@pytest.mark.parametrize("form", ALL_FORMS)
+@pytest.mark.parametrize(
+    "form",
+    [
+        pytest.param(form, marks=[pytest.mark.slow] * form.endswith("rescaled"))
+        for form in ALL_FORMS
+    ],
+)
 def test_where_it_says_it_slips_throughout(form):
     """The march, which fields ask for, agrees with eq. (45) from the bound on, not below."""
     sim = simulation("mindlin_cap", steps=50, form=form)

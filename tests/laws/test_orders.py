@@ -51,7 +51,9 @@ def test_second_order_in_both_together(law, name):
     assert found == pytest.approx(2.0, abs=0.3)
 
 
-@pytest.mark.parametrize("integrator", ["symplectic", "paper"])
+@pytest.mark.parametrize(
+    "integrator", ["symplectic", pytest.param("paper", marks=pytest.mark.slow)]
+)
 def test_the_papers_annuli_are_of_order_four_thirds(integrator):
     """Whatever the steps: conditions in the middles of annuli see the edge of stick in whole
     annuli only, and the limit of friction at the edge of contact likewise."""

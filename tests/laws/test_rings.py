@@ -24,6 +24,8 @@ REFERENCES = {
     ("hunt_crossley", 0.5, 1.8): {1.8: -0.8458},
     ("hunt_crossley", 0.8, 1.4412): {2: -0.8977},
 }
+#: Those that are looked at by default.
+FEW = (("tsuji", 0.5, CHI), ("tsuji", 0.323, 2.708))
 
 
 def half_space(psi1, chi, normal):
@@ -38,7 +40,10 @@ MARCHES = pytest.mark.parametrize("solve", [half_space, other])
 
 
 @MARCHES
-@pytest.mark.parametrize(("name", "e", "chi"), REFERENCES)
+@pytest.mark.parametrize(
+    ("name", "e", "chi"),
+    [pytest.param(*each, marks=[pytest.mark.slow] * (each not in FEW)) for each in REFERENCES],
+)
 def test_references_of_another_program(name, e, chi, solve):
     """Theory §11, ±1e-4."""
     psi1, expected = map(np.array, zip(*REFERENCES[name, e, chi].items(), strict=True))

@@ -19,7 +19,8 @@ LAWS = {
     "walton_braun": {"restitution": 0.8},
     "dmt": {"work_of_adhesion": 100.0},
 }
-FAST = ("tsuji", "thornton", "jkr")
+FAST = ("tsuji",)
+SLOWER = ("thornton", "hunt_crossley", "kuwabara_kono")
 
 
 @pytest.mark.parametrize(
@@ -40,7 +41,10 @@ def test_springs_are_of_second_order_in_steps(name):
     assert 1.8 <= order(steps, off) <= 2.7
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.slow] * (name in SLOWER)) for name in LAWS],
+)
 def test_annuli_agree_with_springs(name):
     """Two laws of the continuum, written apart, that know the contact's radius and load."""
     law, given = contactlab.create(f"normal.{name}", **LAWS[name]), scene(slip=0.4)

@@ -42,7 +42,7 @@ def test_reference_table(chi, psi1, value):
 
 def test_fresh_impacts():
     """A third of them on or beside singular curves."""
-    rows = verify(shipped(), count=400, seed=20)
+    rows = verify(shipped(), count=150, seed=20)
     assert {row.name for row in rows} > {*NAMES, "all"}
     assert max(row.largest for row in rows) < BOUND
     assert rows[-1].rms < 0.1 * BOUND
@@ -142,7 +142,7 @@ def test_derivatives_against_differences_of_exact_impacts():
     psi1, chi, _ = draw(80, 24, shipped().cuts)
     curves = np.array([psi1, psi1 - 1.0, psi1 - 4.0 * chi + 1.0, chi, chi - 0.5, chi - LARGEST_CHI])
     far = np.abs(curves).min(axis=0) > 1e-3
-    psi1, chi = psi1[far], chi[far]
+    psi1, chi = psi1[far][:30], chi[far][:30]
     assert psi1.size > 25
     h = 5e-5
 
@@ -220,7 +220,13 @@ def test_the_cuts_are_found_again(monkeypatch):
         )
 
 
-@pytest.mark.parametrize("row", [(5, 2, 2, 0, 1), (5, 3, 2, 4, 1)], ids=["at psi1 = 1", "beyond"])
+@pytest.mark.parametrize(
+    "row",
+    [
+        pytest.param((5, 2, 2, 0, 1), id="at psi1 = 1"),
+        pytest.param((5, 3, 2, 4, 1), id="beyond", marks=pytest.mark.slow),
+    ],
+)
 def test_a_patch_is_made_again_from_exact_impacts(row):
     """At once as good as the table's tolerance, and the same polynomial, slopes included."""
     made, cell = shipped(), Cell(*row)

@@ -21,9 +21,13 @@ def test_calibrated_restitution_at_any_speed(name, e):
     assert restitution(law, scene(SPEEDS)) == pytest.approx(e, rel=1e-7)
 
 
-@pytest.mark.parametrize(
-    ("number", "method"), [(0.01, "DOP853"), (0.1, "DOP853"), (1.0, "DOP853"), (0.3, "Radau")]
-)
+INTEGRATED = [
+    *((number, "DOP853") for number in (0.01, 0.1, 1.0)),
+    pytest.param(0.3, "Radau", marks=pytest.mark.slow),
+]
+
+
+@pytest.mark.parametrize(("number", "method"), INTEGRATED)
 def test_viscoelastic_restitution_by_integration(number, method):
     """In SI by contactlab, in scaled variables by the test."""
 
@@ -77,7 +81,9 @@ def test_gross_slip_over_hunt_and_crossley_is_exact(e):
     assert found == pytest.approx(psi1 - 2.0 * CHI * (1.0 + e), abs=1e-8)
 
 
-@pytest.mark.parametrize(("e", "bound"), [(0.95, 0.05), (0.9, 0.1)])
+@pytest.mark.parametrize(
+    ("e", "bound"), [(0.95, 0.05), pytest.param(0.9, 0.1, marks=pytest.mark.slow)]
+)
 def test_gross_slip_over_viscoelastic_contact_is_reached_asymptotically(e, bound):
     """Stuck until zeta = 1.5 A/(psi - 1): psi2 is more by (2/3) chi (1.5 A)^2.5/(psi1 - 1)^1.5.
 

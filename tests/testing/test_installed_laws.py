@@ -36,9 +36,41 @@ LAWS = [REGISTRY.create(name, **options) for name, options in CHOSEN]
 FORMED = LAWS[-len(FORMS) :]
 HEAVY = [law for law in LAWS if type(law).__name__ == "HalfSpace"] + FORMED
 CLAIMING = [law for law in LAWS if "partial_slip" in law.offers]
+#: Costly checks of each law that a sibling of the law passes in the default suite.
+LONGER = {
+    "Annulus": "all_steps answers batch books closed_cycles friction_work impact_coulomb_limit "
+    "impact_units load_impulse odd_in_slip partial_unloading random_paths sliding_impulse "
+    "stiffness turning_points units whole_impact_form whole_impacts",
+    "SharpAnnulus": "all_steps answers closed_cycles whole_impact_form whole_impacts",
+    "Springs": "vectors_on_a_line vectors_rotate whole_impacts",
+    "MindlinCap": "impact_units vectors_on_a_line vectors_rotate whole_impact_form whole_impacts",
+    "MindlinDeresiewicz": "begin_is_start impact_odd impact_units",
+    "Coulomb": "whole_impact_form",
+    "Frictionless": "whole_impact_form",
+    "PaperSteps": "impact_odd spin unlike_bodies",
+    "Adaptive": "impact_batch impact_odd impact_repeatable spin unlike_bodies",
+    "Tsuji": "ends_unloaded rebounds",
+    "HuntCrossley": "ends_unloaded motion_batch rebounds",
+    "KuwabaraKono": "ends_unloaded motion_batch rebounds",
+    "Thornton": "ends_unloaded motion_batch rebounds",
+    "JohnsonKendallRoberts": "ends_unloaded motion_batch rebounds",
+    "DerjaguinMullerToporov": "ends_unloaded motion_batch rebounds",
+}
 
 
-@parametrize_with_checks([law for law in LAWS if law not in HEAVY])
+def shortened(decorator):
+    """Return a decorator of ``parametrize_with_checks`` with what is ``LONGER`` marked slow."""
+    names, parameters = decorator.args
+    marked = []
+    for parameter in parameters:
+        law, check = parameter.values
+        longer = check.name in LONGER.get(type(law).__name__, "").split()
+        marks = [*parameter.marks, *[pytest.mark.slow] * longer]
+        marked.append(pytest.param(law, check, id=parameter.id, marks=marks))
+    return pytest.mark.parametrize(names, marked)
+
+
+@shortened(parametrize_with_checks([law for law in LAWS if law not in HEAVY]))
 def test_conformance(law, check):
     check(law)
 

@@ -12,6 +12,8 @@ from tests.testing.made import checked
 
 #: Seconds that a check may take here: enough for any that does not hang.
 SECONDS = 0.5
+#: The same where nothing is asserted of the place, so that no check need get anywhere.
+BRIEFLY = 0.1
 
 
 class Hangs(Slider):
@@ -89,11 +91,11 @@ def test_a_law_that_hangs_is_told_check_time_and_place(law, name, words):
 def test_a_check_that_is_stopped_fails_and_does_not_end_the_process():
     check = next(check for check in checks_for(Sleeps()) if check.name == "impact_odd")
     with pytest.raises(CheckFailedError, match="check impact_odd was stopped after"):
-        check(Sleeps(), seconds=SECONDS)
+        check(Sleeps(), seconds=BRIEFLY)
 
 
 def test_a_law_that_swallows_the_interruption_is_interrupted_again():
-    found = checked(SwallowsEverything(), "grows", seconds=SECONDS)
+    found = checked(SwallowsEverything(), "grows", seconds=BRIEFLY)
     assert found.verdict is Verdict.FAILED
 
 
@@ -105,7 +107,7 @@ def test_a_law_that_asks_for_too_many_steps_is_told_how_many():
 
 
 def test_after_three_checks_out_of_time_the_others_are_not_tried():
-    found = examine(Hangs(), seconds=SECONDS)
+    found = examine(Hangs(), seconds=BRIEFLY)
     assert sum(one.out_of_time for one in found) == limits.MOST_TIMEOUTS
     left = [one for one in found if one.sentence.startswith("Not tried: 3 checks before it ran")]
     assert len(left) > 20
@@ -113,5 +115,5 @@ def test_after_three_checks_out_of_time_the_others_are_not_tried():
 
 
 def test_what_runs_after_a_check_is_not_interrupted():
-    checked(Slider(), "opposes_slip", seconds=SECONDS)
-    time.sleep(1.5 * SECONDS)
+    checked(Slider(), "opposes_slip", seconds=BRIEFLY)
+    time.sleep(1.5 * BRIEFLY)

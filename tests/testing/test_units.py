@@ -41,13 +41,15 @@ class UnknownUnit(Damped):
     damping: float = quantity("furlong", default=0.2)
 
 
+@pytest.mark.slow
 def test_a_damped_normal_law_conforms():
     verdicts = {found.verdict for found in check_law(Damped())}
     assert verdicts <= {Verdict.PASSED, Verdict.NOT_CLAIMED, Verdict.NOT_APPLICABLE}
 
 
-def test_a_tangential_law_with_a_unit_is_the_same_in_any_units():
-    assert checked(Viscous(), "units").verdict is Verdict.PASSED
+@pytest.mark.parametrize(("law", "name"), [(Viscous(), "units"), (Damped(), "contacts_units")])
+def test_a_law_with_a_unit_is_the_same_in_any_units(law, name):
+    assert checked(law, name).verdict is Verdict.PASSED
 
 
 @pytest.mark.parametrize("law", [WrongUnit(), UnknownUnit()])
