@@ -80,7 +80,7 @@ def test_a_shift_by_coupling_is_told_as_a_shift_of_the_parameter(ball, plate, fr
 
 
 @pytest.mark.parametrize(
-    "laws", [None, pytest.param(Simulation(tangential="coulomb"), marks=pytest.mark.slow)]
+    "laws", [pytest.param(None, marks=pytest.mark.slow), Simulation(tangential="coulomb")]
 )
 def test_a_restitution_that_elastic_laws_cannot_meet_is_told_with_what_another_law_gives(laws):
     data = measured(lossy(0.85), "tangential_restitution", "normal_restitution")

@@ -325,7 +325,7 @@ def eccentric(method, *, quick):
     [
         ("fronts", "events"),
         ("coulomb", "symplectic"),
-        pytest.param("springs", "symplectic", marks=pytest.mark.slow),
+        ("springs", "symplectic"),
     ],
 )
 def test_extreme_eccentric_impacts_are_right_or_have_a_status(tangential, integrator):
