@@ -37,7 +37,14 @@ def test_reference_table(chi, psi1, value):
 
 
 @pytest.mark.parametrize(
-    ("low", "high", "count"), [(0.05, 0.6, 100), (0.35, 4.0, 50), (0.35, 8.0, 50), (8, 30, 20)]
+    ("low", "high", "count"),
+    [
+        (0.05, 0.6, 100),
+        (0.35, 4.0, 50),
+        (0.35, 8.0, 50),
+        (8, 30, 20),
+        pytest.param(0.35, 8.0, 400, marks=pytest.mark.slow),
+    ],
 )
 def test_random_impacts_against_the_exact_solution(low, high, count):
     psi1, chi = sample(low, high, count, seed=11)
