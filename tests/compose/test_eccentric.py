@@ -116,6 +116,17 @@ def test_without_coupling_the_exact_law_is_the_spheres():
     assert np.abs(result.normal_velocity + 1.0).max() < 1e-11
 
 
+def test_springs_agree_with_the_exact_law_in_time_depth_and_work():
+    scene = random_planar(12, 17, most=0.9)
+    exact, rough = EXACT.run(scene).check(), springs(50, 400).run(scene).check()
+    for name in ("duration", "maximum_approach", "maximum_force", "maximum_radius"):
+        found, expected = (getattr(each.motion, name) for each in (rough, exact))
+        assert np.abs(found / expected - 1.0).max() < 3e-3, name
+    work = rough.motion.friction_work / scene.kinetic_energy(scene.velocity)
+    expected = exact.motion.friction_work / scene.kinetic_energy(scene.velocity)
+    assert np.abs(work - expected).max() < 3e-3
+
+
 def slip_throughout(count, seed):
     """Return scenes that slip throughout, and psi2 of their closed form."""
     rng = np.random.default_rng(seed)
@@ -728,3 +739,8 @@ def test_cautions_of_any_two_bodies(changes, words):
     assert all(any(word in text for text in found) for word in words)
     assert len(set(found)) == len(found)
     assert words or not found
+
+
+def test_springs_in_space_are_cautioned_of():
+    assert "springs in space: abs(q) <= mu p" in str(springs(4, 20).plan(random_in_space(2, 9)))
+    assert "springs in space" not in str(springs(4, 20).plan(random_planar(2, 9)))

@@ -48,6 +48,17 @@ def test_forms_of_the_capped_spring_part_where_the_load_oscillates():
     assert np.abs(swinging[0]).max() <= 1.0
 
 
+def test_a_capped_spring_slips_at_the_limit_of_a_load_that_oscillates():
+    """The load goes as the level to the 3/2, from half the depth where the surfaces pass rest."""
+    found = loops(SCENE, {"cap": Simulation(tangential="mindlin_cap")})
+    _, force = found.oscillating["cap"]
+    turn = np.arange(len(force)) * (0.5 * np.pi / QUARTER)
+    limit = (0.75 - 0.25 * np.cos(2.0 * turn)) ** 1.5
+    assert (np.abs(force) <= limit + 1e-9).all()
+    slips = np.abs(force) > limit - 1e-9
+    assert 0.1 < slips.mean() < 0.9
+
+
 def test_a_batch_has_the_loops_of_its_first_impact(found):
     batch = Scene.nondimensional(psi1=np.array([1.0, 2.0]), chi=1.4412)
     law = {"springs": Simulation(tangential="springs")}
