@@ -67,17 +67,26 @@ def test_one_impact_in_one_file(reported, ball):
     assert "estimated" in text
 
 
-@pytest.mark.parametrize(
-    ("file", "speed"), [(EXAMPLES / "steel_ball.toml", "m/s"), ("damped", "1")]
-)
-def test_a_scene_has_units_if_it_has_bodies(reported, damped, file, speed):
-    text = reported(damped if file == "damped" else file)
-    rows = [re.findall("<td[^>]*>([^<]*)</td>", row) for row in re.findall("<tr>.*?</tr>", text)]
-    units = {row[0]: row[-1] for row in rows if row}
-    assert units["normal speed"] == units["tangential velocity"] == speed
-    assert units["spin"] == ("rad/s" if speed == "m/s" else "1")
-    assert units["friction coefficient"] == units["chi"] == "1"
-    assert ("sphere: radius" in units) is (speed == "m/s")
+def scene_rows(text):
+    """Return the rows of the table of the scene by name, each with value and unit."""
+    (table,) = re.findall("<h2>The scene</h2>.*?(<table.*?</table>)", text, flags=re.DOTALL)
+    rows = [re.findall("<td[^>]*>([^<]*)</td>", row) for row in re.findall("<tr>.*?</tr>", table)]
+    return {name: (value, unit) for name, value, unit in filter(None, rows)}
+
+
+def test_a_scene_has_its_bodies_and_units(reported, ball):
+    rows = scene_rows(reported(ball))
+    assert rows["sphere: radius"] == ("0.00635", "m")
+    assert rows["normal speed"][1] == rows["tangential velocity"][1] == "m/s"
+    assert rows["spin"][1] == "rad/s"
+    assert rows["friction coefficient"] == ("0.15", "1")
+
+
+def test_a_scene_without_bodies_has_no_units_and_a_sweep_its_range(reported, measured):
+    rows = scene_rows(reported(measured))
+    assert rows["psi1"] == ("1 to 6", "1")
+    assert rows["chi"] == ("1", "1")
+    assert {unit for _, unit in rows.values()} == {"1"}
 
 
 def test_arrows_of_the_drawing_point_along_the_motion_of_the_sphere(reported, ball):
