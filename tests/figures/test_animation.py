@@ -7,7 +7,7 @@ from PIL import Image
 
 from contactlab.figures import animation
 from contactlab.figures.animation_panels import Forces, Frame
-from tests.figures.animated import impact
+from tests.figures.animated import FIELDS, impact
 
 
 def test_forces_are_drawn_from_first_touch_up_to_the_instant():
@@ -39,6 +39,15 @@ def test_a_picture_moves_at_its_pace_for_ever(tmp_path, small, recwarn):
         assert picture.info["loop"] == 0
         assert picture.info["duration"] % 60 == 0
         assert picture.n_frames <= 7
+
+
+def test_a_law_without_fields_is_drawn_by_its_forces(tmp_path, small, recwarn):
+    drawn = []
+    for name, fields in (("forces", {}), ("disc", FIELDS)):
+        animation.animate(tmp_path / f"{name}.gif", impact(fields=fields, sphere=False))
+        with Image.open(tmp_path / f"{name}.gif") as picture:
+            drawn.append(np.asarray(picture.convert("L")))
+    assert (drawn[0] != drawn[1]).any()
 
 
 @pytest.mark.parametrize("after", [0, 3])
