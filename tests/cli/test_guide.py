@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
+from importlib import resources
 
 import pytest
 
@@ -27,6 +28,9 @@ def test_a_topic_is_printed(run, topic):
     assert ran.err == ""
     assert ran.out.startswith("# ")
     assert run("guide", f"{topic}.md").out == ran.out
+    page = resources.files("contactlab").joinpath("guide", f"{topic}.md").read_text("utf-8")
+    for code in re.findall("^```.*?^```$", page, flags=re.DOTALL | re.MULTILINE):
+        assert code in ran.out
 
 
 def test_a_section_is_printed_alone(run):

@@ -112,6 +112,15 @@ def test_arrows_of_the_drawing_point_along_the_motion_of_the_sphere(reported, ba
     assert np.degrees(before) == pytest.approx(15.0, abs=0.2)  # as the file says
 
 
+@pytest.mark.parametrize(("spin", "turn"), [(20.0, " ↺"), (-20.0, " ↻"), (0.0, "")])
+def test_the_drawing_tells_the_sense_of_a_spin(reported, ball, tmp_path, spin, turn):
+    turning = tmp_path / "turning.toml"
+    text = ball.read_text("utf-8").replace("spin = 20.0", f"spin = {spin}")
+    turning.write_text(text, encoding="utf-8")
+    (told,) = re.findall(r"text-anchor='end'>([^<]*rad/s[^<]*)<", reported(turning))
+    assert told == f"{spin:g} rad/s{turn}"
+
+
 def test_the_surface_of_the_drawing_is_as_wide_as_the_drawing(reported, ball):
     (drawing,) = re.findall(r"<svg viewBox='(\S+) \S+ (\S+) \S+' role='img'", reported(ball))
     (surface,) = re.findall(r"<rect x='(\S+)' y='0' width='(\S+)'", reported(ball))
