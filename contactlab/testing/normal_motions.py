@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
@@ -119,6 +118,8 @@ def normal_passive(law: Any) -> None:
 @check(NormalLaw)
 def rebounds(law: Any) -> None:
     """The bodies part no faster than v1, and the impulse of the force is the change of momentum."""
+    from scipy.integrate import trapezoid  # help and lists import this file and need no scipy
+
     for motion in impacts(law):
         impact: Any = motion.scene
         rebound = -float(motion.final_rate) / float(impact.normal_speed)

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from contactlab.compose.answers import answers
 from contactlab.compose.normal_motion import normal_motion
@@ -117,6 +116,8 @@ def whole_impact_form(law: Any) -> None:
     The impulse of the force along the course is the change of slip velocity times the mass, and
     the work of the force is the friction work, to the imbalance that ``books_bound`` declares.
     """
+    from scipy.integrate import trapezoid  # help and lists import this file and need no scipy
+
     answered = list(answered_impacts(law))
     apply_if(answered, "It has no whole-impact answer.")
     for each in answered:

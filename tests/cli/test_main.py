@@ -32,17 +32,18 @@ def test_help_of_every_command_has_examples(run, command):
 
 
 def test_only_the_subcommand_that_is_named_is_imported():
-    """Nor is a law, scipy or matplotlib for the list of laws or the guide."""
+    """Nor is a law, scipy or matplotlib for the list of laws, the guide or the help of all."""
     probe = (
         "import sys; from contactlab.cli.main import main\n"
-        "for words in (['--version'], ['plugins', 'list'], ['guide', 'theory']):\n"
+        "for words in (['--version'], ['plugins', 'list'], ['guide', 'theory'], ['--help']):\n"
         "    main(words)\n"
         "    print('modules:', *sys.modules)"
     )
     command = [sys.executable, "-X", "utf8", "-c", probe]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", check=True)
     told = [line.split() for line in done.stdout.splitlines() if line.startswith("modules:")]
-    for names, needed in zip(told, (set(), {"plugins"}, {"plugins", "guide"}), strict=True):
+    imported = (set(), {"plugins"}, {"plugins", "guide"}, set(module.COMMANDS))
+    for names, needed in zip(told, imported, strict=True):
         commands = {name.rpartition(".")[2] for name in names if name.startswith("contactlab.cli.")}
         assert commands & set(module.COMMANDS) == needed
         heavy = [name for name in names if name.partition(".")[0] in ("scipy", "matplotlib")]

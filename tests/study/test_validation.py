@@ -80,8 +80,8 @@ def test_only_the_exact_law_has_ten_digits_of_psi2():
     }
     assert all(each.ok for each in found.values())
     exact = found.pop("fronts")
-    declared = Simulation().plan(Scene.nondimensional(psi1=1.2, chi=1.4)).psi2_error
-    assert exact.difference < exact.bound == declared
+    declared = Simulation().plan(Scene.nondimensional(psi1=0.5, chi=1.4)).psi2_error
+    assert exact.difference < exact.bound == pytest.approx(declared, rel=0.01)
     sizes = [each.difference for each in found.values()]
     assert min(sizes) > 1e-5
     assert len(set(sizes)) == len(sizes)
