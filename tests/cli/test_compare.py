@@ -218,6 +218,7 @@ def test_a_batch_without_a_file_is_drawn_over_what_varies():
         np.testing.assert_allclose(axes.lines[0].get_xdata(), x)
 
 
+@pytest.mark.slow
 def test_a_pdf_has_fonts_that_journals_take(run, short_sweep, tmp_path):
     path = tmp_path / "figure.pdf"
     assert run("compare", short_sweep, *BOTH, "--figure", path).status == 0

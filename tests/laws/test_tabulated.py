@@ -209,6 +209,7 @@ def test_places_and_impacts_are_each_others_inverse():
         assert np.abs(back[1] - chi[here.who[part]]).max() < 1e-14 * 10
 
 
+@pytest.mark.slow
 def test_the_cuts_are_found_again(monkeypatch):
     """Coarsely: by few points, chi to 1e-3."""
     monkeypatch.setattr(cuts, "POINTS", 10)
@@ -220,13 +221,8 @@ def test_the_cuts_are_found_again(monkeypatch):
         )
 
 
-@pytest.mark.parametrize(
-    "row",
-    [
-        pytest.param((5, 2, 2, 0, 1), id="at psi1 = 1"),
-        pytest.param((5, 3, 2, 4, 1), id="beyond", marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("row", [(5, 2, 2, 0, 1), (5, 3, 2, 4, 1)], ids=["at psi1 = 1", "beyond"])
 def test_a_patch_is_made_again_from_exact_impacts(row):
     """At once as good as the table's tolerance, and the same polynomial, slopes included."""
     made, cell = shipped(), Cell(*row)
