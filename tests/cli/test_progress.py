@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import io
+import itertools
+import re
 import sys
 
 import pytest
@@ -48,6 +50,30 @@ def test_short_work_says_nothing(begin, terminal):
         clock[0] += 1.9
         show(100, 100)
     assert screen.getvalue() == ""
+
+
+@pytest.mark.parametrize(
+    ("words", "what"),
+    [
+        ("sweep {short} --out o.csv", "impacts"),
+        ("compare {short}", "runs"),
+        ("stability --quick --law tangential.coulomb", "stability"),
+        ("bench --quick --law tangential.coulomb", "bench"),
+        ("figures --out . --only 2", "figures"),
+        ("fit {impacts} {ball} --laws coulomb,mindlin_cap", "laws"),
+        pytest.param("validate", "checks", marks=pytest.mark.slow),
+    ],
+)
+def test_commands_tell_what_is_done(
+    run, short_sweep, impacts, ball, tmp_path, monkeypatch, words, what
+):
+    """By a clock that goes on by half a minute whenever somebody looks at it."""
+    clock = itertools.count(0, 30)
+    monkeypatch.setattr(module.time, "perf_counter", lambda: next(clock))
+    monkeypatch.chdir(tmp_path)
+    ran = run(*words.format(short=short_sweep, impacts=impacts, ball=ball).split(), "--progress")
+    assert ran.status == 0
+    assert re.search(rf"^{what}: \d+ % \(\d+/\d+\), ", ran.err, flags=re.MULTILINE)
 
 
 def test_nothing_is_shown_unasked_elsewhere_and_where_it_is_not_wanted(begin):

@@ -38,7 +38,7 @@ def reported(run, tmp_path):
         ran = run("report", *arguments, "--out", page)
         assert (ran.status, ran.out) == (0, f"{page}\n")
         text = page.read_text("utf-8")
-        assert not re.search(r"src=|@import|<link|url\((?!#)", text)
+        assert not re.search(r"src=|@import|<link|url\((?!#)|\bNone\b", text)
         return text
 
     return call
