@@ -741,6 +741,19 @@ def test_cautions_of_any_two_bodies(changes, words):
     assert words or not found
 
 
+def test_bodies_and_the_numbers_of_the_theory_are_one_impact():
+    """Bodies in SI, and psi1, chi, lam and eta or rho of their scene, rebound alike."""
+    flat = rod(25.0, slip=0.4).scene
+    same = planar(psi1=flat.psi1, chi=flat.chi, lam=flat.lam, eta=flat.eta)
+    assert EXACT.run(same).psi2 == pytest.approx(EXACT.run(flat).psi2, abs=1e-9)
+    turning = two_bodies(8, 21).scene
+    numbers = {name: getattr(turning, name) for name in ("psi1", "chi", "lam", "rho")}
+    same = EccentricScene.nondimensional(**numbers)
+    laws = springs(8, 40)
+    assert laws.run(same).psi2 == pytest.approx(laws.run(turning).psi2, abs=1e-9)
+    assert same.rho == pytest.approx(turning.rho, rel=1e-12)
+
+
 def test_springs_in_space_are_cautioned_of():
     assert "springs in space: abs(q) <= mu p" in str(springs(4, 20).plan(random_in_space(2, 9)))
     assert "springs in space" not in str(springs(4, 20).plan(random_planar(2, 9)))

@@ -38,6 +38,10 @@ def test_the_map_of_stick_and_slip_ends_gross_slip_where_the_closed_form_does(la
     sticks = np.flatnonzero((states == 1).any(axis=0))
     ends = result.history.normal_velocity[sticks[0]] / result.history.normal_velocity[0]
     assert ends == pytest.approx((2 * chi - psi1) / (2 * chi - 1), abs=0.03)
+    middles = axes.collections[0].get_coordinates().reshape(-1, 2)
+    for shown, place in zip((axes.get_xlim(), axes.get_ylim()), middles.T, strict=True):
+        assert shown[0] <= max(place.min(), 0.0)
+        assert shown[1] >= min(place.max(), 1.0)
 
 
 @pytest.mark.parametrize(
