@@ -45,11 +45,14 @@ def test_other_warnings_are_shown_as_ever(run, monkeypatch, capsys):
         (ValueError("a\n  b"), 2, "contactlab run: error: a b"),
         (ValueError(), 2, "contactlab run: error: ValueError"),
         (OSError("full"), 1, "contactlab run: error: full"),
+        (PermissionError(13, "no", "o.csv"), 1,
+         "contactlab run: error: o.csv: cannot be read or written: no"),
+        (contactlab.PluginError("broken"), 1, "contactlab run: error: broken"),
         (contactlab.ImpactError("x", Status.INTERRUPTED), 130, "contactlab run: error: x"),
         (contactlab.ImpactError("x", Status.NON_FINITE), 1, "contactlab run: error: x"),
         (KeyboardInterrupt(), 130, "contactlab: interrupted"),
     ],
-)
+)  # fmt: skip
 def test_an_error_is_one_line(run, monkeypatch, error, status, words):
     def fail(_):
         raise error
@@ -64,6 +67,7 @@ def test_a_command_that_is_not_there(run):
     assert ran.err.startswith("contactlab: error: argument COMMAND: invalid choice: 'rnu' (choose ")
     assert ran.err.endswith("; did you mean 'run'? (see contactlab --help)\n")
     assert "did you mean" not in run("zzzzz").err
+    assert run().status == 2
     told = "contactlab run: error: unrecognized arguments: --x=3 (see contactlab run --help)\n"
     assert run("run", "--x=3", "--psi1", 1, "--chi", 1).err == told
 

@@ -59,35 +59,6 @@ def test_help_lists_every_command_with_its_summary(run):
             assert f"{command} {summary}" in out
 
 
-def test_no_command_and_an_unknown_one(run):
-    assert run().status == 2
-    ran = run("rum")
-    assert ran.status == 2
-    assert len(ran.err.splitlines()) == 1
-
-
-@pytest.mark.parametrize(
-    ("error", "status"),
-    [
-        (ValueError("bad\n  input"), 2),
-        (contactlab.PluginError("broken"), 1),
-        (contactlab.ImpactError("failed", contactlab.Status.NON_FINITE), 1),
-        (contactlab.ImpactError("stopped", contactlab.Status.INTERRUPTED), 130),
-        (PermissionError(13, "Permission denied", "out.csv"), 1),
-        (KeyboardInterrupt(), 130),
-    ],
-)
-def test_errors_become_one_line_and_a_status(run, monkeypatch, error, status):
-    def fail(_):
-        raise error
-
-    monkeypatch.setattr(run_command, "execute", fail)
-    ran = run(*PSI)
-    assert ran.status == status
-    assert len(ran.err.splitlines()) == 1
-    assert ran.out == ""
-
-
 def test_traceback_on_request(run):
     plain, full = run("run", "nowhere.toml"), run("--traceback", "run", "nowhere.toml")
     assert "Traceback" not in plain.err

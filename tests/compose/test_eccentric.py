@@ -20,6 +20,7 @@ from contactlab import (
     collide,
     create,
 )
+from tests.longer import longer
 
 STEEL = Material.named("steel")
 FLOOR = HalfSpace(STEEL)
@@ -344,8 +345,7 @@ def as_bodies(met):
 @pytest.mark.parametrize(
     ("separating", "shape"),
     [("pass", (6,)), ("pass", (1, 2, 3)), ("refuse", (2, 3)),
-     *(pytest.param(*each, marks=pytest.mark.slow)
-       for each in (("pass", (2, 3)), ("refuse", (6,)), ("refuse", (1, 2, 3))))],
+     *longer(("pass", (2, 3)), ("refuse", (6,)), ("refuse", (1, 2, 3)))],
 )  # fmt: skip
 def test_batches_of_every_shape_collide_as_their_pairs(shape, separating):
     pairs = two_bodies(6, 14)
@@ -409,7 +409,7 @@ def rigid_rod(degrees, friction, slip, kappa):
 @pytest.mark.parametrize(
     ("angle", "friction", "slip"),
     [(30, 0.3, 0.0), (-30, 0.3, 0.5), (30, 0.3, 0.5), (60, 0.2, 0.3),
-     *(pytest.param(*each, marks=pytest.mark.slow) for each in ((15, 0.3, 0.0), (PAINLEVE, 2, 4)))],
+     *longer((15, 0.3, 0.0), (PAINLEVE, 2, 4))],
 )  # fmt: skip
 def test_stiff_contacts_tend_to_rouths_construction(angle, friction, slip):
     """The distance falls as the root of 1/kappa, or faster."""
@@ -505,8 +505,8 @@ def test_an_impact_that_needs_too_many_steps_costs_its_batch_nothing(integrator)
 @pytest.mark.parametrize(
     ("lam", "left", "told"),
     [(0.9, 1e-5, None), (3.0, 0.2, None), (3.0, 0.05, 0.07),
-     *(pytest.param(*each, marks=pytest.mark.slow) for each in ((-2.0, 0.004, 0.4),
-                                                                (8.0, 5e-4, 1.2)))],
+     *longer((-2.0, 0.004, 0.4),
+                                                                (8.0, 5e-4, 1.2))],
 )  # fmt: skip
 def test_steps_caution_where_friction_jams_and_the_mass_is_nearly_singular(lam, left, told):
     """``left`` is 1 - W_nt²/(W_nn W_tt); the exact law has no such caution."""

@@ -13,14 +13,10 @@ from contactlab.contracts import NormalContact, NormalLaw
 from tests.laws.exact_laws import order
 from tests.laws.normal_laws import Damped, ForceFree
 from tests.laws.outside_laws import Adhesive, LinearDashpot, Plastic, RescaledSpring, Tsuji
+from tests.longer import longer
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
 INTEGRATORS = ("symplectic", "paper", "adaptive")
-
-
-def longer(*cases):
-    """Return cases as parameters for the longer tests."""
-    return [pytest.param(case, marks=pytest.mark.slow) for case in cases]
 
 
 def scene(slip=2.0, *, speed=1.0, mu=0.2):

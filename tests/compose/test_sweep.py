@@ -25,6 +25,7 @@ from contactlab.compose.workers import processes
 from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.contracts.whole_impact import no_force
 from tests.laws.ending_laws import Ending, Raising
+from tests.longer import longer
 
 CHI = 1.4411764706
 SIZE = 150
@@ -194,9 +195,7 @@ def ending(folder, **options):
     return Simulation(tangential=Ending(folder=str(folder), **options), integrator="symplectic")
 
 
-@pytest.mark.parametrize(
-    "status", [0, *(pytest.param(each, marks=pytest.mark.slow) for each in (None, 3))]
-)
+@pytest.mark.parametrize("status", [0, *longer(None, 3)])
 def test_a_worker_that_dies_has_a_status_and_the_kept_sweep_resumes(monkeypatch, tmp_path, status):
     """``os._exit(0)`` runs nobody's handlers, and looks like a process that ended well."""
     blocks_of(monkeypatch, 50)

@@ -14,13 +14,9 @@ from table_builders.damped import build
 from table_builders.damped.build import by_half_space, restitution
 from tests.laws.other_march import limit
 from tests.laws.test_rings import REFERENCES
+from tests.longer import longer
 
 CHI = 49 / 34
-
-
-def longer(*cases):
-    """Return cases as parameters for the longer tests."""
-    return [pytest.param(case, marks=pytest.mark.slow) for case in cases]
 
 
 @pytest.mark.parametrize("e", [0.9, *longer(0.5, 0.9999)])
@@ -72,7 +68,7 @@ def test_references_of_another_program(name, e, chi):
 
 BEYOND = [
     (0.8, 0.3),
-    *(pytest.param(*each, marks=pytest.mark.slow) for each in ((4.0, 0.05), (10.0, 0.95))),
+    *longer((4.0, 0.05), (10.0, 0.95)),
 ]
 
 

@@ -7,6 +7,7 @@ import contactlab
 from contactlab import Scene, Simulation
 from contactlab.testing.load_paths import Bench, Path, drive, straight
 from tests.laws.exact_laws import CHI, order, rms
+from tests.longer import longer
 
 LAW = contactlab.create("tangential.mindlin_deresiewicz")
 #: Fine enough that its own error is 1e-3 of mu P_max and less.
@@ -73,9 +74,7 @@ def errors(chi, steps):
     return [rms(psi2(psi1, chi, count) - limit) for count in steps]
 
 
-@pytest.mark.parametrize(
-    "chi", [0.4, *(pytest.param(each, marks=pytest.mark.slow) for each in (1.0, CHI))]
-)
+@pytest.mark.parametrize("chi", [0.4, *longer(1.0, CHI)])
 def test_second_order_in_steps(chi):
     steps = (50, 100, 200, 400)
     assert order(steps, errors(chi, steps)) == pytest.approx(2.0, abs=0.35)

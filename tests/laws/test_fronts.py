@@ -7,14 +7,10 @@ import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
 from tests.laws.bundle import extrapolated
 from tests.laws.reference import TABLE
+from tests.longer import longer
 
 CHI = 1.4411764706
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
-
-
-def longer(*cases):
-    """Return cases as parameters for the longer tests."""
-    return [pytest.param(case, marks=pytest.mark.slow) for case in cases]
 
 
 CHIS = (0.35, 0.5, 0.5 + 1e-9, 0.8, CHI, 3.0, *longer(0.45, 0.55, 1.0, 8.0, 30.0))

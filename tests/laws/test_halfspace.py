@@ -8,6 +8,7 @@ import contactlab
 from contactlab import Scene, Simulation
 from contactlab.contracts.status import Status
 from contactlab_laws.halfspace import splitting, whole_impacts
+from tests.longer import longer
 
 CHI = 49 / 34
 #: Angles of the exact law's comparison, and of that with like bodies.
@@ -89,7 +90,7 @@ def test_with_no_word_from_the_user_psi2_is_extrapolated():
 
 
 SWINGS = [
-    *(pytest.param(*each, marks=pytest.mark.slow) for each in ((5.0, 3e-3), (10.0, 4e-3))),
+    *longer((5.0, 3e-3), (10.0, 4e-3)),
     (100.0, 0.02),
 ]
 

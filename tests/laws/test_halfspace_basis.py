@@ -16,6 +16,7 @@ from contactlab_laws.halfspace.march import follow
 from contactlab_laws.halfspace.modes import modes
 from contactlab_laws.halfspace.pressure import Answering, Contact, Prescribed
 from contactlab_laws.halfspace.splitting import TOLERANCE, settle
+from tests.longer import longer
 
 HERTZ = contactlab.create("normal.hertz")
 MOTION = normal_motion(HERTZ, Scene.nondimensional(psi1=1.0, chi=1.0))
@@ -105,9 +106,7 @@ def test_cattaneo_and_mindlin(front):
     assert found.residual < TOLERANCE
 
 
-@pytest.mark.parametrize(
-    "strength", [0.6, 2.5, *(pytest.param(each, marks=pytest.mark.slow) for each in (1.0, 1.5))]
-)
+@pytest.mark.parametrize("strength", [0.6, 2.5, *longer(1.0, 1.5)])
 @pytest.mark.parametrize("lift", [None, 0.01])
 def test_spence(strength, lift):
     """(a/2c) ln((a+c)/(a-c)) beta/mu = K'(c/a) in normal loading of unlike bodies, to one ring."""

@@ -15,6 +15,7 @@ from contactlab.testing import (
     outcome,
 )
 from contactlab_laws.mindlin import MindlinCap
+from tests.longer import longer
 from tests.testing import broken_clauses as clauses
 from tests.testing import broken_declarations as declarations
 from tests.testing import broken_impacts as impacts
@@ -49,11 +50,6 @@ def failed(law):
     """Names of the checks failed, the slow ones on whole impacts left out."""
     checks = [check for check in checks_for(law) if not check.name.startswith("impact_")]
     return [check.name for check in checks if outcome(law, check).verdict is Verdict.FAILED]
-
-
-def longer(*laws):
-    """Return laws as parameters for the longer tests."""
-    return [pytest.param(law, marks=pytest.mark.slow) for law in laws]
 
 
 @pytest.mark.parametrize(
