@@ -81,6 +81,7 @@ def test_compare_has_a_row_for_each_law_and_says_why_not_the_others(run, file):
     assert laws["coulomb"]["normal_velocity"] == pytest.approx(rigid.normal_velocity)
     assert laws["springs"]["psi2"] == pytest.approx(laws["fronts"]["psi2"], abs=1e-3)
     assert "annulus is left out" in ran.err
+    assert "annulus" not in laws
     shown = run("compare", file(SPACE), "--tangential", "springs,coulomb").out.splitlines()
     assert [line.split()[0] for line in shown[-2:]] == ["springs", "coulomb"]
     assert "-0.9535" in shown[-2]
@@ -141,5 +142,6 @@ def test_animate_draws_the_body_and_the_ghost(frames, least, run, tmp_path, monk
     assert ran.status == 0
     assert out.read_bytes()[:6] == b"GIF89a"
     assert out.stat().st_size > least
-    with Image.open(out) as picture:
-        assert frames // 2 < picture.n_frames <= frames  # like ones are joined
+    with Image.open(out) as picture:  # first touch and separation each are two frames alike
+        assert frames // 2 < picture.n_frames <= frames - 2
+        assert frames > 8 or picture.n_frames == 6

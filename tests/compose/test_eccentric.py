@@ -754,6 +754,12 @@ def test_bodies_and_the_numbers_of_the_theory_are_one_impact():
     assert same.rho == pytest.approx(turning.rho, rel=1e-12)
 
 
-def test_springs_in_space_are_cautioned_of():
-    assert "springs in space: abs(q) <= mu p" in str(springs(4, 20).plan(random_in_space(2, 9)))
-    assert "springs in space" not in str(springs(4, 20).plan(random_planar(2, 9)))
+def test_a_plan_tells_space_from_a_plane():
+    space, plane = (
+        str(springs(4, 20).plan(s)) for s in (random_in_space(2, 9), random_planar(2, 9))
+    )
+    for words in ("springs in space: abs(q) <= mu p", "none is declared in space"):
+        assert words in space
+        assert words not in plane
+    assert "the motion stays in a plane" in plane
+    assert "the motion stays in a plane" not in space
