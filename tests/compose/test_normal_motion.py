@@ -81,8 +81,7 @@ def test_contacts_however_long_or_short(integrator, stiffness):
     ("law", "damping"),
     [
         *((LinearDashpot, damping) for damping in (0.01, 0.1, 0.3)),
-        (Tsuji, 0.1),
-        *(pytest.param(Tsuji, damping, marks=pytest.mark.slow) for damping in (0.01, 0.3)),
+        *((Tsuji, 0.1), *longer((Tsuji, 0.01), (Tsuji, 0.3))),
     ],
 )
 def test_restitution_is_the_closed_form(law, damping):
@@ -223,8 +222,7 @@ def test_one_nan_is_not_out_of_contact(bad):
     ("law", "slip"),
     [
         *((WidePlastic(), slip) for slip in (0.02, 0.3, 2.0)),
-        *((Plastic(), slip) for slip in (0.02, 2.0)),
-        pytest.param(Plastic(), 0.3, marks=pytest.mark.slow),
+        *((Plastic(), 0.02), (Plastic(), 2.0), *longer((Plastic(), 0.3))),
     ],
 )
 def test_laws_of_partial_slip_agree_under_a_plastic_contact(law, slip):

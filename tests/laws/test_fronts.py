@@ -72,12 +72,10 @@ def test_chi_one_half_never_slips(psi1):
 
 @pytest.mark.parametrize(
     ("psi1", "chi"),
-    [
-        (1.0533194060090847, 183.78409170773173),
-        pytest.param(0.9987610244171012, 220.85085905811604, marks=pytest.mark.slow),
-        pytest.param(1.000124712663441, 369.2576334038081, marks=pytest.mark.slow),
-    ],
-)
+    [(1.0533194060090847, 183.78409170773173), *longer(
+        (0.9987610244171012, 220.85085905811604), (1.000124712663441, 369.2576334038081)
+    )],
+)  # fmt: skip
 def test_slip_too_short_to_show_at_the_points_looked_at_is_found(psi1, chi):
     """The edge slips for a thousandth of x; found by chance, it made psi2 jump by up to 6e-9."""
     near = psi1 + np.array([-1e-10, -1e-12, 0.0, 1e-12, 1e-10])

@@ -108,6 +108,10 @@ def test_arrows_of_the_drawing_point_along_the_motion_of_the_sphere(reported, ba
         assert (stem - begin) / np.hypot(*(stem - begin)) == pytest.approx(
             way / np.hypot(*way), abs=2e-3
         )
+    words = re.findall(r"<polygon[^>]*/><text x='(\S+)'[^>]*text-anchor='(\w+)'", reported(ball))
+    assert [anchor for _, anchor in words] == ["end", "start"]
+    assert float(words[0][0]) < arriving[0][0]
+    assert float(words[1][0]) > leaving[2][0]
     before = np.arctan2(*(arriving[2] - arriving[0]))
     assert np.degrees(before) == pytest.approx(15.0, abs=0.2)  # as the file says
 

@@ -64,6 +64,8 @@ def test_front_holds_what_nothing_beats():
     failed = row(error=np.nan, time=np.nan, failed=1)
     benchmark = Benchmark(rows=(*rows, failed), orders={}, complete=True)
     assert benchmark.front() == [rows[0], rows[1]]
+    told = cli_bench._report(benchmark).splitlines()
+    assert [line.endswith("front") for line in told[2:5]] == [True, True, False]
 
 
 def test_below_rounding_only_time_counts():
