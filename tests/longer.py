@@ -5,5 +5,5 @@ import pytest
 
 def longer(*cases):
     """Return cases, values or tuples of values, as parameters of the longer tests."""
-    slow = pytest.mark.slow
-    return [pytest.param(*(c if isinstance(c, tuple) else (c,)), marks=slow) for c in cases]
+    many = (case if isinstance(case, tuple) else (case,) for case in cases)
+    return [pytest.param(*case, marks=pytest.mark.slow) for case in many]

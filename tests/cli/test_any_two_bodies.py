@@ -143,5 +143,4 @@ def test_animate_draws_the_body_and_the_ghost(frames, least, run, tmp_path, monk
     assert out.read_bytes()[:6] == b"GIF89a"
     assert out.stat().st_size > least
     with Image.open(out) as picture:  # first touch and separation each are two frames alike
-        assert frames // 2 < picture.n_frames <= frames - 2
-        assert frames > 8 or picture.n_frames == 6
+        assert max(frames // 2, 6) <= picture.n_frames <= frames - 2

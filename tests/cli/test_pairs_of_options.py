@@ -81,7 +81,8 @@ SHORT = {"{short}", "--psi1 0:4:3", "--tangential springs"}
 def long(command, pair):
     """Return whether a pair takes long: what draws or fits, and comparisons by default."""
     default = command == "compare" and pair and not SHORT & set(pair)
-    several = command in {"bench", "stability", "figures", "fit", "animate"}
+    page = command == "report" and len(pair) == 2
+    several = page or command in {"bench", "stability", "figures", "fit", "animate"}
     return several or default or ".svg" in str(pair)
 
 

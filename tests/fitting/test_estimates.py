@@ -231,6 +231,7 @@ def test_the_bootstrap_is_as_wide_as_the_covariance_and_the_same_each_time():
     assert ends[0] != ends[2]
 
 
+@pytest.mark.slow
 def test_laws_are_ranked_by_their_fit():
     laws = {"exact": None, "coulomb": Simulation(tangential="coulomb")}
     three = laws | {"walton": Simulation(tangential="walton")}
