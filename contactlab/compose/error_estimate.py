@@ -13,6 +13,7 @@ from contactlab.compose.planning import CLOSED_FORM
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.status import Status
 from contactlab.impact.eccentric import EccentricScene
+from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab.outcome.answer import RunResult
 
@@ -49,7 +50,7 @@ def estimated(laws: Laws, result: RunResult) -> Real:
     if isinstance(scene, EccentricScene):
         marched = successes  # an answer as a whole has the accuracy of its integrator
     resolutions = np.where(marched, _resolution(laws, scene) if np.any(marched) else 0.0, np.nan)
-    change = _slip_change(scene, result.motion)
+    change = np.asarray(result.motion.slip_velocity_change)
     # not np.unique, which imports numpy.ma
     for resolution in [*sorted(set(resolutions[marched].tolist())), None]:
         where = successes & ~marched
@@ -64,7 +65,7 @@ def estimated(laws: Laws, result: RunResult) -> Real:
 
 def _resolution(laws: Laws, scene: Any) -> Any:
     """Return the resolution of the integrator for each impact; 0 if it has none."""
-    central = scene.central if isinstance(scene, EccentricScene) else scene
+    central = _central(scene)
     normal = solve.normal_or_failed(laws, central)
     resolution = laws.integrator.resolution_for(normal, laws.tangential, central)
     return np.broadcast_to(resolution, scene.shape)
@@ -95,10 +96,8 @@ def _distance(laws: Laws, scene: Any, resolution: float | None, change: Any) -> 
     falls = (before > last) & (len(options) == len(counts))
     ratio = last / np.where(falls, before - last, 1.0)
     left = np.where(falls, np.clip(ratio, *LEFT), LEFT[0])
-    distance, central = all_of + left * last, scene
-    if isinstance(scene, EccentricScene):
-        central = scene.central
-    distance = central.psi(distance)
+    central = _central(scene)
+    distance = central.psi(all_of + left * last)
     return np.where(
         distance > 0.0, np.maximum(distance, CLOSED_FORM * psi_magnitude(central)), distance
     )
@@ -107,16 +106,15 @@ def _distance(laws: Laws, scene: Any, resolution: float | None, change: Any) -> 
 def _change(laws: Laws, scene: Any) -> Any:
     """Return the change of slip velocity in m/s; NaN where the run failed."""
     if isinstance(scene, EccentricScene):
-        return _slip_change(scene, eccentric.run(laws, scene, None))
+        return eccentric.run(laws, scene, None).slip_velocity_change
     _, motion = solve.outcome(laws, scene, False, None)
-    return np.where(_successes(motion.status), _slip_change(scene, motion), np.nan)
+    return np.where(_successes(motion.status), motion.slip_velocity_change, np.nan)
 
 
-def _slip_change(scene: Any, motion: Any) -> Any:
-    """Return the change of slip velocity in m/s, of an eccentric impact a vector."""
-    if isinstance(scene, EccentricScene):
-        return np.asarray(motion.velocity_change[..., 1:])
-    return np.asarray(motion.slip_velocity_change)
+def _central(scene: Any) -> Scene:
+    """Return a central scene as it is; of an eccentric one the impact with the same approach."""
+    central: Scene = scene.central if isinstance(scene, EccentricScene) else scene
+    return central
 
 
 def _size(scene: Any, change: Any) -> Any:

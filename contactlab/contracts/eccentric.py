@@ -51,6 +51,11 @@ class EccentricMotion(BatchMotion):
     maximum_force: Real
     compressions: Any = attrs.field(default=1, metadata={"kind": int})
 
+    @property
+    def slip_velocity_change(self) -> Any:
+        """Change of the slip velocity along t1 and t2 in m/s, shape (..., 2)."""
+        return self.velocity_change[..., 1:]
+
 
 class EccentricSample(NamedTuple):
     """One instant of an eccentric impact, as passed to an observer.

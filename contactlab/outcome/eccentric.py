@@ -71,7 +71,7 @@ class EccentricResult(RunResult):
     @property
     def slip_velocity(self) -> Array:
         """Slip velocity after the impact along t1 and t2, shape (..., 2), in m/s."""
-        return np.asarray(self.scene.slip_velocity + self.motion.velocity_change[..., 1:])
+        return np.asarray(self.scene.slip_velocity + self.motion.slip_velocity_change)
 
     @property
     def normal_velocity(self) -> Real:
