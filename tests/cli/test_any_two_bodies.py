@@ -11,6 +11,7 @@ from PIL import Image
 import contactlab
 from contactlab import EccentricScene, Simulation, read_scene
 from contactlab.figures import animation, body_animation
+from tests.longer import longer
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FOOT = EXAMPLES / "foot.toml"
@@ -129,9 +130,7 @@ def test_what_is_for_spheres_says_so(run, tmp_path, monkeypatch, command, word):
     assert ran.err.count("\n") == 1
 
 
-@pytest.mark.parametrize(
-    ("frames", "least"), [(8, 5_000), pytest.param(108, 50_000, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("frames", "least"), [(8, 5_000), *longer((108, 50_000))])
 def test_animate_draws_the_body_and_the_ghost(frames, least, run, tmp_path, monkeypatch):
     if frames == 8:
         for name, count in (("ARRIVING", 2), ("IN_CONTACT", 4), ("LEAVING", 2)):

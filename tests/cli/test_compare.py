@@ -18,6 +18,7 @@ from contactlab.figures.comparison import differences, laws_over_sweep
 from contactlab.figures.files import save_figure
 from contactlab.study.comparison import compare
 from tests.laws.tangential_laws import Creator
+from tests.longer import longer
 
 BOTH = ("--tangential", "coulomb,frictionless")
 UNITS = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}
@@ -107,7 +108,7 @@ def test_option_goes_to_the_laws_that_know_it(run, short_sweep):
 
 @pytest.mark.parametrize(
     "scene",
-    [*(pytest.param(n, marks=pytest.mark.slow) for n in ("measured", "short_sweep")), "ball"],
+    [*longer("measured", "short_sweep"), "ball"],
 )
 def test_figure(run, request, tmp_path, scene):
     path = tmp_path / "figure.png"

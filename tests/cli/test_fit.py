@@ -7,6 +7,7 @@ import pytest
 
 from contactlab.fitting import estimation
 from tests.cli.conftest import EXAMPLES
+from tests.longer import longer
 
 KHARAZ = EXAMPLES / "kharaz2001.toml"
 HALF = "options = { normal = { restitution = 0.5 } }"
@@ -26,7 +27,7 @@ def test_kharaz_gives_the_friction_that_was_found_by_hand(run):
 @pytest.mark.parametrize(
     "laws",
     [["exact", "coulomb"],
-     pytest.param(["exact", "coulomb", "mindlin_cap"], marks=pytest.mark.slow)],
+     *longer(["exact", "coulomb", "mindlin_cap"])],
 )  # fmt: skip
 def test_laws_are_ranked_on_kharaz(run, tmp_path, laws):
     table, picture = tmp_path / "residuals.csv", tmp_path / "fit.png"

@@ -14,6 +14,7 @@ from contactlab.figures import animation
 from contactlab.fitting import estimation
 from contactlab.study import comparison, evidence, validation
 from tests.cli.conftest import EXAMPLES, interrupting, partial
+from tests.longer import longer
 
 KHARAZ = EXAMPLES / "kharaz2001.toml"
 E_T = ("--quantity", "tangential_restitution", "--laws", "exact,coulomb,stronge")
@@ -48,9 +49,7 @@ def test_compare_keeps_the_laws_that_are_done(run, monkeypatch, measured, tmp_pa
     assert (ran.status, ran.out) == (130, "")
 
 
-@pytest.mark.parametrize(
-    ("done", "sources"), [(1, 0), (2, 0), pytest.param(2, 1, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("done", "sources"), [(1, 0), (2, 0), *longer((2, 1))])
 def test_validate_keeps_checks_and_sources(run, monkeypatch, done, sources):
     checks = [validation._rigid] * done + [interrupting(None, 0)] * (sources == 0)
     monkeypatch.setattr(validation, "_checks", lambda: iter(checks))
@@ -71,9 +70,7 @@ def test_a_fit_keeps_the_laws_that_are_done(run, monkeypatch, tmp_path):
     assert {row["law"] for row in rows} == {"exact", "coulomb"}
 
 
-@pytest.mark.parametrize(
-    ("after", "kept"), [(10, True), pytest.param(9, False, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("after", "kept"), [(10, True), *longer((9, False))])
 def test_a_bootstrap_keeps_its_samples_if_they_are_enough(run, monkeypatch, after, kept):
     monkeypatch.setattr(estimation, "FEWEST", 10)
     again = interrupting(estimation._solved_again, after)

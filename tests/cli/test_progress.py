@@ -13,6 +13,7 @@ import pytest
 from contactlab.cli import progress as module
 from contactlab.cli.progress import in_words, progress
 from contactlab.cli.terminal import fitted
+from tests.longer import longer
 
 
 class Screen(io.StringIO):
@@ -61,7 +62,7 @@ def test_short_work_says_nothing(begin, terminal):
         ("bench --quick --law tangential.coulomb", "bench"),
         ("figures --out . --only 2", "figures"),
         ("fit {impacts} {ball} --laws coulomb,mindlin_cap", "laws"),
-        pytest.param("validate", "checks", marks=pytest.mark.slow),
+        *longer(("validate", "checks")),
     ],
 )
 def test_commands_tell_what_is_done(

@@ -12,6 +12,7 @@ from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab.contracts import NormalMotion, WholeImpact
 from tests.compose.error_scenes import numbers
 from tests.laws.outside_laws import Walton
+from tests.longer import longer
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 UNDECLARED = ["springs", "sharp_annulus", "annulus", "mindlin_cap", "linear_spring"]
@@ -103,7 +104,7 @@ def test_discretised_laws_declare_nothing_where_they_march(tangential):
         assert json.loads(json.dumps(result.plan.to_dict()))["psi2_error"][1] is None
 
 
-@pytest.mark.parametrize("count", [120, pytest.param(600, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [120, *longer(600)])
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
 def test_no_exact_answer_is_further_off_than_declared(tolerance, count):
     """Solved, against the table, which is another program, over the scenes that it covers."""

@@ -505,8 +505,7 @@ def test_an_impact_that_needs_too_many_steps_costs_its_batch_nothing(integrator)
 @pytest.mark.parametrize(
     ("lam", "left", "told"),
     [(0.9, 1e-5, None), (3.0, 0.2, None), (3.0, 0.05, 0.07),
-     *longer((-2.0, 0.004, 0.4),
-                                                                (8.0, 5e-4, 1.2))],
+     *longer((-2.0, 0.004, 0.4), (8.0, 5e-4, 1.2))],
 )  # fmt: skip
 def test_steps_caution_where_friction_jams_and_the_mass_is_nearly_singular(lam, left, told):
     """``left`` is 1 - W_nt²/(W_nn W_tt); the exact law has no such caution."""
@@ -542,7 +541,7 @@ def test_a_batch_answers_as_its_impacts():
     assert EXACT.run(table).psi2.ravel() == pytest.approx(EXACT.run(scene).psi2, rel=1e-12)
 
 
-@pytest.mark.parametrize("count", [50, pytest.param(150, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [50, *longer(150)])
 def test_exact_impacts_side_by_side_answer_as_alone(count):
     """Alone and with a history gross slip is timed step by step, in a batch as Hertz's motion."""
     scene = random_planar(count, 31)
@@ -559,7 +558,7 @@ def test_exact_impacts_side_by_side_answer_as_alone(count):
 HARD = [
     # psi1, chi, lam, lam eta over 2 chi
     (1e6, 0.5, -1000.0, 0.99), (1e6, 3.0, -1000.0, 0.99),
-    pytest.param(1e6, 3.0, -30.0, 0.9999, marks=pytest.mark.slow),
+    *longer((1e6, 3.0, -30.0, 0.9999)),
     (20.0, 0.5, -1000.0, 0.99), (1e6, 0.5, 2.0, 1.0 - 1e-6), (1e-12, 0.5, 1000.0, 0.99),
 ]  # fmt: skip
 

@@ -12,6 +12,7 @@ import contactlab
 from contactlab import Scene, Simulation
 from tests.compose.error_scenes import groups, numbers
 from tests.laws.outside_laws import RescaledSpring
+from tests.longer import longer
 
 #: Law, integrator, and how many of the 6,000 scenes: 6,000 runs in all.
 METHODS = (
@@ -115,7 +116,7 @@ def test_the_tolerance_of_the_adaptive_integrator_is_no_bound():
     assert np.isnan(result.plan.psi2_error[result.plan.marched]).all()
 
 
-@pytest.mark.parametrize("name", ["springs", pytest.param("sharp_annulus", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["springs", *longer("sharp_annulus")])
 def test_estimates_of_240_runs(name):
     """A part of the set; laws without an exact limit and annuli take longer."""
     found = figures(name, "symplectic", 240)

@@ -289,7 +289,7 @@ def test_second_order_in_steps_under_any_normal_law(normal, integrator):
     ("law", "tolerances"),
     [
         # Of first order: the reference itself is no better than 1e-5.
-        pytest.param(RescaledSpring(), np.logspace(-2, -4, 9), marks=pytest.mark.slow),
+        *longer((RescaledSpring(), np.logspace(-2, -4, 9))),
         ("springs", (1e-3, 1e-4, 1e-5)),
     ],
 )

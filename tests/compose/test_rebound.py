@@ -9,6 +9,7 @@ import pytest
 import contactlab
 from contactlab import Scene, Simulation, rebound
 from tests.laws.reference import PSI1, PSI2, TABLE
+from tests.longer import longer
 
 TOLERANCE = 1e-5
 
@@ -43,7 +44,7 @@ def test_reference_table(chi, psi1, value):
         (0.35, 4.0, 50),
         (0.35, 8.0, 50),
         (8, 30, 20),
-        pytest.param(0.35, 8.0, 400, marks=pytest.mark.slow),
+        *longer((0.35, 8.0, 400)),
     ],
 )
 def test_random_impacts_against_the_exact_solution(low, high, count):
@@ -63,7 +64,7 @@ def test_a_tighter_tolerance_is_kept():
     assert np.abs(one_by_one - truth[:20]).max() < 2e-9
 
 
-BOTH_SIDES = (0.3, 0.5, 0.5 + 1e-9, 0.7, 1.0, 1.44, 3.0, pytest.param(8.0, marks=pytest.mark.slow))
+BOTH_SIDES = (0.3, 0.5, 0.5 + 1e-9, 0.7, 1.0, 1.44, 3.0, *longer(8.0))
 
 
 @pytest.mark.parametrize("chi", BOTH_SIDES)
@@ -74,7 +75,7 @@ def test_both_sides_of_every_boundary(chi):
     assert np.abs(rebound(psi1, chi) - exact(psi1, chi)).max() < TOLERANCE
 
 
-LARGE = [(100.0, 0.3), (100.0, 1.2), pytest.param(1000.0, 0.95, marks=pytest.mark.slow), (1e4, 0.6)]
+LARGE = [(100.0, 0.3), (100.0, 1.2), *longer((1000.0, 0.95)), (1e4, 0.6)]
 
 
 @pytest.mark.parametrize(("chi", "psi1"), LARGE)

@@ -73,9 +73,7 @@ def exact_answers(exact):
         return exact.sweep(scene())
 
 
-@pytest.mark.parametrize(
-    "how", ["here", pytest.param("workers", marks=pytest.mark.slow), "threads", "processes"]
-)
+@pytest.mark.parametrize("how", ["here", *longer("workers"), "threads", "processes"])
 def test_answers_are_the_same_to_the_last_bit(exact, exact_answers, workers, monkeypatch, how):
     blocks_of(monkeypatch, BLOCK)
     executors = {
@@ -349,7 +347,7 @@ def waiting_program(tmp_path):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
-@pytest.mark.parametrize("everybody", [True, pytest.param(False, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("everybody", [True, *longer(False)])
 def test_ctrl_c_ends_calls_and_processes(tmp_path, everybody):
     """Of a terminal it reaches every process, and of ``kill`` the program alone."""
     running, pids = waiting_program(tmp_path)

@@ -6,6 +6,7 @@ import pytest
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from tests.laws.outside_laws import Adhesive
+from tests.longer import longer
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
 LAWS = {
@@ -31,9 +32,7 @@ def simulation(name, integrator="symplectic", pull=200.0, reach=2e-7):
     )
 
 
-@pytest.mark.parametrize(
-    "integrator", ["symplectic", "paper", pytest.param("adaptive", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("integrator", ["symplectic", "paper", *longer("adaptive")])
 @pytest.mark.parametrize("name", LAWS)
 @pytest.mark.parametrize("slip", [0.05, 0.3, 2.0])
 def test_odd_to_the_last_bit(name, integrator, slip):

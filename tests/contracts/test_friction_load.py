@@ -14,6 +14,7 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.solved_motion import ACCURACY
 from contactlab.contracts import NormalContact, NormalLaw, TangentialResponse
 from tests.laws.outside_laws import Adhesive, Heun, RescaledSpring
+from tests.longer import longer
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
 
@@ -96,7 +97,7 @@ def by_hand(law, mass, speed):
     return duration, -final, mass * (speed + swing * second)
 
 
-@pytest.mark.parametrize("own_load", [False, pytest.param(True, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("own_load", [False, *longer(True)])
 @pytest.mark.parametrize(
     ("unloading", "cohesion"),
     [

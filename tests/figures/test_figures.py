@@ -25,6 +25,7 @@ from contactlab.figures.files import save, save_figure
 from contactlab.scene_file import read_scene
 from contactlab.study import paper_figures
 from contactlab.study.comparison import compare
+from tests.longer import longer
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 WIDTHS = (None, "one", "two")
@@ -193,7 +194,7 @@ def three_laws():
     return compare(file, laws)
 
 
-@pytest.mark.parametrize("width", [None, "one", pytest.param("two", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("width", [None, "one", *longer("two")])
 def test_long_legends_stand_clear_of_the_axes(three_laws, tmp_path, monkeypatch, width):
     def draw(axes):
         all_laws(axes[0, 0], axes[1, 0], three_laws, "psi2")

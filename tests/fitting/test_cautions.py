@@ -13,6 +13,7 @@ from contactlab.fitting.tabulated import impacts
 from contactlab.outcome.columns import QUANTITIES
 from tests.fitting.draws import heading
 from tests.fitting.impacts import BODIES, STEEL, table
+from tests.longer import longer
 
 WIDE = np.linspace(5.0, 70.0, 12)
 SLIPPING = np.linspace(60.0, 80.0, 12)
@@ -43,8 +44,9 @@ def lossy(restitution, angles=WIDE):
 
 @pytest.mark.parametrize(
     "laws",
-    [None, pytest.param(Simulation(tangential="coulomb"), marks=pytest.mark.slow),
-     pytest.param(Simulation(normal="tsuji", tangential="coulomb"), marks=pytest.mark.slow)],
+    [None, *longer(
+        Simulation(tangential="coulomb"), Simulation(normal="tsuji", tangential="coulomb")
+    )],
 )  # fmt: skip
 def test_a_fit_cautions_as_a_run_does(laws):
     """Of a lead ball far beyond its yield stress."""
@@ -64,7 +66,7 @@ def test_a_fit_cautions_as_a_run_does(laws):
 
 @pytest.mark.parametrize(
     ("ball", "plate", "friction"),
-    [(STEEL, RUBBER, 0.3), pytest.param(RUBBER, STEEL, 0.1, marks=pytest.mark.slow)],
+    [(STEEL, RUBBER, 0.3), *longer((RUBBER, STEEL, 0.1))],
 )
 def test_a_shift_by_coupling_is_told_as_a_shift_of_the_parameter(ball, plate, friction):
     """Data by the half-space law with coupling: the friction that the elastic law finds is off."""
@@ -79,9 +81,7 @@ def test_a_shift_by_coupling_is_told_as_a_shift_of_the_parameter(ball, plate, fr
     assert abs(found["friction_coefficient"] - friction) == pytest.approx(size, rel=0.5)
 
 
-@pytest.mark.parametrize(
-    "laws", [pytest.param(None, marks=pytest.mark.slow), Simulation(tangential="coulomb")]
-)
+@pytest.mark.parametrize("laws", [*longer(None), Simulation(tangential="coulomb")])
 def test_a_restitution_that_elastic_laws_cannot_meet_is_told_with_what_another_law_gives(laws):
     data = measured(lossy(0.85), "tangential_restitution", "normal_restitution")
     found = fit(data, BODIES, simulation=laws)
@@ -106,7 +106,7 @@ def test_a_restitution_that_was_set_to_another_value_is_told():
     assert re.search(r"restitution were 0\.(69|70|71)\d* in place of 0\.9 ", note + " ")
 
 
-@pytest.mark.parametrize("off", [3.0, pytest.param(-3.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("off", [3.0, *longer(-3.0)])
 def test_a_common_error_of_the_angles_is_told(off):
     data = measured(lossy(1.0), "rebound_angle_deg", "tangential_restitution")
     (note,) = fit(data | {"angle_deg": WIDE + off}, BODIES).notes

@@ -11,6 +11,7 @@ from contactlab.fitting.diagnosis import error_notes, moved
 from contactlab.fitting.fit_result import Estimate
 from tests.fitting.impacts import ANGLES, BODIES, restitution, scene, table
 from tests.fitting.lines import line, option
+from tests.longer import longer
 
 SCATTER = 0.004 * np.random.default_rng(5).standard_normal(len(ANGLES))
 SLIPPING = np.linspace(45.0, 70.0, 12)
@@ -97,9 +98,7 @@ def test_errors_in_another_unit_are_told():
     assert "look at the unit of tangential_restitution_error" in note
 
 
-@pytest.mark.parametrize(
-    "count", [8, *(pytest.param(count, marks=pytest.mark.slow) for count in (12, 40))]
-)
+@pytest.mark.parametrize("count", [8, *longer(12, 40)])
 def test_sound_measurements_are_not_accused(count):
     rng = np.random.default_rng(count)
     angles = np.linspace(5.0, 65.0, count)
@@ -108,7 +107,7 @@ def test_sound_measurements_are_not_accused(count):
         assert fit(table(true + 0.01 * rng.standard_normal(count), angles), BODIES).notes == ()
 
 
-@pytest.mark.parametrize("e", [0.6, pytest.param(0.9, marks=pytest.mark.slow), 1.0])
+@pytest.mark.parametrize("e", [0.6, *longer(0.9), 1.0])
 def test_tsuji_s_law_is_fitted_by_its_table(e):
     """Data by the closed form of gross slip, psi2 = psi1 - 2 chi (1 + e), and e itself."""
     laws = Simulation(normal="tsuji")

@@ -12,6 +12,7 @@ from contactlab.fitting.parameters import Setup, parameter_named
 from contactlab.numeric.checks import POSITIVE, quantity
 from tests.fitting.impacts import ANGLES, BODIES, STEEL, restitution, scene, table
 from tests.laws.outside_laws import Walton
+from tests.longer import longer
 
 SLIPPING = np.array([45.0, 50.0, 55.0, 60.0, 65.0, 70.0])
 BOTH = ("friction_coefficient", "stiffness_ratio")
@@ -21,7 +22,7 @@ def scattered(values, size, seed=1):
     return values + np.random.default_rng(seed).normal(0.0, size, len(values))
 
 
-@pytest.mark.parametrize("poisson", [0.0, pytest.param(0.3, marks=pytest.mark.slow), 0.45])
+@pytest.mark.parametrize("poisson", [0.0, *longer(0.3), 0.45])
 def test_friction_and_stiffness_that_made_the_data_are_found(poisson):
     """By the exact solution, event by event; the fit goes by the table and from steel."""
     material = Material(young_modulus=70e9, poisson_ratio=poisson, density=2500.0)
@@ -32,7 +33,7 @@ def test_friction_and_stiffness_that_made_the_data_are_found(poisson):
     assert found.rms["tangential_restitution"] < 1e-7
 
 
-@pytest.mark.parametrize("start", [0.001, pytest.param(0.1, marks=pytest.mark.slow), 5.0])
+@pytest.mark.parametrize("start", [0.001, *longer(0.1), 5.0])
 def test_the_start_does_not_matter(start):
     bodies = attrs.evolve(BODIES, friction_coefficient=start)
     assert fit(table(restitution(0.3)), bodies)["friction_coefficient"] == pytest.approx(0.3, 1e-6)

@@ -10,6 +10,7 @@ from contactlab.fitting.estimation import Ranked, in_order
 from tests.fitting.impacts import ANGLES, BODIES, scene, table
 from tests.fitting.made_fit import made
 from tests.laws.outside_laws import Walton
+from tests.longer import longer
 
 SLIPPING = np.array([45.0, 50.0, 55.0, 60.0, 65.0, 70.0])
 SLOPE = 1.0 / np.tan(np.radians(SLIPPING))
@@ -51,7 +52,7 @@ def test_errors_and_correlation_of_two_parameters(stated):
 
 @pytest.mark.parametrize(
     ("after", "kept"),
-    [(99, False), (100, True), pytest.param(101, True, marks=pytest.mark.slow)],
+    [(99, False), (100, True), *longer((101, True))],
 )
 def test_an_interruption_keeps_a_hundred_samples_or_none(after, kept):
     def progress(done, total):

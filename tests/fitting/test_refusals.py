@@ -9,6 +9,7 @@ from contactlab import Scene, Simulation, fit
 from contactlab.fitting import read_measurements
 from contactlab.scene_file import read_scene
 from tests.fitting.impacts import BODIES, restitution, table
+from tests.longer import longer
 
 STEEP = np.array([0.1, 0.2, 0.3, 0.4, 0.5])
 GRAZING = np.array([55.0, 60.0, 65.0, 70.0])
@@ -34,11 +35,9 @@ def refused(measurements, *parameters, **options):
     ("angles", "parameters", "missing"),
     [
         (GRAZING, ["stiffness_ratio"], "stiffness_ratio"),
-        pytest.param(GRAZING, ["friction_coefficient", "stiffness_ratio"], "stiffness_ratio",
-                     marks=pytest.mark.slow),
+        *longer((GRAZING, ["friction_coefficient", "stiffness_ratio"], "stiffness_ratio")),
         (STEEP, ["friction_coefficient"], "friction_coefficient"),
-        pytest.param(STEEP, ["stiffness_ratio", "friction_coefficient"], "friction_coefficient",
-                     marks=pytest.mark.slow),
+        *longer((STEEP, ["stiffness_ratio", "friction_coefficient"], "friction_coefficient")),
     ],
 )  # fmt: skip
 def test_the_measurement_that_is_advised_determines_what_was_not(angles, parameters, missing):

@@ -11,6 +11,7 @@ from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab.compose import sweep as sweeping
 from contactlab.compose.workers import processes
 from tests.laws.random_laws import RandomNormal, RandomStepped, RandomWhole, draws
+from tests.longer import longer
 
 SIZE = 12
 SIMULATIONS = {
@@ -93,9 +94,7 @@ def test_the_draws_are_those_of_seed_and_index():
     np.testing.assert_allclose(-change / batch.slip_velocity, draws(7, np.arange(SIZE)))
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param("normal", marks=pytest.mark.slow), "whole", "stepped"]
-)
+@pytest.mark.parametrize("name", [*longer("normal"), "whole", "stepped"])
 def test_a_sweep_draws_the_same_in_chunks_in_workers_and_after_it_was_ended(
     name, workers, monkeypatch, tmp_path
 ):

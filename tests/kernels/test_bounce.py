@@ -22,6 +22,7 @@ from tests.kernels.test_kernels import (
     needs_c,
     needs_node,
 )
+from tests.longer import longer
 
 #: Encounters of each test; few where contactlab answers without its table.
 COUNT, FEW = 1000, 200
@@ -99,9 +100,7 @@ def gaps(answers, met, made):
 
 
 @pytest.mark.parametrize("wall", [False, True])
-@pytest.mark.parametrize(
-    "gyration", [0.4**0.5, (2.0 / 3.0) ** 0.5, pytest.param(0.55, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("gyration", [0.4**0.5, (2.0 / 3.0) ** 0.5, *longer(0.55)])
 def test_from_the_table_it_is_collide_to_a_millionth(bounced, wall, gyration):
     rows, met, made = rows_and_laws(3, wall, gyration)
     chi = met.scene.chi if made.collided.all() else met.take(made.collided).scene.chi

@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 import contactlab
 from tests.kernels.motions import by_the_law, by_vectors, sliding, wandering, write
+from tests.longer import longer
 
 HERE = Path(__file__).parent
 KERNELS = Path(str(resources.files("contactlab").joinpath("kernels")))
@@ -154,8 +155,7 @@ def test_a_turn_of_the_normal_keeps_the_force(words, across, tmp_path):
 @pytest.mark.parametrize(
     ("column", "value"), [("unit", 0.0), ("unit", -0.7), ("unit", np.inf), ("unit", 5e-324),
                           ("modulus", 0.0), ("modulus", -1.0), ("limit", -1e-3), ("springs", 7),
-                          pytest.param("unit", np.nan, marks=pytest.mark.slow),
-                          pytest.param("modulus", np.nan, marks=pytest.mark.slow)]
+                          *longer(("unit", np.nan), ("modulus", np.nan))]
 )  # fmt: skip
 def test_what_is_no_contact_is_nan_or_refused(words, column, value, tmp_path):
     rows, _, _ = sliding(1, 101)
@@ -281,8 +281,7 @@ def test_it_is_c_plus_plus_too(tmp_path):
 
 @needs_node
 @pytest.mark.parametrize(
-    ("psi1", "chi"), [(0.5, 1.18), pytest.param(1.2, 49.0 / 34.0, marks=pytest.mark.slow),
-                      pytest.param(3.0, 1.75, marks=pytest.mark.slow), (8.0, 1.44)]
+    ("psi1", "chi"), [(0.5, 1.18), *longer((1.2, 49.0 / 34.0), (3.0, 1.75)), (8.0, 1.44)]
 )  # fmt: skip
 def test_one_impact_in_javascript(psi1, chi):
     words = [NODE, HERE / "drive.mjs", KERNELS / "contactlab_bounce.mjs", "impact"]

@@ -1,17 +1,17 @@
 """What tests of normal laws share: a steel ball, its restitution, psi2 by springs."""
 
 import numpy as np
-import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab.compose.normal_motion import normal_motion
+from tests.longer import longer
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
 #: Restitutions over the range that laws are calibrated in.
 CALIBRATED = (
     *(0.05, 0.999, 1.0),
-    *(pytest.param(e, marks=pytest.mark.slow) for e in (0.1, 0.3, 0.5, 0.7, 0.9, 0.99)),
+    *longer(0.1, 0.3, 0.5, 0.7, 0.9, 0.99),
 )
 
 

@@ -8,6 +8,7 @@ from contactlab_laws.annulus import step, tables
 from contactlab_laws.march.division import endpoints
 from tests.laws import plain
 from tests.laws.exact_laws import CHI, grid, marched_change, order, rms, simulation
+from tests.longer import longer
 
 
 def impact(psi1, chi, annuli, steps, *, history=False, integrator="paper"):
@@ -15,8 +16,8 @@ def impact(psi1, chi, annuli, steps, *, history=False, integrator="paper"):
     return sim.run(Scene.nondimensional(psi1=psi1, chi=chi), history=history).check()
 
 
-@pytest.mark.parametrize("chi", [0.4, CHI, 3.0, pytest.param(1.0, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("psi1", [0.1, 1.2, 2.6, pytest.param(0.7, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("chi", [0.4, CHI, 3.0, *longer(1.0)])
+@pytest.mark.parametrize("psi1", [0.1, 1.2, 2.6, *longer(0.7)])
 def test_equations_30_to_37(psi1, chi):
     """psi2 and the force at every step, to 1e-9."""
     steps, annuli = 300, 30

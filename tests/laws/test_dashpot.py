@@ -9,6 +9,7 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab_laws.dashpot.oscillator import damping_of
 from tests.laws.by_hand import rebound
 from tests.laws.normal_impacts import psi2, scene
+from tests.longer import longer
 
 POWERS = {"linear": (1.0, 0.0), "tsuji": (1.5, 0.25)}
 #: psi2 under Tsuji's law by springs, which above psi1 = 1 are not Coulomb's law, converged to 5e-7:
@@ -53,9 +54,7 @@ def test_damping_is_that_of_the_literature(beta):
     assert damping_of(float(schwager_poeschel(beta))) == pytest.approx(beta, rel=1e-10)
 
 
-@pytest.mark.parametrize(
-    "e", [0.05, 0.5, 1.0, *(pytest.param(e, marks=pytest.mark.slow) for e in (0.135, 0.9, 0.9999))]
-)
+@pytest.mark.parametrize("e", [0.05, 0.5, 1.0, *longer(0.135, 0.9, 0.9999)])
 @pytest.mark.parametrize("name", POWERS)
 def test_closed_form_is_what_respond_gives(name, e):
     """Everything that a motion says, against the solver of any normal law."""

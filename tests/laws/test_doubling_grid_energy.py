@@ -8,6 +8,7 @@ import pytest
 import contactlab
 from contactlab import Scene, Simulation
 from contactlab_laws.springs.doubling import Memory, fitted, moved
+from tests.longer import longer
 
 #: Steps from one random knot to the next.
 STEPS = 64
@@ -49,7 +50,7 @@ def through(knots):
 
 @pytest.mark.parametrize(
     ("springs", "items"),
-    [(4, 3_000), *(pytest.param(each, 10_000, marks=pytest.mark.slow) for each in (4, 8))],
+    [(4, 3_000), *longer((4, 10_000), (8, 10_000))],
 )
 def test_no_random_path_gains_energy(springs, items):
     """Of paths through random slips and loads, many of them light, from rest."""
@@ -78,7 +79,7 @@ def gains_of_cycles(springs, weight=None):
     return -np.diff(ends, axis=0)[2:].min(axis=0)
 
 
-@pytest.mark.parametrize("springs", [4, 8, pytest.param(16, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("springs", [4, 8, *longer(16)])
 def test_no_cyclic_path_gains_energy(springs):
     assert gains_of_cycles(springs).max() <= 1e-12
 

@@ -105,7 +105,7 @@ def test_the_limit_of_many_swings_takes_more_steps(chi, bound):
     assert error.max() < bound
 
 
-@pytest.mark.parametrize("poisson", [0.3, pytest.param(0.5, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("poisson", [0.3, *longer(0.5)])
 def test_like_bodies(poisson):
     scene = Scene.nondimensional(psi1=LIKE, chi=CHI, poisson_ratio=poisson)
     result = simulation().run(scene)

@@ -7,6 +7,7 @@ import contactlab
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.impact.hertz import hertz_scales
 from tests.laws.normal_impacts import CALIBRATED, psi2, restitution, scene
+from tests.longer import longer
 
 CHI = 49 / 34
 
@@ -18,7 +19,7 @@ def thornton(ratio):
     return np.sqrt(6.0 * np.sqrt(3.0) / 5.0) * np.sqrt(1.0 - r**2 / 6.0) * share**0.25
 
 
-RATIOS = [1e-4, 0.1, 0.999, *(pytest.param(r, marks=pytest.mark.slow) for r in (1e-2, 0.5, 0.9))]
+RATIOS = [1e-4, 0.1, 0.999, *longer(1e-2, 0.5, 0.9)]
 
 
 @pytest.mark.parametrize("ratio", RATIOS)

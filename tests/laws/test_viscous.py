@@ -9,6 +9,7 @@ from contactlab_laws.kuwabara_kono import viscosity_number
 from tests.laws.by_hand import rebound
 from tests.laws.exact_laws import order
 from tests.laws.normal_impacts import CALIBRATED, psi2, restitution, scene
+from tests.longer import longer
 
 SPEEDS = np.array([1e-3, 1.0, 30.0])
 CHI = 49 / 34
@@ -23,7 +24,7 @@ def test_calibrated_restitution_at_any_speed(name, e):
 
 INTEGRATED = [
     *((number, "DOP853") for number in (0.01, 0.1, 1.0)),
-    pytest.param(0.3, "Radau", marks=pytest.mark.slow),
+    *longer((0.3, "Radau")),
 ]
 
 
@@ -81,9 +82,7 @@ def test_gross_slip_over_hunt_and_crossley_is_exact(e):
     assert found == pytest.approx(psi1 - 2.0 * CHI * (1.0 + e), abs=1e-8)
 
 
-@pytest.mark.parametrize(
-    ("e", "bound"), [(0.95, 0.05), pytest.param(0.9, 0.1, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("e", "bound"), [(0.95, 0.05), *longer((0.9, 0.1))])
 def test_gross_slip_over_viscoelastic_contact_is_reached_asymptotically(e, bound):
     """Stuck until zeta = 1.5 A/(psi - 1): psi2 is more by (2/3) chi (1.5 A)^2.5/(psi1 - 1)^1.5.
 

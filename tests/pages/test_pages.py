@@ -19,6 +19,7 @@ from contactlab.figures import animation
 from contactlab.figures.animation_panels import in_contact
 from contactlab.figures.stick_slip import STATES
 from contactlab.pages.explore import explore_page
+from tests.longer import longer
 
 
 def first_values(page):
@@ -179,7 +180,7 @@ def test_a_result_without_history_cannot_be_animated(tmp_path):
 
 @pytest.mark.parametrize(
     ("end", "begins"),
-    [("png", b"\x89PNG"), ("svg", b"<?xml"), pytest.param("pdf", b"%PDF", marks=pytest.mark.slow)],
+    [("png", b"\x89PNG"), ("svg", b"<?xml"), *longer(("pdf", b"%PDF"))],
 )
 def test_pictures_of_any_form_are_the_same_twice(run, ball, tmp_path, end, begins):
     one, other = (tmp_path / f"{name}.{end}" for name in ("one", "other"))

@@ -39,6 +39,7 @@ from contactlab.study.stability_judge import (
 )
 from contactlab.study.stability_references import continuum, itself, reference_for, rigid
 from tests.laws.outside_laws import RescaledSpring
+from tests.longer import longer
 
 CHI = 49 / 34
 HERTZ = contactlab.create("normal.hertz")
@@ -134,9 +135,7 @@ def test_a_law_that_is_right_is_let_pass(psi1):
     assert outcome.error < outcome.bound < 0.02
 
 
-@pytest.mark.parametrize(
-    "factor", [*(pytest.param(n, marks=pytest.mark.slow) for n in (-1.0, 0.0, 1.6)), 0.6]
-)
+@pytest.mark.parametrize("factor", [*longer(-1.0, 0.0, 1.6), 0.6])
 def test_a_law_that_is_wrong_is_found(factor):
     outcome = judged(Spoiled(factor=factor))
     assert outcome.outcome == WRONG
