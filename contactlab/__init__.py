@@ -41,7 +41,8 @@ from typing import TYPE_CHECKING, Any
 from contactlab.numeric.names import imported_on_use
 
 if TYPE_CHECKING:
-    from contactlab.compose.collision import Collision, collide
+    from contactlab.compose.collide import collide
+    from contactlab.compose.collision import Collision
     from contactlab.compose.load_path import load_path
     from contactlab.compose.loading import hookimpl
     from contactlab.compose.rebound import rebound
@@ -52,7 +53,6 @@ if TYPE_CHECKING:
     from contactlab.impact import material as materials
     from contactlab.impact import shapes
     from contactlab.impact.bodies import HalfSpace, Sphere
-    from contactlab.impact.eccentric import EccentricScene
     from contactlab.impact.encounter import Encounter
     from contactlab.impact.material import Material
     from contactlab.impact.rigid_body import RigidBody
@@ -66,7 +66,6 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Collision",
-    "EccentricScene",
     "Encounter",
     "EnergyLedger",
     "HalfSpace",
@@ -117,7 +116,6 @@ def create(name: str, **options: Any) -> Any:
 #: Where the public names are: ``import contactlab`` imports none of them.
 MODULES = {
     "Collision": "compose.collision",
-    "EccentricScene": "impact.eccentric",
     "Encounter": "impact.encounter",
     "EnergyLedger": "outcome.energy",
     "HalfSpace": "impact.bodies",
@@ -130,7 +128,7 @@ MODULES = {
     "Simulation": "compose.simulation",
     "Sphere": "impact.bodies",
     "Status": "contracts.status",
-    "collide": "compose.collision",
+    "collide": "compose.collide",
     "fit": "fitting",
     "hookimpl": "compose.loading",
     "load_path": "compose.load_path",

@@ -14,10 +14,9 @@ import argparse
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_scene, inputs
-from contactlab.compose.body_collision import BodyCollision
+from contactlab.compose.collision import Collision
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.body_contact import frame
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.rigid_body import RigidBody
 
@@ -39,7 +38,7 @@ def execute(arguments: argparse.Namespace) -> int:
     file, scene, simulation = inputs(arguments)
     if scene.shape:
         raise ValueError("scene: must be a single impact, not a sweep; leave out [sweep]")
-    if isinstance(scene, EccentricScene):
+    if scene.inverse_mass is not None:
         return _bodies(arguments, None if file is None else file.encounter, simulation)
     with shared.working(arguments.progress, "frames") as progress:
         result = simulation.run(scene, history="fields").check()
@@ -65,14 +64,14 @@ def _bodies(
     with shared.working(arguments.progress, "frames") as progress:
         result = simulation.run(encounter.scene, history=True).check()
         collisions = {
-            GHOST_NAMES.get(name, name): BodyCollision.of(
+            GHOST_NAMES.get(name, name): Collision.of(
                 encounter, Simulation(tangential=name).run(encounter.scene).check()
             )
             for name in arguments.ghost
         }
         from contactlab.figures.body_animation import animate_bodies  # matplotlib only here
 
-        whole = BodyCollision.of(encounter, result)
+        whole = Collision.of(encounter, result)
         axes = frame(encounter).axes
         animate_bodies(arguments.out, whole, axes, ghosts=collisions, progress=progress)
     print(arguments.out)

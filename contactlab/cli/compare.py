@@ -26,13 +26,10 @@ from pathlib import Path
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.cli import bodies
 from contactlab.cli.scene import add_ranges, check_alone
-from contactlab.compose.eccentric import preferred
 from contactlab.compose.names import KINDS, full_name, kind_of, short_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
 from contactlab.outcome.columns import json_value, quantity_named
@@ -89,20 +86,21 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.measured and not arguments.scene:
         raise ValueError("--measured: needs a SCENE.toml with the bodies of the experiment")
     file = _file(arguments)
-    eccentric = isinstance(file.scene, EccentricScene)
-    if not eccentric:
+    coupled = file.scene.inverse_mass is not None
+    if not coupled:
         file = shared.measured(arguments, file)
     if arguments.all:
         compared = _all(arguments, file)
     else:
-        law = file.laws.fit_for(file.scene).resolved().tangential
-        others = DEFAULT_LAWS[1:] if eccentric else DEFAULT_LAWS
+        law = file.laws.suited_to(file.scene).tangential
+        others = DEFAULT_LAWS[1:] if coupled else DEFAULT_LAWS
         arguments.tangential = arguments.tangential or list(dict.fromkeys([law, *others]))
         compared = simulations(arguments, file.laws)
-    if eccentric:
-        first = preferred(file.scene)["tangential"]
-        order = sorted(compared, key=lambda name: name != first)
-        return bodies.compare(arguments, file, {name: compared[name] for name in order})
+    refused: list[str] = []
+    if coupled:
+        first = file.laws.suited_to(file.scene).tangential
+        names = sorted(compared, key=lambda name: name != first)
+        compared = _answering(file.scene, {name: compared[name] for name in names}, refused)
     with shared.progress(arguments.progress, "runs") as progress:
         comparison = compare(
             file,
@@ -130,7 +128,7 @@ def execute(arguments: argparse.Namespace) -> int:
         print(side_by_side.describe_scores(scores(comparison, compared), comparison, file))
     else:
         print(side_by_side.describe(comparison, quantities, file))
-    failures = comparison.failures()
+    failures = [*refused, *comparison.failures()]
     for sentence in failures:
         print(f"contactlab compare: failed: {sentence}", file=sys.stderr)
     if comparison.interrupted:
@@ -138,6 +136,22 @@ def execute(arguments: argparse.Namespace) -> int:
         print(f"contactlab compare: interrupted: not compared: {left}", file=sys.stderr)
         return shared.INTERRUPTED
     return shared.FAILED if failures else saved
+
+
+def _answering(
+    scene: Scene, compared: dict[str, Simulation], refused: list[str]
+) -> dict[str, Simulation]:
+    """Return the simulations that have an answer; add why the others have none to ``refused``."""
+    answering = {}
+    for name, simulation in compared.items():
+        try:
+            simulation.laws.accept(scene)
+            answering[name] = simulation
+        except ValueError as error:
+            refused.append(f"{name}: {error}")
+    if not answering:
+        raise ValueError(refused[0])
+    return answering
 
 
 def _file(arguments: argparse.Namespace) -> SceneFile:
@@ -190,7 +204,7 @@ def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation
         if path.count(".") < 2 and kind_of(path) != "normal":
             example = "--set integrator.symplectic.steps=400"
             raise ValueError(f"--set {path}: with --all name one law, such as {example}")
-    if not file.scene.shape and isinstance(file.scene, Scene):
+    if not file.scene.shape and file.scene.inverse_mass is None:
         raise ValueError(
             f"{file.path}: --all compares over a sweep; a file needs [sweep], and "
             "--psi1 a range START:STOP:COUNT"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from contactlab.compose.body_collision import BodyCollision
 from contactlab.compose.collision import VECTORS_AFTER, Collision
 from contactlab.compose.planning import ADVICE
 from contactlab.impact.scene import entry_unit
@@ -20,7 +19,7 @@ def describe(
     *,
     title: str,
     varied: Mapping[str, Any],
-    collision: Collision | BodyCollision | None,
+    collision: Collision | None,
 ) -> str:
     """Return the report of one impact or a sweep, with vectors if ``collision`` is given."""
     plan = result.plan
@@ -42,14 +41,13 @@ def describe(
     return "\n\n".join(part for part in parts if part)
 
 
-def in_space(collision: Collision | BodyCollision) -> str:
+def in_space(collision: Collision) -> str:
     """Return a table with the vectors of both bodies and the impulse."""
     rows = []
     for name, unit in VECTORS_AFTER:
-        if hasattr(collision, name):  # bodies that are no spheres have no contact velocities
-            before = getattr(collision.encounter, name, None)
-            shown = "" if before is None else _vector(before)
-            rows.append([name.replace("_", " "), shown, _vector(getattr(collision, name)), unit])
+        before = getattr(collision.encounter, name, None)
+        shown = "" if before is None else _vector(before)
+        rows.append([name.replace("_", " "), shown, _vector(getattr(collision, name)), unit])
     return table(["in space", "before", "after", "unit"], rows)
 
 

@@ -45,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the figures and print their paths."""
-    simulation = composed(arguments, LawChoice(tangential="annulus", integrator="paper"), None)
+    simulation = composed(arguments, LawChoice(tangential="annulus", integrator="paper"))
     try:
         arguments.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:

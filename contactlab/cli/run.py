@@ -19,16 +19,11 @@ from pathlib import Path
 from typing import Any
 
 from contactlab.cli import arguments as shared
-from contactlab.cli import bodies
 from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, inputs
-from contactlab.compose.body_collision import BodyCollision
 from contactlab.compose.collision import Collision
-from contactlab.impact.eccentric import EccentricScene
-from contactlab.impact.scene import entry_unit
 from contactlab.outcome import export
 from contactlab.outcome.columns import json_value
-from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.export import WRITERS
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
@@ -57,9 +52,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Run and report; the status is 1 if an impact failed."""
     file, scene, simulation = inputs(arguments)
-    eccentric = isinstance(scene, EccentricScene)
-    if eccentric and arguments.stick_slip:
-        raise ValueError("--stick-slip: is for impacts of spheres; leave out --stick-slip")
     for name in ("history", "stick_slip"):
         if getattr(arguments, name) and scene.shape:
             option = name.replace("_", "-")
@@ -81,33 +73,25 @@ def execute(arguments: argparse.Namespace) -> int:
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.history, lambda path: export.write_history_csv(result, path)),
-        (arguments.figure, lambda path: draw(path, result, varied, **shared.look(arguments))),
+        (arguments.figure, lambda path: draw(path, result, **shared.look(arguments))),
         (arguments.stick_slip, lambda path: draw_map(path, result, **shared.look(arguments))),
         progress_wanted=arguments.progress,
         interrupted=was_interrupted(result),
     )
     encounter = file.encounter if file else None
-    of_bodies = encounter is not None and not encounter.of_spheres
-    kind: Any = BodyCollision if of_bodies else Collision
-    collision = None if encounter is None else kind.of(encounter, result)
+    collision = None if encounter is None else Collision.of(encounter, result)
     if not arguments.json:
         title = file.title if file else ""
-        words = bodies.describe if eccentric else describe
-        print(words(result, title=title, varied=varied, collision=collision))
+        print(describe(result, title=title, varied=varied, collision=collision))
     status = report(result, as_json=arguments.json, varied=varied, collision=collision)
     return max(saved, status)
 
 
-def draw(path: Path, result: Any, varied: Mapping[str, Any], **look: Any) -> None:
+def draw(path: Path, result: Any, **look: Any) -> None:
     """Draw a result with its ``plot``; ``look`` as in ``arguments.look``."""
     from contactlab.figures.files import save  # matplotlib only when drawing
-    from contactlab.figures.style import label
 
-    over = {}
-    if varied and isinstance(result, EccentricResult):  # over the first entry that varies
-        name, values = next(iter(varied.items()))
-        over = {"x": (label(name, entry_unit(name)), values)}
-    save(path, lambda axes: result.plot(axes=axes, **over), **look)
+    save(path, lambda axes: result.plot(axes=axes), **look)
 
 
 def draw_map(path: Path, result: ImpactResult, **look: Any) -> None:
@@ -123,7 +107,7 @@ def report(
     *,
     as_json: bool,
     varied: Mapping[str, Any],
-    collision: Collision | BodyCollision | None = None,
+    collision: Collision | None = None,
 ) -> int:
     """Print JSON if ``as_json``, report failures on stderr, and return the exit status."""
     if as_json:

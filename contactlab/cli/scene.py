@@ -78,15 +78,14 @@ def inputs(arguments: argparse.Namespace) -> Inputs:
     """Return the scene and the simulation of the arguments."""
     file = read_scene(arguments.scene) if arguments.scene else None
     scene = _scene(arguments, file)
-    return Inputs(file, scene, composed(arguments, file.laws if file else LawChoice(), scene))
+    return Inputs(file, scene, composed(arguments, file.laws if file else LawChoice()))
 
 
-def composed(arguments: argparse.Namespace, choice: LawChoice, scene: Any) -> Simulation:
+def composed(arguments: argparse.Namespace, choice: LawChoice) -> Simulation:
     """Return the laws of ``choice``, replaced by the laws and options of the arguments."""
     choice = choice.choose(
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )
-    choice = choice.fit_for(scene)
     return choice.set(dict(arguments.settings)).simulation()
 
 

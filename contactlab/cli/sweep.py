@@ -21,14 +21,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.cli import bodies
 from contactlab.cli.run import draw, report
 from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import COLUMNS, csv_heading
-from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.export import WRITERS
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import evenly, sweep_section
@@ -68,9 +65,11 @@ def execute(arguments: argparse.Namespace) -> int:
     scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
     if not scene.shape:
         raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
-    if arguments.csv and isinstance(scene, EccentricScene):
-        raise ValueError("--csv: is for impacts of spheres; take --out FILE.csv")
-    simulation = composed(arguments, file.laws if file else LawChoice(), scene)
+    if arguments.csv and scene.slip_axes:
+        raise ValueError(
+            "--csv: is for slip along a line, here it is a vector; take --out FILE.csv"
+        )
+    simulation = composed(arguments, file.laws if file else LawChoice())
     keep = _folder(arguments.out) if arguments.resume else None
     before = 0 if keep is None else _done(keep)
     with (
@@ -84,13 +83,13 @@ def execute(arguments: argparse.Namespace) -> int:
     varied = file.varied if file else {}
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
-        (arguments.figure, lambda path: draw(path, result, varied, **shared.look(arguments))),
+        (arguments.figure, lambda path: draw(path, result, **shared.look(arguments))),
         progress_wanted=arguments.progress,
         interrupted=was_interrupted(result),
     )
     if keep is not None and saved == shared.OK:
         _clear(keep, result)
-    if arguments.csv and isinstance(result, ImpactResult):
+    if arguments.csv:
         units = {column.name: column.unit for column in COLUMNS}
         print(",".join(csv_heading(name, units[name], result.scene) for name in SHOWN))
         for psi1, chi, psi2, status in _rows(result):
@@ -100,14 +99,10 @@ def execute(arguments: argparse.Namespace) -> int:
     return max(saved, report(result, as_json=arguments.json, varied=varied))
 
 
-def _print_table(
-    result: ImpactResult | EccentricResult, varied: Mapping[str, Any], out: Path | None
-) -> None:
+def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | None) -> None:
     """Print one row for each impact; evenly spread rows if a file ``out`` holds all."""
     most = None if out is None else MOST_ROWS
-    if isinstance(result, EccentricResult):
-        print(bodies.sweep_table(result, varied, most=most))
-    elif varied:
+    if varied:
         shown = {name: (entry_unit(name), values) for name, values in varied.items()}
         print(table(*sweep_section(result, shown, most=most)))
     else:

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from contactlab.contracts import faults
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.error_model import psi_magnitude
-from contactlab.contracts.integrator import Observer, Sample
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
+from contactlab.contracts.tangential_motion import Observer, Sample
 from contactlab.contracts.whole_impact import WholeImpact
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked

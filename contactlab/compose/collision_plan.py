@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.compose.rebound import damped_error
+from contactlab.impact.cautions import contact_vectors
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import some
 from contactlab.numeric.checks import Real
@@ -15,24 +16,35 @@ from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
 
 PARTED = "collision: the bodies separate, they pass through untouched"
 TURNS = "spin about the normal: friction makes no moment about it, it passes through unchanged"
+STANDS_FOR = (
+    "restitution {:g}: of a frictionless impact on the mass 1/W_nn, Tsuji's law; a body's own V2 "
+    "follows from it"
+)
 #: Spin about the normal over the whole spin below which it is rounding.
 TURNING = 1e-12
 
 
-def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
+def collision_plan(plan: Plan, met: Encounter | None, passed: Any, restitution: Any = 1.0) -> Plan:
     """Return the plan with clauses on separating bodies and on spin about the normal.
 
     ``plan`` is that of the encounters that ``met``, None if no bodies did; ``passed`` marks the
     encounters of the whole batch whose bodies separate.
     """
-    left_out = list(plan.left_out)
+    computed, left_out, cautions = list(plan.computed), list(plan.left_out), list(plan.cautions)
+    if met is not None and not met.of_spheres:
+        everywhere = np.ones(met.shape, dtype=bool)
+        damped = np.broadcast_to(np.asarray(restitution) < 1.0, met.shape)
+        if damped.any():
+            computed.append(Clause(STANDS_FOR, damped, (np.broadcast_to(restitution, met.shape),)))
+        cautions += [Clause(text, everywhere) for text in contact_vectors(met)]
     if met is not None:
         turning = np.array(np.broadcast_to(_turns(met), met.shape))
         if turning.any():
             left_out.append(Clause(TURNS, turning))
     if passed.any():
         left_out.append(Clause(PARTED, passed))
-    return plan.changed(left_out=tuple(left_out))
+    kinds = {"computed": computed, "left_out": left_out, "cautions": cautions}
+    return plan.changed(**{kind: tuple(clauses) for kind, clauses in kinds.items()})
 
 
 def by_rebound(plan: Plan, chi: Any, restitution: Real) -> Plan:
@@ -59,8 +71,7 @@ def by_rebound(plan: Plan, chi: Any, restitution: Real) -> Plan:
         if clause.code in said and some(clause.where & unknown):
             text, values = said[clause.code]
             clause = clause._replace(text=text, values=values)
-        # the restitution was given, it is no default
-        computed.append(clause._replace(text=clause.text.partition("; restitution")[0]))
+        computed.append(clause)
     error = np.where(unknown, bound, plan.psi2_error)
     return plan.changed(computed=tuple(computed), psi2_error=error if error.ndim else float(error))
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
+
+import attrs
 
 from contactlab.compose.loading import outdated
-from contactlab.compose.names import full_name
+from contactlab.compose.names import KINDS, full_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.law import Law
@@ -41,8 +43,9 @@ STEPPED = (FIXED_STEPS, "paper")
 ON_A_PATH = "springs"
 #: Rigid bodies, which stiff contacts tend to.
 RIGID = {"tangential": "coulomb"}
-#: Laws of an eccentric impact whose slip turns: in the plane the exact ones answer.
-IN_SPACE = {"tangential": ON_A_PATH, "integrator": FIXED_STEPS}
+#: Laws of impacts in which friction changes the approach: exact in the plane under elastic Hertz
+#: contact, springs otherwise.
+TOGETHER = (EXACT, {"tangential": ON_A_PATH, "integrator": FIXED_STEPS})
 RESTITUTION = {"normal": "tsuji", "tangential": "annulus"}
 #: Contracts of tangential laws that can be run; every law must be derived from one of them.
 WAYS = (SteppedTangentialLaw, PathTangentialLaw, WholeImpactTangentialLaw)
@@ -50,17 +53,86 @@ WAYS = (SteppedTangentialLaw, PathTangentialLaw, WholeImpactTangentialLaw)
 STEPS = {SteppedTangentialLaw}
 
 
-class Laws(NamedTuple):
-    """Three laws that fit together."""
+@attrs.frozen
+class Laws:
+    """Three laws that fit together, and the kinds of those that the user ``named``.
+
+    Iterating yields the laws in the order of their kinds.
+    """
 
     normal: NormalLaw
     tangential: TangentialLaw
     integrator: Integrator
+    named: frozenset[str] = frozenset(KINDS)
+
+    def __iter__(self) -> Iterator[Law]:
+        yield from (self.normal, self.tangential, self.integrator)
+
+    def by_kind(self) -> dict[str, Any]:
+        """Return the laws by kind."""
+        return dict(zip(KINDS, self, strict=True))
 
     def accept(self, scene: Scene) -> None:
-        """Let a law that cannot run the scene refuse it."""
-        for each in self:
-            each.accept(scene)
+        """Refuse a scene that a law cannot run."""
+        for _, part in scene.parts():
+            for each in self.of(part):
+                each.accept(part.central)
+
+    def of(self, part: Scene) -> Laws:
+        """Return the laws of impacts that are solved alike.
+
+        Where friction changes the approach, and a law that nobody named has no answer, another
+        stands in for it.
+
+        Raises
+        ------
+        ValueError
+            If a law that the user named has no answer; the message names laws that have one.
+        """
+        if part.inverse_mass is None:
+            return self
+        refused = _no_answer(self, part.planar)
+        if refused is None:
+            return self
+        for names in TOGETHER:
+            free = {kind: name for kind, name in names.items() if kind not in self.named}
+            other = self.changed(**{kind: law(kind, name) for kind, name in free.items()})
+            if misfit(*other) is None and _no_answer(other, part.planar) is None:
+                return other
+        raise ValueError(f"{refused}; {_remedy(self, part.planar)}")
+
+    def changed(self, **laws: Any) -> Laws:
+        """Return the laws with others of some kinds."""
+        return attrs.evolve(self, **laws)
+
+
+def _no_answer(laws: Laws, planar: bool) -> str | None:
+    """Return why laws have no answer where friction changes the approach; None if they have one."""
+    tangential, integrator = laws.tangential, laws.integrator
+    name, reason = _name(tangential), None
+    stepped = isinstance(tangential, SteppedTangentialLaw)
+    if not (planar or tangential.vectors):
+        reason = "it follows slip along one line"
+    elif tangential.together:
+        return None
+    elif not stepped or tangential.needs_future:
+        reason = "it needs the normal motion before the march"
+    elif not integrator.together:
+        name, reason = _name(integrator), "it follows a normal motion that is known before"
+    if reason is None:
+        return None
+    where = "and slip keeps to a line" if planar else "and slip turns"
+    return f"{name}: has no answer where friction changes the approach {where}: {reason}"
+
+
+def _remedy(laws: Laws, planar: bool) -> str:
+    """Return which laws to take in place of those that have no answer."""
+    for names in TOGETHER:
+        other = laws.changed(**{kind: law(kind, name) for kind, name in names.items()})
+        if misfit(*other) is None and _no_answer(other, planar) is None:
+            words = ", ".join(f"{kind}={name!r}" for kind, name in names.items())
+            return f"take {words}, or leave both out"
+    return f"no law at hand has one beside normal = {_name(laws.normal)}; take another normal law"
 
 
 def law(kind: str, value: object, **options: Any) -> Any:
@@ -113,7 +185,9 @@ def compose(normal: object, tangential: object, integrator: object) -> Laws:
     else:
         second = law("tangential", tangential)
     third = named[0] if named else _preferred("integrator", first, second)[1]
-    laws = Laws(first, second, third)
+    given = {"normal": normal, "tangential": tangential, "integrator": integrator}
+    chosen = frozenset(kind for kind, value in given.items() if value is not None)
+    laws = Laws(first, second, third, chosen)
     if (complaint := misfit(*laws)) is not None:
         raise ValueError(complaint + _would_fit(laws))
     return laws
@@ -198,9 +272,9 @@ def _would_fit(laws: Laws) -> str:
     """Return a phrase that names the laws that would fit in place of one of the three."""
     names = [
         name
-        for kind in laws._fields
+        for kind in KINDS
         for name, candidate in _candidates(kind)
-        if _fits(*laws._replace(**{kind: candidate}))
+        if _fits(*laws.changed(**{kind: candidate}))
     ]
     return f"; these would fit: {', '.join(names)}" if names else "; no law at hand fits"
 

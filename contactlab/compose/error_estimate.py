@@ -1,4 +1,4 @@
-"""An estimate of the numerical error of psi2, for any laws, from answers at finer resolutions."""
+"""Estimates of the numerical errors of an answer, for any laws, from finer resolutions."""
 
 from __future__ import annotations
 
@@ -7,15 +7,16 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.compose import eccentric, solve
+from contactlab.compose import solve
 from contactlab.compose.composition import Laws
+from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.planning import CLOSED_FORM
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.status import Status
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
-from contactlab.outcome.answer import RunResult
+from contactlab.outcome.motion import Motion
+from contactlab.outcome.result import ImpactResult
 
 #: A single count is multiplied by the first factor and by its square, several counts together, or
 #: one that a law accepts no further, by the second: the finest run costs about sixteen times the
@@ -29,50 +30,61 @@ TOLERANCE = 4.0
 LEFT = 0.5, 1.0
 
 
-def estimated(laws: Laws, result: RunResult) -> Real:
-    """Return the estimated numerical error of psi2 of a result, of the scene's shape.
+def estimated(laws: Laws, result: ImpactResult) -> tuple[Real, Real]:
+    """Return the estimated numerical errors of psi2 and of the normal restitution of a result.
 
-    In space the error of psi2 is the length of a vector.
+    Both have the scene's shape. In space the error of psi2 is the length of a vector.
 
     Each impact is run again at two finer resolutions of all laws that have a resolution: normal
-    law, tangential law and, if the impact is marched, integrator. The estimate is the distance of
-    psi2 from the finest answer, plus what the finest leaves by the ratio of the two changes, at
-    least half the last change, and no less than rounding. If a tightened tolerance cannot be
-    kept, the tolerance stays, and the estimate leaves out the error in time. The estimate never
-    includes errors of the model. If the answers do not differ, or no law has a finer resolution,
-    the estimate is what the plan declares. NaN where a run failed, and where nothing is declared
-    and no resolution shows an error.
+    law, tangential law and, if the impact is marched, integrator. The estimate is the distance from
+    the finest answer, plus what the finest leaves by the ratio of the two changes, at least half
+    the last change, and no less than rounding. If a tightened tolerance cannot be kept, the
+    tolerance stays, and the estimate leaves out the error in time. The estimate never includes
+    errors of the model. If the answers do not differ, or no law has a finer resolution, the
+    estimate is what the plan declares. NaN where a run failed, and where nothing is declared and
+    no resolution shows an error.
     """
-    scene = result.scene
-    successes = _successes(result.status)
-    error = np.where(successes, result.plan.psi2_error, np.nan)
-    marched = successes & result.plan.marched
-    if isinstance(scene, EccentricScene):
-        marched = successes  # an answer as a whole has the accuracy of its integrator
-    resolutions = np.where(marched, _resolution(laws, scene) if np.any(marched) else 0.0, np.nan)
-    change = np.asarray(result.motion.slip_velocity_change)
+    scene, plan, motion = result.scene, result.plan, result.motion
+    errors = np.array(np.broadcast_arrays(plan.psi2_error, plan.restitution_error))
+    errors = np.where(_successes(result.status), np.broadcast_to(errors, (2, *scene.shape)), np.nan)
+    answer, successes = _answer(scene, motion), _successes(result.status)
+    for where, part in scene.parts():
+        ended, marched = successes[where], plan.marched[where]
+        if part.inverse_mass is not None:
+            marched = ended  # an answer as a whole has the accuracy of its integrator
+        mine = errors[:, where]
+        parts = answer[:, where], ended & marched, ended & ~marched
+        _fill(laws.of(part), scene.take(where), part, mine, *parts)
+        errors[:, where] = mine
+    psi2, restitution = (each if each.ndim else float(each) for each in errors)
+    return psi2, restitution
+
+
+def _fill(
+    laws: Laws, scene: Scene, part: Scene, errors: Any, answer: Any, marched: Any, left: Any
+) -> None:
+    """Write the errors of impacts that are solved alike, by the resolution that each has."""
+    resolutions = np.full(scene.shape, np.nan)
+    if np.any(marched):
+        resolutions = np.where(marched, _resolution(laws, part), np.nan)
     # not np.unique, which imports numpy.ma
     for resolution in [*sorted(set(resolutions[marched].tolist())), None]:
-        where = successes & ~marched
-        if resolution is not None:
-            where = marched & (resolutions == resolution)
+        where = left if resolution is None else marched & (resolutions == resolution)
         if np.any(where):
-            part = scene.take(where) if scene.shape else scene
-            distance = _distance(laws, part, resolution, change[where])
-            error[where] = np.where(distance == 0.0, error[where], distance)
-    return error if error.ndim else float(error)
+            place: Any = where if scene.shape else ...
+            distance = _distance(laws, scene.take(place), resolution, answer[:, place])
+            errors[:, place] = np.where(distance == 0.0, errors[:, place], distance)
 
 
-def _resolution(laws: Laws, scene: Any) -> Any:
+def _resolution(laws: Laws, scene: Scene) -> Any:
     """Return the resolution of the integrator for each impact; 0 if it has none."""
-    central = _central(scene)
-    normal = solve.normal_or_failed(laws, central)
-    resolution = laws.integrator.resolution_for(normal, laws.tangential, central)
+    normal = normal_or_failed(laws.normal, scene.central)
+    resolution = laws.integrator.resolution_for(normal, laws.tangential, scene)
     return np.broadcast_to(resolution, scene.shape)
 
 
-def _distance(laws: Laws, scene: Any, resolution: float | None, change: Any) -> Any:
-    """Return the estimated error of psi2; 0 where no finer run is possible."""
+def _distance(laws: Laws, scene: Scene, resolution: float | None, answer: Any) -> Any:
+    """Return the estimated errors, shape (2, ...); 0 where no finer run is possible."""
     options = _options(laws, resolution)
     counts = {kind: value for kind, value in options.items() if isinstance(value, int)}
     factor = SINGLE_COUNT if len(options) == len(counts) == 1 else SEVERAL_COUNTS
@@ -82,52 +94,50 @@ def _distance(laws: Laws, scene: Any, resolution: float | None, change: Any) -> 
     refined = {times: _finer(laws, options, times) for times in (factor, factor**2)}
     for times, finer in refined.items():
         if finer is None or refined[factor**2] is None:
-            return np.zeros(scene.shape)
-        answer = _change(finer, scene)
+            return np.zeros((2, *scene.shape))
+        found = _again(finer, scene)
         with_tolerance = _finer(laws, counts, times) if counts else None
-        if with_tolerance is not None and np.isnan(answer).any():  # it cannot be tightened
-            answer = np.where(np.isnan(answer), _change(with_tolerance, scene), answer)
-        answers.append(answer)
+        if with_tolerance is not None and np.isnan(found).any():  # it cannot be tightened
+            found = np.where(np.isnan(found), _again(with_tolerance, scene), found)
+        answers.append(found)
     fine, finest = answers
     last, before, all_of = (
-        _size(scene, each) for each in (finest - fine, fine - change, finest - change)
+        np.abs(each) for each in (finest - fine, fine - answer, finest - answer)
     )
     # by a ratio, if the answers converge; steps of a tolerance fall by none
     falls = (before > last) & (len(options) == len(counts))
     ratio = last / np.where(falls, before - last, 1.0)
     left = np.where(falls, np.clip(ratio, *LEFT), LEFT[0])
-    central = _central(scene)
-    distance = central.psi(all_of + left * last)
-    return np.where(
-        distance > 0.0, np.maximum(distance, CLOSED_FORM * psi_magnitude(central)), distance
+    distance = all_of + left * last
+    central = scene.central
+    distance[0] = central.psi(distance[0])
+    distance[1] = distance[1] / scene.normal_speed
+    least = CLOSED_FORM * np.stack(
+        np.broadcast_arrays(psi_magnitude(central), np.ones(scene.shape))
     )
+    return np.where(distance > 0.0, np.maximum(distance, least), distance)
 
 
-def _change(laws: Laws, scene: Any) -> Any:
-    """Return the change of slip velocity in m/s; NaN where the run failed."""
-    if isinstance(scene, EccentricScene):
-        return eccentric.run(laws, scene, None).slip_velocity_change
+def _again(laws: Laws, scene: Scene) -> Any:
+    """Return the answer of finer laws, NaN where the run failed."""
     _, motion = solve.outcome(laws, scene, False, None)
-    return np.where(_successes(motion.status), motion.slip_velocity_change, np.nan)
+    answer = _answer(scene, motion)
+    return np.where(_successes(motion.status), answer, np.nan)
 
 
-def _central(scene: Any) -> Scene:
-    """Return a central scene as it is; of an eccentric one the impact with the same approach."""
-    central: Scene = scene.central if isinstance(scene, EccentricScene) else scene
-    return central
-
-
-def _size(scene: Any, change: Any) -> Any:
-    """Return the magnitude of changes of slip velocity, of the scene's shape."""
-    if isinstance(scene, EccentricScene):
-        return np.hypot(change[..., 0], change[..., 1])
-    return np.abs(change)
+def _answer(scene: Scene, motion: Motion) -> Any:
+    """Return slip (as a complex number) and rate of approach after impacts, shape (2, ...)."""
+    change = np.asarray(motion.slip_velocity_change)
+    if scene.slip_axes:
+        change = change[..., 0] + 1j * change[..., 1]
+    rate = np.broadcast_to(motion.normal_velocity, scene.shape)
+    return np.stack((np.broadcast_to(change, scene.shape), rate)).astype(complex)
 
 
 def _options(laws: Laws, resolution: float | None) -> dict[str, Any]:
     """Return the value of each resolution by kind of law; ``resolution`` is the integrator's."""
     options = {}
-    for kind, law in laws._asdict().items():
+    for kind, law in laws.by_kind().items():
         if law.resolution is None or (kind == "integrator" and resolution is None):
             continue
         value = getattr(law, law.resolution)
@@ -145,7 +155,7 @@ def _finer(laws: Laws, options: dict[str, Any], times: int) -> Laws | None:
             changed[kind] = attrs.evolve(law, **{law.resolution: finer})
         except ValueError:  # beyond what the law allows
             return None
-    return laws._replace(**changed) if changed else None
+    return laws.changed(**changed) if changed else None
 
 
 def _successes(status: Any) -> Any:

@@ -26,6 +26,19 @@ VELOCITIES = ("velocity", "spin", "target_velocity", "target_spin")
 Moved: TypeAlias = dict[str, Any]
 
 
+def unmoved(encounter: Encounter) -> Moved:
+    """Return two bodies that passed through, of every encounter of a batch."""
+    shape = encounter.shape
+    vectors = {name: np.broadcast_to(getattr(encounter, name), (*shape, 3)) for name in VELOCITIES}
+    zero: Any = np.zeros(shape) if shape else 0.0
+    return vectors | {
+        "normal_velocity": np.broadcast_to(encounter.meeting().approach, shape) + zero,
+        "slip_velocity_change": zero,
+        "friction_work": zero,
+        "collided": np.zeros(shape, dtype=bool) if shape else False,
+    }
+
+
 def rebounding(
     part: Encounter, contact: Contact, pair: Pair, restitution: Real
 ) -> tuple[Any, Any, Any]:

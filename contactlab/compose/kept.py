@@ -19,7 +19,6 @@ import numpy as np
 from contactlab.compose.composition import Laws
 from contactlab.compose.pieces import Chunk, Piece
 from contactlab.compose.registry import REGISTRY
-from contactlab.contracts.eccentric import EccentricMotion
 from contactlab.contracts.status import Status
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
@@ -41,7 +40,7 @@ class Kept:
             what = "is a link to nothing" if os.path.islink(folder) else "is a file"
             raise refuse("keep", str(folder), what, "name a folder")
         self.folder = Path(folder)
-        by_kind = laws._asdict()
+        by_kind = laws.by_kind()
         about = {
             **{kind: f"{REGISTRY.describe(law)}: {law!r}" for kind, law in by_kind.items()},
             "impacts": scene.shape[0],
@@ -194,9 +193,8 @@ def _name(chunk: Chunk) -> str:
 def _piece(content: Mapping[str, Any]) -> Piece:
     """Return the piece of the arrays that ``_arrays`` made."""
     first, stop = content["place"].tolist()
-    kind: Any = EccentricMotion if "velocity_change" in content else Motion
-    motion = kind(
-        **{name: content[name] for name in kind.numbers()},
+    motion = Motion(
+        **{name: content[name] for name in Motion.numbers()},
         status=np.array([Status[name] for name in content["status"]], dtype=object),
         detail=np.array(content["detail"].tolist(), dtype=object),
         counters=json.loads(str(content["counters"])),

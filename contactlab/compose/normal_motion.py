@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.scaled_normal_law import ScaledNormalLaw
-from contactlab.compose.solved_motion import NODES, MotionTable, SolvedMotion
+from contactlab.compose.solved_motion import NODES, FailedMotion, MotionTable, SolvedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
@@ -65,6 +65,14 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
         return SolvedMotion(law, scene, table)
     with np.errstate(all="ignore"):
         return _Solver(law, scene).solve()
+
+
+def normal_or_failed(law: NormalLaw, scene: Scene) -> NormalMotion:
+    """Return the normal motion of ``scene``; all its values are NaN if the law fails."""
+    try:
+        return normal_motion(law, scene)
+    except faults.LawFaultError as fault:
+        return FailedMotion(law, scene, fault.status, fault.detail)
 
 
 def _common(law: NormalLaw, scene: Scene) -> MotionTable | None:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple
 
-from contactlab.contracts.eccentric import EccentricMotion
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion
@@ -25,22 +23,15 @@ class Chunk(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """The columns of the plan and the motion of a chunk: a Motion, or an EccentricMotion.
-
-    The plan of eccentric impacts has no columns.
-    """
+    """The columns of the plan and the motion of a chunk."""
 
     chunk: Chunk
     columns: PlanColumns
-    motion: Any
+    motion: Motion
 
 
-#: What returns a piece, from laws, the chunk's scene, the chunk, and the impacts of a block.
-Solve: TypeAlias = Callable[[Any, Any, Chunk, int], Piece]
-
-
-def unsolved(chunk: Chunk, scene: Any, status: Status, detail: str = "") -> Piece:
+def unsolved(chunk: Chunk, scene: Scene, status: Status, detail: str = "") -> Piece:
     """Return the piece of a chunk of ``scene`` without answers: every impact has ``status``."""
-    kind: Any = Motion if isinstance(scene, Scene) else EccentricMotion
     shape = (chunk.size,)
-    return Piece(chunk, PlanColumns.nothing(shape), kind.nothing(shape, status, detail))
+    nothing = Motion.nothing(shape, status, detail, axes=scene.slip_axes)
+    return Piece(chunk, PlanColumns.nothing(shape), nothing)

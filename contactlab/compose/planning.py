@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
+from contactlab.compose import together
 from contactlab.compose.answers import Answer, Mask, separated
 from contactlab.compose.composition import Laws
-from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.normal_motion import normal_motion, normal_or_failed
 from contactlab.contracts import faults
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.law import Law
@@ -47,6 +48,13 @@ UNCHECKED = (
     "check of the energy books: closed by construction, not checked; the friction work is the "
     "energy that the velocities lose"
 )
+#: Entries of a plan of impacts in which friction changes the approach.
+TOGETHER = "normal and tangential motion together: friction changes the approach, or slip turns"
+ONE_PLANE = "second tangent: the motion stays in a plane"
+OF_SPHERES = (
+    "cautions of laws: their sizes were measured for spheres, where friction does not change the "
+    "approach"
+)
 #: Undeclared imbalances over the energy at the start are cautioned of from here on.
 BOOKS_OFF = 0.01
 #: Entries of a motion by the names that a normal motion has for them.
@@ -68,43 +76,92 @@ def columns_of(normal: NormalMotion, laws: Laws, known: Sequence[Answer]) -> Pla
     reasons = tuple(
         Reason(each.reason, each.balanced, each.fields is not None) for _, each in known
     )
-    return PlanColumns(code, _error(normal, laws, known, marched), reasons)
+    # the load impulse of a frictionless impact is M_n v1 (1 + e), at most twice M_n v1
+    restitution = CLOSED_FORM + 2.0 * normal.accuracy
+    if any(answer.normal is not None for _, answer in known):
+        restitution = math.nan  # the law changed the normal motion, and declares no error of it
+    if shape:
+        restitution = np.full(shape, restitution)
+    return PlanColumns(code, _error(normal, laws, known, marched), reasons, restitution)
 
 
 def plan_of(
     laws: Laws,
     scene: Scene,
     columns: PlanColumns,
-    motion: NormalMotion | Motion,
+    motion: Motion | None = None,
     history: bool | str = False,
 ) -> Plan:
     """Return the plan of a scene, with words that are made when they are first read.
 
-    ``motion`` is the normal motion before a run; after it the motion, with the numbers of impacts
-    that failed.
+    ``motion`` is that of a run, with the numbers of impacts that failed; None before a run.
     """
 
     def words() -> Words:
-        masks = _Masks.of(columns)
-        if not some(masks.known):
-            return (), (), ()
-        how = "integrated from first touch to separation"
-        if isinstance(laws.normal, ClosedFormNormalLaw):
-            how = "in closed form"
-        law = f"{type(laws.normal).__name__}, {how}{_defaults(laws.normal)}"
-        computed = [Clause(f"normal motion: {law}", masks.known)]
-        if some(masks.marched):
-            text = f"tangential motion: {laws.integrator!r} over {laws.tangential!r}"
-            computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
-        computed += _error_clauses(columns.psi2_error, masks.ended)
-        left_out = _not_marched(columns, masks)
-        if reason := _no_history(history, columns, masks.marched):
-            left_out.append(Clause(reason, masks.known))
-        with np.errstate(under="ignore"):
-            cautions = _cautions(laws, scene, motion, masks)
-        return tuple(computed), tuple(left_out), cautions
+        parts = scene.parts()
+        if len(parts) == 1:
+            return _words(laws, parts[0][1], scene, columns, motion, history)
+        said = []
+        for where, part in parts:
+            some_columns = columns.take(where)
+            moved = None if motion is None else taken(motion, scene.shape, where)
+            kinds = _words(laws, part, scene.take(where), some_columns, moved, history)
+            said.append((where, Plan(some_columns, kinds)))
+        return Plan.merged(said, scene.shape).words
 
     return Plan(columns, words)
+
+
+def _words(
+    laws: Laws,
+    part: Scene,
+    scene: Scene,
+    columns: PlanColumns,
+    motion: Motion | None,
+    history: bool | str,
+) -> Words:
+    """Return the clauses on impacts of ``scene`` that are solved alike, as those of ``part``."""
+    masks = _Masks.of(columns)
+    if not some(masks.known):
+        return (), (), ()
+    used = laws.of(part)
+    coupled = part.inverse_mass is not None
+    how = "integrated from first touch to separation"
+    if coupled:
+        how = "with the tangential motion"
+    elif isinstance(used.normal, ClosedFormNormalLaw):
+        how = "in closed form"
+    law = f"{type(used.normal).__name__}, {how}{_defaults(used.normal)}"
+    computed = [Clause(f"normal motion: {law}", masks.known)]
+    if used is not laws:
+        computed.append(Clause(_in_place(laws, used), masks.known))
+    if some(masks.marched):
+        text = f"tangential motion: {used.integrator!r} over {used.tangential!r}"
+        computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
+    if coupled:
+        computed.append(Clause(TOGETHER, masks.known))
+    computed += _error_clauses("psi2", columns.psi2_error, masks.ended)
+    if coupled:  # of spheres it is that of the normal motion, and far smaller
+        error = columns.restitution_error
+        computed += _error_clauses("the normal restitution", error, masks.ended)
+    left_out = _not_marched(columns, masks)
+    if coupled and part.planar:
+        left_out.append(Clause(ONE_PLANE, masks.known))
+    if reason := _no_history(history, columns, masks.marched):
+        left_out.append(Clause(reason, masks.known))
+    with np.errstate(under="ignore"):
+        cautions = _cautions(used, part, scene, motion, masks)
+    return tuple(computed), tuple(left_out), cautions
+
+
+def _in_place(laws: Laws, used: Laws) -> str:
+    """Return which laws stand in for those that nobody named, and why."""
+    pairs = [
+        f"{type(new).__name__} for {type(old).__name__}"
+        for old, new in zip(laws, used, strict=True)
+        if new is not old
+    ]
+    return f"laws: {', '.join(pairs)}, which has no answer where friction changes the approach"
 
 
 class _Masks(NamedTuple):
@@ -123,32 +180,41 @@ class _Masks(NamedTuple):
         return cls(*map(np.asarray, masks))
 
 
-def _cautions(laws: Laws, scene: Scene, motion: NormalMotion | Motion, masks: _Masks) -> Clauses:
+def _cautions(
+    laws: Laws, part: Scene, scene: Scene, motion: Motion | None, masks: _Masks
+) -> Clauses:
     """Return the cautions about numbers of the scene, of the laws, and of the energy books."""
-
-    def of(part: Mask) -> Any:
-        if not isinstance(motion, Motion):
-            return motion if every(part) else motion.take(part)
-        if every(part):
-            return _Ends(laws.normal, scene, motion)
-        return _Ends(laws.normal, scene.take(part), taken(motion, scene.shape, part))
-
+    central, coupled = part.central, part.inverse_mass is not None
     known = masks.known
-    whole = scene if every(known) else scene.take(known)
+    whole = central if every(known) else central.take(known)
     said = [*unit_slips(whole), *unlikely(whole), *rigid_bodies(whole)]
+    asked: list[str] = []
     if some(masks.ended):
-        ends = of(known)
+        ends = _ends(laws.normal, central, None if coupled else motion, known)
         for law in (laws.normal, laws.tangential):
-            said += _asked(law, law.cautions, whole, ends)
+            asked += _asked(law, law.cautions, whole, ends)
     if some(masks.marched):
-        ends = of(masks.marched)
-        said += _asked(laws.integrator, laws.integrator.remarks, ends, laws.tangential, ends.scene)
+        marched = part if every(masks.marched) else part.take(masks.marched)
+        ends = _ends(laws.normal, central, None if coupled else motion, masks.marched)
+        asked += _asked(laws.integrator, laws.integrator.remarks, ends, laws.tangential, marched)
+    said += asked
+    if coupled:
+        said += [OF_SPHERES] if asked else []
+        said += together.cautions(laws, part)
     said += _by_default(laws.normal)
     clauses = [Clause(text, known) for text in said]
-    if isinstance(motion, Motion):
+    if motion is not None:
         clauses += _books(laws, scene, motion)
     vectors = three_numbers(scene)
     return (*clauses, *(Clause(text, np.ones(scene.shape, dtype=bool)) for text in vectors))
+
+
+def _ends(law: Any, scene: Scene, motion: Motion | None, where: Mask) -> Any:
+    """Return the normal motion of some impacts: by its ends after a run, else made now."""
+    part = scene if every(where) else scene.take(where)
+    if motion is None:
+        return normal_or_failed(law, part)
+    return _Ends(law, part, motion if every(where) else taken(motion, scene.shape, where))
 
 
 def _asked(law: Law, question: Callable[..., tuple[str, ...]], *about: Any) -> list[str]:
@@ -163,7 +229,7 @@ def _asked(law: Law, question: Callable[..., tuple[str, ...]], *about: Any) -> l
 
 def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
     """Return the caution of an imbalance of the energy books for which no bound is declared."""
-    undeclared: Any = laws.tangential.books_bound(scene) == math.inf
+    undeclared: Any = laws.tangential.books_bound(scene.central) == math.inf
     if not some(undeclared):
         return []
     share: Any = np.abs(ledger(scene, motion).relative_imbalance)
@@ -199,29 +265,34 @@ class _Ends:
 
 def _by_default(law: Any) -> tuple[str, ...]:
     """Return the caution of a restitution that nobody gave."""
-    kept = _defaults(law).partition("restitution = ")[2]
-    if not kept:
+    value = _kept_defaults(law).get("restitution")
+    if value is None:
         return ()
-    value = kept.partition(",")[0].partition(" ")[0]
     name = type(law).__name__
-    return (f"restitution = {value} was taken by default: give {name} one of your own",)
+    return (f"restitution = {value:g} was taken by default: give {name} one of your own",)
 
 
 def _defaults(law: Any) -> str:
     """Return which options of a law have their default value, with a semicolon before."""
+    kept = ", ".join(f"{name} = {value:g}" for name, value in _kept_defaults(law).items())
+    return f"; {kept} by default" if kept else ""
+
+
+def _kept_defaults(law: Any) -> dict[str, float]:
+    """Return the numbers of a law that nobody gave, by name."""
     if not (attrs.has(type(law)) and attrs.fields(type(law))):
-        return ""
+        return {}
     try:
         usual = type(law)()
     except (TypeError, ValueError):  # it has no defaults, or not for all options
-        return ""
+        return {}
     values = {item.name: getattr(law, item.name) for item in attrs.fields(type(law))}
-    kept = [
-        f"{name} = {value:g}"
+    # The default is one object, which a number that somebody gave is not, even if it is equal.
+    return {
+        name: value
         for name, value in values.items()
-        if isinstance(value, float) and value == getattr(usual, name)
-    ]
-    return f"; {', '.join(kept)} by default" if kept else ""
+        if isinstance(value, float) and value is getattr(usual, name)
+    }
 
 
 def _not_marched(columns: PlanColumns, masks: _Masks) -> list[Clause]:
@@ -267,15 +338,16 @@ def _error(normal: NormalMotion, laws: Laws, known: Sequence[Answer], marched: M
     return error if scene.shape else float(error)
 
 
-def _error_clauses(error: Any, ended: Mask) -> list[Clause]:
-    """Return what a plan says of the numerical error."""
+def _error_clauses(what: str, error: Any, ended: Mask) -> list[Clause]:
+    """Return what a plan says of a numerical error."""
     undeclared = np.asarray(ended & np.isnan(error))
     declared = np.asarray(ended & ~undeclared)
+    code = PSI2_ERROR if what == "psi2" else ""
     clauses = []
     if some(declared):
-        text = "numerical error of psi2: at most {:.2g}, declared"
-        clauses.append(Clause(text, declared, (error,), PSI2_ERROR))
+        text = f"numerical error of {what}: at most {{:.2g}}, declared"
+        clauses.append(Clause(text, declared, (error,), code))
     if some(undeclared):
-        text = f"numerical error of psi2: not declared{ADVICE}"
-        clauses.append(Clause(text, undeclared, code=PSI2_ERROR))
+        text = f"numerical error of {what}: not declared{ADVICE}"
+        clauses.append(Clause(text, undeclared, code=code))
     return clauses

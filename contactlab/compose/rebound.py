@@ -258,18 +258,20 @@ def _annuli(psi1: Array, chi: Array, restitution: Array) -> Array:
 
 
 def damped(restitution: float) -> Simulation:
-    """Return the laws for a restitution below 1: ``composition.RESTITUTION``, in fixed steps."""
+    """Return the laws for a restitution below 1: ``composition.RESTITUTION``, in fixed steps.
+
+    Where friction changes the approach, others stand in for all but the normal law.
+    """
     from contactlab.compose import composition  # a table needs none of this
     from contactlab.compose.simulation import Simulation
 
     tangential = composition.law("tangential", composition.RESTITUTION["tangential"])
-    return Simulation(
-        normal=composition.law(
-            "normal", composition.RESTITUTION["normal"], restitution=restitution
-        ),
-        tangential=attrs.evolve(tangential, **{str(tangential.resolution): ANNULI}),
-        integrator=composition.fixed_steps(4 * ANNULI),
+    laws = composition.compose(
+        composition.law("normal", composition.RESTITUTION["normal"], restitution=restitution),
+        attrs.evolve(tangential, **{str(tangential.resolution): ANNULI}),
+        composition.fixed_steps(4 * ANNULI),
     )
+    return Simulation.of(laws.changed(named=frozenset({"normal"})))
 
 
 def damped_error(chi: Real, restitution: Real) -> Any:

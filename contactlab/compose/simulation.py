@@ -5,14 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar, overload
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
-from contactlab.compose import composition, eccentric, solve
+from contactlab.compose import composition, solve
 from contactlab.compose.composition import Laws
 from contactlab.compose.error_estimate import estimated
+from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.planning import plan_of
 from contactlab.compose.sweep import one_axis, swept
 from contactlab.contracts.integrator import Integrator
@@ -20,21 +21,18 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import succeeded
 from contactlab.contracts.tangential import TangentialLaw
-from contactlab.impact.eccentric import EccentricScene
+from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import taken
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import arguments_told
-from contactlab.outcome.eccentric import EccentricResult
-from contactlab.outcome.history import NO_HISTORY, EccentricHistory, History, NoHistory, Recorder
+from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
 from contactlab.outcome.motion import Motion, without_failures
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
-
-R = TypeVar("R", ImpactResult, EccentricResult)
 
 
 @arguments_told
@@ -49,7 +47,8 @@ class Simulation:
         ``contactlab.create`` or by your own class.
         The default is exact: Hertz's closed form and the slip front followed event by event.
         A law that is left out is the first in ``contactlab.compose.composition.PREFERRED`` that
-        fits the others.
+        fits the others; where friction changes the approach, and that law has no answer, the first
+        in ``TOGETHER`` stands in for it.
 
     Raises
     ------
@@ -61,6 +60,8 @@ class Simulation:
     normal: NormalLaw
     tangential: TangentialLaw
     integrator: Integrator
+    #: The three laws, and the kinds of those that were given.
+    laws: Laws = attrs.field(eq=False, repr=False)
 
     def __init__(
         self,
@@ -70,9 +71,21 @@ class Simulation:
         integrator: str | Integrator | None = None,
     ) -> None:
         laws = composition.compose(normal, tangential, integrator)
-        self.__attrs_init__(**laws._asdict())
+        self.__attrs_init__(**laws.by_kind(), laws=laws)
 
-    def plan(self, scene: Scene | EccentricScene, *, history: bool | str = False) -> Plan:
+    @classmethod
+    def of(cls, laws: Laws) -> Simulation:
+        """Return the simulation of laws that are composed already.
+
+        Parameters
+        ----------
+        laws : Laws
+        """
+        simulation = cls.__new__(cls)
+        simulation.__attrs_init__(**laws.by_kind(), laws=laws)
+        return simulation
+
+    def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
         """Return what ``run`` would compute for ``scene``, what it would leave out and why.
 
         Parameters
@@ -83,39 +96,29 @@ class Simulation:
             The same as in ``run``.
         """
         laws = self.laws
-        if isinstance(scene, EccentricScene):
-            return eccentric.plan(laws, scene)
         laws.accept(_scene(scene))
-        with np.errstate(under="ignore"):
-            prepared = solve.prepare(laws, scene, _history(history))
-        return plan_of(laws, scene, prepared.columns, prepared.normal, history)
+        columns = solve.planned(laws, scene, _history(history))
+        return plan_of(laws, scene, columns, history=history)
 
-    @overload
-    def run(
-        self, scene: Scene, *, history: bool | str = False, estimate_error: bool = False
-    ) -> ImpactResult: ...
-    @overload
-    def run(
-        self, scene: EccentricScene, *, history: bool | str = False, estimate_error: bool = False
-    ) -> EccentricResult: ...
     def run(
         self,
-        scene: Scene | EccentricScene,
+        scene: Scene,
         *,
         history: bool | str = False,
         estimate_error: bool = False,
-    ) -> ImpactResult | EccentricResult:
+    ) -> ImpactResult:
         """Run one impact, or a batch scene at once.
 
         Parameters
         ----------
-        scene : Scene or EccentricScene
-            The result of an eccentric impact is an ``EccentricResult``.
+        scene : Scene
+            One impact or a batch.
         history : bool or "fields"
             Keep the course of the impact; ``"fields"`` keeps traction and stick/slip too.
         estimate_error : bool
-            Estimate the numerical error of psi2 by running the scene again at two finer
-            resolutions: ``result.psi2_error_estimate``. About twenty times the work.
+            Estimate the numerical errors of psi2 and of the normal restitution by running the scene
+            again at two finer resolutions: ``result.psi2_error_estimate``. About twenty times the
+            work.
 
         Returns
         -------
@@ -125,20 +128,12 @@ class Simulation:
         Raises
         ------
         ValueError
-            If ``scene`` is not a Scene, ``history`` is none of its three values, or the history of
-            a batch is requested whose impacts have different instants.
+            If ``scene`` is not a Scene, a law has no answer to it, ``history`` is none of its three
+            values, or the history of a batch is requested whose impacts have different instants.
         """
         started, laws, recorder = time.perf_counter(), self.laws, None
         if _history(history):
-            recorder = Recorder(scene.shape, with_fields=history == "fields")
-        if isinstance(scene, EccentricScene):
-            if history == "fields":
-                rule = "has no fields for bodies of any shape"
-                raise refuse("history", history, rule, "history=True keeps forces and velocities")
-            moved = eccentric.run(laws, scene, recorder)
-            kept = NO_HISTORY if recorder is None else recorder.history(EccentricHistory)
-            eccentric_result = eccentric.result_of(laws, scene, moved, started, kept)
-            return self._with_estimate(eccentric_result, estimate_error)
+            recorder = Recorder(_scene(scene).shape, with_fields=history == "fields")
         laws.accept(_scene(scene))
         flat = scene
         if len(scene.shape) > 1:  # laws and integrators are run over one axis
@@ -150,15 +145,12 @@ class Simulation:
         plan = plan_of(laws, scene, columns, motion, history)
         kept = NO_HISTORY if recorder is None else recorder.history()
         result = _result(laws, scene, plan, motion, started, kept)
-        return self._with_estimate(result, estimate_error)
-
-    def _with_estimate(self, result: R, wanted: bool) -> R:
-        """Return a result with the estimate of its numerical error, if that is wanted."""
-        if not wanted:
+        if not estimate_error:
             return result
-        return attrs.evolve(result, psi2_error_estimate=estimated(self.laws, result))
+        psi2, restitution = estimated(laws, result)
+        estimates = {"psi2_error_estimate": psi2, "restitution_error_estimate": restitution}
+        return attrs.evolve(result, **estimates)
 
-    @overload
     def sweep(
         self,
         scenes: Scene | Sequence[Scene],
@@ -167,38 +159,19 @@ class Simulation:
         chunk: int | None = None,
         executor: Executor | None = None,
         keep: str | Path | None = None,
-    ) -> ImpactResult: ...
-    @overload
-    def sweep(
-        self,
-        scenes: EccentricScene | Sequence[EccentricScene],
-        *,
-        progress: Callable[[int, int], object] | None = None,
-        chunk: int | None = None,
-        executor: Executor | None = None,
-        keep: str | Path | None = None,
-    ) -> EccentricResult: ...
-    def sweep(
-        self,
-        scenes: Any,
-        *,
-        progress: Callable[[int, int], object] | None = None,
-        chunk: int | None = None,
-        executor: Executor | None = None,
-        keep: str | Path | None = None,
-    ) -> ImpactResult | EccentricResult:
+    ) -> ImpactResult:
         """Run many impacts, vectorised, a block at a time.
 
         The laws choose the size of a block, counted from the first impact: 16384 if nothing is
         marched, as in the exact solution up to chi = 2.5, 20 if impacts are followed one by one,
-        1000 for most other laws and for eccentric impacts. Neither ``chunk`` nor ``executor``
+        1000 for most other laws and where friction changes the approach. Neither ``chunk`` nor ``executor``
         changes the blocks, so neither changes a bit of an answer, within one installation, one kind
         of processor and one number of BLAS threads (with NumPy 2 that number matters only to laws
         that multiply large matrices).
 
         Parameters
         ----------
-        scenes : sequence of Scene or of EccentricScene, or a batch scene
+        scenes : sequence of Scene, or a batch scene
         progress : callable, optional
             Called as ``progress(done, total)`` after each chunk.
         chunk : int, optional
@@ -216,7 +189,7 @@ class Simulation:
 
         Returns
         -------
-        ImpactResult or EccentricResult
+        ImpactResult
             A batch. An interruption (Ctrl-C) keeps finished chunks; the other impacts have the
             status ``INTERRUPTED``, which ``.check()`` raises.
 
@@ -230,31 +203,21 @@ class Simulation:
         started, laws = time.perf_counter(), self.laws
         options: dict[str, Any] = {"progress": progress, "chunk": chunk}
         options |= {"executor": executor, "keep": keep}
-        kind: Any = EccentricScene if eccentric.are_eccentric(scenes) else Scene
-        batch = scenes if isinstance(scenes, kind) else kind.stack(scenes)
+        batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
         one_axis(batch.shape)
-        if kind is EccentricScene:
-            eccentric.accept(laws, batch)
-            _, moved = swept(laws, batch, eccentric.solved, **options)
-            return eccentric.result_of(laws, batch, moved, started)
         laws.accept(batch)
-        columns, motion = swept(laws, batch, solve.solved, **options)
+        columns, motion = swept(laws, batch, **options)
         return _result(laws, batch, plan_of(laws, batch, columns, motion), motion, started)
 
     def normal_motion(self, scene: Scene) -> NormalMotion:
-        """Return the normal motion of ``scene``; all values are NaN if the normal law fails.
+        """Return the approach without friction; all values are NaN if the normal law fails.
 
         Parameters
         ----------
         scene : Scene
             One impact or a batch.
         """
-        return solve.normal_or_failed(self.laws, scene)
-
-    @property
-    def laws(self) -> Laws:
-        """The three laws: normal, tangential, integrator."""
-        return Laws(self.normal, self.tangential, self.integrator)
+        return normal_or_failed(self.normal, _scene(scene).central)
 
 
 def _result(
@@ -270,10 +233,20 @@ def _result(
         scene=scene,
         plan=plan,
         motion=motion if succeeded(motion.status) else without_failures(motion),
-        laws=composition.versions(*laws),
+        laws=_versions(laws, scene),
         history=history,
         run_time=time.perf_counter() - started,
     )
+
+
+def _versions(laws: Laws, scene: Scene) -> dict[str, str]:
+    """Return name and version of each law by kind, of several in one scene with "and" between."""
+    if scene.inverse_mass is None:
+        return composition.versions(*laws)
+    used = [composition.versions(*laws.of(part)) for _, part in scene.parts()]
+    return {
+        kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in laws.by_kind()
+    }
 
 
 def _scene(scene: object) -> Scene:
@@ -282,7 +255,7 @@ def _scene(scene: object) -> Scene:
         remedy = "make one: Scene(...)"
         if isinstance(scene, str | Path):
             remedy = "for a file use read_scene(path), whose run() runs it"
-        elif type(scene).__name__ == "Encounter":
+        elif isinstance(scene, Encounter):
             remedy = "for bodies in space use collide(encounter, simulation), or encounter.scene"
         raise refuse("scene", scene, "must be a Scene", remedy)
     return scene

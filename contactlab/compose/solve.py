@@ -9,18 +9,20 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
+from contactlab.compose import together
 from contactlab.compose.answers import Answer, answers, show
 from contactlab.compose.composition import Laws
-from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.pieces import Chunk, Piece
 from contactlab.compose.planning import columns_of
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.solved_motion import FailedMotion
 from contactlab.contracts import faults
-from contactlab.contracts.integrator import Observer, TangentialMotion
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status, succeeded
+from contactlab.contracts.tangential_motion import Observer, TangentialMotion
+from contactlab.impact.inverse_mass import along
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import consecutive, every, some
 from contactlab.numeric.checks import refuse
@@ -48,40 +50,146 @@ class Prepared(NamedTuple):
 def outcome(
     laws: Laws, scene: Scene, history: bool | str, recorder: Recorder | None
 ) -> tuple[PlanColumns, Motion]:
-    """Return columns of the plan, and motion; a law that raises costs its impacts only.
+    """Return columns of the plan, and motion, each impact solved in its own way.
 
-    Numbers of impacts that failed are what the laws made of them. A history of a batch is refused
-    if its impacts have instants of their own.
+    A law that raises costs its impacts only. Numbers of impacts that failed are what the laws made
+    of them. A history of a batch is refused if its impacts have instants of their own.
     """
-    shape = scene.shape
-    if history and shape and not laws.integrator.common_instants:
+    if scene.inverse_mass is None:  # spheres have one way
+        return _alike(laws, scene, history, recorder)
+    parts = scene.parts()
+    if len(parts) == 1:
+        _, part = parts[0]
+        columns, motion = _alike(laws.of(part), part, history, recorder)
+        return columns, _in_axes(motion, scene, part)
+    if recorder is not None:  # one time axis for all
+        return _alike(laws.of(scene), scene, history, recorder)
+    pieces = []
+    for where, part in parts:
+        columns, motion = _alike(laws.of(part), part, history, recorder)
+        pieces.append((where, columns, _in_axes(motion, scene.take(where), part)))
+    return (
+        PlanColumns.merged([(where, columns) for where, columns, _ in pieces], scene.shape),
+        Motion.merged([(where, motion) for where, _, motion in pieces], scene.shape),
+    )
+
+
+def _in_axes(motion: Motion, scene: Scene, part: Scene) -> Motion:
+    """Return the motion of a part with its slip in the axes of the scene."""
+    if scene.slip_axes == part.slip_axes:
+        return motion
+    return motion.turned(along(scene.slip_velocity))
+
+
+def _alike(
+    laws: Laws, scene: Scene, history: bool | str, recorder: Recorder | None
+) -> tuple[PlanColumns, Motion]:
+    """Return columns and motion of impacts that are solved in one way."""
+    shape, size = scene.shape, math.prod(scene.shape)
+    coupled = scene.inverse_mass is not None
+    shared = laws.integrator.common_instants and not (coupled and laws.tangential.together)
+    if history and shape and not shared:
         raise refuse(
             "history",
             history,
             f"impacts of a batch have instants of their own under {laws.integrator!r}",
             "run them one by one",
         )
+    if coupled and recorder is None and size > together.AT_A_TIME:
+        return _cut(laws, scene, _blocks(size, together.AT_A_TIME))
+    solve = _together if coupled else _along
     try:
-        prepared = prepare(laws, scene, history)
+        columns, motion, bound = solve(laws, scene, history, recorder)
     except faults.LawFaultError as fault:
-        if recorder is None and math.prod(shape) > 1:
-            return _by_halves(laws, scene)
-        nothing = PlanColumns.nothing(shape)
-        return nothing, _named(laws, Motion.nothing(shape, fault.status, fault.detail))
-    if isinstance(prepared.normal, FailedMotion) and math.prod(shape) > 1:
-        return _by_halves(laws, scene)
-    tangential = _tangential(laws, prepared, recorder)
-    motion = sound(Motion.along(prepared.normal, tangential))
+        if recorder is None and size > 1:
+            return _cut(laws, scene, _parts(size, most=1))
+        nothing = Motion.nothing(shape, fault.status, fault.detail, axes=scene.slip_axes)
+        return PlanColumns.nothing(shape), _named(laws, nothing)
+    motion = sound(motion, together=coupled)
     # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
-    bound = prepared.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
-    motion = balanced(motion, scene, bound)
-    return prepared.columns, motion if succeeded(motion.status) else _named(laws, motion)
+    bound = bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
+    motion = balanced(motion, scene, bound, together=coupled)
+    return columns, motion if succeeded(motion.status) else _named(laws, motion)
+
+
+class _Scattered(faults.LawFaultError):
+    """A batch that must be solved in parts."""
+
+
+def _along(
+    laws: Laws, scene: Scene, history: bool | str, recorder: Recorder | None
+) -> tuple[PlanColumns, Motion, Any]:
+    """Return columns, motion and bound of the books of impacts along a known normal motion."""
+    prepared = prepare(laws, scene, history)
+    _halved_if_failed(prepared.normal, recorder)
+    tangential = _tangential(laws, prepared, recorder)
+    return prepared.columns, Motion.along(prepared.normal, tangential), prepared.books_bound
+
+
+def _together(
+    laws: Laws, scene: Scene, history: bool | str, recorder: Recorder | None
+) -> tuple[PlanColumns, Motion, Any]:
+    """Return columns, motion and bound of the books of impacts whose motions are one."""
+    prepared = prepare(laws, scene, history)
+    normal = prepared.normal
+    _halved_if_failed(normal, recorder)
+    if isinstance(normal, FailedMotion):
+        status, detail = normal.status, normal.detail
+        nothing = Motion.nothing(scene.shape, status, detail, axes=scene.slip_axes)
+        return prepared.columns, nothing, prepared.books_bound
+    motion = together.moved(laws, scene, normal, recorder)
+    if scene.shape and scene.shape != (1,) and recorder is None:
+        motion = _apart(laws, scene, motion)
+    return prepared.columns, motion, prepared.books_bound
+
+
+def _halved_if_failed(normal: NormalMotion, recorder: Recorder | None) -> None:
+    """Let a batch whose normal law failed be solved in parts."""
+    if isinstance(normal, FailedMotion) and math.prod(normal.scene.shape) > 1:
+        if recorder is None:
+            raise _Scattered(Status.LAW_RAISED, "")
+
+
+def _apart(laws: Laws, scene: Scene, motion: Motion) -> Motion:
+    """Return a motion with the impacts solved again that failed beside others."""
+    again = together.given_up(motion)
+    if not again.any():
+        return motion
+    part = scene.take(again)
+    size = part.shape[0]
+    if size == scene.shape[0]:
+        _, repeated = _cut(laws, part, _parts(size, most=ONE_BY_ONE))
+    else:
+        _, repeated = _alike(laws, part, False, None)
+    return Motion.merged(
+        [(np.ones(scene.shape, dtype=bool), motion), (again, repeated)], scene.shape
+    )
+
+
+def _cut(laws: Laws, scene: Scene, places: list[slice]) -> tuple[PlanColumns, Motion]:
+    """Return columns and motion of a batch that is solved in consecutive parts."""
+    parts = [_alike(laws, scene.take(place), False, None) for place in places]
+    columns, motions = zip(*parts, strict=True)
+    return PlanColumns.joined(columns, scene.shape), Motion.joined(motions, scene.shape)
+
+
+def _blocks(size: int, block: int) -> list[slice]:
+    """Return the places of blocks of a batch."""
+    return [slice(first, min(first + block, size)) for first in range(0, size, block)]
+
+
+@np.errstate(under="ignore")
+def planned(laws: Laws, scene: Scene, history: bool | str) -> PlanColumns:
+    """Return the columns of the plan, without a march."""
+    parts = [
+        (where, prepare(laws.of(part), part, history).columns) for where, part in scene.parts()
+    ]
+    return parts[0][1] if len(parts) == 1 else PlanColumns.merged(parts, scene.shape)
 
 
 def solved(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
     """Return the piece of a sweep's chunk, a block at a time; ``scene`` is the chunk alone."""
-    ends = range(0, chunk.size, block)
-    scenes = (scene.take(slice(first, min(first + block, chunk.size))) for first in ends)
+    scenes = (scene.take(place) for place in _blocks(chunk.size, block))
     columns, motions = zip(*(outcome(laws, each, False, None) for each in scenes), strict=True)
     shape = (chunk.size,)
     return Piece(chunk, PlanColumns.joined(columns, shape), Motion.joined(motions, shape))
@@ -105,29 +213,16 @@ def _named(laws: Laws, motion: Motion) -> Motion:
 
 
 def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
-    """Return what a scene needs before the march, or raise LawFaultError if a law raises."""
-    normal = normal_or_failed(laws, scene)
+    """Return what impacts of one way need before the march, or raise LawFaultError."""
+    normal = normal_or_failed(laws.normal, scene.central)
     accuracy = laws.integrator.accuracy
     with faults.blaming(laws.tangential):
+        if scene.inverse_mass is not None:
+            columns = together.columns_of(laws, scene, normal)
+            return Prepared(normal, [], columns, together.books_bound(laws, scene))
         known = answers(normal, laws.tangential, history=history, accuracy=accuracy)
         bound = laws.tangential.books_bound(scene)
         return Prepared(normal, known, columns_of(normal, laws, known), bound)
-
-
-def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
-    """Return the normal motion of ``scene``; all its values are NaN if the law fails."""
-    try:
-        return normal_motion(laws.normal, scene)
-    except faults.LawFaultError as fault:
-        return FailedMotion(laws.normal, scene, fault.status, fault.detail)
-
-
-def _by_halves(laws: Laws, scene: Scene) -> tuple[PlanColumns, Motion]:
-    """Return columns and motion of a batch, half by half, down to the impacts that fail."""
-    size = scene.shape[0]
-    parts = [outcome(laws, scene.take(half), False, None) for half in _parts(size, most=1)]
-    columns, motions = zip(*parts, strict=True)
-    return PlanColumns.joined(columns, (size,)), Motion.joined(motions, (size,))
 
 
 def _parts(size: int, *, most: int) -> list[slice]:

@@ -6,15 +6,18 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from contactlab.compose.composition import Laws
-from contactlab.compose.pieces import Chunk, Piece, Solve, unsolved
+from contactlab.compose.pieces import Chunk, Piece, unsolved
+from contactlab.compose.solve import solved
+from contactlab.compose.together import AT_A_TIME
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import WholeImpactTangentialLaw
-from contactlab.impact.eccentric import EccentricScene
+from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
+from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
 
 if TYPE_CHECKING:
@@ -22,8 +25,6 @@ if TYPE_CHECKING:
 
 #: Impacts of a block if nothing is marched: as many as fit into the cache.
 WHOLE_IMPACTS = 1 << 14
-#: Impacts of a block of eccentric ones: their springs stay in the cache.
-ECCENTRIC_IMPACTS = 1000
 
 
 def block_of(laws: Laws) -> int:
@@ -39,21 +40,17 @@ def block_of(laws: Laws) -> int:
 
 def swept(
     laws: Laws,
-    scene: Any,
-    solve: Solve,
+    scene: Scene,
     *,
     progress: Callable[[int, int], object] | None,
     chunk: int | None,
     executor: Executor | None,
     keep: str | Path | None,
-) -> tuple[PlanColumns, Any]:
-    """Return columns of the plan and motion of a batch of one axis; see ``Simulation.sweep``.
-
-    ``solve`` returns the piece of a chunk, here or in a worker.
-    """
+) -> tuple[PlanColumns, Motion]:
+    """Return columns of the plan and motion of a batch of one axis; see ``Simulation.sweep``."""
     size, block = scene.shape[0], block_of(laws)
-    if isinstance(scene, EccentricScene):
-        block = ECCENTRIC_IMPACTS
+    if scene.inverse_mass is not None:
+        block = AT_A_TIME
     elif laws.tangential.needs_no_march(scene, laws.integrator.accuracy):
         block = WHOLE_IMPACTS
     step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
@@ -66,11 +63,11 @@ def swept(
     done = sum(piece.chunk.size for piece in finished)
     missing = _cut(_gaps(finished, size), step)
     if executor is None:
-        pieces = (solve(laws, scene.take(slice(*each)), each, block) for each in missing)
+        pieces = (solved(laws, scene.take(slice(*each)), each, block) for each in missing)
     else:
         from contactlab.compose.workers import pieces_of  # needed with an executor only
 
-        pieces = pieces_of(laws, scene, solve, list(missing), block, executor)
+        pieces = pieces_of(laws, scene, list(missing), block, executor)
     try:
         for piece in pieces:
             finished.append(piece)
@@ -88,8 +85,7 @@ def swept(
         pieces.close()
     finished.sort(key=lambda piece: piece.chunk)
     columns = PlanColumns.joined([piece.columns for piece in finished], (size,))
-    motions = [piece.motion for piece in finished]
-    return columns, type(motions[0]).joined(motions, (size,))
+    return columns, Motion.joined([piece.motion for piece in finished], (size,))
 
 
 def one_axis(shape: tuple[int, ...]) -> None:

@@ -20,7 +20,7 @@ import numpy as np
 
 from contactlab.compose.composition import Laws, versions
 from contactlab.compose.loading import short
-from contactlab.compose.pieces import Chunk, Piece, Solve, unsolved
+from contactlab.compose.pieces import Chunk, Piece, unsolved
 from contactlab.compose.solve import solved
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import locked
@@ -33,7 +33,7 @@ MODULE_REMEDY = "define its class at the top of a module that can be imported"
 
 
 def pieces_of(
-    laws: Laws, scene: Any, solve: Solve, chunks: Sequence[Chunk], block: int, executor: Executor
+    laws: Laws, scene: Any, chunks: Sequence[Chunk], block: int, executor: Executor
 ) -> Generator[Piece, None, None]:
     """Yield the pieces of ``chunks`` as an executor finishes them; ``scene`` is the whole sweep."""
     # A chunk that the executor loses gets the status WORKER_DIED. A ProcessPoolExecutor loses all
@@ -48,7 +48,7 @@ def pieces_of(
     try:
         for chunk in chunks:
             part = pickle.dumps(scene.take(slice(*chunk)))
-            future = _submitted(executor, sent, part, chunk, block, solve)
+            future = _submitted(executor, sent, part, chunk, block)
             waiting[future] = chunk
             future.add_done_callback(finished.put)
         while waiting:
@@ -75,7 +75,7 @@ def pieces_of(
 
 def _sent(laws: Laws) -> bytes:
     """Return the pickled laws, or refuse the first that does not pickle."""
-    for kind, law in laws._asdict().items():
+    for kind, law in laws.by_kind().items():
         try:
             pickle.dumps(law)
         except Exception as error:
@@ -105,7 +105,7 @@ class Reply(NamedTuple):
     raised: Exception | None = None
 
 
-def reply(sent: bytes, part: bytes, chunk: Chunk, block: int, solve: Solve = solved) -> Reply:
+def reply(sent: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
     """Return the reply to a chunk, from pickled laws and the pickled scene of the chunk."""
     try:
         laws, scene = pickle.loads(sent), _locked(pickle.loads(part))
@@ -114,7 +114,7 @@ def reply(sent: bytes, part: bytes, chunk: Chunk, block: int, solve: Solve = sol
         remedy = f"install them there too, and {MODULE_REMEDY}"
         return Reply(None, {}, ValueError(f"{rule}; {remedy}"))
     try:
-        return Reply(solve(laws, scene, chunk, block), versions(*laws))
+        return Reply(solved(laws, scene, chunk, block), versions(*laws))
     except Exception as error:
         return Reply(None, {}, error)
 

@@ -6,16 +6,7 @@ options (``quantity``, ``count``, ``choice``, ``flag``, ``restitution``), status
 
 from contactlab.contracts import faults
 from contactlab.contracts.contact import NormalContact, without_tension
-from contactlab.contracts.eccentric import (
-    EccentricIntegrator,
-    EccentricMotion,
-    EccentricObserver,
-    EccentricSample,
-    EccentricTangentialLaw,
-    IncrementalTangentialLaw,
-    VectorTangentialLaw,
-)
-from contactlab.contracts.integrator import Integrator, Observer, Sample, TangentialMotion
+from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.contracts.motion import (
     ClosedFormMotion,
@@ -26,7 +17,7 @@ from contactlab.contracts.motion import (
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.path import LostPathError, PathTangentialLaw, Stretch
 from contactlab.contracts.restitution import restitution
-from contactlab.contracts.sampled_motion import SampledMotion
+from contactlab.contracts.sampled_motion import Ends, SampledMotion
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import (
     AllStepsResponse,
@@ -38,6 +29,7 @@ from contactlab.contracts.tangential import (
     TangentialResponse,
     WholeImpactTangentialLaw,
 )
+from contactlab.contracts.tangential_motion import Observer, Sample, TangentialMotion
 from contactlab.contracts.whole_impact import (
     Tabulated,
     WholeImpact,
@@ -46,7 +38,6 @@ from contactlab.contracts.whole_impact import (
     sliding,
 )
 from contactlab.impact.bodies import Pair
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import (
     NON_NEGATIVE,
@@ -68,14 +59,8 @@ __all__ = [
     "AllStepsTangentialLaw",
     "ClosedFormMotion",
     "ClosedFormNormalLaw",
-    "EccentricIntegrator",
-    "EccentricMotion",
-    "EccentricObserver",
-    "EccentricSample",
-    "EccentricScene",
-    "EccentricTangentialLaw",
+    "Ends",
     "Increment",
-    "IncrementalTangentialLaw",
     "Integrator",
     "Law",
     "LostPathError",
@@ -101,7 +86,6 @@ __all__ = [
     "TangentialLaw",
     "TangentialMotion",
     "TangentialResponse",
-    "VectorTangentialLaw",
     "WholeImpact",
     "WholeImpactTangentialLaw",
     "choice",

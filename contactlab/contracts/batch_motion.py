@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any, Self
 
@@ -47,15 +47,15 @@ class BatchMotion:
     @cache
     def numbers(cls) -> tuple[str, ...]:
         """Return the names of the entries that are numbers."""
-        return tuple(name for name, *_ in cls._entries())
+        fields: Any = attrs.fields(cls)
+        return tuple(field.name for field in fields if field.name not in NO_NUMBERS)
 
     @classmethod
-    def _entries(cls) -> Iterator[tuple[str, tuple[int, ...], type]]:
-        """Yield name, axes and type of every entry that is a number."""
+    @cache
+    def _vectors(cls) -> frozenset[str]:
+        """Return the names of the entries that may be vectors of the tangent plane."""
         fields: Any = attrs.fields(cls)
-        for field in fields:
-            if field.name not in NO_NUMBERS:
-                yield field.name, field.metadata.get("ends", ()), field.metadata.get("kind", float)
+        return frozenset(field.name for field in fields if "vectors" in field.metadata)
 
     @classmethod
     def joined(cls, motions: Sequence[Self], shape: tuple[int, ...]) -> Self:
@@ -91,14 +91,24 @@ class BatchMotion:
         for _, motion in parts:
             counters.update(motion.counters)
         entries: dict[str, Any] = {}
-        for name, ends, kind in (*cls._entries(), ("status", (), object), ("detail", (), object)):
+        for name in (*cls.numbers(), "status", "detail"):
             columns = [(where, getattr(motion, name)) for where, motion in parts]
+            ends: tuple[int, ...] = ()
+            if name in cls._vectors():
+                axes = [np.ndim(motion.status) for _, motion in parts]
+                columns, ends = _vectors_alike(columns, axes)
+            kind = float if name in cls.numbers() else object
             entries[name] = merged(columns, shape, kind, ends)
         return cls(**entries, counters=dict(counters))
 
     @classmethod
     def nothing(
-        cls, shape: tuple[int, ...], status: Status, detail: str | Sequence[str] = ""
+        cls,
+        shape: tuple[int, ...],
+        status: Status,
+        detail: str | Sequence[str] = "",
+        *,
+        axes: tuple[int, ...] = (),
     ) -> Self:
         """Return the motion of impacts that were not computed: numbers are NaN, counts 0.
 
@@ -110,12 +120,13 @@ class BatchMotion:
             Status of all impacts.
         detail : str or sequence of str
             One sentence for all impacts, or one for each.
+        axes : tuple of int
+            Axes of a slip velocity beside the batch's: (2,) where the scene has vectors.
         """
         entries: dict[str, Any] = {}
-        for name, ends, kind in cls._entries():
-            empty = math.nan if kind is float else 0
-            axes = (*shape, *ends)
-            entries[name] = np.full(axes, empty, dtype=kind) if axes else empty
+        for name in cls.numbers():
+            whole = (*shape, *axes) if name in cls._vectors() else shape
+            entries[name] = np.full(whole, math.nan) if whole else math.nan
         return cls(
             **entries,
             status=filled(status, shape),
@@ -144,3 +155,18 @@ class BatchMotion:
         return attrs.evolve(
             self, status=statuses, detail=np.where(failing, detail, self.detail).astype(object)
         )
+
+
+def _vectors_alike(
+    columns: list[tuple[Any, Any]], axes: list[int]
+) -> tuple[list[tuple[Any, Any]], tuple[int, ...]]:
+    """Return places and values, vectors if any is one, and the axes of each value."""
+    longer = [np.ndim(value) > batch for (_, value), batch in zip(columns, axes, strict=True)]
+    if not any(longer):
+        return columns, ()
+    # a part without an answer holds NaN, a number, in place of vectors
+    alike = [
+        (where, value if own else np.multiply.outer(value, np.ones(2)))
+        for (where, value), own in zip(columns, longer, strict=True)
+    ]
+    return alike, (2,)

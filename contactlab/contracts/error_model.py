@@ -30,20 +30,25 @@ class Range(NamedTuple):
 
 
 def range_of(scene: Scene) -> Range:
-    """Return the range of the change of slip velocity, in m/s, of the batch shape."""
+    """Return the range of the change of slip velocity, in m/s, of the batch shape.
+
+    It is infinite where friction changes the approach: no such bound is known there.
+    """
     pair = scene.pair
-    speed: Any = abs(scene.slip_velocity)
+    speed: Any = scene.slip_speed
     lesser: Any = np.minimum if scene.shape else min
     with np.errstate(over="ignore", under="ignore"):
         friction: Any = scene.friction_coefficient * scene.normal_speed
         # This is 4 chi in psi; psi itself would be infinite without friction.
         slipping = 2.0 * (friction * (pair.normal_mass / pair.tangential_mass))
+        if scene.inverse_mass is not None:
+            return Range(friction / pair.stiffness_ratio, math.inf + 0.0 * speed, speed)
         return Range(friction / pair.stiffness_ratio, lesser(slipping, 2.0 * speed), speed)
 
 
 def psi_magnitude(scene: Scene) -> Any:
     """Return max(1, |psi1|), the scale of relative errors of psi2; 1 where psi1 is infinite."""
-    magnitude: Any = abs(scene.psi1)
+    magnitude: Any = scene.size_of(scene.psi1)
     if not scene.shape:
         return max(1.0, magnitude) if math.isfinite(magnitude) else 1.0
     return np.maximum(1.0, np.where(np.isfinite(magnitude), magnitude, 1.0))

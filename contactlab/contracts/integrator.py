@@ -1,103 +1,21 @@
-"""The contract of integrators, and the tangential motion that they return."""
+"""The contract of integrators."""
 
 from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, ClassVar, NamedTuple, Self, TypeAlias
+from typing import Any, ClassVar
 
-import attrs
-
-from contactlab.contracts.batch_motion import BatchMotion
-from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
-from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.tangential import TangentialLaw
+from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 
 #: Impacts of a sweep that an integrator receives at a time, by default.
 CHUNK = 1000
-
-
-class Sample(NamedTuple):
-    """One instant of an impact, as passed to an observer.
-
-    Attributes
-    ----------
-    time : float or array, shape (...,)
-        Time in s, 0 at first touch.
-    approach, normal_velocity : float or array
-        Approach in m and its rate in m/s, positive in compression.
-    contact : NormalContact
-        The normal contact.
-    slip_velocity : float or array
-        v_x in m/s.
-    tangential_force : float or array
-        F in N, positive where it opposes a positive slip velocity.
-    fields : callable
-        Returns the law's arrays over the contact radius; observers call it only if they keep them.
-    """
-
-    time: Real
-    approach: Real
-    normal_velocity: Real
-    contact: NormalContact
-    slip_velocity: Real
-    tangential_force: Real
-    fields: Callable[[], Mapping[str, Any]]
-
-
-#: Called with each instant; it must not change its argument. If its attribute ``stepwise`` is
-#: False, it never calls ``Sample.fields``, and a law may take all steps in one call before.
-Observer: TypeAlias = Callable[[Sample], None]
-
-
-@attrs.frozen(kw_only=True, eq=False)
-class TangentialMotion(BatchMotion):
-    """The tangential motion that an integrator returns; entries have the batch shape.
-
-    Attributes
-    ----------
-    slip_velocity_change : float or array
-        Change of v_x in m/s. It is not added to v_x, which may be so large that the sum would
-        lose digits of the change.
-    friction_work : float or array
-        Friction work in J, summed over the answers of the tangential law.
-    status : Status or array of Status
-        How the run of each impact ended.
-    detail : str or array of str
-        What failed, at which step and time; empty on success. An integrator may give one
-        sentence for a batch, which goes to the impacts that failed.
-    counters : mapping of str to int
-        Operations counted: ``steps``, ``evaluations``, ``rejected``, ...
-    normal : NormalMotion, Ends or None
-        The normal motion that came of the friction, if the friction changes it. Restitution,
-        duration and maxima of the result are then those of this motion, and the energy books take
-        the dissipation that the normal law declares.
-    """
-
-    slip_velocity_change: Real
-    friction_work: Real
-    normal: NormalMotion | Ends | None = None
-
-    @classmethod
-    def merged(cls, parts: Sequence[tuple[Any, Self]], shape: tuple[int, ...]) -> Self:
-        """Return one motion of ``shape``, with the ends of the normal motions of the parts.
-
-        Parameters
-        ----------
-        parts, shape
-            As of ``BatchMotion.merged``.
-        """
-        motion = super().merged(parts, shape)
-        normals = [(where, part.normal) for where, part in parts]
-        if all(normal is None for _, normal in normals):
-            return motion
-        return attrs.evolve(motion, normal=Ends.merged(normals, shape))
 
 
 class Integrator(Law):
@@ -120,7 +38,10 @@ class Integrator(Law):
        integrator accepts.
     7. ``psi2_error`` is a bound of the numerical error of psi2, from the declaration of the
        tangential law; NaN, the default, means not declared.
-    8. ``resolution`` is the name of the option, steps or tolerance, that controls the error. If
+    8. An integrator with the word ``together`` also has ``integrate_together``, which marches the
+       normal law and a tangential law that needs no future at once, where friction changes the
+       approach.
+    9. ``resolution`` is the name of the option, steps or tolerance, that controls the error. If
        the integrator refines by itself, ``resolution_for`` returns the value used; errors are
        estimated by doubling that value, not the option.
 
@@ -141,6 +62,7 @@ class Integrator(Law):
     #: False if the impacts of a batch have different instants; batches then have no history.
     common_instants: ClassVar[bool] = True
     own_statuses: ClassVar[bool] = False
+    together: ClassVar[bool] = False
 
     @property
     def accuracy(self) -> float | None:
@@ -200,3 +122,23 @@ class Integrator(Law):
         observer : callable, optional
             Called with a ``Sample`` at increasing times (clause 3).
         """
+
+    def integrate_together(
+        self,
+        normal: NormalMotion,
+        tangential: TangentialLaw,
+        scene: Scene,
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
+        """Return the motion of impacts in which friction changes the approach (clause 8).
+
+        Parameters
+        ----------
+        normal : NormalMotion
+            The approach without friction: its law is marched, its duration counts the steps.
+        tangential : SteppedTangentialLaw
+            A law that needs no future; one that takes vectors if the scene has vectors.
+        scene : Scene
+            One impact or a batch, with its inverse mass.
+        """
+        raise NotImplementedError(f"{type(self).__name__} has not the word 'together'")

@@ -104,9 +104,23 @@ class SampledMotion(NormalMotion):
 
 
 class Ends(NamedTuple):
-    """Ends of the normal motions that friction changed, and the energy that the law took, in J.
+    """Ends of the normal motions that friction changed.
 
-    Each entry has the batch shape; NaN for impacts whose normal motion friction does not change.
+    Each entry has the batch shape. A NaN rate marks impacts whose normal motion friction does not
+    change. A law that knows no duration or maximum returns NaN for it.
+
+    Attributes
+    ----------
+    duration : float or array
+        Time of contact in s.
+    final_rate : float or array
+        Rate of approach at separation, in m/s.
+    maximum_radius, maximum_approach, maximum_force : float or array
+        Greatest contact radius (m), approach (m) and normal force (N).
+    dissipation : float or array
+        Energy in J that the normal law took; 0 for an elastic law.
+    compressions : float or array
+        How often the approach grew: 1, or more where friction presses the bodies together again.
     """
 
     duration: Any
@@ -115,6 +129,7 @@ class Ends(NamedTuple):
     maximum_approach: Any
     maximum_force: Any
     dissipation: Any
+    compressions: Any = 1.0
 
     @classmethod
     def of(cls, normal: NormalMotion | Ends | None) -> Ends:
@@ -124,7 +139,7 @@ class Ends(NamedTuple):
         if normal is None:
             return cls._make([math.nan] * len(cls._fields))
         law: Any = normal.law
-        ends = (getattr(normal, name) for name in cls._fields[:-1])
+        ends = (getattr(normal, name) for name in cls._fields[:5])
         return cls._make((*ends, law.dissipation(normal)))
 
     @classmethod

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact, no_force
 from contactlab.impact.coupling import coupling
 from contactlab.impact.scene import Scene
@@ -94,6 +95,9 @@ class TangentialLaw(Law):
        else is computed again.
     7. ``books_bound`` is a bound of the relative error of the energy books; infinite, the default,
        means not declared.
+    8. A law with the word ``together`` answers impacts in which friction changes the approach:
+       ``impacts_together`` returns normal and tangential motion, and ``errors_together`` their
+       errors. With the word ``vectors`` it does so where the slip turns too.
 
     Parameters of methods
     ---------------------
@@ -104,6 +108,8 @@ class TangentialLaw(Law):
     """
 
     kind: ClassVar[str] = "tangential"
+    together: ClassVar[bool] = False
+    vectors: ClassVar[bool] = False
 
     def books_bound(self, scene: Scene) -> Real:
         """Return the largest relative error of the energy books that counts as success.
@@ -159,6 +165,46 @@ class TangentialLaw(Law):
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return one sentence for each doubt about the model; by default on unlike bodies."""
         return coupling(scene)
+
+    def impacts_together(
+        self,
+        scene: Scene,
+        normal: NormalMotion,
+        accuracy: float | None,
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
+        """Return the motion of impacts in which friction changes the approach (clause 8).
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch, with its inverse mass.
+        normal : NormalMotion
+            The approach without friction, with its law.
+        accuracy : float or None
+            Error of psi2 over max(1, psi1) that is aimed at; None for the law's own.
+        observer : callable, optional
+            Called with the instants of a single impact.
+
+        Returns
+        -------
+        TangentialMotion
+            Its ``normal`` holds the ends of the normal motion.
+        """
+        raise NotImplementedError(f"{type(self).__name__} has not the word 'together'")
+
+    def errors_together(self, scene: Scene, accuracy: float | None) -> tuple[Real, Real]:
+        """Return declared bounds of the numerical errors of psi2 and of the normal restitution.
+
+        NaN, the default, means not declared.
+
+        Parameters
+        ----------
+        scene : Scene
+        accuracy : float or None
+            As in ``impacts_together``.
+        """
+        return math.nan, math.nan
 
 
 class WholeImpactTangentialLaw(TangentialLaw):
@@ -243,16 +289,37 @@ class SteppedTangentialLaw(TangentialLaw):
        computes its largest stable step; 0 for a law whose force does not depend on
        displacement. A law that offers ``partial_slip`` damps the oscillation by microslip. For
        other laws integrators take more steps, as phase errors add up over all periods.
+    7. A law whose ``needs_future`` is False takes nothing of the motion to come: ``advance`` depends
+       on its arguments only. Such a law runs where friction changes the approach. ``begin`` returns
+       its state there; ``normal`` is the approach without friction, from which a law may take
+       scales; the motion that follows may be another, with a larger contact, or with several
+       compressions. ``stiffness`` is an upper bound for the contacts of the approach alone.
+    8. With the word ``vectors`` such a law takes displacements and slip velocities of shape
+       (..., 2) from the state of ``begin(..., vectors=True)``, and returns a force of this shape;
+       friction work has the batch shape. A rotation of all vectors rotates the forces; the length
+       of the force does not exceed mu times the friction load.
 
     Parameters of methods
     ---------------------
     state : object
-        The state that ``start`` or the last step returned.
+        The state that ``start``, ``begin`` or the last step returned.
     """
+
+    needs_future: ClassVar[bool] = True
 
     @abstractmethod
     def start(self, scene: Scene, normal: NormalMotion) -> Any:
         """Return the state at first touch."""
+
+    def begin(self, scene: Scene, normal: NormalMotion, *, vectors: bool = False) -> Any:
+        """Return the state at first touch of a motion to come; by default that of ``start``.
+
+        Parameters
+        ----------
+        vectors : bool
+            True if displacements are vectors of the tangent plane.
+        """
+        return self.start(scene, normal)
 
     @abstractmethod
     def advance(

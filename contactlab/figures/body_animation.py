@@ -90,11 +90,11 @@ def animate_bodies(
     Parameters
     ----------
     path : str or Path
-    collision : BodyCollision
+    collision : Collision
         The collision of one encounter, whose result has a history.
     axes : array, shape (3, 3)
         n, t1 and t2 as rows, in the frame of the encounter.
-    ghosts : mapping of str to BodyCollision
+    ghosts : mapping of str to Collision
         The same encounter under other laws, by their names.
     progress : callable, optional
         Called as ``progress(done, total)`` after each frame.
@@ -183,15 +183,11 @@ def _course(axes: Any, result: Any) -> Callable[[float], None]:
     time = np.concatenate(([0.0], history.time / duration, [1.0]))
     speed = float(np.asarray(result.scene.normal_speed))
     unit = unit_in("m/s", result.scene)
-    ends = result.scene.slip_velocity, result.slip_velocity
-    slip = np.vstack((ends[0], history.slip_velocity, ends[1]))
-    approach = np.concatenate(([speed], history.normal_velocity, [speed * result.normal_velocity]))
-    curves = [
-        ("approach", approach),
-        ("slip" if result.scene.planar else "slip along t1", slip[:, 0]),
-    ]
-    if not result.scene.planar:
-        curves.append(("slip along t2", slip[:, 1]))
+    ends = result.scene.slip_velocity, result.rebound_slip_velocity
+    slip = np.vstack([np.atleast_1d(each) for each in (ends[0], *history.slip_velocity, ends[1])])
+    approach = np.concatenate(([speed], history.normal_velocity, [result.normal_velocity]))
+    names = ["slip"] if result.scene.planar else ["slip along t1", "slip along t2"]
+    curves = [("approach", approach), *zip(names, slip.T, strict=True)]
     zero_line(axes)
     for number, (name, values) in enumerate(curves):
         axes.plot(time, values, color=curve_colour(number), label=name)

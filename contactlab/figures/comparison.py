@@ -26,7 +26,7 @@ from contactlab.figures.style import (
     zero_line,
 )
 from contactlab.impact.scene import entry_unit
-from contactlab.outcome.columns import QUANTITIES, scaled_forces
+from contactlab.outcome.columns import quantity_named, scaled_forces
 from contactlab.study.comparison import Agreement, Comparison
 
 POINTS: dict[str, Any] = {
@@ -104,7 +104,7 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
         for axes, middle in ((upper, values), (lower, difference)):
             error_band(axes, x, middle, half, look)
     points = _codes(upper, comparison, quantity, varied)
-    upper.set_ylabel(label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
+    upper.set_ylabel(label(quantity, quantity_named(quantity).unit_in(comparison.scene)))
     lower.set_ylabel(rf"law $-$ {verbatim(first)}")
     lower.set_xlabel(label(varied, entry_unit(varied)))
     if not _named(upper, lower, groups, below, close, points):
@@ -208,7 +208,7 @@ def laws_over_sweep(
             **POINTS,
         )
     axes.set_xlabel(label(varied, entry_unit(varied)))
-    axes.set_ylabel(words or label(quantity, QUANTITIES[quantity].unit_in(comparison.scene)))
+    axes.set_ylabel(words or label(quantity, quantity_named(quantity).unit_in(comparison.scene)))
     parted = [name for name in _axes(comparison) if name != varied]
     if parted and varied in _axes(comparison):
         axes.set_title(f"a curve for each {' and '.join(map(verbatim, parted))}")
@@ -250,7 +250,9 @@ def differences(
             axes.plot(x, ordered(comparison.difference(quantity, name)), **style)
     axes.set_xlabel(label(varied, entry_unit(varied)))
     reference = "measured" if agreement is not None else names[0]
-    axes.set_ylabel(label(f"law $-$ {reference}", QUANTITIES[quantity].unit_in(comparison.scene)))
+    axes.set_ylabel(
+        label(f"law $-$ {reference}", quantity_named(quantity).unit_in(comparison.scene))
+    )
     return axes
 
 

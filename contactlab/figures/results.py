@@ -20,6 +20,7 @@ from contactlab.figures.style import (
     styled,
     zero_line,
 )
+from contactlab.impact.scene import entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import quantity_named, scaled_forces, unit_in
 
@@ -32,7 +33,10 @@ def draw_result(
     *,
     width: Width | None = None,
 ) -> Axes:
-    """Draw ``y`` over ``x`` for a batch, or forces over the contact for a single impact.
+    """Draw ``y`` over ``x`` for a batch, or the course of a single impact.
+
+    The course is that of the forces; where friction changes the approach the path of slip, over
+    the velocity of approach in the plane, and as a vector in space.
 
     Parameters
     ----------
@@ -41,7 +45,7 @@ def draw_result(
     result : ImpactResult
     x, y : str or None
         Columns of exports, angles also in degrees (``rebound_angle_deg``); psi1 and psi2 by
-        default. Only for a batch.
+        default. ``x`` may be an entry that varies too. Only for a batch.
     width : {"one", "two"}, optional
         Columns of a page that a new figure fills.
 
@@ -56,10 +60,22 @@ def draw_result(
             raise refuse(
                 "x, y", (x, y), "are for the result of many impacts", "leave them out for forces"
             )
+        if not result.history or not result.history.time.size:
+            raise refuse(
+                "result", result, "has no history to draw", "ask for one: run(scene, history=True)"
+            )
         with on_axes(axes, width) as drawn:
-            return _forces(drawn, result)
+            draw = _forces if result.scene.inverse_mass is None else _path
+            return draw(drawn, result)
     with on_axes(axes, width) as drawn:
-        return _quantities(drawn, result, x or "psi1", y or "psi2")
+        return _quantities(drawn, result, x or _abscissa(result), y or "psi2")
+
+
+def _abscissa(result: Any) -> str:
+    """Return psi1, or the first entry that varies where psi1 does not tell the impacts apart."""
+    scene = result.scene
+    first = next(iter(scene.varied), "psi1")
+    return "psi1" if scene.inverse_mass is None else first
 
 
 def draw_history(axes: Axes | None, history: Any, *, width: Width | None = None) -> Axes:
@@ -93,11 +109,6 @@ def on_axes(axes: Axes | None, width: Width | None) -> Iterator[Axes]:
 
 def _forces(axes: Axes, result: Any) -> Axes:
     """Draw the tangential force of a single impact with the friction limit."""
-    history = result.history
-    if not history or not history.time.size:
-        raise refuse(
-            "result", result, "has no history to draw", "ask for one: run(scene, history=True)"
-        )
     time, tangential, normal = scaled_forces(result)
     zero_line(axes)
     friction_limit(axes, time, normal)
@@ -106,11 +117,42 @@ def _forces(axes: Axes, result: Any) -> Axes:
     return axes
 
 
+def _path(axes: Axes, result: Any) -> Axes:
+    """Draw slip over approach in the plane, and the slip vector in space."""
+    scene, history = result.scene, result.history
+    ends = scene.slip_velocity, result.rebound_slip_velocity
+    slip = np.concatenate(([ends[0]], history.slip_velocity, [ends[1]]))
+    unit = unit_in("m/s", scene)
+    zero_line(axes)
+    if scene.planar:
+        rates = [scene.normal_speed], history.normal_velocity, [result.normal_velocity]
+        across, up = np.concatenate(rates), slip
+        axes.set_xlabel(label("velocity of approach", unit))
+        axes.set_ylabel(label("slip velocity", unit))
+        axes.invert_xaxis()  # time runs to the right
+    else:
+        across, up = slip.T
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_xlabel(label("slip velocity along t1", unit))
+        axes.set_ylabel(label("slip velocity along t2", unit))
+    axes.axvline(0.0, color="0.8", linewidth=0.8, zorder=0)
+    axes.plot(across, up, color=curve_colour(0))
+    axes.plot(across[0], up[0], "o", color=curve_colour(0), label="first touch")
+    axes.plot(across[-1], up[-1], "s", color=curve_colour(1), label="separation")
+    axes.legend()
+    return axes
+
+
 def _quantities(axes: Axes, result: Any, x: str, y: str) -> Axes:
     """Draw one quantity of a batch over another: a curve, or points if abscissas repeat."""
     scene = result.scene
-    across, up = (quantity_named(name, where=where) for name, where in ((x, "x"), (y, "y")))
-    abscissa, ordinate = (quantity.of(result).ravel() for quantity in (across, up))
+    up = quantity_named(y, where="y")
+    ordinate = up.of(result).ravel()
+    if x in scene.varied:
+        abscissa, unit = np.ravel(scene.varied[x]), entry_unit(x)
+    else:
+        across = quantity_named(x, where="x")
+        abscissa, unit = across.of(result).ravel(), unit_in(across.unit, scene)
     for where, name, values in (("x", x, abscissa), ("y", y, ordinate)):
         if np.isnan(values).all():
             raise refuse(where, name, "is defined for none of these impacts", "give another")
@@ -120,7 +162,7 @@ def _quantities(axes: Axes, result: Any, x: str, y: str) -> Axes:
     axes.plot(abscissa[order], ordinate[order], color=curve_colour(0), **look)
     if curve and y == "psi2":
         _band(axes, result, abscissa, ordinate, order)
-    axes.set_xlabel(label(x, unit_in(across.unit, scene)))
+    axes.set_xlabel(label(x, unit))
     axes.set_ylabel(label(y, unit_in(up.unit, scene)))
     return axes
 

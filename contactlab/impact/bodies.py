@@ -31,7 +31,7 @@ def _material() -> Any:
 
 
 @arguments_told
-@attrs.frozen
+@attrs.frozen(cache_hash=True)
 class Sphere:
     """An elastic sphere.
 
@@ -75,7 +75,7 @@ class Sphere:
 
 
 @arguments_told
-@attrs.frozen
+@attrs.frozen(cache_hash=True)
 class HalfSpace:
     """An elastic body with a plane surface, so large that no impact changes its motion.
 
@@ -143,6 +143,23 @@ class Pair:
         Mindlin, J. Appl. Mech. 16 (1949) 259-268.
         """
         return 2.0 * self.effective_shear_modulus * radius
+
+    def energies(self, speed: Any, slip: Any, rate: Any, change: Any) -> tuple[Any, Any, Any]:
+        """Return the energy at the start, and what approach and slip lose of it, in J.
+
+        Parameters
+        ----------
+        speed, slip : float or array
+            Rate of approach and slip velocity before, in m/s.
+        rate, change : float or array
+            Rate of approach after, and change of the slip velocity, in m/s.
+        """
+        # Products, not powers: a float raised to a power raises OverflowError. Losses are formed
+        # from the changes: with a huge v_x, start - end would cancel.
+        start = 0.5 * self.normal_mass * speed * speed
+        start = start + 0.5 * self.tangential_mass * slip * slip
+        lost = 0.5 * self.normal_mass * (speed - rate) * (speed + rate)
+        return start, lost, -self.tangential_mass * change * (slip + 0.5 * change)
 
     @classmethod
     def of(cls, sphere: Sphere, target: Sphere | HalfSpace) -> Pair:

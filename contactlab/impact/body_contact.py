@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.impact import inverse_mass
 from contactlab.impact.bodies import (
     HalfSpace,
     Pair,
@@ -16,15 +17,11 @@ from contactlab.impact.bodies import (
     normal_compliance,
     shear_compliance,
 )
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 
 Array = NDArray[np.float64]
-
-#: Parts of W, and of the slip over the speed, that are rounding.
-ROUNDING = 1e-12
 
 
 class Contact(NamedTuple):
@@ -87,7 +84,7 @@ def turned(body: Any, moment: Array) -> Array:
     return np.zeros(3)
 
 
-def inverse_mass(encounter: Any, normal: Array) -> Array:
+def inverse_mass_of(encounter: Any, normal: Array) -> Array:
     """Return W in the frame of the encounter, shape (..., 3, 3), in 1/kg."""
     total: Any = np.zeros((3, 3))
     for body, arm in zip((encounter.body, encounter.target), arms(encounter, normal), strict=True):
@@ -127,17 +124,19 @@ def frame(encounter: Any) -> Frame:
     """Return the frame with t1 along W_nt, or along the slip without coupling."""
     n = np.broadcast_to(encounter.normal, (*encounter.shape, 3))
     n = n / np.sqrt(np.einsum("...i,...i->...", n, n))[..., None]
-    W = np.broadcast_to(inverse_mass(encounter, n), (*encounter.shape, 3, 3))
+    W = np.broadcast_to(inverse_mass_of(encounter, n), (*encounter.shape, 3, 3))
     velocity = np.broadcast_to(relative_velocity(encounter, n), n.shape)
     coupling = np.einsum("...ij,...j->...i", W, n)
     pressed = np.einsum("...i,...i->...", coupling, n)
     slip = velocity - np.einsum("...i,...i->...", velocity, n)[..., None] * n
-    # the first of coupling, slip and any axis that is not lost in rounding
+    # the first of coupling, slip and any axis that is not lost in rounding, as ``ways`` judges it
+    mean = 0.5 * (np.trace(W, axis1=-2, axis2=-1) - pressed)
+    size = np.sqrt(pressed * mean)
     least = np.argmin(np.abs(n), axis=-1)
     axis = np.eye(3)[least]
     candidates = (
-        (coupling - pressed[..., None] * n, ROUNDING * pressed),
-        (slip, ROUNDING * np.sqrt(np.einsum("...i,...i->...", velocity, velocity))),
+        (coupling - pressed[..., None] * n, inverse_mass.ROUNDING * size),
+        (slip, inverse_mass.ROUNDING * np.sqrt(np.einsum("...i,...i->...", velocity, velocity))),
         (axis - np.einsum("...i,...i->...", axis, n)[..., None] * n, 0.0),
     )
     t1 = np.zeros_like(n)
@@ -153,35 +152,26 @@ def frame(encounter: Any) -> Frame:
     )
 
 
-def scene_of_bodies(encounter: Any) -> Scene | EccentricScene:
-    """Return the scene in numbers: central where W neither couples nor depends on direction."""
-    axes, W, velocity = frame(encounter)
-    del axes
-    pair = pair_of_bodies(encounter, W)
-    speed, slip = velocity[..., 0], velocity[..., 1:].copy()
-    size = np.sqrt(W[..., 0, 0] * W[..., 1, 1])
-    coupled = np.hypot(W[..., 0, 1], W[..., 0, 2]) > ROUNDING * size
-    turning = np.abs(W[..., 1, 2]) > ROUNDING * W[..., 1, 1]
-    uneven = turning | (np.abs(W[..., 1, 1] - W[..., 2, 2]) > ROUNDING * W[..., 1, 1])
-    across = np.abs(slip[..., 1]) > ROUNDING * (np.abs(speed) + np.abs(slip[..., 0]))
+def scene_of_bodies(encounter: Any) -> Scene:
+    """Return the scene in numbers; it keeps the inverse mass if any impact needs it."""
+    _, W, velocity = frame(encounter)
+    speed, slip = velocity[..., 0], velocity[..., 1:]
+    ways = np.asarray(inverse_mass.ways(W, speed, slip))
+    across = np.abs(slip[..., 1]) > inverse_mass.ROUNDING * (np.abs(speed) + np.abs(slip[..., 0]))
+    planar = not (across | (ways == inverse_mass.SPATIAL)).any()
     number: Any = np.asarray if encounter.shape else float
-    bodies = encounter.body, encounter.target
-    if not (coupled | uneven).any():
-        tangential = number(np.hypot(slip[..., 0], slip[..., 1]))
-        numbers = encounter.friction_coefficient, number(speed), tangential
-        return Scene(None, None, *numbers, pair=pair, bodies=bodies)
-    planar = not (turning | across).any()
-    if planar:
-        slip[..., 1] = 0.0
-    return EccentricScene(
-        pair=pair,
-        friction_coefficient=encounter.friction_coefficient,
+    scene = Scene(
+        None,
+        None,
+        encounter.friction_coefficient,
+        number(speed),
+        number(slip[..., 0]) if planar else slip,
+        pair=pair_of_bodies(encounter, W),
+        encounter=encounter,
         inverse_mass=W,
-        normal_speed=number(speed),
-        slip_velocity=slip,
         planar=planar,
-        bodies=bodies,
     )
+    return scene.central if (ways == inverse_mass.CENTRAL).all() else scene
 
 
 def pair_of_bodies(encounter: Any, inverse: Array) -> Pair:
@@ -209,3 +199,25 @@ def pair_of_bodies(encounter: Any, inverse: Array) -> Pair:
         tangential_mass=number(2.0 / (W[..., 1, 1] + W[..., 2, 2])),
         dundurs_beta=coupling_compliance(first, second) / compliance,
     )
+
+
+def pushed(encounter: Any, impulse: Array) -> dict[str, Array]:
+    """Return velocities and spins after an impulse in N s on the target, and its opposite.
+
+    ``impulse`` has components along n, t1 and t2 of ``frame``, shape (..., 3).
+    """
+    axes = frame(encounter).axes
+    whole = np.einsum("...ia,...i->...a", axes, impulse)
+    moved = {}
+    sides = (
+        ("", encounter.body, -1.0), ("target_", encounter.target, 1.0),
+    )  # fmt: skip
+    for (name, body, sense), arm in zip(sides, arms(encounter, axes[..., 0, :]), strict=True):
+        push = sense * whole
+        velocity = getattr(encounter, f"{name}velocity")
+        if not isinstance(body, HalfSpace):
+            velocity = velocity + push / np.asarray(body.mass)[..., None]
+        spin = getattr(encounter, f"{name}spin") + turned(body, np.cross(arm, push))
+        moved[f"{name}velocity"] = np.broadcast_to(velocity, whole.shape)
+        moved[f"{name}spin"] = np.broadcast_to(spin, whole.shape)
+    return moved

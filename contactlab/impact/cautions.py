@@ -64,10 +64,10 @@ def path_cautions(scene: Scene, deepest: float, *, plastic: bool) -> tuple[str, 
 
 def rigid_bodies(scene: Scene) -> tuple[str, ...]:
     """Return the cautions of bodies that are no spheres: elliptic contacts, and ringing."""
-    if not scene.bodies:
+    if scene.encounter is None:
         return ()
     shortest = _least(hertz_scales(scene).duration)
-    bodies = (body for body in scene.bodies if isinstance(body, RigidBody))
+    bodies = (body for body in named(scene).values() if isinstance(body, RigidBody))
     return tuple(text for body in bodies for text in body.cautions(shortest))
 
 
@@ -161,8 +161,8 @@ def tabor_caution(
 
 def named(scene: Scene) -> dict[str, Any]:
     """Return the bodies of a scene by the name of their argument; none of a scene of numbers."""
-    if scene.bodies:
-        return dict(zip(("body", "target"), scene.bodies, strict=True))
+    if scene.encounter is not None:
+        return {name: getattr(scene.encounter, name) for name in ("body", "target")}
     if scene.sphere is None:
         return {}
     return {"sphere": scene.sphere, "target": scene.target}

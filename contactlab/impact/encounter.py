@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 from operator import attrgetter
 from typing import Any
 
@@ -41,8 +41,8 @@ GIVEN = (
     "normal", "velocity", "spin", "target_velocity", "target_spin", "contact", "target_contact",
 )  # fmt: skip
 _DIMENSIONS = attrgetter(*(f"{name}.ndim" for name in GIVEN))
-#: The bodies of the last single encounter, and their pair.
-_last: Any = (None, None, None)
+#: Pairs of single encounters: many of the same two bodies follow one another.
+_pair_of = lru_cache(maxsize=16)(Pair.of)
 
 
 @arguments_told
@@ -182,17 +182,10 @@ class Encounter:
     @property
     def pair(self) -> Pair:
         """The numbers of the two bodies that laws need."""
-        global _last  # many encounters of two bodies follow one another
-        body, target, last = _last
-        pair: Pair = last
-        if body is not self.body or target is not self.target:
-            body, target = self.body, self.target
-            if isinstance(body, RigidBody) or isinstance(target, RigidBody):
-                raise refuse("pair", type(body).__name__, "is that of spheres", "take scene.pair")
-            pair = Pair.of(body, target)
-            if not self.shape:
-                _last = body, target, pair
-        return pair
+        body, target = self.body, self.target
+        if isinstance(body, RigidBody) or isinstance(target, RigidBody):
+            raise refuse("pair", type(body).__name__, "is that of spheres", "take scene.pair")
+        return Pair.of(body, target) if self.shape else _pair_of(body, target)
 
     @property
     def approaching(self) -> Any:
@@ -245,11 +238,11 @@ class Encounter:
         return rim[0], rim[1], rim[2]
 
     @property
-    def scene(self) -> Any:
-        """The ``Scene`` in the plane of friction, relative to a target at rest without spin.
+    def scene(self) -> Scene:
+        """The scene in the plane of friction, relative to a target at rest without spin.
 
-        Of bodies that are no spheres: an ``EccentricScene`` where friction changes the approach or
-        the slip turns; else a scene of numbers without bodies.
+        Of bodies that are no spheres: a scene with an inverse mass where friction changes the
+        approach or the slip turns; else a scene of numbers without sphere and target.
 
         The tangential velocity is the relative velocity of the centres along the slip. The spin
         is the part of (R1 omega1 + R2 omega2)/R1 that makes slip in this plane. Velocities and

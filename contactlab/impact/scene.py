@@ -1,4 +1,4 @@
-"""Scenes: two bodies, the friction between them, and their velocities before the impact."""
+"""Scenes: two bodies, the friction between them, and their motion before the impact."""
 
 from __future__ import annotations
 
@@ -11,17 +11,18 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.impact import groups, inverse_mass
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
 from contactlab.impact.grid import Array, axes_of, product
 from contactlab.impact.material import Material
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import (
     NON_NEGATIVE,
-    POISSON,
     POSITIVE,
     Real,
     Rule,
     instance,
+    key,
     quantity,
     real,
     refuse,
@@ -38,6 +39,11 @@ OBLIQUE = Rule(
 )
 
 
+def _tensors(value: Any) -> Array | None:
+    """Return a read-only copy as float64; None as it is."""
+    return None if value is None else np.asarray(batch.locked(np.array(value, dtype=np.float64)))
+
+
 @arguments_told
 @attrs.frozen
 class Scene:
@@ -45,6 +51,11 @@ class Scene:
 
     The sphere moves towards the target, which is at rest and does not spin. Every
     number may be an array; the scene is then a batch of the broadcast ``shape``.
+
+    Bodies of any shape have an inverse mass W in the frame (n, t1, t2) of their contact: the normal
+    from the first body into the target, and two tangents. Where W couples, friction changes the
+    approach. ``Encounter.scene`` makes such a scene from bodies, ``nondimensional`` from the groups
+    of theory §14. Spheres leave W out: it is diagonal.
 
     Parameters
     ----------
@@ -57,7 +68,8 @@ class Scene:
     normal_speed : float or array
         v1, the speed of approach along the normal, in m/s, positive.
     tangential_velocity : float or array
-        v, the tangential velocity of the sphere's centre, in m/s.
+        v, the tangential velocity of the sphere's centre, in m/s. With an inverse mass: the slip
+        velocity along t1; along t1 and t2, shape (..., 2), where ``planar`` is False.
     spin : float or array
         omega, in rad/s, positive where it adds to the tangential velocity at the
         contact: v_x = v + omega R, eq. (20).
@@ -67,13 +79,19 @@ class Scene:
     unit_friction : bool
         True if the friction coefficient is 1 by choice of units, as in ``nondimensional`` without a
         friction coefficient. A law that needs mu itself refuses such a scene.
-    bodies : tuple
-        Bodies of an encounter that are no spheres, which cautions look at; empty without.
+    encounter : Encounter, optional
+        Encounter of bodies that are no spheres, which cautions and velocities in space look at.
+    inverse_mass : array, shape (..., 3, 3), optional
+        W in 1/kg, of a scene without sphere and target: the acceleration of the relative motion at
+        the contact for unit forces along n, t1 and t2.
+    planar : bool
+        True if the motion stays in the plane of n and t1, so that slip is a number.
 
     Raises
     ------
     ValueError
-        If a number is not finite or out of range. The message names the argument.
+        If a number is not finite or out of range, or W is not positive definite. The message names
+        the argument.
     """
 
     sphere: Sphere | None = instance(Sphere, remedy="make one: Sphere(...)", optional=True)
@@ -87,13 +105,20 @@ class Scene:
         Pair, remedy="or leave it out", optional=True, default=None, kw_only=True, repr=False
     )
     unit_friction: bool = instance(bool, default=False, kw_only=True, repr=False)
-    bodies: tuple[Any, ...] = attrs.field(default=(), eq=False, repr=False, kw_only=True)
+    encounter: Any = attrs.field(default=None, eq=False, repr=False, kw_only=True)
+    inverse_mass: Array | None = attrs.field(
+        default=None, converter=_tensors, eq=key, repr=False, kw_only=True
+    )
+    planar: bool = instance(bool, default=True, kw_only=True, repr=False)
     #: Batch shape: () for one impact.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
     #: Index of each impact in the whole batch, integers of the batch shape; 0 for one impact.
     #: ``take``, blocks, chunks and workers keep the index, which a law may use as a random seed.
     index: Any = attrs.field(init=False, eq=False, repr=False)
     _axes: tuple[tuple[str, Array], ...] = attrs.field(init=False, eq=False, repr=False, default=())
+    _varied: tuple[tuple[str, Array], ...] = attrs.field(
+        init=False, eq=False, repr=False, default=()
+    )
 
     def __attrs_post_init__(self) -> None:
         if self.sphere is not None and self.target is not None:
@@ -107,11 +132,7 @@ class Scene:
                 "or use Scene.nondimensional(psi1=, chi=)",
             )
         shape = batch.common_shape(
-            {
-                name: number.shape
-                for name, number in self.numbers().items()
-                if isinstance(number, np.ndarray)
-            },
+            self._shapes(),
             what="Scene: the shapes",
             remedy="give numbers, or arrays of equal length",
         )
@@ -120,7 +141,42 @@ class Scene:
         object.__setattr__(self, "shape", shape)
         index = batch.locked(np.arange(math.prod(shape)).reshape(shape)) if shape else 0
         object.__setattr__(self, "index", index)
+        if self.inverse_mass is not None:
+            self._check_inverse_mass()
         self._check_scales()
+
+    def _shapes(self) -> dict[str, tuple[int, ...]]:
+        """Return the batch shape of every number that varies."""
+        shapes = {
+            name: number.shape
+            for name, number in self.numbers().items()
+            if isinstance(number, np.ndarray)
+        }
+        if self.inverse_mass is not None:
+            shapes["inverse_mass"] = self.inverse_mass.shape[:-2]
+            if not self.planar:
+                shapes["tangential_velocity"] = np.shape(self.tangential_velocity)[:-1]
+        return shapes
+
+    def _check_inverse_mass(self) -> None:
+        """Refuse a W that no bodies have; spread vectors and tensors over the batch."""
+        if self.sphere is not None:
+            rule = "follows from sphere and target"
+            raise refuse("inverse_mass", self.inverse_mass, rule, "leave one of them out")
+        vectors = {"inverse_mass": (3, 3)}
+        if not self.planar:
+            vectors["tangential_velocity"] = (2,)
+        for name, ends in vectors.items():
+            given = np.asarray(getattr(self, name))
+            if given.shape[-len(ends) :] != ends:
+                raise refuse(f"{name}.shape", given.shape, f"must end with {ends}")
+            whole = batch.locked(np.broadcast_to(given, (*self.shape, *ends)))
+            object.__setattr__(self, name, whole)
+        W: Any = self.inverse_mass
+        inverse_mass.check(W)
+        tangential = W[..., 1, 1] if self.planar else 0.5 * (W[..., 1, 1] + W[..., 2, 2])
+        masses = {"normal_mass": 1.0 / W[..., 0, 0], "tangential_mass": 1.0 / tangential}
+        object.__setattr__(self, "pair", attrs.evolve(self.pair, **masses))
 
     def numbers(self) -> dict[str, Real]:
         """Return every number of the scene and of its pair, by name."""
@@ -141,7 +197,7 @@ class Scene:
         with np.errstate(all="ignore"):
             energy = 0.5 * self.pair.normal_mass * (speed * speed)
             unit = friction * speed / self.pair.stiffness_ratio
-            slip: Any = abs(self.slip_velocity)
+            slip: Any = self.slip_speed
             slip_energy = 0.5 * self.pair.tangential_mass * (slip * slip)
             momentum = friction * self.pair.normal_mass * speed
             tiny = (unit < LEAST_VELOCITY) & (slip < LEAST_VELOCITY)
@@ -219,11 +275,14 @@ class Scene:
         *,
         psi1: Any,
         chi: Any,
+        lam: Any = 0.0,
+        eta: Any = None,
+        rho: Any = None,
         poisson_ratio: Any = None,
         coupling_number: Any = None,
         friction_coefficient: Any = None,
     ) -> Scene:
-        """Return the scene of the paper's two parameters, eqs (29) and (38).
+        """Return the scene of the paper's two parameters, eqs (29) and (38), and of theory §14.
 
         The units are chosen so that v1 = R = C = M = 1, and mu = kappa = 1 unless they are given.
         Velocities of the results are then the paper's V and psi; with mu and kappa the slip
@@ -234,12 +293,24 @@ class Scene:
         the Poisson ratio too, and between unlike bodies the coupling number. Where tangential
         traction changes the pressure it needs the friction coefficient as well.
 
+        With ``lam`` friction changes the approach, as between bodies of any shape; then eta or rho
+        is needed, unless both the Poisson ratio and the friction coefficient are given. Where chi
+        ends with (2, 2) and rho is given, psi1 and ``lam`` are vectors of the tangent plane.
+
         Parameters
         ----------
-        psi1 : float or array
-            Local angle of incidence of the paper's eq. (29), without unit.
-        chi : float or array
-            Inertia ratio (38), positive, without unit; 1.4412 for a solid sphere of nu = 0.3.
+        psi1 : float or array; in space an array of shape (..., 2)
+            Local angle of incidence of the paper's eq. (29), without unit: kappa v_x/(mu v1).
+        chi : float or array; in space an array of shape (..., 2, 2)
+            Inertia ratio (38), (kappa/2) W_tt/W_nn, positive, without unit; 1.4412 for a solid
+            sphere of nu = 0.3.
+        lam : float or array; in space an array of shape (..., 2)
+            mu W_nt/W_nn, what friction adds to the approach; 0 for spheres.
+        eta : float or array, optional
+            kappa W_nt/(mu W_nn), what pressure adds to the slip; in the plane only. It has the
+            sign of ``lam``, and is zero where ``lam`` is.
+        rho : float or array, optional
+            mu²/kappa = lam/eta, in place of ``eta``.
         poisson_ratio : float or array, optional
             Effective Poisson ratio, the mean of both bodies' with weights 1/G. It makes
             kappa = 2 (1 - nu)/(2 - nu).
@@ -251,40 +322,20 @@ class Scene:
         Raises
         ------
         ValueError
-            If psi1 or the coupling number is not finite, chi or the friction coefficient is not
-            positive and finite, or the Poisson ratio does not lie between -1 and 0.5.
+            If a number is not finite or out of range, lam eta >= 2 chi, or rho contradicts the
+            friction coefficient and the Poisson ratio.
         """
-        incidence = real(
-            "psi1",
-            psi1,
-            remedy="give the non-dimensional angle of incidence, eq. (29) of the paper",
+        entries = groups.entries(
+            psi1=psi1,
+            chi=chi,
+            lam=lam,
+            eta=eta,
+            rho=rho,
+            poisson_ratio=poisson_ratio,
+            coupling_number=coupling_number,
+            friction_coefficient=friction_coefficient,
         )
-        inertia = real(
-            "chi", chi, rule=POSITIVE, remedy="chi of eq. (38); 1.4412 for a solid sphere, nu = 0.3"
-        )
-        kappa: Any = 1.0
-        if poisson_ratio is not None:
-            nu = real("poisson_ratio", poisson_ratio, rule=POISSON)
-            kappa = 2.0 * (1.0 - nu) / (2.0 - nu)
-        friction: Any = 1.0
-        if friction_coefficient is not None:
-            friction = real("friction_coefficient", friction_coefficient, rule=POSITIVE)
-        coupled: Any = 0.0
-        if coupling_number is not None:
-            remedy = "Lambda = kappa beta/mu; 0 for like bodies"
-            coupled = real("coupling_number", coupling_number, remedy=remedy) * friction / kappa
-        modulus = 15.0 / 16.0  # makes C = 1 in eq. (9)
-        pair = Pair(
-            radius=1.0,
-            effective_modulus=modulus,
-            effective_shear_modulus=kappa * modulus,
-            normal_mass=1.0,
-            tangential_mass=0.5 * kappa / inertia,
-            dundurs_beta=coupled,
-        )
-        unit = friction_coefficient is None
-        slip = incidence * friction / kappa
-        return cls(None, None, friction, 1.0, slip, pair=pair, unit_friction=unit)
+        return cls(None, None, **entries)
 
     @classmethod
     def grid(cls, *bodies: Any, **entries: Any) -> Scene:
@@ -299,8 +350,8 @@ class Scene:
         *bodies : Sphere, HalfSpace, optional
             Sphere and target; no bodies with psi1 and chi.
         **entries : float or list
-            Entries of ``Scene``; or of ``Scene.at_angle``, with speed and angle_deg; or psi1 and
-            chi.
+            Entries of ``Scene``; or of ``Scene.at_angle``, with speed and angle_deg; or psi1, chi,
+            lam, eta and rho.
 
         Raises
         ------
@@ -309,7 +360,7 @@ class Scene:
         """
         axes = axes_of(entries)
         make: Callable[..., Scene] = cls
-        if not bodies and {"psi1", "chi"} & set(entries):
+        if not bodies and {"psi1", "chi", "lam"} & set(entries):
             make = cls.nondimensional
         elif {"speed", "angle_deg"} & set(entries):
             make = cls.at_angle
@@ -327,6 +378,24 @@ class Scene:
         lines = [(name, np.array(values, dtype=np.float64)) for name, values in axes.items()]
         object.__setattr__(grid, "_axes", tuple((name, batch.locked(v)) for name, v in lines))
         return grid
+
+    def varying(self, entries: Mapping[str, Any]) -> Scene:
+        """Return this batch with the values of the entries that vary in it together.
+
+        Parameters
+        ----------
+        entries : mapping of str to array
+            Values of the batch shape.
+        """
+        scene = copy.copy(self)
+        lines = tuple((name, batch.locked(np.array(each))) for name, each in entries.items())
+        object.__setattr__(scene, "_varied", lines)
+        return scene
+
+    @property
+    def varied(self) -> Mapping[str, Array]:
+        """The values of each entry that varies, of each impact, by name; empty if not known."""
+        return MappingProxyType(product(dict(self._axes)) if self._axes else dict(self._varied))
 
     @property
     def axes(self) -> Mapping[str, Array]:
@@ -374,11 +443,24 @@ class Scene:
                     "must have a friction coefficient if, and only if, scenes[0] has",
                     "give friction_coefficient to every Scene.nondimensional, or to none",
                 )
+        if any(scene.inverse_mass is not None for scene in scenes):
+            planar = all(scene.planar for scene in scenes)
+            scenes = [scene._of_any_shape(planar) for scene in scenes]
         stacked = batch.stacked(scenes)
         assert isinstance(stacked, cls)
         if stacked.shape:
             return stacked
         return attrs.evolve(stacked, normal_speed=np.full(len(scenes), stacked.normal_speed))
+
+    def _of_any_shape(self, planar: bool) -> Scene:
+        """Return this scene of one impact with its inverse mass, and slip as a vector in space."""
+        slip = self.tangential_velocity
+        if self.planar and not planar:
+            slip = np.array([slip, 0.0])  # type: ignore[assignment]
+        W, pair = self.inverse_mass, self.pair
+        if W is None:
+            W = np.diag([1.0 / pair.normal_mass, *2 * [1.0 / pair.tangential_mass]])
+        return attrs.evolve(self, tangential_velocity=slip, inverse_mass=W, planar=planar)
 
     def take(self, part: Any) -> Scene:
         """Return the scene of the impacts that ``part`` indexes.
@@ -388,14 +470,22 @@ class Scene:
 
         Parameters
         ----------
-        part : slice, array of bool or int, int or tuple of int
+        part : slice, array of bool or int, int, tuple of int or Ellipsis
             Index of an array of the batch shape.
         """
-        if isinstance(part, slice) and self.shape and part == slice(0, self.shape[0]):
+        if part is ... or (
+            isinstance(part, slice) and self.shape and part == slice(0, self.shape[0])
+        ):
             return self
-        taken: Scene = batch.taken(self, self.shape, part)
-        numbers = taken.numbers().values()
-        object.__setattr__(taken, "shape", np.broadcast_shapes(*map(np.shape, numbers)))
+        plain = self
+        if self.encounter is not None:
+            plain = copy.copy(self)
+            object.__setattr__(plain, "encounter", None)
+        taken: Scene = batch.taken(plain, self.shape, part)
+        if self.encounter is not None:
+            object.__setattr__(taken, "encounter", self.encounter.take(part))
+        object.__setattr__(taken, "_varied", ())
+        object.__setattr__(taken, "shape", np.broadcast_shapes(*taken._shapes().values()))
         object.__setattr__(taken, "_axes", ())
         if taken.shape or isinstance(part, int | tuple):
             return taken
@@ -425,16 +515,193 @@ class Scene:
         return scene
 
     @property
-    def slip_velocity(self) -> Real:
-        """v_x = v + omega R, the slip velocity (20), in m/s."""
+    def slip_velocity(self) -> Any:
+        """v_x = v + omega R, the slip velocity (20), in m/s; along t1 and t2 in space."""
         if self.sphere is None:
             return self.tangential_velocity
         return self.tangential_velocity + self.spin * self.sphere.radius
 
     @property
-    def chi(self) -> Real:
-        """Inertia ratio, eq. (38)."""
-        return self.pair.inertia_ratio
+    def slip_speed(self) -> Any:
+        """Magnitude of the slip velocity, in m/s, of the batch shape."""
+        return self.size_of(self.slip_velocity)
+
+    def size_of(self, slip: Any) -> Any:
+        """Return the magnitude of slip velocities, of the batch shape.
+
+        Parameters
+        ----------
+        slip : float or array
+            As ``slip_velocity``.
+        """
+        return abs(slip) if self.planar else np.hypot(slip[..., 0], slip[..., 1])
+
+    def along_slip(self, velocity: Any) -> Any:
+        """Return the part of slip velocities along the slip at first touch, of the batch shape.
+
+        Parameters
+        ----------
+        velocity : float or array
+            As ``slip_velocity``.
+        """
+        if self.planar:
+            return velocity
+        part = np.einsum("...i,...i->...", velocity, inverse_mass.along(self.slip_velocity))
+        return part if self.shape else float(part)
+
+    @property
+    def slip_axes(self) -> tuple[int, ...]:
+        """Axes of a slip velocity beside the batch's: (2,) in space, () in the plane."""
+        return () if self.planar else (2,)
+
+    @property
+    def chi(self) -> Any:
+        """Inertia ratio, eq. (38); in space (kappa/2) W_tt/W_nn, shape (..., 2, 2)."""
+        if self.planar:
+            return self.pair.inertia_ratio
+        W: Any = self.inverse_mass
+        half = 0.5 * np.asarray(self.pair.stiffness_ratio)
+        return half[..., None, None] * W[..., 1:, 1:] / W[..., :1, :1]
+
+    @property
+    def lam(self) -> Any:
+        """Lam = mu W_nt/W_nn, what friction adds to the approach; (..., 2) in space."""
+        return self._coupling(self.friction_coefficient)
+
+    @property
+    def eta(self) -> Any:
+        """Eta = kappa W_nt/(mu W_nn), what pressure adds to the slip; infinite without friction."""
+        with np.errstate(all="ignore"):
+            return self._coupling(np.divide(self.pair.stiffness_ratio, self.friction_coefficient))
+
+    @property
+    def rho(self) -> Real:
+        """Rho = mu²/kappa."""
+        mu: Any = self.friction_coefficient
+        rho: Real = mu * mu / self.pair.stiffness_ratio
+        return rho
+
+    def _coupling(self, factor: Any) -> Any:
+        """Return ``factor`` times W_nt/W_nn; 0 for spheres."""
+        if self.inverse_mass is None:
+            return 0.0
+        with np.errstate(all="ignore"):
+            W = self.inverse_mass
+            vectors = np.asarray(factor)[..., None] * W[..., 0, 1:] / W[..., :1, 0]
+        if not self.planar:
+            return vectors
+        return vectors[..., 0] if self.shape else float(vectors[0])
+
+    @property
+    def central(self) -> Scene:
+        """The impact with the same approach and no coupling: the scene itself for spheres.
+
+        Its slip is the magnitude in space, its tangential mass that along the slip.
+        """
+        if self.inverse_mass is None:
+            return self
+        slip, mass = self.tangential_velocity, self.pair.tangential_mass
+        if not self.planar:
+            slip = self.slip_speed
+            slip = slip if self.shape else float(slip)
+            along = inverse_mass.along(self.slip_velocity)
+            mass = inverse_mass.mass_along(self.inverse_mass, along)
+            mass = mass if self.shape else float(mass)
+        scene = attrs.evolve(
+            self,
+            tangential_velocity=batch.spread(slip, self.shape),
+            pair=attrs.evolve(self.pair, tangential_mass=mass),
+            inverse_mass=None,
+            planar=True,
+        )
+        return scene.numbered(self.index)
+
+    def parts(self) -> list[tuple[Any, Scene]]:
+        """Return places and scenes of the impacts that are solved alike, at most three.
+
+        A part has no inverse mass where W does not couple and slip keeps its line, and is planar
+        where slip stays along t1.
+        """
+        if self.inverse_mass is None:
+            return [(..., self)]
+        found = self._ways()
+        if not self.shape:
+            return [(..., self._going(found))]
+        kinds = np.unique(found).tolist()
+        if len(kinds) == 1:
+            return [(..., self._going(kinds[0]))]
+        masks = [(found == kind, kind) for kind in kinds]
+        return [(where, self.take(where)._going(kind)) for where, kind in masks]
+
+    def _ways(self) -> Any:
+        """Return the way in which each impact is solved."""
+        slip = np.asarray(self.tangential_velocity)
+        if self.planar:
+            slip = np.stack((slip, 0.0 * slip), axis=-1)
+        if self.shape:
+            slip = np.broadcast_to(slip, (*self.shape, 2))
+        W: Any = self.inverse_mass
+        return inverse_mass.ways(W, self.normal_speed, slip)
+
+    def _going(self, way: int) -> Scene:
+        """Return this scene as it is solved in one way."""
+        if way == inverse_mass.CENTRAL:
+            return self.central
+        if way == inverse_mass.SPATIAL or self.planar:
+            return self
+        slip = batch.spread(self.slip_velocity[..., 0], self.shape)
+        return attrs.evolve(self, tangential_velocity=slip, planar=True).numbered(self.index)
+
+    def impulse(self, rate: Any, change: Any) -> Array:
+        """Return the impulse on the target along n, t1 and t2, shape (..., 3), in N s.
+
+        Parameters
+        ----------
+        rate, change : float or array
+            Rate of approach after, and change of the slip velocity, in m/s.
+        """
+        if self.inverse_mass is None:
+            push = self.pair.normal_mass * (self.normal_speed - rate)
+            drag = -self.pair.tangential_mass * change
+            return np.stack(np.broadcast_arrays(push, drag, 0.0), axis=-1)
+        return inverse_mass.impulse(
+            self.inverse_mass, self._vectors(rate - self.normal_speed, change)
+        )
+
+    def energies(self, rate: Any, change: Any) -> tuple[Any, Any, Any]:
+        """Return the energy at the start, and what approach and slip lose of it, in J.
+
+        Parameters
+        ----------
+        rate, change : float or array
+            Rate of approach after, and change of the slip velocity, in m/s.
+        """
+        speed: Any = self.normal_speed
+        if self.inverse_mass is None:
+            return self.pair.energies(speed, self.slip_velocity, rate, change)
+        before, moved = self.velocity, self._vectors(rate - speed, change)
+        momentum = inverse_mass.impulse(self.inverse_mass, np.stack((-before, moved)))
+        start = 0.5 * np.einsum("...i,...i->...", momentum[0], before)
+        whole = np.einsum("...i,...i->...", momentum[1], before + 0.5 * moved)
+        lost = 0.5 * self.pair.normal_mass * (speed - rate) * (speed + rate)
+        if not self.shape:
+            start, whole = float(start), float(whole)
+        return start, lost, whole - lost
+
+    @property
+    def velocity(self) -> Array:
+        """Approach and slip at first touch along n, t1 and t2, shape (..., 3), in m/s."""
+        return self._vectors(self.normal_speed, self.slip_velocity)
+
+    def _vectors(self, approach: Any, slip: Any) -> Array:
+        """Return rates along n and slip velocities as vectors of shape (..., 3)."""
+        vectors = np.zeros((*self.shape, 3))
+        vectors[..., 0] = approach
+        if self.planar:
+            vectors[..., 1] = slip
+        else:
+            vectors[..., 1:] = slip
+        return vectors
 
     @property
     def psi_scale(self) -> Real:
@@ -448,22 +715,23 @@ class Scene:
             )
         return float(scale) if np.ndim(scale) == 0 else scale
 
-    def psi(self, velocity: Real) -> Real:
-        """Return psi of a slip velocity, eq. (29), without unit, of the batch shape.
+    def psi(self, velocity: Any) -> Any:
+        """Return psi of a slip velocity, eq. (29), without unit: (...), or (..., 2) in space.
 
         Parameters
         ----------
         velocity : float or array
-            Slip velocity in m/s, with the sign of ``slip_velocity``.
+            Slip velocity in m/s, with the sign and shape of ``slip_velocity``.
         """
         if isinstance(velocity, float) and not self.shape:
             return 0.0 if velocity == 0.0 else float(velocity) * self.psi_scale
+        scale = self.psi_scale if self.planar else np.asarray(self.psi_scale)[..., None]
         with np.errstate(invalid="ignore", over="ignore"):
-            value = np.where(np.asarray(velocity) == 0.0, 0.0, velocity * self.psi_scale)
+            value = np.where(np.asarray(velocity) == 0.0, 0.0, velocity * scale)
         return float(value) if value.ndim == 0 else value
 
     @property
-    def psi1(self) -> Real:
+    def psi1(self) -> Any:
         """Dimensionless angle of incidence, psi of the slip velocity, eqs (20) and (29)."""
         return self.psi(self.slip_velocity)
 

@@ -57,7 +57,7 @@ def stacked(items: Sequence[Any]) -> Any:
         return type(first)(
             **{name: stacked([getattr(item, name) for item in items]) for name in names}
         )
-    if all(item == first for item in items):
+    if not isinstance(first, np.ndarray) and all(item == first for item in items):
         return first
     return np.array(items, dtype=np.float64)
 
@@ -80,6 +80,23 @@ def taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
             object.__setattr__(copy, field.name, value)
         return copy
     return tree
+
+
+def equal(one: Any, other: Any) -> bool:
+    """Return whether two trees, or tuples and mappings of them, are equal; NaN equals NaN."""
+    if type(one) is not type(other):
+        return False
+    if isinstance(one, np.ndarray):
+        numbers = one.dtype.kind == "f"
+        return one.shape == other.shape and bool(np.array_equal(one, other, equal_nan=numbers))
+    if attrs.has(type(one)):
+        names = [field.name for field in attrs.fields(type(one)) if field.eq is not False]
+        return all(equal(getattr(one, name), getattr(other, name)) for name in names)
+    if isinstance(one, Mapping):
+        return one.keys() == other.keys() and all(equal(one[key], other[key]) for key in one)
+    if isinstance(one, tuple | list):
+        return len(one) == len(other) and all(map(equal, one, other))
+    return bool(one == other or (one != one and other != other))
 
 
 def merged(

@@ -15,8 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
-from contactlab.impact.eccentric import EccentricScene
-from contactlab.impact.grid import product
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
@@ -34,22 +32,36 @@ class Column(NamedTuple):
         Attribute of the result, such as ``"scene.chi"``.
     factor : float
         Unit of the attribute over the unit of the column.
+    of_scenes : str
+        ``"spheres"`` or ``"bodies"`` if only such scenes have the column in a file.
+    part : int or None
+        Component of a vector, from 0.
     """
 
     name: str
     unit: str
     path: str
     factor: float = 1.0
+    of_scenes: str = ""
+    part: int | None = None
 
     def read(self, result: Any) -> Any:
         """Return the values with the result's own type, or None if the scene defines no value."""
         value = attrgetter(self.path)(result)
+        if self.part is not None and value is not None:
+            vectors = np.ndim(value) > len(result.scene.shape)
+            value = np.asarray(value)[..., self.part] if vectors else None
         return value if value is None or self.factor == 1.0 else value * self.factor
 
     def of(self, result: Any) -> NDArray[np.float64]:
-        """Return the values as an array of the scene's shape, NaN if the scene defines no value."""
+        """Return the values as an array of the scene's shape, NaN if the scene defines no value.
+
+        Of vectors the length is returned.
+        """
         value = self.read(result)
         number = np.nan if value is None else value
+        if np.ndim(number) > len(result.scene.shape):
+            number = np.linalg.norm(number, axis=-1)
         return np.array(np.broadcast_to(np.asarray(number, dtype=np.float64), result.scene.shape))
 
     def unit_in(self, scene: Scene) -> str:
@@ -57,60 +69,57 @@ class Column(NamedTuple):
         return unit_in(self.unit, scene)
 
 
-#: The columns of every file, in order: name, unit, attribute of the result.
+#: The columns of every file, in order: name, unit, attribute of the result. A vector or a matrix has
+#: one column for each of its components.
 COLUMNS = (
     Column("psi1", "1", "psi1"),
     Column("chi", "1", "scene.chi"),
+    Column("lam", "1", "scene.lam", of_scenes="bodies"),
+    Column("eta", "1", "scene.eta", of_scenes="bodies"),
+    Column("rho", "1", "scene.rho", of_scenes="bodies"),
     Column("psi2", "1", "psi2"),
     Column("normal_speed", "m/s", "scene.normal_speed"),
-    Column("tangential_velocity", "m/s", "scene.tangential_velocity"),
-    Column("spin", "rad/s", "scene.spin"),
-    Column("rebound_normal_velocity", "m/s", "rebound_normal_velocity"),
-    Column("rebound_tangential_velocity", "m/s", "rebound_tangential_velocity"),
+    Column("slip_velocity", "m/s", "scene.slip_velocity", of_scenes="bodies"),
+    Column("tangential_velocity", "m/s", "scene.tangential_velocity", of_scenes="spheres"),
+    Column("spin", "rad/s", "scene.spin", of_scenes="spheres"),
+    Column("normal_velocity", "m/s", "normal_velocity", of_scenes="bodies"),
+    Column("rebound_normal_velocity", "m/s", "rebound_normal_velocity", of_scenes="spheres"),
+    Column(
+        "rebound_tangential_velocity", "m/s", "rebound_tangential_velocity", of_scenes="spheres"
+    ),
+    Column("rebound_velocity", "m/s", "rebound_velocity", of_scenes="bodies"),
     Column("rebound_spin", "rad/s", "rebound_spin"),
-    Column("target_rebound_normal_velocity", "m/s", "target_rebound_normal_velocity"),
-    Column("target_rebound_tangential_velocity", "m/s", "target_rebound_tangential_velocity"),
+    Column(
+        "target_rebound_normal_velocity", "m/s", "target_rebound_normal_velocity",
+        of_scenes="spheres",
+    ),
+    Column(
+        "target_rebound_tangential_velocity", "m/s", "target_rebound_tangential_velocity",
+        of_scenes="spheres",
+    ),
+    Column("target_rebound_velocity", "m/s", "target_rebound_velocity", of_scenes="bodies"),
     Column("target_rebound_spin", "rad/s", "target_rebound_spin"),
     Column("rebound_slip_velocity", "m/s", "rebound_slip_velocity"),
+    Column("impulse", "N s", "impulse", of_scenes="bodies"),
+    Column("compressions", "1", "compressions", of_scenes="bodies"),
     Column("normal_restitution", "1", "normal_restitution"),
-    Column("tangential_restitution", "1", "tangential_restitution"),
+    Column("tangential_restitution", "1", "tangential_restitution", of_scenes="spheres"),
     Column("slip_restitution", "1", "slip_restitution"),
-    Column("incidence_angle", "rad", "incidence_angle"),
-    Column("rebound_angle", "rad", "rebound_angle"),
+    Column("incidence_angle", "rad", "incidence_angle", of_scenes="spheres"),
+    Column("rebound_angle", "rad", "rebound_angle", of_scenes="spheres"),
     Column("local_rebound_angle", "rad", "local_rebound_angle"),
     Column("contact_time", "s", "motion.duration"),
     Column("normal_loss", "J", "energy.normal_loss"),
     Column("friction_work", "J", "energy.friction_work"),
     Column("energy_imbalance", "J", "energy.imbalance"),
     Column("status", "", "status"),
-)
-
-#: The columns of an eccentric impact; a vector or a matrix has one for each of its components.
-ECCENTRIC_COLUMNS = (
-    Column("psi1", "1", "psi1"),
-    Column("chi", "1", "scene.chi"),
-    Column("lam", "1", "scene.lam"),
-    Column("eta", "1", "scene.eta"),
-    Column("rho", "1", "scene.rho"),
-    Column("normal_velocity", "1", "normal_velocity"),
-    Column("psi2", "1", "psi2"),
-    Column("normal_speed", "m/s", "scene.normal_speed"),
-    Column("slip_velocity", "m/s", "scene.slip_velocity"),
-    Column("rebound_slip_velocity", "m/s", "slip_velocity"),
-    Column("impulse", "N s", "impulse"),
-    Column("compressions", "1", "compressions"),
-    Column("contact_time", "s", "motion.duration"),
-    Column("normal_loss", "J", "energy.normal_loss"),
-    Column("friction_work", "J", "energy.friction_work"),
-    Column("energy_imbalance", "J", "energy.imbalance"),
-    Column("status", "", "status"),
-)
+)  # fmt: skip
 
 #: The columns of the table of a sweep, and of a comparison of single impacts. Tables leave out a
 #: column that no impact defines.
 SWEEP_TABLE = (
     "psi1", "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg",
-    "rebound_spin", "friction_work",
+    "rebound_spin", "compressions", "friction_work",
 )  # fmt: skip
 COMPARISON_TABLE = (
     "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg", "rebound_spin",
@@ -134,6 +143,8 @@ QUANTITIES = {column.name: column for column in _numeric_columns()}
 def quantity_named(name: str, *, where: str = "quantity") -> Column:
     """Return a column of numbers by name: ``"rebound_angle"``, or ``"rebound_angle_deg"``.
 
+    The components of a vector have a place behind: ``"psi2_1"``.
+
     Raises
     ------
     ValueError
@@ -141,25 +152,33 @@ def quantity_named(name: str, *, where: str = "quantity") -> Column:
     """
     if name in QUANTITIES:
         return QUANTITIES[name]
+    whole, _, place = name.rpartition("_")
+    if whole in QUANTITIES and place in ("1", "2", "3"):
+        return QUANTITIES[whole]._replace(name=name, part=int(place) - 1)
     remedy = f"{nearest(name, QUANTITIES)}known: {', '.join(QUANTITIES)}"
     raise refuse(where, name, "is not a quantity of a result", remedy)
 
 
+def columns_of(scene: Scene) -> tuple[Column, ...]:
+    """Return the columns that a file of a scene has."""
+    of_bodies = scene.inverse_mass is not None or scene.encounter is not None
+    other = "spheres" if of_bodies else "bodies"
+    return tuple(column for column in COLUMNS if column.of_scenes != other)
+
+
 def columns(result: Any) -> list[tuple[str, str, Any]]:
-    """Return name, unit and values of every column; grid axes that are not columns come first."""
-    if isinstance(result.scene, EccentricScene):
-        return [
-            (name, column.unit, values)
-            for column in ECCENTRIC_COLUMNS
-            for name, values in components(column.name, column.read(result), result.scene.shape)
-        ]
-    table = [(column.name, column.unit, column.read(result)) for column in COLUMNS]
-    if not result.scene.axes:
-        return table
-    varied = product(result.scene.axes)
-    for column in COLUMNS:
-        varied.pop(column.name, None)
-    return [(name, entry_unit(name), values) for name, values in varied.items()] + table
+    """Return name, unit and values of every column; entries that vary and are none come first."""
+    scene, table = result.scene, []
+    for column in columns_of(scene):
+        parts = components(column.name, column.read(result), scene.shape)
+        table += [(name, column.unit, values) for name, values in parts]
+    names = {name for name, *_ in table}
+    varied = [
+        (name, entry_unit(name), values)
+        for name, values in scene.varied.items()
+        if name not in names
+    ]
+    return varied + table
 
 
 def components(name: str, values: Any, shape: tuple[int, ...]) -> list[tuple[str, Any]]:
@@ -174,13 +193,13 @@ def components(name: str, values: Any, shape: tuple[int, ...]) -> list[tuple[str
     ]
 
 
-def unit_in(unit: str, scene: Scene | EccentricScene) -> str:
+def unit_in(unit: str, scene: Scene) -> str:
     """Return the unit of a column in ``scene``; without bodies only angles have one."""
-    bodies = scene.bodies or (isinstance(scene, Scene) and scene.sphere is not None)
+    bodies = scene.encounter is not None or scene.sphere is not None
     return unit if bodies or unit in ("rad", "deg") else "1"
 
 
-def csv_heading(name: str, unit: str, scene: Scene | EccentricScene) -> str:
+def csv_heading(name: str, unit: str, scene: Scene) -> str:
     """Return the heading of a CSV column: name and unit, or name alone for words."""
     return f"{name} ({unit_in(unit, scene)})" if unit else name
 

@@ -9,7 +9,6 @@ import attrs
 import numpy as np
 
 from contactlab.contracts.status import Status
-from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import some
 from contactlab.numeric.checks import Mask, Real
@@ -78,56 +77,41 @@ class EnergyLedger:
 
 def ledger(scene: Scene, motion: Motion, checked: Mask = True) -> EnergyLedger:
     """Return the energy books of ``motion``, in J, from its velocities and its friction work."""
-    before = (scene.normal_speed, scene.slip_velocity)
-    after = (motion.normal_velocity, motion.slip_velocity_change)
-    return books(scene.pair, before, after, motion.friction_work, motion.exchange, checked)
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        energies = scene.energies(motion.normal_velocity, motion.slip_velocity_change)
+        return books(energies, motion.friction_work, motion.exchange, checked)
 
 
 def books(
-    pair: Pair,
-    before: tuple[Real, Real],
-    after: tuple[Real, Real],
-    friction_work: Real,
-    exchange: Real,
-    checked: Mask,
+    energies: tuple[Real, Real, Real], friction_work: Real, exchange: Real, checked: Mask
 ) -> EnergyLedger:
-    """Return the energy books from (rate, slip velocity) and (rate, change of slip velocity).
+    """Return the energy books of the energy at the start, and of what approach and slip lose.
 
     ``exchange`` is the energy in J that friction moved from the normal to the tangential motion.
     """
-    (speed, slip), (rate, change) = before, after
-    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        start, slip_loss = _start_and_slip_loss(pair, speed, slip, change)
-        # The loss is formed from the changes: with a huge v_x, start - end would cancel.
-        normal_loss = 0.5 * pair.normal_mass * (speed - rate) * (speed + rate)
-        return EnergyLedger(
-            start=start,
-            end=start - normal_loss - slip_loss,
-            normal_loss=normal_loss - exchange,
-            friction_work=friction_work,
-            imbalance=slip_loss - friction_work + exchange,
-            checked=checked,
-        )
+    start, lost, slip = energies
+    return EnergyLedger(
+        start=start,
+        end=start - lost - slip,
+        normal_loss=lost - exchange,
+        friction_work=friction_work,
+        imbalance=slip - friction_work + exchange,
+        checked=checked,
+    )
 
 
-def _start_and_slip_loss(pair: Pair, speed: Real, slip: Real, change: Real) -> tuple[Any, Any]:
-    """Return the energy at the start, and the energy that slip loses, in J."""
-    # Products, not powers: a float raised to a power raises OverflowError.
-    start = 0.5 * pair.normal_mass * speed * speed
-    start = start + 0.5 * pair.tangential_mass * slip * slip
-    return start, -pair.tangential_mass * change * (slip + 0.5 * change)
-
-
-def balanced(motion: Motion, scene: Scene, bound: Real) -> Motion:
+def balanced(motion: Motion, scene: Scene, bound: Real, *, together: bool = False) -> Motion:
     """Return ``motion`` with status ``UNBALANCED`` where the energy books do not balance.
 
     The imbalance over the energy at the start exceeds ``bound``, or 1 if that is infinite, or the
-    bodies separate or slip faster than at first touch. If friction changed the normal motion, one
-    of the two may gain what the other loses, and the sum of both energies is judged.
+    bodies separate or slip faster than at first touch. If friction changed the normal motion, as in
+    motions of both ``together``, one of the two may gain what the other loses, and the sum of both
+    energies is judged.
     """
-    if not scene.shape and motion.exchange == 0.0 and _balances(motion, scene, bound):
+    alone = (motion.exchange == 0.0) & (not together)
+    if not scene.shape and alone and _balances(motion, scene, bound):
         return motion
-    return _with_unbalanced(motion, scene, bound)
+    return _with_unbalanced(motion, scene, bound, alone)
 
 
 def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
@@ -135,7 +119,7 @@ def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
     speed: Any = scene.normal_speed
     slip: Any = scene.slip_velocity
     change: Any = motion.slip_velocity_change
-    start, slip_loss = _start_and_slip_loss(scene.pair, speed, slip, change)
+    start, _, slip_loss = scene.pair.energies(speed, slip, motion.normal_velocity, change)
     bound = LARGEST_UNDECLARED if bound == math.inf else bound
     return not (
         abs(motion.normal_velocity) > LARGEST_RESTITUTION * speed
@@ -145,13 +129,16 @@ def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
 
 
 @np.errstate(all="ignore")
-def _with_unbalanced(motion: Motion, scene: Scene, bound: Any) -> Motion:
-    """Return ``motion`` with the status of each impact whose books do not balance."""
-    coupled, alone = motion.exchange != 0.0, motion.exchange == 0.0
+def _with_unbalanced(motion: Motion, scene: Scene, bound: Any, alone: Any) -> Motion:
+    """Return ``motion`` with the status of each impact whose books do not balance.
+
+    ``alone`` marks impacts whose approach friction did not change.
+    """
+    coupled = np.logical_not(alone)
     books = ledger(scene, motion)
     speed: Any = abs(motion.normal_velocity)
-    before: Any = abs(scene.slip_velocity)
-    after: Any = abs(scene.slip_velocity + motion.slip_velocity_change)
+    before: Any = scene.slip_speed
+    after: Any = scene.size_of(scene.slip_velocity + motion.slip_velocity_change)
     imbalance: Any = abs(books.imbalance)
     for where, sentence, numbers in (
         (alone & (speed > LARGEST_RESTITUTION * scene.normal_speed),

@@ -8,24 +8,22 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
 from contactlab.outcome.columns import columns, csv_heading, json_value
-from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.files import write_table, written
 from contactlab.outcome.result import ImpactResult
 
-Result: TypeAlias = ImpactResult | EccentricResult
 
-
-def to_dict(result: Result) -> dict[str, Any]:
+def to_dict(result: ImpactResult) -> dict[str, Any]:
     """Return the result without its history as plain numbers, lists and text."""
     numbers = {name: json_value(values) for name, _, values in columns(result)}
     return numbers | {
         "detail": json_value(result.motion.detail),
         "psi2_error_estimate": json_value(result.psi2_error_estimate),
+        "restitution_error_estimate": json_value(result.restitution_error_estimate),
         "run_time_s": result.run_time,
         "energy": result.energy.to_dict(),
         "counters": dict(result.counters),
@@ -34,7 +32,7 @@ def to_dict(result: Result) -> dict[str, Any]:
     }
 
 
-def write_json(result: Result, path: str | Path) -> None:
+def write_json(result: ImpactResult, path: str | Path) -> None:
     """Write ``to_dict``, and the history if the result has one."""
     content = to_dict(result)
     if result.history:
@@ -45,7 +43,7 @@ def write_json(result: Result, path: str | Path) -> None:
         stream.write(text)
 
 
-def write_csv(result: Result, path: str | Path) -> None:
+def write_csv(result: ImpactResult, path: str | Path) -> None:
     """Write one row for each impact, with the unit in each heading."""
     table = columns(result)
     headings = [csv_heading(name, unit, result.scene) for name, unit, _ in table]
@@ -53,7 +51,7 @@ def write_csv(result: Result, path: str | Path) -> None:
     write_table(path, headings, list(zip(*cells, strict=True)))
 
 
-def write_history_csv(result: Result, path: str | Path) -> None:
+def write_history_csv(result: ImpactResult, path: str | Path) -> None:
     """Write the history of a single impact, one row for each instant."""
     history = result.history
     if not history or result.scene.shape:
@@ -63,7 +61,7 @@ def write_history_csv(result: Result, path: str | Path) -> None:
     write_table(path, headings, list(zip(*course.values(), strict=True)))
 
 
-def write_npz(result: Result, path: str | Path) -> None:
+def write_npz(result: ImpactResult, path: str | Path) -> None:
     """Write every column, and the history's arrays with the prefix ``history_``."""
     arrays = {name: _flat(values, result.scene.shape) for name, _, values in columns(result)}
     if result.history:

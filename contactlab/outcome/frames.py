@@ -50,7 +50,7 @@ def to_xarray(result: Any) -> Any:
 def _labelled(result: Any) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
     """Return the columns that a scene defines, of its shape, the axes of a grid, and all units."""
     scene = result.scene
-    axes = dict(getattr(scene, "axes", {}))  # an eccentric scene has none
+    axes = dict(scene.axes)
     columns, units = {}, {}
     for name, unit, values in all_columns(result):
         if values is None:  # a scene without bodies

@@ -25,9 +25,14 @@ def _column(unit: str) -> Any:
     return attrs.field(metadata={"unit": unit})
 
 
+@attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False)
-class Instants:
-    """Base of histories: arrays over the instants of an impact, and fields over the contact."""
+class History:
+    """Arrays over the instants of an impact, shape (K, ...): instants first, then the batch.
+
+    ``tangential_force`` is positive where it opposes a positive slip velocity. Where the scene has
+    vectors, both have components along t1 and t2, shape (K, ..., 2).
+    """
 
     time: Array = _column("s")
     approach: Array = _column("m")
@@ -40,21 +45,21 @@ class Instants:
 
     def columns(self) -> dict[str, Array]:
         """Return the columns with one number for each instant, by name."""
-        return {name: getattr(self, name) for name in _names()}
+        named = ((name, getattr(self, name)) for name in _names())
+        parts = (components(name, column, self.time.shape) for name, column in named)
+        return {name: column for part in parts for name, column in part}
 
     @staticmethod
     def unit(name: str) -> str:
-        """Return the unit of a column."""
-        return str(getattr(attrs.fields(Instants), name).metadata["unit"])
+        """Return the unit of a column, or of a component of one."""
+        column = name if name in _names() else name.rpartition("_")[0]
+        return str(getattr(attrs.fields(History), column).metadata["unit"])
 
-
-@attributes_told
-@attrs.frozen(kw_only=True, eq=False, repr=False)
-class History(Instants):
-    """Arrays over the instants of an impact, shape (K, ...): instants first, then the batch.
-
-    ``tangential_force`` is positive where it opposes a positive slip velocity.
-    """
+    def part(self, index: Any) -> History:
+        """Return the history of some impacts of a batch."""
+        columns = {name: getattr(self, name)[:, index] for name in _names()}
+        fields = {name: field[:, index] for name, field in self.fields.items()}
+        return History(**columns, fields=fields)
 
     def __repr__(self) -> str:
         """Return the number of instants, the last time and the fields."""
@@ -73,32 +78,12 @@ class History(Instants):
         return draw_history(axes, self, width=width)
 
 
-@attrs.frozen(kw_only=True, eq=False, repr=False)
-class EccentricHistory(Instants):
-    """Arrays over the instants of an eccentric impact, shape (K, ...), and (K, ..., 2) of vectors.
-
-    Vectors have components along t1 and t2; a force that opposes the slip is positive.
-    """
-
-    def columns(self) -> dict[str, Array]:
-        """Return the columns with one number for each instant, by name."""
-        named = super().columns().items()
-        parts = (components(name, column, self.time.shape) for name, column in named)
-        return {name: column for part in parts for name, column in part}
-
-    @staticmethod
-    def unit(name: str) -> str:
-        """Return the unit of a column."""
-        return Instants.unit(next(column for column in _names() if name.startswith(column)))
-
-    def __repr__(self) -> str:
-        """Return the number of instants and the last time."""
-        last = np.max(self.time, initial=0.0)
-        return f"EccentricHistory({len(self.time)} instants to {last:.4g} s)"
-
-
 class NoHistory:
     """History of a run that kept none: False as a condition; its attributes say what to write."""
+
+    def __reduce__(self) -> str:
+        """Return the name of the one object there is, for copies."""
+        return "NO_HISTORY"
 
     def __bool__(self) -> Literal[False]:
         """Return False."""
@@ -123,7 +108,7 @@ NO_HISTORY = NoHistory()
 
 def _names() -> list[str]:
     """Return the names of the columns with one number for each instant, in order."""
-    return [item.name for item in attrs.fields(Instants) if item.name != "fields"]
+    return [item.name for item in attrs.fields(History) if item.name != "fields"]
 
 
 class Recorder:
@@ -148,21 +133,23 @@ class Recorder:
         if self._with_fields:
             self._fields.append(dict(sample.fields()))
 
-    def history(self, kind: type[Any] = History) -> Any:
+    def history(self) -> History:
         """Return the history of the samples; its arrays have length 0 if there are none."""
         shape, count = self._shape, len(self._rows)
         batch = (math.prod(shape),) if shape else ()  # what is recorded has one axis
         columns = {}
         for index, name in enumerate(_names()):
             first = np.shape(self._rows[0][index]) if count else ()
-            column = np.empty((count, *np.broadcast_shapes(first, batch)))
+            vectors = first[len(batch) :]  # of a slip velocity or force in space
+            whole = np.broadcast_shapes(first[: len(batch)], batch)
+            column = np.empty((count, *whole, *vectors))
             for instant, row in enumerate(self._rows):
                 column[instant] = row[index]
-            columns[name] = column.reshape(-1, *shape) if len(shape) > 1 else column
+            columns[name] = column.reshape(-1, *shape, *vectors) if len(shape) > 1 else column
         keys = self._fields[0] if self._fields else {}
         fields = {key: np.array([entry[key] for entry in self._fields]) for key in keys}
         if len(shape) > 1:
             fields = {
                 key: field.reshape(-1, *shape, *field.shape[2:]) for key, field in fields.items()
             }
-        return kind(**columns, fields=fields)
+        return History(**columns, fields=fields)

@@ -9,10 +9,10 @@ from typing import Any, Self
 import attrs
 import numpy as np
 
-from contactlab.contracts.integrator import TangentialMotion
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status
+from contactlab.contracts.tangential_motion import TangentialMotion
 from contactlab.numeric.arrays import locked, spread
 from contactlab.numeric.checks import Real
 
@@ -44,6 +44,8 @@ class Motion(TangentialMotion):
         Energy in J that friction moved from the normal to the tangential motion, 0 unless the
         tangential law returned a normal motion of its own; NaN if the normal law does not declare
         its dissipation.
+    compressions : float or array
+        How often the approach grew: 1, or more where friction pressed the bodies together again.
     """
 
     duration: Real
@@ -52,10 +54,21 @@ class Motion(TangentialMotion):
     maximum_approach: Real
     maximum_force: Real
     exchange: Real = 0.0
+    compressions: Real = 1.0
+
+    def turned(self, along: Any) -> Self:
+        """Return the motion with its slip along unit vectors of the tangent plane, (..., 2)."""
+        change = np.asarray(self.slip_velocity_change)[..., None] * along
+        return attrs.evolve(self, slip_velocity_change=locked(change))
 
     @classmethod
-    def along(cls, normal: NormalMotion, tangential: TangentialMotion) -> Self:
-        """Return the motion of one batch from its two parts; its arrays are read-only."""
+    def along(
+        cls, normal: NormalMotion, tangential: TangentialMotion, axes: tuple[int, ...] = ()
+    ) -> Self:
+        """Return the motion of one batch from its two parts; its arrays are read-only.
+
+        ``axes`` are those of a slip velocity beside the batch's.
+        """
         shape = normal.scene.shape
         if not (shape or tangential.normal is not None):
             return cls(  # named entry by entry: a loop is slower than all else here
@@ -71,15 +84,14 @@ class Motion(TangentialMotion):
                 counters=tangential.counters,
             )
         entries: dict[str, Any] = {name: getattr(normal, source) for name, source in ENDS.items()}
-        entries["exchange"] = 0.0
+        entries |= {"exchange": 0.0, "compressions": 1.0}
         if tangential.normal is not None:
             entries |= _coupled(normal, tangential, entries)
-        entries |= {
-            "slip_velocity_change": tangential.slip_velocity_change,
-            "friction_work": tangential.friction_work,
-        }
+        entries["friction_work"] = tangential.friction_work
+        change = tangential.slip_velocity_change
         return cls(
             **{name: locked(spread(value, shape)) for name, value in entries.items()},
+            slip_velocity_change=locked(spread(change, (*shape, *axes))),
             status=locked(tangential.status),
             detail=locked(tangential.detail),
             counters=tangential.counters,
@@ -91,28 +103,35 @@ def _coupled(
 ) -> dict[str, Any]:
     """Return the entries of the normal motion that came of the friction, and the exchange."""
     scene, own = normal.scene, Ends.of(tangential.normal)
-    alone = np.isnan(own.duration)
+    alone = np.isnan(own.final_rate)
     coupled = {
         name: np.where(alone, entries[name], getattr(own, source)) for name, source in ENDS.items()
     }
     speed: Any = scene.normal_speed
     lost = 0.5 * scene.pair.normal_mass * (speed * speed - coupled["normal_velocity"] ** 2)
-    return coupled | {"exchange": np.where(alone, 0.0, lost - own.dissipation)}
+    return coupled | {
+        "exchange": np.where(alone, 0.0, lost - own.dissipation),
+        "compressions": np.where(alone, 1.0, own.compressions),
+    }
 
 
-#: The numbers of a motion but the exchange, which may be undeclared.
-CHECKED = tuple(name for name in Motion.numbers() if name != "exchange")
+#: What a law that answers both motions together must know.
+MOVED = ("normal_velocity", "slip_velocity_change", "friction_work")
+#: The numbers of a motion but the exchange, which may be undeclared, and the compressions.
+CHECKED = (*MOVED, *(name for name in ENDS if name != "normal_velocity"))
 _numbers = attrgetter(*CHECKED)
 
 
-def sound(motion: Motion) -> Motion:
+def sound(motion: Motion, *, together: bool = False) -> Motion:
     """Return ``motion`` with status ``NON_FINITE`` where a success holds a number not finite.
 
-    Integrators check the quantities that they use; this check adds overflows in the conversion
+    Laws that answer both motions ``together`` need not know a duration or the maxima. Integrators check the quantities that they use; this check adds overflows in the conversion
     to SI, and quantities that an integrator does not check.
     """
     # The sum is not finite if a number is not; if finite numbers overflow, each is looked at.
-    if motion.status is Status.SUCCESS:
+    if together:
+        pass
+    elif motion.status is Status.SUCCESS:
         if math.isfinite(sum(_numbers(motion))):
             return motion
     elif not np.ndim(motion.status):
@@ -121,7 +140,11 @@ def sound(motion: Motion) -> Motion:
         with np.errstate(all="ignore"):
             if np.isfinite(sum(_numbers(motion))).all():
                 return motion
-    values = {name: np.asarray(getattr(motion, name)) for name in CHECKED}
+    names = MOVED if together else CHECKED
+    values = {name: np.asarray(getattr(motion, name)) for name in names}
+    change = values["slip_velocity_change"]
+    if change.ndim > np.ndim(motion.status):
+        values["slip_velocity_change"] = change.sum(axis=-1)
     good = np.all([np.isfinite(value) for value in values.values()], axis=0)
     if np.all(good):
         return motion
@@ -132,9 +155,11 @@ def sound(motion: Motion) -> Motion:
 
 def without_failures(motion: Motion) -> Motion:
     """Return ``motion`` with NaN for every number of the impacts that failed."""
-    good, shape = motion.status == Status.SUCCESS, np.shape(motion.status)
-    numbers = {
-        name: locked(spread(np.where(good, getattr(motion, name), math.nan), shape))
-        for name in Motion.numbers()
-    }
+    good, shape = np.asarray(motion.status == Status.SUCCESS), np.shape(motion.status)
+    numbers = {}
+    for name in Motion.numbers():
+        value = np.asarray(getattr(motion, name))
+        ends = value.shape[len(shape) :]
+        kept = np.where(good.reshape(*shape, *(1 for _ in ends)), value, math.nan)
+        numbers[name] = locked(spread(kept, (*shape, *ends)))
     return attrs.evolve(motion, **numbers)

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts.error_model import COARSE, range_of
-from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import for_share
 
 #: Ratio of estimated to declared error above which the declaration is false. Estimates are mostly
@@ -37,11 +36,9 @@ def error_cautions(result: Any) -> list[str]:
     estimate, declared = _errors(result)
     with np.errstate(all="ignore"):
         contradicted = estimate > CONTRADICTS * declared
-        share: Any = 0.0
-        if isinstance(result.scene, Scene):  # the range of an eccentric impact has no such bound
-            unit, width, _ = range_of(result.scene)
-            share = np.fmax(estimate, declared) * np.divide(unit, width)
-            share = np.where(result.plan.marched, share, 0.0)
+        unit, width, _ = range_of(result.scene)
+        share: Any = np.fmax(estimate, declared) * np.divide(unit, width)
+        share = np.where(result.plan.marched, share, 0.0)
     cautions = []
     if contradicted.any():
         worst = int(np.argmax(np.where(contradicted, estimate, 0.0)))

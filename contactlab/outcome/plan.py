@@ -56,17 +56,21 @@ class PlanColumns(NamedTuple):
     psi2_error : float or array
         Declared bound of the numerical error of psi2; NaN where it is not declared.
     reasons : tuple of Reason
+    restitution_error : float or array
+        Declared bound of the numerical error of the normal restitution; NaN as before.
     """
 
     code: Any
     psi2_error: Real
     reasons: tuple[Reason, ...] = ()
+    restitution_error: Real = math.nan
 
     @classmethod
     def nothing(cls, shape: tuple[int, ...]) -> PlanColumns:
         """Return the columns of impacts of which nothing is known."""
         code = np.full(shape, UNKNOWN, dtype=np.int16)
-        return cls(code, np.full(shape, math.nan) if shape else math.nan)
+        unknown = np.full(shape, math.nan) if shape else math.nan
+        return cls(code, unknown, (), unknown)
 
     @classmethod
     def joined(cls, parts: Sequence[PlanColumns], shape: tuple[int, ...]) -> PlanColumns:
@@ -84,13 +88,20 @@ class PlanColumns(NamedTuple):
         for where, part in parts:
             numbers = [reasons.index(reason) for reason in part.reasons]
             codes.append((where, np.array([*numbers, UNKNOWN, ENDLESS, MARCHED])[part.code]))
-        error = merged([(where, part.psi2_error) for where, part in parts], shape)
-        return cls(merged(codes, shape, np.int16), error, reasons)
+        errors = (
+            merged([(where, getattr(part, name)) for where, part in parts], shape)
+            for name in ("psi2_error", "restitution_error")
+        )
+        psi2_error, restitution_error = errors
+        return cls(merged(codes, shape, np.int16), psi2_error, reasons, restitution_error)
 
     def take(self, part: Any) -> PlanColumns:
         """Return the columns of some impacts of a batch."""
-        error = taken(self.psi2_error, self.code.shape, part)
-        return PlanColumns(self.code[part], error, self.reasons)
+        psi2, restitution = (
+            taken(error, self.code.shape, part)
+            for error in (self.psi2_error, self.restitution_error)
+        )
+        return PlanColumns(self.code[part], psi2, self.reasons, restitution)
 
     @property
     def marched(self) -> Mask:
@@ -112,7 +123,7 @@ class PlanColumns(NamedTuple):
     def from_arrays(cls, arrays: Mapping[str, Any]) -> PlanColumns:
         """Return the columns that ``to_arrays`` was called of."""
         reasons = tuple(Reason(*each) for each in json.loads(str(arrays["reasons"])))
-        return cls(arrays["code"], arrays["psi2_error"], reasons)
+        return cls(arrays["code"], arrays["psi2_error"], reasons, arrays["restitution_error"])
 
 
 class Clause(NamedTuple):
@@ -180,8 +191,9 @@ class Plan:
     columns: PlanColumns
     _words: Words | Callable[[], Words] = ((), (), ())
 
-    def _read(self) -> Words:
-        """Return the clauses of the three kinds."""
+    @property
+    def words(self) -> Words:
+        """The clauses of the three kinds."""
         if callable(self._words):
             object.__setattr__(self, "_words", self._words())
         words: Any = self._words
@@ -201,6 +213,11 @@ class Plan:
         return self.columns.psi2_error
 
     @property
+    def restitution_error(self) -> Real:
+        """Bound of the numerical error of ``normal_restitution``; NaN where it is not declared."""
+        return self.columns.restitution_error
+
+    @property
     def unchecked(self) -> Any:
         """True for impacts whose energy books close by construction; an array for a batch."""
         return self.columns.unchecked
@@ -208,17 +225,17 @@ class Plan:
     @property
     def computed(self) -> Clauses:
         """Statements on what is computed; ``str`` of a clause gives its words."""
-        return self._read()[0]
+        return self.words[0]
 
     @property
     def left_out(self) -> Clauses:
         """Statements on what is left out, and why."""
-        return self._read()[1]
+        return self.words[1]
 
     @property
     def cautions(self) -> Clauses:
         """Doubts about the model or its numbers; each says which of the two."""
-        return self._read()[2]
+        return self.words[2]
 
     def changed(self, **entries: Any) -> Plan:
         """Return the plan with other clauses of a kind, or another ``psi2_error``.
@@ -231,12 +248,12 @@ class Plan:
         columns = self.columns
         if "psi2_error" in entries:
             columns = columns._replace(psi2_error=entries.pop("psi2_error"))
-        words: Any = tuple((dict(zip(KINDS, self._read(), strict=True)) | entries).values())
+        words: Any = tuple((dict(zip(KINDS, self.words, strict=True)) | entries).values())
         return Plan(columns, words)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return how a copy is made: with the clauses as they are when read."""
-        return Plan, (self.columns, self._read())
+        return Plan, (self.columns, self.words)
 
     def __str__(self) -> str:
         """Return the plan in words, a line a sentence."""
@@ -252,11 +269,12 @@ class Plan:
     def to_dict(self) -> dict[str, Any]:
         """Return the sentences as plain lists, and the declared error."""
         words = {kind: list(map(str, getattr(self, kind))) for kind in KINDS}
-        return {**words, "psi2_error": json_value(self.psi2_error)}
+        errors = ("psi2_error", "restitution_error")
+        return {**words, **{name: json_value(getattr(self, name)) for name in errors}}
 
     def __getitem__(self, index: Any) -> Plan:
         """Return the plan of some impacts of a batch: the clauses that hold for any of them."""
-        parts = (tuple(clause.take(index) for clause in kind) for kind in self._read())
+        parts = (tuple(clause.take(index) for clause in kind) for kind in self.words)
         words: Any = tuple(tuple(part for part in kind if some(part.where)) for kind in parts)
         return Plan(self.columns.take(index), words)
 

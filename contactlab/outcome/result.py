@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
 from contactlab.impact.bodies import Sphere
+from contactlab.impact.body_contact import pushed
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import taken
+from contactlab.numeric.arrays import equal, taken
 from contactlab.numeric.checks import Real
 from contactlab.numeric.names import attributes_told
-from contactlab.outcome.answer import RunResult
+from contactlab.outcome.answer import Answer, statuses_told
 from contactlab.outcome.energy import EnergyLedger, ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory
 from contactlab.outcome.motion import Motion
+from contactlab.outcome.numerical_error import error_cautions, error_words
 from contactlab.outcome.plan import Plan
 
 if TYPE_CHECKING:
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 
 @attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False)
-class ImpactResult(RunResult):
+class ImpactResult(Answer):
     """Result of one impact, or of a batch: every quantity has the scene's shape.
 
     A batch can be indexed, sliced and iterated; each item is the result of one impact. Items keep
@@ -47,8 +49,10 @@ class ImpactResult(RunResult):
     history : History or NoHistory
         Only on request; without, it is false and its attributes say what to write.
     psi2_error_estimate : float, array or None
-        Estimate of the numerical error of psi2, only on request. The plan's cautions state
-        model errors.
+        Estimate of the numerical error of psi2, only on request; in space of the length of the
+        error. The plan's cautions state model errors.
+    restitution_error_estimate : float, array or None
+        Estimate of the numerical error of ``normal_restitution``, with that of psi2.
     """
 
     scene: Scene
@@ -58,37 +62,81 @@ class ImpactResult(RunResult):
     laws: Mapping[str, str]
     history: History | NoHistory = attrs.field(default=NO_HISTORY, repr=False)
     psi2_error_estimate: Real | None = attrs.field(default=None, repr=False)
+    restitution_error_estimate: Real | None = attrs.field(default=None, repr=False)
+
+    def __repr__(self) -> str:
+        """Return the answer, statuses and laws on one line."""
+        laws = ", ".join(name.partition(" ")[0] for name in self.laws.values())
+        return f"ImpactResult({self._told()}; {statuses_told(self.status)}; {laws})"
 
     def _told(self) -> str:
-        psi2 = np.asarray(self.psi2)
-        if not self.scene.shape:
-            return f"psi1={self.psi1:.6g}, chi={self.scene.chi:.6g}, psi2={psi2:.6g}"
-        finite = psi2[np.isfinite(psi2)]
-        ends = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size else " unknown"
-        return f"{psi2.size} impacts, psi2{ends}"
+        """Return what ``repr`` says of the answer."""
+        scene, psi2 = self.scene, np.asarray(self.psi2)
+        if scene.shape:
+            finite = scene.size_of(psi2) if scene.slip_axes else psi2
+            finite = finite[np.isfinite(finite)]
+            ends = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size else " unknown"
+            what = "abs(psi2)" if scene.slip_axes else "psi2"
+            return f"{scene.slip_speed.size} impacts, {what}{ends}"
+        told = {"psi1": scene.psi1, "chi": scene.chi}
+        if scene.inverse_mass is not None:
+            told |= {"lam": scene.lam, "normal_restitution": self.normal_restitution}
+        words = (
+            f"{name}={_numbers_told(value)}" for name, value in (told | {"psi2": psi2}).items()
+        )
+        return ", ".join(words)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all but the run times is equal, NaN where NaN is."""
+        if not isinstance(other, ImpactResult):
+            return NotImplemented
+        mine, its = (
+            (one.scene, one.plan.columns, one.plan.to_dict(), one.motion, one.laws, one.history,
+             one.psi2_error_estimate, one.restitution_error_estimate)
+            for one in (self, other)
+        )  # fmt: skip
+        return equal(mine, its)
+
+    __hash__ = None  # type: ignore[assignment]
 
     def _repr_html_(self) -> str:
         """Return ``str(self)`` as HTML for a notebook."""
         return f"<pre>{html.escape(str(self))}</pre>"
 
     @property
-    def psi1(self) -> Real:
+    def psi1(self) -> Any:
         """Local angle of incidence of the paper's eq. (29), without unit."""
         return self.scene.psi1
 
     @property
-    def psi_change(self) -> Real:
+    def psi_change(self) -> Any:
         """psi2 - psi1, without the rounding error of a huge psi1."""
         return self.scene.psi(self.motion.slip_velocity_change)
 
     @property
-    def psi2(self) -> Real:
-        """Non-dimensional local angle of reflexion."""
+    def psi2(self) -> Any:
+        """Non-dimensional local angle of reflexion; a vector (..., 2) in space."""
         return self.scene.psi(self.rebound_slip_velocity)
 
     @property
-    def rebound_slip_velocity(self) -> Real:
-        """Local tangential velocity at the contact after the impact, in m/s."""
+    def compressions(self) -> Real:
+        """How often the approach grew: 1, or more where friction pressed the bodies together."""
+        return self.motion.compressions
+
+    @property
+    def impulse(self) -> Any:
+        """Impulse on the target along n, t1 and t2, shape (..., 3), in N s."""
+        motion = self.motion
+        return self.scene.impulse(motion.normal_velocity, motion.slip_velocity_change)
+
+    @property
+    def normal_velocity(self) -> Real:
+        """Rate of approach of the contact points after the impact, in m/s; negative: they part."""
+        return self.motion.normal_velocity
+
+    @property
+    def rebound_slip_velocity(self) -> Any:
+        """Slip velocity at the contact after the impact in m/s; along t1 and t2 in space."""
         return self.scene.slip_velocity + self.motion.slip_velocity_change
 
     @property
@@ -114,11 +162,29 @@ class ImpactResult(RunResult):
         return None if tangential is None else np.hypot(self.rebound_normal_velocity, tangential)
 
     @property
-    def rebound_spin(self) -> Real | None:
-        """Spin of the sphere in rad/s; None for a non-dimensional scene."""
+    def rebound_velocity(self) -> Any:
+        """Velocity in space of the first body of an encounter, shape (..., 3), in m/s; else None.
+
+        Bodies that are no spheres have it; of spheres see ``Collision.velocity``.
+        """
+        return self._in_space("velocity")
+
+    @property
+    def target_rebound_velocity(self) -> Any:
+        """Velocity in space of the target of an encounter, as ``rebound_velocity``."""
+        return self._in_space("target_velocity")
+
+    def _in_space(self, name: str) -> Any:
+        """Return a vector after the impact of bodies that are no spheres; None without them."""
+        encounter = self.scene.encounter
+        return None if encounter is None else pushed(encounter, self.impulse)[name]
+
+    @property
+    def rebound_spin(self) -> Any:
+        """Spin of the sphere in rad/s; of other bodies a vector (..., 3), None without bodies."""
         sphere = self.scene.sphere
         if sphere is None:
-            return None
+            return self._in_space("spin")
         inertia = sphere.mass * sphere.gyration_ratio**2 * sphere.radius
         share = self.scene.pair.tangential_mass / inertia
         return self.scene.spin + share * self.motion.slip_velocity_change
@@ -140,8 +206,10 @@ class ImpactResult(RunResult):
         return self._of_target(-self.scene.pair.tangential_mass * self.motion.slip_velocity_change)
 
     @property
-    def target_rebound_spin(self) -> Real | None:
+    def target_rebound_spin(self) -> Any:
         """Spin of the target in rad/s, positive where it adds to the slip, as the sphere's."""
+        if self.scene.encounter is not None:
+            return self._in_space("target_spin")
         turn = self.scene.pair.tangential_mass * self.motion.slip_velocity_change
         target = self.scene.target
         if isinstance(target, Sphere):
@@ -168,13 +236,16 @@ class ImpactResult(RunResult):
 
     @property
     def slip_restitution(self) -> Real:
-        """Slip velocity after over before (psi2/psi1); NaN where zero before."""
-        return _ratio(self.rebound_slip_velocity, self.scene.slip_velocity)
+        """Slip velocity after over before (psi2/psi1), along the slip; NaN where zero before."""
+        scene = self.scene
+        after, before = map(scene.along_slip, (self.rebound_slip_velocity, scene.slip_velocity))
+        return _ratio(after, before)
 
     @property
     def incidence_angle(self) -> Real:
         """Angle of the centre's path from the normal before the impact, in rad."""
-        return _angle(self.scene.tangential_velocity, self.scene.normal_speed)
+        scene = self.scene
+        return _angle(scene.along_slip(scene.tangential_velocity), scene.normal_speed)
 
     @property
     def rebound_angle(self) -> Real | None:
@@ -185,7 +256,8 @@ class ImpactResult(RunResult):
     @property
     def local_rebound_angle(self) -> Real:
         """Angle of reflexion of the contact point, in rad: (39) with psi2 in place of psi1."""
-        return _angle(self.rebound_slip_velocity, -self.motion.normal_velocity)
+        after = self.scene.along_slip(self.rebound_slip_velocity)
+        return _angle(after, -self.motion.normal_velocity)
 
     @property
     def energy(self) -> EnergyLedger:
@@ -222,11 +294,80 @@ class ImpactResult(RunResult):
 
         return draw_result(axes, self, x, y, width=width)
 
+    def _first_lines(self) -> list[str]:
+        return [repr(self), f"numerical error of psi2: {error_words(self)}"]
+
+    def _ends(self) -> tuple[Any, Any]:
+        return self.motion.status, self.motion.detail
+
+    @property
+    def status(self) -> Any:
+        """Status of the impact, or an array of statuses of the scene's shape."""
+        return self.motion.status
+
+    @property
+    def counters(self) -> Mapping[str, int]:
+        """Counts of steps, evaluations, solves and rejected steps, by name."""
+        counters: Mapping[str, int] = self.motion.counters
+        return counters
+
+    @property
+    def cautions(self) -> list[str]:
+        """Cautions that ``str`` shows: about the numerical error, then those of the plan."""
+        return [*error_cautions(self), *map(str, self.plan.cautions)]
+
+    def to_dataframe(self) -> Any:
+        """Return a ``pandas.DataFrame``, one row for each impact, units in ``.attrs["units"]``.
+
+        The index is the axes of a ``Scene.grid`` or of a file's product, else ``impact``.
+        """
+        from contactlab.outcome.frames import to_dataframe
+
+        return to_dataframe(self)
+
+    def to_xarray(self) -> Any:
+        """Return an ``xarray.Dataset`` with units, its dimensions the axes of a ``Scene.grid``."""
+        from contactlab.outcome.frames import to_xarray
+
+        return to_xarray(self)
+
+    def __len__(self) -> int:
+        """Return the number of impacts of a batch."""
+        if not self.scene.shape:
+            raise TypeError("the result of a single impact has no length")
+        return int(self.scene.shape[0])
+
     def __getitem__(self, index: int | slice) -> ImpactResult:
         """Return the result of one impact of a batch, or of a slice."""
-        part = super().__getitem__(index)
-        estimate = taken(self.psi2_error_estimate, self.scene.shape, index)
-        return attrs.evolve(part, psi2_error_estimate=estimate)
+        shape = self.scene.shape
+        if not shape:
+            raise TypeError("the result of a single impact cannot be indexed")
+        if isinstance(index, bool) or not isinstance(index, int | np.integer | slice):
+            raise TypeError(f"a result is indexed by a number or a slice, not {index!r}")
+        places = index if isinstance(index, slice) else slice(index, index + 1 or None)
+        if not np.size(np.arange(shape[0])[places]):
+            raise IndexError(f"{index}: is out of range for a batch of {shape[0]} impacts")
+        history = self.history
+        return attrs.evolve(
+            self,
+            scene=self.scene.take(index),
+            plan=self.plan[index],
+            motion=taken(self.motion, shape, index),
+            history=history.part(index) if history else history,
+            psi2_error_estimate=taken(self.psi2_error_estimate, shape, index),
+            restitution_error_estimate=taken(self.restitution_error_estimate, shape, index),
+        )
+
+    def __iter__(self) -> Iterator[ImpactResult]:
+        """Iterate over the impacts of a batch."""
+        return (self[index] for index in range(len(self)))
+
+
+def _numbers_told(value: Any) -> str:
+    """Return a number, or the numbers of a vector or tensor."""
+    return (
+        f"{value:.6g}" if np.ndim(value) == 0 else np.array2string(np.asarray(value), precision=6)
+    )
 
 
 def _ratio(after: Real, before: Real) -> Real:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,8 +11,14 @@ import numpy as np
 from contactlab.contracts.status import Status
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.scene import Scene, entry_unit
-from contactlab.outcome.columns import QUANTITIES, SWEEP_TABLE, unit_in
-from contactlab.outcome.eccentric import EccentricResult
+from contactlab.outcome.columns import (
+    QUANTITIES,
+    SWEEP_TABLE,
+    Column,
+    columns_of,
+    components,
+    unit_in,
+)
 from contactlab.outcome.numerical_error import error_words
 from contactlab.outcome.result import ImpactResult
 
@@ -20,6 +26,9 @@ from contactlab.outcome.result import ImpactResult
 SENTENCES = 3
 #: Entries of a scene that are shown beside its bodies.
 SCENE = ("friction_coefficient", "normal_speed", "tangential_velocity", "spin", "psi1", "chi")
+COUPLING = ("lam", "eta", "rho")
+#: Vectors in space of bodies that are no spheres, which tables leave to their own section.
+IN_SPACE = ("rebound_spin",)
 #: In place of an imbalance, where the friction work is what the velocities lose.
 CLOSED = "closed by construction, not checked"
 
@@ -51,10 +60,10 @@ def time(seconds: float) -> str:
     return f"{seconds / 1e-9:.3g} ns"
 
 
-def answer(result: ImpactResult | EccentricResult) -> list[tuple[str, str]]:
+def answer(result: ImpactResult) -> list[tuple[str, str]]:
     """Return psi2 of one impact, its numerical error and the run time, as (name, words)."""
     return [
-        ("psi2", number(result.psi2, digits=10)),
+        *((name, number(value, digits=10)) for name, value in _each("psi2", result.psi2)),
         ("numerical error of psi2", error_words(result)),
         ("run time", time(result.run_time)),
     ]
@@ -68,9 +77,11 @@ def scene_section(scene: Scene) -> Section:
         sphere_target = isinstance(scene.target, Sphere)
         rows += _body("sphere", scene.sphere)
         rows += _body("struck sphere" if sphere_target else "half-space", scene.target)
-    for name in SCENE:
+    coupled = scene.inverse_mass is not None
+    for name in (*SCENE, *(COUPLING if coupled else ())):
         unit = unit_in(entry_unit(name), scene)
-        rows.append([name.replace("_", " "), _range(getattr(scene, name)), unit])
+        for part, values in components(name, getattr(scene, name), scene.shape):
+            rows.append([part.replace("_", " "), _range(values), unit])
     return Section(["", "value", "unit"], rows)
 
 
@@ -110,11 +121,13 @@ def sweep_section(
 
     If ``most`` is not None, at most this number of rows, evenly spread with both ends.
     """
-    columns = {heading(name, unit): values for name, (unit, values) in varied.items()}
-    for name in SWEEP_TABLE:
-        values = QUANTITIES[name].of(result)
-        if name not in varied and not np.isnan(values).all():
-            columns[heading(name, QUANTITIES[name].unit_in(result.scene))] = values
+    scene, columns = result.scene, {}
+    for name, (unit, values) in varied.items():
+        columns[heading(name, unit)] = np.broadcast_to(values, scene.shape)
+    for column in _shown(scene, SWEEP_TABLE):
+        for part, values in _parts(result, column):
+            if part not in varied and not np.isnan(values).all():
+                columns[heading(part, column.unit_in(scene))] = values
     statuses = np.array(result.status, dtype=object)
     rows = [
         [*(float(values[index]) for values in columns.values()), statuses[index].name]
@@ -123,13 +136,29 @@ def sweep_section(
     return Section([*columns, "status"], rows)
 
 
+def _shown(scene: Scene, names: Sequence[str]) -> Iterator[Column]:
+    """Yield the columns of a table that a scene has, without vectors in space."""
+    known = {column.name for column in columns_of(scene)}
+    for name in names:
+        column = QUANTITIES[name]
+        if name.removesuffix("_deg") in known and not (scene.encounter and name in IN_SPACE):
+            yield column
+
+
+def _parts(result: ImpactResult, column: Column) -> Iterator[tuple[str, Any]]:
+    """Yield the components of a column by name, each of the scene's shape; NaN if undefined."""
+    shape, value = result.scene.shape, column.read(result)
+    for name, values in components(column.name, np.nan if value is None else value, shape):
+        yield name, np.broadcast_to(np.asarray(values, dtype=float), shape)
+
+
 def evenly(count: int, most: int | None) -> list[int]:
     """Return the indices of at most ``most`` of ``count`` rows, evenly spread with both ends."""
     shown = count if most is None else min(count, most)
     return [int(index) for index in np.round(np.linspace(0, count - 1, shown))]
 
 
-def largest_imbalance(result: ImpactResult | EccentricResult) -> str:
+def largest_imbalance(result: ImpactResult) -> str:
     """Return the largest relative imbalance of the energy books of a batch, as a line."""
     imbalance = np.abs(result.energy.relative_imbalance)
     checked = np.broadcast_to(result.energy.checked, np.shape(imbalance))
@@ -142,7 +171,7 @@ def largest_imbalance(result: ImpactResult | EccentricResult) -> str:
     return f"largest energy imbalance / start: {largest}; {count}"
 
 
-def closing(result: ImpactResult | EccentricResult) -> list[tuple[str, str]]:
+def closing(result: ImpactResult) -> list[tuple[str, str]]:
     """Return laws, counters, run time and statuses, as (name, words)."""
     laws = [f"{name} [{kind}]" for kind, name in result.laws.items()]
     counters = ", ".join(f"{count} {key}" for key, count in result.counters.items()) or "none"
@@ -168,8 +197,8 @@ def _defined(result: ImpactResult, headings: list[str], rows: list[Row]) -> Sect
     """Return a section without undefined rows; the unit is 1 if the scene has no bodies."""
     shown = []
     for *cells, unit in rows:
-        if None not in cells:
-            unit = "1" if unit and result.scene.sphere is None else unit
+        if not any(cell is None for cell in cells):
+            unit = unit_in(unit, result.scene) if unit else unit
             shown.append([c if isinstance(c, str) else float(c) for c in cells] + [unit])
     return Section(headings, shown)
 
@@ -177,12 +206,18 @@ def _defined(result: ImpactResult, headings: list[str], rows: list[Row]) -> Sect
 def _velocities(result: ImpactResult) -> list[Row]:
     """Return velocities before and after the impact."""
     scene, bodies = result.scene, result.scene.sphere is not None
+    rows: list[Row] = [
+        *_pairs("local angle psi", scene.psi1, result.psi2, "1"),
+        *_pairs(
+            "local tangential velocity", scene.slip_velocity, result.rebound_slip_velocity, "m/s"
+        ),
+        ["normal velocity", scene.normal_speed, result.rebound_normal_velocity, "m/s"],
+    ]
+    if not bodies:
+        return rows
     after_tangential = result.rebound_tangential_velocity
     after_angle = QUANTITIES["rebound_angle_deg"].read(result)
-    rows: list[Row] = [
-        ["local angle psi", scene.psi1, result.psi2, "1"],
-        ["local tangential velocity", scene.slip_velocity, result.rebound_slip_velocity, "m/s"],
-        ["normal velocity", scene.normal_speed, result.rebound_normal_velocity, "m/s"],
+    rows += [
         ["tangential velocity", scene.tangential_velocity, after_tangential, "m/s"],
         ["spin", scene.spin, result.rebound_spin, "rad/s"],
         ["angle of the path", np.degrees(result.incidence_angle), after_angle, "deg"],
@@ -193,22 +228,47 @@ def _velocities(result: ImpactResult) -> list[Row]:
             ["target: tangential velocity", 0.0, result.target_rebound_tangential_velocity, "m/s"],
             ["target: spin", 0.0, result.target_rebound_spin, "rad/s"],
         ]
-    return rows if bodies else rows[:3]
+    return rows
+
+
+def _pairs(name: str, before: Any, after: Any, unit: str) -> list[Row]:
+    """Return a row of a number before and after, or one for each component of a vector."""
+    if np.ndim(before) == 0:
+        return [[name, before, after, unit]]
+    pairs = enumerate(zip(before, after, strict=True), start=1)
+    return [[f"{name} along t{place}", one, other, unit] for place, (one, other) in pairs]
+
+
+def _each(name: str, value: Any) -> list[tuple[str, Any]]:
+    """Return a number, or the components of a vector or tensor, by name."""
+    return [(part, float(each)) for part, each in components(name, value, ())]
 
 
 def _contact(result: ImpactResult) -> list[Row]:
     """Return restitutions, duration and maxima of the contact."""
     scene, motion = result.scene, result.motion
+    coupled = scene.inverse_mass is not None
     rows: list[Row] = [
-        ["chi", scene.chi, "1"],
+        *([name, value, "1"] for name, value in _each("chi", scene.chi)),
+        *(
+            [part, value, "1"]
+            for name in (COUPLING if coupled else ())
+            for part, value in _each(name, getattr(scene, name))
+        ),
         ["normal restitution e", result.normal_restitution, "1"],
         ["tangential restitution e_t", result.tangential_restitution, "1"],
         ["contact time", motion.duration, "s"],
+    ]
+    if coupled:
+        rows.append(["compressions", result.compressions, "1"])
+    if scene.sphere is None and scene.encounter is None:
+        return rows
+    return [
+        *rows,
         ["largest contact radius", motion.maximum_radius, "m"],
         ["largest contact radius over R, C (9)", motion.maximum_radius / scene.pair.radius, "1"],
         ["largest normal force", motion.maximum_force, "N"],
     ]
-    return rows if scene.sphere is not None else rows[:4]
 
 
 def _energy(result: ImpactResult) -> list[Row]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 import contactlab
-from contactlab.compose.collision import collide
+from contactlab.compose.collide import collide
 from contactlab.compose.simulation import Simulation
 from contactlab.impact import shapes
 from contactlab.impact.bodies import HalfSpace

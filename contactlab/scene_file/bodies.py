@@ -9,13 +9,10 @@ import attrs
 import numpy as np
 
 from contactlab.impact import shapes
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.checks import real, refuse
 from contactlab.scene_file.entries import (
-    ECCENTRIC_KEYS,
-    NONDIMENSIONAL_KEYS,
     RIGID_KEYS,
     SHAPE_KEYS,
     TILT,
@@ -72,17 +69,6 @@ def rigid_body(
     for key in (*needed, *(("corner_radius",) if shape == "box" else ())):
         table.require(key, f"a {shape} needs {', '.join(needed)} in m")
     return table.make(made, **options)
-
-
-def nondimensional(table: Table) -> EccentricScene:
-    """Return the eccentric scene of psi1, chi, lam and eta, or in space of vectors and rho."""
-    given: dict[str, Any] = {key: table.content[key] for key in ECCENTRIC_KEYS if table.has(key)}
-    for key in NONDIMENSIONAL_KEYS:
-        given[key] = table.require(key, f"an eccentric impact needs {key} beside lam")
-    table.require("lam", "eta and rho belong to an eccentric impact, which has lam too")
-    if "rho" not in given:
-        given = {key: table.number(key, remedy="a number") for key in given}
-    return table.make(EccentricScene.nondimensional, **given)
 
 
 def _about_y(degrees: float) -> Any:

@@ -8,15 +8,14 @@ from typing import Any
 import numpy as np
 
 from contactlab.impact.bodies import HalfSpace, Sphere
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import real, refuse, unit_remedy
-from contactlab.scene_file.bodies import nondimensional, rigid_body
+from contactlab.scene_file.bodies import rigid_body
 from contactlab.scene_file.entries import (
     BODY_SECTIONS,
-    ECCENTRIC_KEYS,
+    COUPLING_KEYS,
     GROUP_KEYS,
     IMPACT_KEYS,
     NONDIMENSIONAL_KEYS,
@@ -30,7 +29,7 @@ from contactlab.scene_file.table import MATERIAL_KEYS, Table
 
 def build_scene(
     document: Mapping[str, Any],
-) -> tuple[Scene | EccentricScene, Encounter | None]:
+) -> tuple[Scene, Encounter | None]:
     """Return the scene of a file's tables, and the encounter in space if vectors are sections."""
     sections = [name for name in BODY_SECTIONS if name in document]
     if "nondimensional" in document:
@@ -39,11 +38,14 @@ def build_scene(
                 f"nondimensional: cannot stand beside [{sections[0]}]; psi1 and chi define "
                 "the scene, leave out one or the other"
             )
-        known = (*NONDIMENSIONAL_KEYS, *GROUP_KEYS, *ECCENTRIC_KEYS)
+        known = (*NONDIMENSIONAL_KEYS, *GROUP_KEYS, *COUPLING_KEYS)
         table = Table(document["nondimensional"], "nondimensional", known=known)
-        if table.has(*ECCENTRIC_KEYS):
-            return nondimensional(table), None
+        if table.has(*COUPLING_KEYS):
+            table.require(
+                "lam", "eta and rho belong to lam, by which friction changes the approach"
+            )
         groups = _numbers(table, NONDIMENSIONAL_KEYS) | _present(table, GROUP_KEYS)
+        groups |= {key: table.content[key] for key in COUPLING_KEYS if table.has(key)}
         return table.make(Scene.nondimensional, **groups), None
     root = Table({name: document[name] for name in sections}, "", known=BODY_SECTIONS)
     if "body" in sections or _is_rigid(document.get("target")):

@@ -18,8 +18,8 @@ IMPACT_KEYS = (
 SPHERE_VECTORS = ("velocity", "normal", "spin", "target_velocity", "target_spin")
 VECTOR_KEYS = (*SPHERE_VECTORS, "contact", "target_contact")
 NONDIMENSIONAL_KEYS = ("psi1", "chi")
-#: Further parameters of an eccentric impact: eta in the plane, rho in space.
-ECCENTRIC_KEYS = ("lam", "eta", "rho")
+#: Parameters where friction changes the approach: eta or rho beside lam.
+COUPLING_KEYS = ("lam", "eta", "rho")
 #: Keys of a body that is no sphere: those of ``RigidBody``, and those of each of its shapes.
 RIGID_KEYS = (
     "mass", "inertia", "principal", "axes", "curvature_radius", "curvature_ratio",
@@ -45,7 +45,7 @@ UNITS = SCENE_UNITS | {
 def _entries() -> dict[str, str]:
     """Return the dotted path of every entry that may vary, by short and by dotted name."""
     names = {key: f"impact.{key}" for key in IMPACT_KEYS}
-    scaled = (*NONDIMENSIONAL_KEYS, "coupling_number", *ECCENTRIC_KEYS)
+    scaled = (*NONDIMENSIONAL_KEYS, "coupling_number", *COUPLING_KEYS)
     names |= {key: f"nondimensional.{key}" for key in scaled} | {TILT: f"body.{TILT}"}
     dotted = [*names.values(), *(f"nondimensional.{key}" for key in GROUP_KEYS)]
     for body in ("sphere", "target"):

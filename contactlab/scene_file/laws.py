@@ -9,11 +9,11 @@ from typing import Any
 
 import attrs
 
-from contactlab.compose import composition, eccentric
+from contactlab.compose import composition
 from contactlab.compose.names import KINDS, full_name, kind_of, parted, seen_from, short_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
-from contactlab.impact.eccentric import EccentricScene
+from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
 from contactlab.scene_file.table import Table, flattened, nearest_of
 
@@ -79,7 +79,11 @@ class LawChoice:
         for name, options in self.options.items():
             if name not in KINDS:  # check options of laws that are not chosen too
                 REGISTRY.create(name, **options)
-        return Simulation(**{kind: choice.made(kind) for kind in KINDS})
+        laws = composition.Laws(*(choice.made(kind) for kind in KINDS))
+        if composition.misfit(*laws) is not None:
+            return Simulation(**laws.by_kind())  # which tells what would fit
+        named = {kind for kind in KINDS if getattr(self, kind) or kind in self.options}
+        return Simulation.of(laws.changed(named=frozenset(named)))
 
     def resolved(self) -> LawChoice:
         """Return the choice with every law named."""
@@ -93,14 +97,14 @@ class LawChoice:
             made.append(choice.made(kind))
         return choice
 
-    def fit_for(self, scene: Any) -> LawChoice:
-        """Return the choice with the laws that answer an eccentric scene best where it has none."""
-        if not isinstance(scene, EccentricScene) or self.tangential is not None:
-            return self
-        elastic = self.normal in (None, composition.DEFAULT_NORMAL)
-        if self.integrator is None:
-            return self.choose(**eccentric.preferred(scene) if elastic else composition.IN_SPACE)
-        return self if elastic else self.choose(tangential=composition.ON_A_PATH)
+    def suited_to(self, scene: Scene) -> LawChoice:
+        """Return the choice with every law named, as those that answer a scene."""
+        choice = self.resolved()
+        laws = self.simulation().laws
+        for kind, used in laws.of(scene).by_kind().items():
+            if used is not getattr(laws, kind):
+                choice = choice.choose(**{kind: REGISTRY.short_name(used)})
+        return choice
 
     def suited(self) -> LawChoice:
         """Return the choice, without its integrator if that does not run the tangential law."""

@@ -11,7 +11,6 @@ from typing import Any
 
 import attrs
 
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, real, refuse
@@ -46,9 +45,8 @@ class SceneFile:
     path : Path
     title, citation, notes : str
         From ``[about]``; empty by default.
-    scene : Scene or EccentricScene
-        One impact, or the batch of a ``[sweep]``; a product of entries has ``axes``. Bodies for
-        which friction changes the approach, and lam, make an ``EccentricScene``.
+    scene : Scene
+        One impact, or the batch of a ``[sweep]``; a product of entries has ``axes``.
     varied : mapping of str to array
         Values of each entry that the sweep varies, shape (n,); empty for one impact.
     laws : LawChoice
@@ -62,7 +60,7 @@ class SceneFile:
     title: str = ""
     citation: str = ""
     notes: str = ""
-    scene: Any
+    scene: Scene
     varied: Mapping[str, Real]
     laws: LawChoice = attrs.field(factory=LawChoice)
     encounter: Encounter | None = None
@@ -71,21 +69,21 @@ class SceneFile:
 
     @property
     def of_spheres(self) -> Scene:
-        """The scene, of spheres or of bodies that answer as spheres do.
+        """The scene, in none of whose impacts friction changes the approach.
 
         Raises
         ------
         ValueError
-            If friction changes the approach.
+            If it does.
         """
-        if not isinstance(self.scene, Scene):
-            rule = "is an eccentric impact of any two bodies"
+        if self.scene.inverse_mass is not None:
+            rule = "friction changes the approach of its bodies"
             raise ValueError(
                 f"{self.path}: {rule}; contactlab run, sweep, compare and animate run it"
             )
         return self.scene
 
-    def scene_at(self, **entries: Any) -> Any:
+    def scene_at(self, **entries: Any) -> Scene:
         """Return the file's scene without its sweep, with some entries replaced.
 
         ``scene_at(angle_deg=[5, 10])`` is a batch of two; entries of equal length vary
@@ -136,7 +134,7 @@ def read_scene(
         return SceneFile(
             path=file,
             **{key: about.text(key, default="") for key in ABOUT_KEYS},
-            scene=scene.over(sweep.axes) if sweep.axes and isinstance(scene, Scene) else scene,
+            scene=scene.over(sweep.axes) if sweep.axes else scene.varying(sweep.varied),
             encounter=encounter,
             varied=sweep.varied,
             laws=read_laws(document.get("simulation", {}), file.parent),
@@ -149,7 +147,7 @@ def read_scene(
 
 def _scene_with(
     tables: Mapping[str, Any], entries: Mapping[str, Any]
-) -> tuple[Scene | EccentricScene, Encounter | None]:
+) -> tuple[Scene, Encounter | None]:
     """Return scene and encounter of the tables with some entries replaced."""
     for name, values in entries.items():
         path = entry_path(name)

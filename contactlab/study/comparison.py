@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from contactlab.compose.error_estimate import estimated
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
-from contactlab.impact.grid import product
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
@@ -164,6 +163,7 @@ class Comparison:
         with np.errstate(all="ignore"):
             error = self.numerical_error(law) / result.scene.psi_scale
             change = np.asarray(result.motion.slip_velocity_change)
+            error = np.multiply.outer(error, np.ones(result.scene.slip_axes))
         ends = [_values(quantity, _shifted(result, change + sign * error)) for sign in (1.0, -1.0)]
         return np.array(0.5 * np.abs(ends[0] - ends[1]))
 
@@ -213,7 +213,7 @@ def compare(
         If ``scene`` is neither a scene nor a scene file.
     """
     file = scene if isinstance(scene, SceneFile) else None
-    single = file.of_spheres if file else scene
+    single = file.scene if file else scene
     if not isinstance(single, Scene):
         raise refuse("scene", scene, "must be a Scene or a SceneFile")
     series = file.measured if file else ()
@@ -258,10 +258,11 @@ def _varied(scene: Scene) -> dict[str, Array]:
     """Return the entries of a scene file that vary over a batch: one entry, or a grid's axes."""
     if not scene.shape:
         return {}
-    if scene.axes:
-        return product(scene.axes)
+    if scene.varied:
+        return dict(scene.varied)
     # Several entries may vary together: the first one with different values is the abscissa.
-    entries: dict[str, Any] = {"psi1": scene.psi1, "chi": scene.chi}
+    psi1 = scene.along_slip(scene.psi1)
+    entries: dict[str, Any] = {"psi1": psi1, "chi": scene.central.chi}
     if scene.sphere is not None:
         angle = np.degrees(np.arctan2(scene.tangential_velocity, scene.normal_speed))
         entries = {
@@ -271,7 +272,7 @@ def _varied(scene: Scene) -> dict[str, Array]:
     for name, values in entries.items():
         if np.unique(values).size > 1:
             return {name: np.array(values)}
-    return {"psi1": np.array(np.broadcast_to(scene.psi1, scene.shape))}
+    return {"psi1": np.array(np.broadcast_to(psi1, scene.shape))}
 
 
 def _values(quantity: str, result: ImpactResult) -> Array:
@@ -286,8 +287,9 @@ def _shifted(result: ImpactResult, change: Array) -> ImpactResult:
 
 
 def _estimated(run: LawRun, simulation: Simulation) -> LawRun:
-    result = attrs.evolve(run.result, psi2_error_estimate=estimated(simulation.laws, run.result))
-    return attrs.evolve(run, result=result)
+    psi2, restitution = estimated(simulation.laws, run.result)
+    estimates = {"psi2_error_estimate": psi2, "restitution_error_estimate": restitution}
+    return attrs.evolve(run, result=attrs.evolve(run.result, **estimates))
 
 
 def _failure(name: str, result: ImpactResult) -> str:

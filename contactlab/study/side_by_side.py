@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.impact.scene import entry_unit
-from contactlab.outcome.columns import COMPARISON_TABLE, QUANTITIES
+from contactlab.outcome.columns import COMPARISON_TABLE, columns_of, quantity_named
 from contactlab.outcome.tables import heading, number, time
 from contactlab.outcome.text_table import table
 from contactlab.scene_file import SceneFile
@@ -23,13 +23,17 @@ def default_quantities(comparison: Any) -> list[str]:
     measured = [agreement.measured.quantity for agreement in comparison.agreements]
     if measured:
         return list(dict.fromkeys(measured))
-    if comparison.scene.shape:
-        return ["psi2"]
-    laws = comparison.names
-    return [
+    scene = comparison.scene
+    psi2 = ["psi2_1", "psi2_2"] if scene.slip_axes else ["psi2"]
+    if scene.shape:
+        return psi2 if scene.inverse_mass is None else ["normal_restitution", *psi2]
+    known = {column.name for column in columns_of(scene)}
+    laws, others = comparison.names, [*COMPARISON_TABLE[1:], "compressions"]
+    return psi2 + [
         name
-        for name in COMPARISON_TABLE
-        if name == "psi2" or not all(np.isnan(comparison.values(name, law)) for law in laws)
+        for name in others
+        if name.removesuffix("_deg") in known
+        and not all(np.isnan(comparison.values(name, law)) for law in laws)
     ]
 
 
@@ -95,7 +99,7 @@ def _one_impact(comparison: Any, quantities: Sequence[str]) -> str:
     for name in quantities:
         values = [float(comparison.values(name, law)) for law in comparison.names]
         differences = [float(comparison.difference(name, law)) for law in others]
-        rows.append([name, *values, *differences, QUANTITIES[name].unit_in(comparison.scene)])
+        rows.append([name, *values, *differences, quantity_named(name).unit_in(comparison.scene)])
     return table(headings, rows)
 
 
@@ -107,7 +111,7 @@ def _over_sweep(comparison: Any, quantity: str) -> str:
     columns = [np.asarray(values) for values in comparison.varied.values()]
     columns += [comparison.values(quantity, law) for law in comparison.names]
     columns += [comparison.difference(quantity, law) for law in others]
-    unit = QUANTITIES[quantity].unit_in(comparison.scene)
+    unit = quantity_named(quantity).unit_in(comparison.scene)
     return f"{heading(quantity, unit)}:\n{table(headings, np.transpose(columns).tolist())}"
 
 

@@ -14,11 +14,10 @@ from contactlab.compose.composition import DEFAULT_NORMAL, misfit
 from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.impact.bodies import HalfSpace, Sphere
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.study.bench_methods import Method
-from contactlab.study.stability_eccentric import eccentric_scenes, tried_eccentric
+from contactlab.study.stability_coupled import coupled_scenes, tried_coupled
 
 #: A solid sphere of Poisson's ratio 0.3: the paper's own case.
 CHI = 49 / 34
@@ -95,8 +94,8 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
             yield _case(method, scene, {"integrator": {"steps": steps}})
     for normal in other_normal_laws(method):
         yield from _under(method, normal, quick=quick)
-    if tried_eccentric(method):
-        for label, make in eccentric_scenes(quick=quick):
+    if tried_coupled(method):
+        for label, make in coupled_scenes(quick=quick):
             yield _case(method, Extreme("eccentric", label, make), {})
     if method.whole:
         return
@@ -192,7 +191,7 @@ class Extreme(NamedTuple):
 
     family: str
     label: str
-    make: Callable[[], Scene | EccentricScene]
+    make: Callable[[], Scene]
 
 
 def extreme_scenes(*, quick: bool = False) -> list[Extreme]:

@@ -16,14 +16,12 @@ from contactlab.compose.solved_motion import ACCURACY
 from contactlab.contracts import ClosedFormNormalLaw
 from contactlab.contracts.error_model import LARGEST_SHARE, range_of
 from contactlab.contracts.status import Status
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene
-from contactlab.outcome.eccentric import EccentricResult
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import MARCHED, Plan, PlanColumns
 from contactlab.outcome.result import ImpactResult
 from contactlab.study.stability_cases import Case
-from contactlab.study.stability_eccentric import RIGID_DISTANCE, STIFF, distance
+from contactlab.study.stability_coupled import RIGID_DISTANCE, STIFF, distance
 from contactlab.study.stability_references import (
     SETTLED,
     Reference,
@@ -96,7 +94,7 @@ def judge(case: Case) -> Outcome:
 def judge_run(
     case: Case,
     simulation: Simulation,
-    scene: Scene | EccentricScene,
+    scene: Scene,
     reference: Reference | None = None,
 ) -> Outcome:
     """Return the outcome of one scene, its answer judged against ``reference``.
@@ -106,7 +104,7 @@ def judge_run(
     case : Case
         Names the outcome; without ``planned`` the integrator marches the impact.
     simulation : Simulation
-    scene : Scene or EccentricScene
+    scene : Scene
     reference : callable, optional
         Returns the exact change of slip velocity in m/s, or None if there is none; by default
         ``reference_for`` the laws.
@@ -128,7 +126,7 @@ def judge_run(
         return Outcome.of(case, REFUSED, note=note, run_time_s=took)
     try:
         with np.errstate(all="ignore"):
-            if isinstance(result, EccentricResult):
+            if result.scene.inverse_mass is not None:
                 off, bound, wrong = _of_bodies(simulation, result)
             else:
                 against = reference or reference_for(simulation.tangential, simulation.normal)
@@ -173,7 +171,7 @@ def _of_spheres(
     return float(error), bound, wrong
 
 
-def _of_bodies(simulation: Simulation, result: EccentricResult) -> tuple[float, float, list[str]]:
+def _of_bodies(simulation: Simulation, result: ImpactResult) -> tuple[float, float, list[str]]:
     """Return the distance from rigid bodies, NaN of a soft contact, its bound, and what breaks."""
     law, books, wrong = simulation.tangential, result.energy, []
     numbers = (result.normal_velocity, result.psi2, books.end, books.imbalance)
@@ -187,11 +185,11 @@ def _of_bodies(simulation: Simulation, result: EccentricResult) -> tuple[float, 
             wrong.append(f"{float(books.end / start - 1.0):.2g} of the energy from nothing")
         if abs(books.imbalance) > bound * start:
             wrong.append("energy books do not close")
-    if result.scene.kappa < STIFF or "partial_slip" not in law.offers:
+    if result.scene.pair.stiffness_ratio < STIFF or "partial_slip" not in law.offers:
         return np.nan, UNDECLARED, wrong
     rigid = Simulation(**composition.RIGID).run(result.scene).check()
     error = float(distance(result, rigid))
-    if error > RIGID_DISTANCE * float(result.scene.kappa) ** -0.5 + UNDECLARED:
+    if error > RIGID_DISTANCE * float(result.scene.pair.stiffness_ratio) ** -0.5 + UNDECLARED:
         wrong.append(f"{error:.2g} of v1 from rigid bodies")
     return error, UNDECLARED, wrong
 

@@ -12,14 +12,13 @@ import numpy as np
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.bodies import HalfSpace, Sphere
-from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.hertz import hertz_scales, rigid_body_rebound
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.scene_file import read_scene
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.scores import DEFAULT_SCENE
-from contactlab.study.stability_eccentric import RIGID_DISTANCE, STIFF, distance, rod
+from contactlab.study.stability_coupled import RIGID_DISTANCE, STIFF, distance, rod
 
 #: psi2 of the continuum limit for seven psi1 and three chi, to ten digits. Two independent methods
 #: agree on them: front tracking, and springs with Richardson extrapolation.
@@ -134,31 +133,31 @@ def _rigid() -> Finding:
     return _finding("coulomb: psi2", "slip, then rolling", off, 1e-12)
 
 
-def _eccentric() -> Simulation:
+def _exact_laws() -> Simulation:
     return Simulation(tangential="fronts", integrator="events")
 
 
 def _no_friction() -> Finding:
-    scene = EccentricScene.stack([rod(angle, 0.0, 0.5, kappa=0.8) for angle in (-50, 15, 30, 75)])
-    result = _eccentric().run(scene).check()
-    W = scene.inverse_mass
-    slip = scene.slip_velocity[:, 0] - 2.0 * W[:, 0, 1] / W[:, 0, 0]
-    off = np.hypot(result.normal_velocity + 1.0, result.slip_velocity[:, 0] - slip)
+    scene = Scene.stack([rod(angle, 0.0, 0.5, kappa=0.8) for angle in (-50, 15, 30, 75)])
+    result = _exact_laws().run(scene).check()
+    W: Any = scene.inverse_mass
+    slip = scene.slip_velocity - 2.0 * W[:, 0, 1] / W[:, 0, 0]
+    off = np.hypot(result.normal_restitution - 1.0, result.rebound_slip_velocity - slip)
     return _finding("fronts, two bodies: no friction", "V2 = -1, psi2 = psi1 - 2 eta", off, 1e-12)
 
 
-def _sliding() -> tuple[EccentricScene, Any, Any]:
+def _sliding() -> tuple[Scene, Any, Any]:
     """Return scenes that slip in gross slip at first, s psi1 and k of theory §14."""
     chi, lam, eta = (np.array(each) for each in zip(*SLIDING, strict=True))
     k = (2.0 * chi + eta) / (1.0 + lam)
     slip = np.maximum(1.0, 2.0 * k - 1.0) * 1.2
-    return EccentricScene.nondimensional(psi1=slip, chi=chi, lam=lam, eta=eta), slip, k
+    return Scene.nondimensional(psi1=slip, chi=chi, lam=lam, eta=eta), slip, k
 
 
 def _slip_throughout() -> Finding:
     scene, slip, k = _sliding()
-    result = _eccentric().run(scene).check()
-    off = np.hypot(result.normal_velocity + 1.0, result.psi2 - (slip - 2.0 * k))
+    result = _exact_laws().run(scene).check()
+    off = np.hypot(result.normal_restitution - 1.0, result.psi2 - (slip - 2.0 * k))
     return _finding("fronts, two bodies: slip throughout", "V2 = -1, psi2 = psi1 - 2k", off, 1e-10)
 
 
@@ -167,12 +166,11 @@ def _first_slip() -> Finding:
     off = []
     for place, each in enumerate(k):
         psi1 = 1.0 + 0.2 * (1 + place) * (each - 1.0)  # slips at first touch, stops before V = 0
-        start = attrs.evolve(
-            scene.take(place), slip_velocity=scene.slip_velocity[place] * psi1 / scene.psi1[place]
-        )
-        history: Any = _eccentric().run(start, history=True).check().history
+        slip = scene.slip_velocity[place] * psi1 / scene.psi1[place]
+        start = attrs.evolve(scene.take(place), tangential_velocity=slip)
+        history: Any = _exact_laws().run(start, history=True).check().history
         limit = float(start.friction_coefficient) * history.normal_force
-        full = np.abs(history.tangential_force[:, 0]) >= limit * (1.0 - 1e-9)
+        full = np.abs(history.tangential_force) >= limit * (1.0 - 1e-9)
         stopped = int(np.argmin(full)) - 1
         off.append(history.normal_velocity[stopped] - (each - psi1) / (each - 1.0))
     return _finding("fronts, two bodies: end of first slip", "V = (k - psi1)/(k - 1)", off, 1e-9)
@@ -183,7 +181,7 @@ def _stiff() -> Finding:
     for angle, friction, slip in STIFF_RODS:
         scene = rod(angle, friction, slip, kappa=STIFF)
         rigid = Simulation(tangential="coulomb").run(scene).check()
-        off.append(distance(_eccentric().run(scene).check(), rigid))
+        off.append(distance(_exact_laws().run(scene).check(), rigid))
     bound = RIGID_DISTANCE * STIFF**-0.5
     return _finding("fronts, two bodies: rods, kappa = 1e4", "Routh's construction", off, bound)
 

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import partial
 from typing import Any, ClassVar
 
 import attrs
 import numpy as np
 
 from contactlab.contracts import (
-    EccentricMotion,
-    EccentricObserver,
-    EccentricScene,
-    EccentricTangentialLaw,
+    Ends,
     NormalMotion,
+    Observer,
+    TangentialMotion,
     WholeImpact,
     WholeImpactTangentialLaw,
     no_force,
@@ -22,7 +20,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import spread
+from contactlab.numeric.arrays import filled, spread
 from contactlab.numeric.checks import Real
 
 #: Bound of the imbalance of the energy books, over the energy at the start.
@@ -30,7 +28,7 @@ ROUNDING = 1e-9
 
 
 @attrs.frozen(kw_only=True)
-class Coulomb(WholeImpactTangentialLaw, EccentricTangentialLaw):
+class Coulomb(WholeImpactTangentialLaw):
     """Coulomb friction between bodies that do not deform tangentially.
 
     While the contact slips the force is mu times the friction load; once slip has stopped the
@@ -50,6 +48,8 @@ class Coulomb(WholeImpactTangentialLaw, EccentricTangentialLaw):
 
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"rigid"})
+    together: ClassVar[bool] = True
+    vectors: ClassVar[bool] = True
     expected_failures: ClassVar[Mapping[str, str]] = {
         "impact_reference": "the exact solution is that of bodies which deform tangentially",
     }
@@ -73,17 +73,13 @@ class Coulomb(WholeImpactTangentialLaw, EccentricTangentialLaw):
             "up to about 1.5 where the contact sticks (model, not numerical error)",
         )
 
-    def refuses_eccentric(self, scene: EccentricScene) -> str | None:
-        """Return None: every impact has an answer."""
-        return None
-
-    def eccentric_impacts(
+    def impacts_together(
         self,
-        scene: EccentricScene,
+        scene: Scene,
         normal: NormalMotion,
         accuracy: float | None,
-        observer: EccentricObserver | None = None,
-    ) -> EccentricMotion:
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
         """Return the motion of rigid bodies; without a course, as all happens in no time."""
         from contactlab_laws.rigid_impact import rigid_impacts
 
@@ -91,7 +87,7 @@ class Coulomb(WholeImpactTangentialLaw, EccentricTangentialLaw):
 
 
 @attrs.frozen(kw_only=True)
-class Frictionless(WholeImpactTangentialLaw, EccentricTangentialLaw):
+class Frictionless(WholeImpactTangentialLaw):
     """No tangential force; the reference for the cost of a run.
 
     Between any two bodies pressure alone drags the surfaces: psi2 = psi1 - 2 eta if e is 1.
@@ -99,6 +95,8 @@ class Frictionless(WholeImpactTangentialLaw, EccentricTangentialLaw):
 
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"no_friction"})
+    together: ClassVar[bool] = True
+    vectors: ClassVar[bool] = True
     expected_failures: ClassVar[Mapping[str, str]] = {
         "impact_reference": "the exact solution is that of bodies with friction",
         "sliding_impulse": "there is no friction, however large the slip",
@@ -116,31 +114,26 @@ class Frictionless(WholeImpactTangentialLaw, EccentricTangentialLaw):
         """Return no caution: without traction there is no coupling."""
         return ()
 
-    def refuses_eccentric(self, scene: EccentricScene) -> str | None:
-        """Return None: every impact has an answer."""
-        return None
-
-    def eccentric_impacts(
+    def impacts_together(
         self,
-        scene: EccentricScene,
+        scene: Scene,
         normal: NormalMotion,
         accuracy: float | None,
-        observer: EccentricObserver | None = None,
-    ) -> EccentricMotion:
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
         """Return the velocities that the impulse of the frictionless approach gives."""
+        W: Any = scene.inverse_mass
         speed: Any = scene.normal_speed
-        rate = np.asarray(normal.final_rate)
-        impulse = (speed - rate) / scene.inverse_mass[..., 0, 0]
-        loss = 0.5 * impulse * (speed + rate)
-        of: Any = partial(spread, shape=scene.shape)
-        return attrs.evolve(
-            EccentricMotion.nothing(scene.shape, Status.SUCCESS),
-            velocity_change=-scene.inverse_mass[..., 0] * impulse[..., None],
-            friction_work=of(0.0),
-            normal_loss=of(loss),
-            duration=of(normal.duration),
-            maximum_radius=of(normal.maximum_radius),
-            maximum_approach=of(normal.maximum_approach),
-            maximum_force=of(normal.maximum_force),
-            compressions=np.ones(scene.shape, dtype=int) if scene.shape else 1,
+        rate: Any = normal.final_rate
+        impulse = scene.pair.normal_mass * (speed - rate)
+        drag = -np.asarray(impulse)[..., None] * W[..., 0, 1:]
+        entries = (
+            normal.duration, rate, normal.maximum_radius, normal.maximum_approach,
+            normal.maximum_force, 0.5 * impulse * (speed + rate),
+        )  # fmt: skip
+        return TangentialMotion(
+            slip_velocity_change=drag[..., 0] if scene.planar else drag,
+            friction_work=spread(0.0, scene.shape),
+            normal=Ends(*entries),
+            status=filled(Status.SUCCESS, scene.shape),
         )

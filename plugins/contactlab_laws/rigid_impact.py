@@ -1,4 +1,4 @@
-"""Rigid-body theory of an eccentric impact: Coulomb's law over the normal impulse.
+"""Rigid bodies where friction changes the approach: Coulomb's law over the normal impulse.
 
 In the plane Routh's construction: slip of one sign, then stick, or slip the other way. In space
 Keller's equations, in which the slip turns. Restitution is energetic (Stronge): the normal impulse
@@ -10,36 +10,36 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import attrs
 import numpy as np
 
-from contactlab.contracts import EccentricMotion, EccentricScene, NormalMotion
+from contactlab.contracts import Ends, NormalMotion, Scene, TangentialMotion
 from contactlab.contracts.status import Status
+from contactlab.numeric.arrays import filled, spread
 from contactlab.numeric.lobatto import Array
 
 #: Tolerance of Keller's equations; slip below this part of the speed has stopped.
 TOLERANCE, STOPPED = 1e-11, 1e-10
 
 
-def rigid_impacts(scene: EccentricScene, normal: NormalMotion) -> EccentricMotion:
+def rigid_impacts(scene: Scene, normal: NormalMotion) -> TangentialMotion:
     """Return the motion of rigid bodies with the restitution of the approach without friction."""
     shape = scene.shape
-    W = np.broadcast_to(scene.inverse_mass, (*shape, 3, 3)).reshape(-1, 3, 3)
+    W = np.broadcast_to(np.asarray(scene.inverse_mass), (*shape, 3, 3)).reshape(-1, 3, 3)
     before = scene.velocity.reshape(-1, 3)
     mu = np.broadcast_to(scene.friction_coefficient, shape).reshape(-1)
     e = np.broadcast_to(-np.asarray(normal.final_rate) / scene.normal_speed, shape).reshape(-1)
     one = _planar if scene.planar else _spatial
     rows = [one(*each) for each in zip(W, before, mu.tolist(), e.tolist(), strict=True)]
-    after = np.array([row[0] for row in rows])
-    work = np.array([row[1] for row in rows]).reshape(shape)
-    loss = np.array([row[2] for row in rows]).reshape(shape)
+    after = np.array([row[0] for row in rows]).reshape(*shape, 3)
+    work, loss = (np.array([row[k] for row in rows]).reshape(shape) for k in (1, 2))
+    change = after[..., 1:] - scene.velocity[..., 1:]
     number: Any = np.asarray if shape else float
-    return attrs.evolve(
-        EccentricMotion.nothing(shape, Status.SUCCESS),  # they happen in no time
-        velocity_change=(after - before).reshape(*shape, 3),
+    unknown = spread(math.nan, shape)  # they happen in no time
+    return TangentialMotion(
+        slip_velocity_change=number(change[..., 0]) if scene.planar else change,
         friction_work=number(work),
-        normal_loss=number(loss),
-        compressions=np.ones(shape, dtype=int) if shape else 1,
+        normal=Ends(unknown, number(after[..., 0]), *3 * (unknown,), number(loss)),
+        status=filled(Status.SUCCESS, shape),
     )
 
 

@@ -10,18 +10,17 @@ import numpy as np
 
 from contactlab.contracts import (
     ClosedFormMotion,
-    EccentricMotion,
-    EccentricObserver,
-    EccentricScene,
-    EccentricTangentialLaw,
     NormalMotion,
+    Observer,
     PathTangentialLaw,
     Stretch,
     Tabulated,
+    TangentialMotion,
     WholeImpact,
     flag,
     from_change,
 )
+from contactlab.contracts.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab_laws.jaeger.gross_slip import gross_slip
@@ -32,8 +31,12 @@ from contactlab_laws.tables.regions import LARGEST_CHI
 REASON = "psi2 is tabulated; a history, or a tolerance below 1e-9, follows the impact"
 
 
+#: Error of impacts that are followed where none is asked for.
+FOLLOWED = 1e-9
+
+
 @attrs.frozen(kw_only=True)
-class Fronts(PathTangentialLaw, EccentricTangentialLaw, Tabulated):
+class Fronts(PathTangentialLaw, Tabulated):
     """The continuum limit of the annulus law, with no discretisation.
 
     Where the contact sticks and where it slips is a short list of fronts; between changes
@@ -55,6 +58,7 @@ class Fronts(PathTangentialLaw, EccentricTangentialLaw, Tabulated):
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"elastic_hertz"})
+    together: ClassVar[bool] = True
     linear_below: ClassVar[float] = 1e-8
     rebound = staticmethod(rebound)
 
@@ -98,21 +102,22 @@ class Fronts(PathTangentialLaw, EccentricTangentialLaw, Tabulated):
 
         return stretches(velocity, inertia, motion, tolerance)
 
-    def refuses_eccentric(self, scene: EccentricScene) -> str | None:
-        """Return why a scene in space has no answer: the front is that of slip along a line."""
-        return None if scene.planar else "its front is that of slip along one line"
-
-    def eccentric_impacts(
+    def impacts_together(
         self,
-        scene: EccentricScene,
+        scene: Scene,
         normal: NormalMotion,
         accuracy: float | None,
-        observer: EccentricObserver | None = None,
-    ) -> EccentricMotion:
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
         """Return the motion of planar impacts, each followed from event to event."""
-        from contactlab_laws.fronts.eccentric import motion
+        from contactlab_laws.fronts.together import motion
 
         return motion(scene, normal, accuracy, observer)
+
+    def errors_together(self, scene: Scene, accuracy: float | None) -> tuple[Real, Real]:
+        """Return the accuracy that is aimed at, over max(1, psi1), for both."""
+        error = FOLLOWED if accuracy is None else accuracy
+        return error * psi_magnitude(scene), error
 
 
 def _from_table(scene: Scene, psi1: Any, chi: Any, *, where: Any) -> WholeImpact:

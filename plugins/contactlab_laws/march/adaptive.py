@@ -8,11 +8,8 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import (
-    EccentricIntegrator,
-    EccentricMotion,
-    EccentricObserver,
-    EccentricScene,
-    IncrementalTangentialLaw,
+    Ends,
+    Integrator,
     NormalMotion,
     Observer,
     SteppedTangentialLaw,
@@ -25,7 +22,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Rule, quantity
-from contactlab_laws.march import eccentric
+from contactlab_laws.march import together
 from contactlab_laws.march.division import midpoints
 from contactlab_laws.march.fixed import (
     MOST_STEPS,
@@ -55,7 +52,7 @@ ROUNDING = 1e-13
 
 
 @attrs.frozen(kw_only=True)
-class Adaptive(EccentricIntegrator):
+class Adaptive(Integrator):
     """The steps of ``symplectic``, doubled until psi2 no longer changes by the tolerance.
 
     The error is that of the whole impact, seen in the answer itself, and not a sum of what
@@ -78,6 +75,7 @@ class Adaptive(EccentricIntegrator):
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "tolerance"
     tangential_contract: ClassVar[Any] = SteppedTangentialLaw
+    together: ClassVar[bool] = True
 
     tolerance: float = quantity("1", rule=TOLERANCE, default=1e-4)
 
@@ -109,62 +107,65 @@ class Adaptive(EccentricIntegrator):
             return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
         return motion
 
-    def integrate_eccentric(
+    def integrate_together(
         self,
-        scene: EccentricScene,
         normal: NormalMotion,
-        tangential: IncrementalTangentialLaw,
-        observer: EccentricObserver | None = None,
-    ) -> EccentricMotion:
+        tangential: TangentialLaw,
+        scene: Scene,
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
         """Return the motion in steps that are doubled until no velocity changes by the tolerance.
 
         The tolerance is that of the velocities over the greatest of them at first touch.
         """
-        needed = eccentric.needed_steps(scene, normal, tangential)
+        needed = together.needed_steps(scene, normal, tangential)
         count = np.where(needed <= MOST_STEPS, np.maximum(needed, FIRST), np.inf)
         refused = Status.TOO_FEW_STEPS, refusals(FIRST, needed)
-        before = eccentric.march_eccentric(scene, normal, tangential, count, None, refused)
+        before = together.march_together(scene, normal, tangential, count, None, refused)
         if not np.any(before.status == Status.SUCCESS):
             return before
-        motion, count = self._doubled_eccentric(scene, normal, tangential, count, before)
+        motion, count = self._doubled_together(scene, normal, tangential, count, before)
         if scene.shape:
             failed = before.status != Status.SUCCESS
-            motion.status[failed], motion.detail[failed] = (
-                before.status[failed],
-                before.detail[failed],
-            )
+            everywhere = np.ones(scene.shape, dtype=bool)
+            parts = [(everywhere, motion), (failed, batch.taken(before, scene.shape, failed))]
+            steps = motion.counters
+            motion = attrs.evolve(TangentialMotion.merged(parts, scene.shape), counters=steps)
         if observer is not None:
-            eccentric.march_eccentric(scene, normal, tangential, count, observer)
+            together.march_together(scene, normal, tangential, count, observer)
         return motion
 
-    def _doubled_eccentric(
+    def _doubled_together(
         self,
-        scene: EccentricScene,
+        scene: Scene,
         normal: NormalMotion,
-        law: IncrementalTangentialLaw,
+        law: TangentialLaw,
         count: Any,
-        before: EccentricMotion,
-    ) -> tuple[EccentricMotion, Any]:
+        before: TangentialMotion,
+    ) -> tuple[TangentialMotion, Any]:
         """Return motion and steps of each impact, doubled from ``before``, in ``count`` steps."""
         finer = np.where(2.0 * count <= MOST_STEPS, 2.0 * count, np.inf)
         sentence = "A velocity still changes by more than the tolerance at the most steps."
         refused = Status.UNRESOLVED, sentence
-        last = eccentric.march_eccentric(scene, normal, law, finer, None, refused)
-        moved = np.abs(last.velocity_change - before.velocity_change).max(axis=-1)
-        allowed = 3.0 * self.tolerance * np.abs(scene.velocity).max(axis=-1)
-        left = (moved > allowed) & (last.status == Status.SUCCESS)
+        last = together.march_together(scene, normal, law, finer, None, refused)
+        moved = np.maximum(
+            *(np.abs(a - b) for a, b in zip(*map(_rates, (last, before)), strict=True))
+        )
+        largest = np.maximum(np.abs(scene.velocity).max(axis=-1), 0.0)
+        left = (moved > 3.0 * self.tolerance * largest) & (last.status == Status.SUCCESS)
         if not np.any(left):
             return last, finer
         if not scene.shape:
-            return self._doubled_eccentric(scene, normal, law, finer, last)
-        middle = attrs.evolve(
-            last, velocity_change=last.velocity_change[left], status=last.status[left]
-        )
-        more, most = self._doubled_eccentric(
+            return self._doubled_together(scene, normal, law, finer, last)
+        middle = batch.taken(last, scene.shape, left)
+        more, most = self._doubled_together(
             scene.take(left), normal.take(left), law, finer[left], middle
         )
         finer[left] = most
-        return eccentric.filled_in(last, left, more), finer
+        parts = [(np.ones(scene.shape, dtype=bool), last), (left, more)]
+        steps = max(last.counters.get("steps", 0), more.counters.get("steps", 0))
+        merged = TangentialMotion.merged(parts, scene.shape)
+        return attrs.evolve(merged, counters={"steps": steps}), finer
 
     def _doubled(
         self,
@@ -214,6 +215,14 @@ class Adaptive(EccentricIntegrator):
             ratio = np.where(last > 0.0, earlier / last, np.inf)
             smooth = np.maximum(last / (np.minimum(ratio, 4.0) - 1.0), BELIEVED * earlier)
         return np.where(ratio >= SMOOTH, smooth, WANDERS * np.maximum(last, 0.5 * earlier))
+
+
+def _rates(motion: TangentialMotion) -> tuple[Any, Any]:
+    """Return the rate of approach at the end, and the largest change of a slip velocity."""
+    slip = np.asarray(motion.slip_velocity_change)
+    if slip.ndim > np.ndim(motion.status):
+        slip = slip[..., 0] + 1j * slip[..., 1]
+    return Ends.of(motion.normal).final_rate, slip
 
 
 def _succeeded(motion: TangentialMotion) -> bool:

@@ -11,11 +11,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import (
-    EccentricIntegrator,
-    EccentricMotion,
-    EccentricObserver,
-    EccentricScene,
-    IncrementalTangentialLaw,
+    Integrator,
     NormalMotion,
     Observer,
     SteppedTangentialLaw,
@@ -28,7 +24,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import for_share
 from contactlab.numeric.checks import Real, count, flag
-from contactlab_laws.march import eccentric
+from contactlab_laws.march import together
 from contactlab_laws.march.division import LARGEST_LEAD, LARGEST_PHASE_STEP, resolving
 from contactlab_laws.march.march import march
 
@@ -43,9 +39,14 @@ RAISE = 1.25
 EvenMarch = Callable[[NormalMotion, int], TangentialMotion]
 
 
-def needed_steps(normal: NormalMotion, law: TangentialLaw) -> Any:
-    """Return the least steps an impact that resolve omega = sqrt(stiffness/mass), batch shape."""
+def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None = None) -> Any:
+    """Return the least steps an impact that resolve omega = sqrt(stiffness/mass), batch shape.
+
+    ``scene`` is that of ``normal`` unless friction changes the approach.
+    """
     assert isinstance(law, SteppedTangentialLaw)
+    if scene is not None and scene.inverse_mass is not None:
+        return np.maximum(together.needed_steps(scene, normal, law), float(LEAST_STEPS))
     scene = normal.scene
     stiffness: Any = law.stiffness(scene, normal)
     if not scene.shape and isinstance(stiffness, float) and stiffness >= 0.0:
@@ -109,12 +110,13 @@ def in_groups(
 
 
 @attrs.frozen(kw_only=True)
-class FixedSteps(EccentricIntegrator):
+class FixedSteps(Integrator):
     """Even steps over the contact's duration, under any normal law; a subclass samples them."""
 
     resolution: ClassVar[str | None] = "steps"
     order: ClassVar[int | None] = 2
     tangential_contract: ClassVar[Any] = SteppedTangentialLaw
+    together: ClassVar[bool] = True
 
     steps: int = count(default=200, most=MOST_STEPS)
     refine: bool = flag(default=True)
@@ -129,7 +131,7 @@ class FixedSteps(EccentricIntegrator):
 
     def resolution_for(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
         """Return how many steps each impact takes."""
-        steps: Real = self._taken(needed_steps(normal, tangential))
+        steps: Real = self._taken(needed_steps(normal, tangential, scene))
         return steps
 
     def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
@@ -141,7 +143,7 @@ class FixedSteps(EccentricIntegrator):
         self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
     ) -> tuple[str, ...]:
         """Return a sentence if the steps are too few: the steps taken instead, or needed."""
-        needed = needed_steps(normal, tangential)
+        needed = needed_steps(normal, tangential, scene)
         most = _most(needed)
         if most <= self.steps:
             return ()
@@ -180,16 +182,16 @@ class FixedSteps(EccentricIntegrator):
         except faults.LawFaultError as fault:
             return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
 
-    def integrate_eccentric(
+    def integrate_together(
         self,
-        scene: EccentricScene,
         normal: NormalMotion,
-        tangential: IncrementalTangentialLaw,
-        observer: EccentricObserver | None = None,
-    ) -> EccentricMotion:
+        tangential: TangentialLaw,
+        scene: Scene,
+        observer: Observer | None = None,
+    ) -> TangentialMotion:
         """Return the motion, ``steps`` counted on the approach without friction."""
-        needed = eccentric.needed_steps(scene, normal, tangential)
+        needed = together.needed_steps(scene, normal, tangential)
         most = MOST_STEPS if self.refine else self.steps
         taken = np.where(needed <= most, np.maximum(self.steps, needed), np.inf)
         refused = Status.TOO_FEW_STEPS, refusals(self.steps, needed)
-        return eccentric.march_eccentric(scene, normal, tangential, taken, observer, refused)
+        return together.march_together(scene, normal, tangential, taken, observer, refused)

@@ -18,7 +18,6 @@ from contactlab.contracts import (
     NormalMotion,
     Steps,
     TangentialResponse,
-    VectorTangentialLaw,
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, choice, count, refuse
@@ -73,7 +72,7 @@ midpoints = lru_cache(maxsize=32)(Midpoints)
 
 
 @attrs.frozen(kw_only=True)
-class Springs(ProfileLaw, VectorTangentialLaw):
+class Springs(ProfileLaw):
     """Mindlin's partial slip as a bundle of independent springs.
 
     The spring at distance r from the centre touches while r < b. Its displacement w grows with
@@ -105,6 +104,8 @@ class Springs(ProfileLaw, VectorTangentialLaw):
 
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "springs"
+    needs_future: ClassVar[bool] = False
+    vectors: ClassVar[bool] = True
 
     springs: int = count(default=50, most=100_000)
     grid: str = choice("largest", "doubling", default="largest")
@@ -136,14 +137,13 @@ class Springs(ProfileLaw, VectorTangentialLaw):
             return doubling.start(scene, self.springs)
         return super().start(scene, normal)
 
-    def begin(self, scene: Scene, normal: NormalMotion) -> Any:
-        """Return springs that span the approach without friction, and double if outgrown."""
-        return doubling.start(scene, self._even(), spanned=normal.maximum_radius)
+    def begin(self, scene: Scene, normal: NormalMotion, *, vectors: bool = False) -> Any:
+        """Return springs that span the approach without friction, and double if outgrown.
 
-    def begin_vectors(self, scene: Scene, normal: NormalMotion) -> Any:
-        """Return the springs of ``begin``, which turn with the slip."""
+        As ``vectors`` they turn with the slip.
+        """
         spanned = normal.maximum_radius
-        return doubling.start(scene, self._even(), spanned=spanned, vectors=True)
+        return doubling.start(scene, self._even(), spanned=spanned, vectors=vectors)
 
     def _even(self) -> int:
         """Return the number of springs, one more if odd: a doubling grid merges pairs."""
@@ -165,4 +165,5 @@ class Springs(ProfileLaw, VectorTangentialLaw):
 
     def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:
         """Return radius, displacement and limit (m), stuck and slipping of every spring."""
-        return doubling.fields(state) if self.grid == "doubling" else super().fields(state)
+        own = isinstance(state, doubling.State)
+        return doubling.fields(state) if own else super().fields(state)

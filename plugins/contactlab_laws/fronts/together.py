@@ -1,4 +1,4 @@
-"""Eccentric impacts of the slip front in SI: scaling in, motion out."""
+"""Impacts of the slip front in which friction changes the approach: scaling in, motion out."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import (
-    EccentricMotion,
-    EccentricObserver,
-    EccentricSample,
-    EccentricScene,
+    Ends,
     NormalContact,
     NormalMotion,
+    Observer,
+    Sample,
+    Scene,
+    TangentialMotion,
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
@@ -33,16 +34,17 @@ SMOOTH = (-1.0, 0.0, 0.0, DURATION_CONSTANT, 1.0, 1.0)
 
 
 def motion(
-    scene: EccentricScene,
+    scene: Scene,
     normal: NormalMotion,
     accuracy: float | None,
-    observer: EccentricObserver | None,
-) -> EccentricMotion:
+    observer: Observer | None,
+) -> TangentialMotion:
     """Return the motion of planar impacts."""
     shape, tolerance = scene.shape, error_of_step(accuracy or USUAL)
     scales = hertz_scales(normal.scene)
-    W, mu = scene.inverse_mass, np.asarray(scene.friction_coefficient)
-    speed, kappa = np.asarray(scene.normal_speed), np.asarray(scene.kappa)
+    W: Any = scene.inverse_mass
+    mu, speed = np.asarray(scene.friction_coefficient), np.asarray(scene.normal_speed)
+    kappa = np.asarray(scene.pair.stiffness_ratio)
     columns = (scene.psi1, scene.chi, scene.lam, scene.eta)
     # without friction nothing slips: psi is infinite, and V and the slip are closed forms
     smooth = np.broadcast_to(mu == 0.0, shape)
@@ -69,22 +71,20 @@ def motion(
     rate, psi, work, time, radius, times = rows.T.reshape(6, *shape)
     unit = mu * speed / kappa
     dragged = -2.0 * speed * W[..., 0, 1] / W[..., 0, 0]
-    change = np.zeros((*shape, 3))
-    change[..., 0] = (rate - 1.0) * speed
-    change[..., 1] = np.where(smooth, dragged, psi * np.where(smooth, 0.0, unit))
+    change = np.where(smooth, dragged, psi * np.where(smooth, 0.0, unit))
     # over v1²/(2 W_nn): 2.5 rho work (theory §14)
     energy = 1.25 * mu * mu / kappa * speed * speed / W[..., 0, 0]
     approach = radius * radius
     number: Any = np.asarray if shape else float
-    return EccentricMotion(
-        velocity_change=change,
+    compressions = np.nan_to_num(times)
+    ends = (
+        time * scales.approach / speed, rate * speed, radius * scales.radius,
+        approach * scales.approach, radius * approach * scales.force, 0.0 * work, compressions,
+    )  # fmt: skip
+    return TangentialMotion(
+        slip_velocity_change=number(change),
         friction_work=number(energy * work),
-        normal_loss=number(0.0 * work),
-        duration=number(time * scales.approach / speed),
-        maximum_radius=number(radius * scales.radius),
-        maximum_approach=number(approach * scales.approach),
-        maximum_force=number(radius * approach * scales.force),
-        compressions=np.nan_to_num(times).astype(int) if shape else int(np.nan_to_num(times)),
+        normal=Ends(*map(number, ends)),
         status=statuses.reshape(shape) if shape else statuses[0],
         detail=details.reshape(shape) if shape else details[0],
         counters={"steps": sum(int(impact.steps) for impact in impacts)},
@@ -108,12 +108,10 @@ def _times(impacts: list[Impact]) -> list[float]:
     return known
 
 
-def _watch(
-    scene: EccentricScene, scales: Any, observer: EccentricObserver, impact: Impact
-) -> Watch:
+def _watch(scene: Scene, scales: Any, observer: Observer, impact: Impact) -> Watch:
     """Return what shows instants of an impact to an observer in SI."""
     speed, mu = scene.normal_speed, scene.friction_coefficient
-    unit = mu * speed / scene.kappa
+    unit = mu * speed / scene.pair.stiffness_ratio
 
     def watch(_phase: Phase, rows: Rows, length: float, _last: tuple[float, ...]) -> None:
         for part in (0.25, 0.5, 0.75, 1.0):
@@ -122,13 +120,13 @@ def _watch(
             psi, force = impact.sign * (rate - margin), impact.sign * (u**3 - 1.5 * lack)
             contact = NormalContact(u**3 * scales.force, u * scales.radius, u * u * scales.approach)
             observer(
-                EccentricSample(
+                Sample(
                     time * scales.approach / speed,
                     u * u * scales.approach,
                     rate * speed,
                     contact.complete,
-                    np.array([psi * unit, scene.slip_velocity[1]]),
-                    np.array([force * mu * scales.force, 0.0]),
+                    psi * unit,
+                    force * mu * scales.force,
                 )
             )
 

@@ -1,4 +1,4 @@
-"""Extreme eccentric impacts: jams, bodies that hardly move, stiff contacts."""
+"""Extreme impacts in which friction changes the approach: jams, stiff contacts."""
 
 from __future__ import annotations
 
@@ -9,14 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.contracts.eccentric import (
-    EccentricIntegrator,
-    EccentricTangentialLaw,
-    IncrementalTangentialLaw,
-)
+from contactlab.contracts.tangential import SteppedTangentialLaw
 from contactlab.impact.bodies import Pair
-from contactlab.impact.eccentric import EccentricScene
-from contactlab.outcome.eccentric import EccentricResult
+from contactlab.impact.scene import Scene
+from contactlab.outcome.result import ImpactResult
 from contactlab.study.bench_methods import Method
 
 #: 1 over 1 - lam eta/(2 chi): the condition of the inverse mass, scaled to ones on the diagonal.
@@ -28,7 +24,7 @@ KAPPAS, RODS = (1e2, 1e4, 1e6), ((15.0, 0.3, 0.0), (-30.0, 0.3, 0.5), (75.0, 0.0
 STIFF, RIGID_DISTANCE = 1e4, 0.6
 
 
-def eccentric_scenes(*, quick: bool) -> Iterator[tuple[str, Callable[[], EccentricScene]]]:
+def coupled_scenes(*, quick: bool) -> Iterator[tuple[str, Callable[[], Scene]]]:
     """Iterate over labels and makers of the scenes; ``quick`` takes those that are soon done."""
     for condition in CONDITIONS[: 1 if quick else None]:
         for lam in LAMS:
@@ -37,14 +33,14 @@ def eccentric_scenes(*, quick: bool) -> Iterator[tuple[str, Callable[[], Eccentr
                 for psi1 in PSI1:
                     label = f"psi1={psi1:g} chi={chi:g} lam={lam:g} condition={condition:g}"
                     numbers = {"psi1": psi1, "chi": chi, "lam": lam, "eta": eta}
-                    yield label, partial(EccentricScene.nondimensional, **numbers)
+                    yield label, partial(Scene.nondimensional, **numbers)
     for kappa in KAPPAS[: 1 if quick else None]:
         for angle, friction, slip in RODS:
             label = f"rod of {angle:g} degrees, mu={friction:g}, kappa={kappa:g}"
             yield label, partial(rod, angle, friction, slip, kappa=kappa)
 
 
-def rod(angle: float, friction: float, slip: float, *, kappa: float) -> EccentricScene:
+def rod(angle: float, friction: float, slip: float, *, kappa: float) -> Scene:
     """Return a uniform rod of mass and length 1 that meets a plane with its end.
 
     Parameters
@@ -66,27 +62,21 @@ def rod(angle: float, friction: float, slip: float, *, kappa: float) -> Eccentri
         normal_mass=1.0 / W[0, 0],
         tangential_mass=1.0 / W[1, 1],
     )
-    return EccentricScene(
-        pair=pair,
-        friction_coefficient=friction,
-        inverse_mass=W,
-        normal_speed=1.0,
-        slip_velocity=np.array((slip, 0.0)),
-    )
+    return Scene(None, None, friction, 1.0, slip, pair=pair, inverse_mass=W)
 
 
-def tried_eccentric(method: Method) -> bool:
-    """Return whether the method answers eccentric impacts, by partial slip or as rigid bodies."""
+def tried_coupled(method: Method) -> bool:
+    """Return whether the method answers impacts with coupling, by partial slip or as rigid bodies."""
     simulation = method.simulation({"tangential": {}, "integrator": {}})
     law = simulation.tangential
-    if isinstance(law, EccentricTangentialLaw):
+    if law.together:
         return True
-    incremental = isinstance(law, IncrementalTangentialLaw) and "partial_slip" in law.offers
-    return incremental and isinstance(simulation.integrator, EccentricIntegrator)
+    stepped = isinstance(law, SteppedTangentialLaw) and not law.needs_future
+    return stepped and "partial_slip" in law.offers and simulation.integrator.together
 
 
-def distance(one: EccentricResult, other: EccentricResult) -> Any:
+def distance(one: ImpactResult, other: ImpactResult) -> Any:
     """Return the distance of rates and slip velocities after two impacts, over v1."""
-    rate = np.subtract(one.normal_velocity, other.normal_velocity)
-    slip = (one.slip_velocity - other.slip_velocity)[..., 0] / one.scene.normal_speed
-    return np.hypot(rate, slip)
+    rate = np.subtract(one.normal_restitution, other.normal_restitution)
+    slip = np.subtract(one.rebound_slip_velocity, other.rebound_slip_velocity)
+    return np.hypot(rate, slip / one.scene.normal_speed)

@@ -1,4 +1,4 @@
-"""Even steps of an eccentric impact: normal and friction law march together (theory §14).
+"""Even steps in which normal and friction law march together (theory §14).
 
 Half a drift, a kick by the forces in the middle, half a drift. The slip is marched as components,
 so that single impacts are plain numbers.
@@ -7,22 +7,22 @@ so that single impacts are plain numbers.
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
-import attrs
 import numpy as np
 
 from contactlab.contracts import (
-    EccentricMotion,
-    EccentricObserver,
-    EccentricSample,
-    EccentricScene,
+    Ends,
     Increment,
-    IncrementalTangentialLaw,
     NormalContact,
     NormalLaw,
     NormalMotion,
-    VectorTangentialLaw,
+    Observer,
+    Sample,
+    Scene,
+    SteppedTangentialLaw,
+    TangentialMotion,
     faults,
 )
 from contactlab.contracts.status import Status
@@ -36,11 +36,11 @@ LONGEST = 100
 DEEPEST = 1e10
 
 
-def needed_steps(scene: EccentricScene, normal: NormalMotion, law: Any) -> Any:
+def needed_steps(scene: Scene, normal: NormalMotion, law: Any) -> Any:
     """Return the least steps in the approach without friction that resolve every oscillation."""
     # omega² <= k_n W_nn + k_t tr W_tt; both stiffnesses grow as the contact radius, and the energy
     # bounds the radius.
-    W = scene.inverse_mass
+    W: Any = scene.inverse_mass
     normal_stiffness = 2.0 * scene.pair.effective_modulus * normal.maximum_radius
     tangential = law.stiffness(normal.scene, normal)
     inertia = W[..., 1, 1] if scene.planar else W[..., 1, 1] + W[..., 2, 2]
@@ -48,32 +48,32 @@ def needed_steps(scene: EccentricScene, normal: NormalMotion, law: Any) -> Any:
     return resolving(omega * normal.duration * deepest(scene) ** 0.1, law)
 
 
-def deepest(scene: EccentricScene) -> Any:
+def deepest(scene: Scene) -> Any:
     """Return a bound of zeta^2.5, the energy in the normal contact over that of the approach."""
-    energy = scene.kinetic_energy(scene.velocity)
-    alone = 0.5 * np.square(scene.normal_speed) / scene.inverse_mass[..., 0, 0]
-    drag = np.asarray(scene.lam)
-    drag = np.abs(drag) if scene.planar else np.hypot(drag[..., 0], drag[..., 1])
+    unmoved = 0.0 * np.asarray(scene.slip_velocity)
+    energy, _, _ = scene.energies(scene.normal_speed, unmoved)
+    alone = 0.5 * scene.pair.normal_mass * np.square(scene.normal_speed)
+    drag = scene.size_of(np.asarray(scene.lam))
     with np.errstate(divide="ignore"):
         held = np.where(drag < 1.0, 1.0 / np.maximum(1.0 - drag, 0.0), np.inf)
     return np.clip(np.minimum(energy / alone, held), 1.0, DEEPEST)
 
 
-def march_eccentric(
-    scene: EccentricScene,
+def march_together(
+    scene: Scene,
     normal: NormalMotion,
-    law: IncrementalTangentialLaw,
+    law: SteppedTangentialLaw,
     count: Any,
-    observer: EccentricObserver | None,
+    observer: Observer | None,
     refused: tuple[Status, Any] = (Status.TOO_FEW_STEPS, ""),
-) -> EccentricMotion:
+) -> TangentialMotion:
     """Return the motion in ``count`` steps an approach without friction, one for each impact.
 
     An impact whose count is infinite is not followed; ``refused`` is its status, with detail.
     """
     possible = np.isfinite(count)
     if not np.any(possible):
-        return EccentricMotion.nothing(scene.shape, *refused)
+        return TangentialMotion.nothing(scene.shape, *refused, axes=scene.slip_axes)
     march = _March(scene, normal, law, count)
     if not np.all(possible):
         left_out = ~np.broadcast_to(possible, scene.shape)
@@ -82,24 +82,14 @@ def march_eccentric(
     return march.run(observer)
 
 
-def filled_in(motion: EccentricMotion, where: Any, part: EccentricMotion) -> EccentricMotion:
-    """Return the motion of a batch with that of the impacts ``where`` from ``part``."""
-    columns = attrs.asdict(motion, recurse=False)
-    del columns["counters"]
-    for name, column in columns.items():
-        column[where] = getattr(part, name)
-    steps = max(motion.counters.get("steps", 0), part.counters.get("steps", 0))
-    return attrs.evolve(motion, **columns, counters={"steps": steps})
-
-
 class _March:
     """The impacts of a batch in progress."""
 
     def __init__(
         self,
-        scene: EccentricScene,
+        scene: Scene,
         normal: NormalMotion,
-        law: IncrementalTangentialLaw,
+        law: SteppedTangentialLaw,
         count: Any,
     ) -> None:
         self.scene, self.normal, self.law, self.shape = scene, normal, law, scene.shape
@@ -111,10 +101,12 @@ class _March:
 
         self.step = entry(np.asarray(normal.duration) / count)
         self.most = int(LONGEST * np.max(count, where=np.isfinite(count), initial=1.0))
-        W, size = scene.inverse_mass, 1 + self.axes
+        W: Any = scene.inverse_mass
+        size = 1 + self.axes
         self.W = [[entry(W[..., i, j]) for j in range(size)] for i in range(size)]
-        slip = scene.slip_velocity
-        self.before = [entry(scene.normal_speed), *(entry(slip[..., j]) for j in range(self.axes))]
+        slip = np.asarray(scene.slip_velocity)
+        sides = [slip] if scene.planar else [slip[..., 0], slip[..., 1]]
+        self.before = [entry(each) for each in (scene.normal_speed, *sides)]
         self.change: list[Any] = [0.0 * each for each in self.before]
         zero = self.change[0]
         self.elastic = "elastic_hertz" in normal.law.offers
@@ -126,7 +118,7 @@ class _March:
         self.status: Any = filled(Status.SUCCESS, scene.shape)
         self.detail: Any = filled("", scene.shape)
 
-    def run(self, observer: EccentricObserver | None) -> EccentricMotion:
+    def run(self, observer: Observer | None) -> TangentialMotion:
         """Return the motion to the end of contact of all impacts."""
         try:
             self._follow(observer)
@@ -143,15 +135,13 @@ class _March:
             self.fail(Status.LAW_RAISED, sentence, self.alive)
         return self._motion()
 
-    def _follow(self, observer: EccentricObserver | None) -> None:
+    def _follow(self, observer: Observer | None) -> None:
         law = self.law
         alone: NormalLaw = self.normal.law  # type: ignore[assignment]
         central = self.normal.scene
         with faults.blaming(alone):
             memory = alone.start(central)
-        vectors = self.axes == 2 and isinstance(law, VectorTangentialLaw)
-        begin = law.begin_vectors if vectors else law.begin  # type: ignore[attr-defined]
-        state = begin(central, self.normal)
+        state = law.begin(central, self.normal, vectors=self.axes == 2)
         velocity = self.before
         zero = self.change[0]
         contact = NormalContact(zero, zero, zero, zero)
@@ -189,12 +179,9 @@ class _March:
                 self.loss = self.loss + contact.force * middle[0] * self.step * going
             self.work = self.work + response.friction_work * self.alive
             if observer is not None:
-                observer(
-                    EccentricSample(
-                        time, approach, middle[0], contact, self._pair(middle[1:]),
-                        self._pair(force),
-                    )
-                )  # fmt: skip
+                seen = self._joined(middle[1:]), self._joined(force)
+                fields = partial(law.fields, state)
+                observer(Sample(time, approach, middle[0], contact, *seen, fields))
             self.change = [c - k for c, k in zip(self.change, kick, strict=True)]
             velocity = [v + c for v, c in zip(self.before, self.change, strict=True)]
             reached = (contact.radius, approach, contact.force)
@@ -223,11 +210,6 @@ class _March:
         """Return a displacement or velocity as the law takes it."""
         return components[0] if self.axes == 1 else np.stack(components, axis=-1)
 
-    def _pair(self, components: list[Any]) -> Any:
-        """Return a vector of shape (..., 2)."""
-        first = components[0]
-        return np.stack([first, components[1] if self.axes == 2 else 0.0 * first], axis=-1)
-
     def _components(self, force: Any, work: Any) -> list[Any]:
         """Return the components of a force, or refuse a malformed answer."""
         shape = self.shape if self.axes == 1 else (*self.shape, 2)
@@ -252,21 +234,15 @@ class _March:
         else:
             self.status, self.detail = status, detail
 
-    def _motion(self) -> EccentricMotion:
-        columns = [*self.change] + [0.0 * self.change[0]] * (2 - self.axes)
-        failed = self.status != Status.SUCCESS
-        lost = np.where(failed, math.nan, 0.0)
-        change = np.stack([each + lost for each in columns], axis=-1)
+    def _motion(self) -> TangentialMotion:
+        lost = np.where(self.status != Status.SUCCESS, math.nan, 0.0)
+        change = self._joined([each + lost for each in self.change[1:]])
         number: Any = (lambda v: v + lost) if self.shape else (lambda v: float(v + lost))
-        return EccentricMotion(
-            velocity_change=change,
+        ends = (self.duration, self.before[0] + self.change[0], *self.greatest, self.loss)
+        return TangentialMotion(
+            slip_velocity_change=change if self.axes == 2 else number(self.change[1]),
             friction_work=number(self.work),
-            normal_loss=number(self.loss),
-            duration=number(self.duration),
-            maximum_radius=number(self.greatest[0]),
-            maximum_approach=number(self.greatest[1]),
-            maximum_force=number(self.greatest[2]),
-            compressions=self.compressions,
+            normal=Ends(*map(number, ends), number(self.compressions)),
             status=self.status,
             detail=self.detail,
             counters={"steps": self.steps},

@@ -1,0 +1,96 @@
+"""The tangential motion of an impact, and the instants that an observer sees of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple, Self, TypeAlias
+
+import attrs
+
+from contactlab.contracts.batch_motion import BatchMotion
+from contactlab.contracts.contact import NormalContact
+from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.sampled_motion import Ends
+from contactlab.numeric.checks import Real
+
+
+def no_fields() -> Mapping[str, Any]:
+    """Return no arrays over the contact."""
+    return {}
+
+
+class Sample(NamedTuple):
+    """One instant of an impact, as passed to an observer.
+
+    Attributes
+    ----------
+    time : float or array, shape (...,)
+        Time in s, 0 at first touch.
+    approach, normal_velocity : float or array
+        Approach in m and its rate in m/s, positive in compression.
+    contact : NormalContact
+        The normal contact.
+    slip_velocity : float or array
+        v_x in m/s; along t1 and t2, shape (..., 2), where the scene has vectors.
+    tangential_force : float or array
+        F in N, positive where it opposes a positive slip velocity; shape (..., 2) as the slip.
+    fields : callable
+        Returns the law's arrays over the contact radius; observers call it only if they keep them.
+    """
+
+    time: Real
+    approach: Real
+    normal_velocity: Real
+    contact: NormalContact
+    slip_velocity: Any
+    tangential_force: Any
+    fields: Callable[[], Mapping[str, Any]] = no_fields
+
+
+#: Called with each instant; it must not change its argument. If its attribute ``stepwise`` is
+#: False, it never calls ``Sample.fields``, and a law may take all steps in one call before.
+Observer: TypeAlias = Callable[[Sample], None]
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class TangentialMotion(BatchMotion):
+    """The tangential motion of an impact or a batch; entries have the batch shape.
+
+    Attributes
+    ----------
+    slip_velocity_change : float or array
+        Change of v_x in m/s; shape (..., 2) where the scene has vectors. It is not added to v_x,
+        which may be so large that the sum would lose digits of the change.
+    friction_work : float or array
+        Friction work in J, summed over the answers of the tangential law.
+    status : Status or array of Status
+        How the run of each impact ended.
+    detail : str or array of str
+        What failed, at which step and time; empty on success. An integrator may give one
+        sentence for a batch, which goes to the impacts that failed.
+    counters : mapping of str to int
+        Operations counted: ``steps``, ``evaluations``, ``rejected``, ...
+    normal : NormalMotion, Ends or None
+        The normal motion that came of the friction, if the friction changes it. Restitution,
+        duration and maxima of the result are then those of this motion, and the energy books take
+        the dissipation that the normal law declares. Motions of both together always have it.
+    """
+
+    slip_velocity_change: Any = attrs.field(metadata={"vectors": True})
+    friction_work: Real
+    normal: NormalMotion | Ends | None = None
+
+    @classmethod
+    def merged(cls, parts: Sequence[tuple[Any, Self]], shape: tuple[int, ...]) -> Self:
+        """Return one motion of ``shape``, with the ends of the normal motions of the parts.
+
+        Parameters
+        ----------
+        parts, shape
+            As of ``BatchMotion.merged``.
+        """
+        motion = super().merged(parts, shape)
+        normals = [(where, part.normal) for where, part in parts]
+        if all(normal is None for _, normal in normals):
+            return motion
+        return attrs.evolve(motion, normal=Ends.merged(normals, shape))

@@ -1,0 +1,161 @@
+"""Scenes from dimensionless groups: psi1 and chi of the paper, lam, eta and rho of theory §14."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.impact.bodies import Pair
+from contactlab.numeric import arrays as batch
+from contactlab.numeric.checks import POISSON, POSITIVE, real, refuse
+
+Array = NDArray[np.float64]
+
+#: E* that makes C = 1 in eq. (9), where R = M_n = v1 = 1.
+MODULUS = 15.0 / 16.0
+#: Relative difference of two values of rho from which they contradict each other.
+ALIKE = 1e-9
+
+
+def entries(
+    *,
+    psi1: Any,
+    chi: Any,
+    lam: Any,
+    eta: Any,
+    rho: Any,
+    poisson_ratio: Any,
+    coupling_number: Any,
+    friction_coefficient: Any,
+) -> dict[str, Any]:
+    """Return the entries of ``Scene`` for the groups of ``Scene.nondimensional``."""
+    in_space = rho is not None and np.shape(chi)[-2:] == (2, 2) and np.shape(psi1)[-1:] == (2,)
+    incidence = real(
+        "psi1", psi1, remedy="give the non-dimensional angle of incidence, eq. (29) of the paper"
+    )
+    remedy = "chi of eq. (38); 1.4412 for a solid sphere, nu = 0.3"
+    inertia = (
+        real("chi", chi, remedy=remedy)
+        if in_space
+        else real("chi", chi, rule=POSITIVE, remedy=remedy)
+    )
+    drag = real("lam", lam, remedy="lam = mu W_nt/W_nn of theory §14; 0 for spheres")
+    given = None
+    if poisson_ratio is not None:
+        nu = real("poisson_ratio", poisson_ratio, rule=POISSON)
+        given = 2.0 * (1.0 - nu) / (2.0 - nu)
+    friction = None
+    if friction_coefficient is not None:
+        friction = real("friction_coefficient", friction_coefficient, rule=POSITIVE)
+    coupled = (
+        0.0
+        if coupling_number is None
+        else real(
+            "coupling_number", coupling_number, remedy="Lambda = kappa beta/mu; 0 for like bodies"
+        )
+    )
+    squared = _rho(inertia, drag, eta, rho, given, friction, in_space)
+    mu, kappa = _friction_and_stiffness(squared, given, friction)
+    pair = {
+        "radius": 1.0,
+        "effective_modulus": MODULUS,
+        "effective_shear_modulus": kappa * MODULUS,
+        "normal_mass": 1.0,
+        "dundurs_beta": coupled * mu / kappa,
+    }
+    scene = {"friction_coefficient": mu, "normal_speed": 1.0}
+    scene |= {"unit_friction": friction is None and (squared is None or given is None)}
+    mean = 0.5 * np.trace(inertia, axis1=-2, axis2=-1) if in_space else inertia
+    pair["tangential_mass"] = 0.5 * kappa / mean
+    if squared is None or not (in_space or np.any(drag)):
+        return scene | {"tangential_velocity": incidence * mu / kappa, "pair": Pair(**pair)}
+    slip, W = _scaled(mu, kappa, incidence, inertia, drag, in_space)
+    return scene | {
+        "tangential_velocity": slip,
+        "pair": Pair(**pair),
+        "inverse_mass": W,
+        "planar": not in_space,
+    }
+
+
+def _rho(inertia: Any, drag: Any, eta: Any, rho: Any, kappa: Any, mu: Any, in_space: bool) -> Any:
+    """Return rho = mu²/kappa of a scene that couples; None of one that does not."""
+    if eta is not None and rho is not None:
+        raise refuse("eta, rho", (eta, rho), "give one of them: rho = lam/eta = mu²/kappa")
+    known = None if mu is None or kappa is None else mu * mu / kappa
+    squared = None
+    if rho is not None:
+        squared = real("rho", rho, rule=POSITIVE)
+        if known is not None and not np.allclose(squared, known, rtol=ALIKE, atol=0.0):
+            rule = f"contradicts mu²/kappa = {known} of friction_coefficient and poisson_ratio"
+            raise refuse("rho", rho, rule, "leave out rho, or one of the two")
+    elif eta is not None:
+        squared = _by_eta(drag, real("eta", eta))
+    elif np.any(drag):
+        squared = known
+        if known is None:
+            rule = "lam needs one of them: eta in the plane, rho in the plane or in space"
+            raise refuse("eta, rho", (eta, rho), rule, "rho = lam/eta = mu²/kappa")
+    if squared is None or in_space:
+        return squared
+    jams = np.max(np.square(drag) / (2.0 * np.asarray(squared) * inertia))
+    if not jams < 1.0:
+        raise refuse("lam eta / (2 chi)", float(jams), "must be below 1: W has an inverse")
+    return squared
+
+
+def _by_eta(drag: Any, eta: Any) -> Any:
+    """Return lam/eta; 1 where both are zero."""
+    alone = (np.asarray(drag) == 0.0) & (np.asarray(eta) == 0.0)
+    rule = "must be positive: both have the sign of W_nt, and both are zero without coupling"
+    with np.errstate(all="ignore"):
+        squared = np.where(alone, 1.0, np.divide(drag, eta))
+    if not np.all((squared > 0.0) & np.isfinite(squared)):
+        raise refuse("lam / eta", squared, rule, "rho = lam/eta = mu²/kappa")
+    return _number(squared)
+
+
+def _friction_and_stiffness(squared: Any, kappa: Any, mu: Any) -> tuple[Any, Any]:
+    """Return mu and kappa, of which rho = mu²/kappa and the caller's numbers determine two."""
+    if squared is None:
+        return (1.0 if mu is None else mu), (1.0 if kappa is None else kappa)
+    if mu is not None:
+        return mu, (mu * mu / squared if kappa is None else kappa)
+    kappa = 1.0 if kappa is None else kappa
+    return _number(np.sqrt(squared * kappa)), kappa
+
+
+def _scaled(
+    mu: Any, kappa: Any, psi1: Any, chi: Any, lam: Any, in_space: bool
+) -> tuple[Any, Array]:
+    """Return slip velocity and inverse mass in units with v1 = R = C = 1/W_nn = 1."""
+    shapes = {"psi1": np.shape(psi1), "chi": np.shape(chi), "lam": np.shape(lam)}
+    for name, ends in (("psi1", (2,)), ("chi", (2, 2)), ("lam", (2,))) if in_space else ():
+        whole = shapes[name] or ends  # lam may be 0
+        if whole[-len(ends) :] != ends:
+            rule = f"must end with {ends} in space"
+            raise refuse(f"{name}.shape", whole, rule, "in the plane all are numbers")
+        shapes[name] = whole[: -len(ends)]
+    shapes |= {"rho": np.broadcast_shapes(np.shape(mu), np.shape(kappa))}
+    shape = batch.common_shape(
+        shapes, what="Scene.nondimensional: the shapes", remedy="give arrays of equal length"
+    )
+    mu, kappa = np.broadcast_to(mu, shape), np.broadcast_to(kappa, shape)
+    W = np.zeros((*shape, 3, 3))
+    W[..., 0, 0] = 1.0
+    if in_space:
+        coupling = np.asarray(lam) / mu[..., None]
+        W[..., 1:, 1:] = 2.0 * np.asarray(chi) / kappa[..., None, None]
+        slip = np.asarray(psi1) * (mu / kappa)[..., None]
+        W[..., 0, 1:] = W[..., 1:, 0] = coupling
+        return np.broadcast_to(slip, (*shape, 2)), W
+    W[..., 1, 1] = W[..., 2, 2] = 2.0 * chi / kappa
+    W[..., 0, 1] = W[..., 1, 0] = lam / mu
+    return _number(np.broadcast_to(psi1 * mu / kappa, shape)), W
+
+
+def _number(value: Any) -> Any:
+    """Return a float for a single number, else the array."""
+    return float(value) if np.ndim(value) == 0 else value
